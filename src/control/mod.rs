@@ -1,0 +1,2 @@
+//! Optimal control.
+pub mod problem;

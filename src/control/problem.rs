@@ -1,0 +1,212 @@
+//! What is asked of a system: simulate it, find its equilibrium, or steer it. Units g, mm, ms, N, V.
+
+use crate::ipopt::OptionValue;
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// A task with everything resolved: one voltage per muscle, indices for names.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Task {
+    /// Integrate forward in time.
+    Simulate(Simulation),
+    /// Find the static equilibrium under voltages (V, one per muscle).
+    Equilibrium(Vec<f64>, Option<Coordinates>),
+    /// Find optimal voltages.
+    Control(Box<Control>),
+}
+
+/// Coordinates in which a problem is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coordinates {
+    /// Independent joint coordinates; joints form a tree.
+    Reduced,
+    /// Directors with multipliers; any graph of bodies and joints.
+    Redundant,
+}
+
+/// A state of rest, or of given motion.
+#[derive(Clone, Debug, PartialEq)]
+pub enum State {
+    /// Static equilibrium under these voltages (V, one per muscle).
+    RestAtVoltages(Vec<f64>),
+    /// Joint coordinates by joint index (rad or mm); at a start, joints not named stay at zero.
+    JointAngles {
+        /// Coordinates.
+        angles: BTreeMap<usize, f64>,
+        /// Rates in rad/ms or mm/ms; only at a start, zero where not named.
+        rates: BTreeMap<usize, f64>,
+    },
+    /// Positions of markers in mm, by marker index, at rest; only as a goal.
+    Markers(BTreeMap<usize, Vector3<f64>>),
+}
+
+/// Voltages over time (V, one per muscle).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Voltages {
+    /// The same in every interval.
+    Constant(Vec<f64>),
+    /// One row per interval of the given grid; held at the last row afterwards.
+    Sampled {
+        /// End of each interval in ms, increasing.
+        ends: Vec<f64>,
+        /// Rows of voltages.
+        rows: Vec<Vec<f64>>,
+    },
+}
+
+/// A forward simulation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulation {
+    /// Length in ms.
+    pub duration: f64,
+    /// Step in ms.
+    pub step: f64,
+    /// Where it starts.
+    pub start: State,
+    /// What drives it.
+    pub voltages: Voltages,
+    /// `None`: reduced where the joints form a tree.
+    pub coordinates: Option<Coordinates>,
+}
+
+/// Final time of a control problem in ms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Duration {
+    /// Given.
+    Given(f64),
+    /// Free between bounds.
+    Free {
+        /// Lower bound.
+        min: f64,
+        /// Upper bound.
+        max: f64,
+        /// Where the solver starts.
+        guess: f64,
+    },
+}
+
+/// An optimal control problem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Control {
+    /// Final time.
+    pub duration: Duration,
+    /// Number of intervals N ≥ 1.
+    pub intervals: usize,
+    /// Initial state.
+    pub start: State,
+    /// Final state, at rest.
+    pub goal: State,
+    /// Bounds of all voltages in V.
+    pub voltage_bounds: [f64; 2],
+    /// What is minimised.
+    pub objective: Objective,
+    /// Path limits.
+    pub limits: Vec<Limit>,
+    /// `None`: reduced where the joints form a tree.
+    pub coordinates: Option<Coordinates>,
+    /// Where the solver starts.
+    pub guess: Guess,
+    /// Options of the solver.
+    pub solver: Solver,
+}
+
+/// Weights of the objective; a weight of zero leaves no trace.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Objective {
+    /// Of Σ h |V_k|², V in kV, h in s.
+    pub effort: f64,
+    /// Of Σ_{k=0..N} |V_k − V_{k−1}|²/h with the rest voltages of start and goal at the ends.
+    pub rate: f64,
+    /// Of the final time in s.
+    pub duration: f64,
+}
+
+/// An inequality that holds at every instant or in every interval.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Limit {
+    /// Joint coordinate (rad or mm).
+    JointAngle {
+        /// Joint index.
+        joint: usize,
+        /// Lower bound or −∞.
+        min: f64,
+        /// Upper bound or ∞.
+        max: f64,
+    },
+    /// Stretch Λ of a muscle at the instants.
+    Stretch {
+        /// Muscle index.
+        muscle: usize,
+        /// Lower bound or 0.
+        min: f64,
+        /// Upper bound or ∞.
+        max: f64,
+    },
+    /// True electric field |V|/(t Λ) of a muscle in the intervals.
+    ElectricField {
+        /// Muscle index.
+        muscle: usize,
+        /// Breakdown value in V/mm.
+        max: f64,
+    },
+    /// A marker relative to a region at the instants.
+    Marker {
+        /// Marker index.
+        marker: usize,
+        /// Region.
+        region: Region,
+        /// Whether inside or outside.
+        side: Side,
+    },
+}
+
+/// Side of a region.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Inside.
+    Inside,
+    /// Outside.
+    Outside,
+}
+
+/// A region of space in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Region {
+    /// Box between two corners.
+    Box {
+        /// Lower corner.
+        min: Vector3<f64>,
+        /// Upper corner.
+        max: Vector3<f64>,
+    },
+    /// Ball.
+    Sphere {
+        /// Centre.
+        centre: Vector3<f64>,
+        /// Radius.
+        radius: f64,
+    },
+}
+
+/// Where the solver starts.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Guess {
+    /// Smooth interpolation 3s² − 2s³ between start and goal; rest voltages of the goal plus 100 V.
+    Interpolate,
+    /// A simulation under constant voltages (V, one per muscle).
+    Simulate(Vec<f64>),
+    /// An earlier `solution.json`, also from another grid.
+    Solution(PathBuf),
+}
+
+/// Options of the solver.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solver {
+    /// Relative tolerance of the optimality conditions.
+    pub tolerance: f64,
+    /// Limit of iterations.
+    pub max_iterations: usize,
+    /// Options passed to Ipopt by name.
+    pub ipopt: BTreeMap<String, OptionValue>,
+}

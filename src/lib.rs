@@ -1,0 +1,6 @@
+//! Simulation and optimal control of systems driven by dielectric elastomer muscles.
+
+pub mod control;
+pub mod ipopt;
+pub mod model;
+pub mod nlp;

@@ -1,0 +1,2 @@
+//! From physics to indices.
+pub mod system;

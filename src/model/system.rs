@@ -1,0 +1,163 @@
+//! What a scene means: bodies, joints, muscles and markers in g, mm, ms, N, V, names resolved.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// A mechanical system; `None` for a body index is the ground.
+#[derive(Clone, Debug, PartialEq)]
+pub struct System {
+    /// Name for captions.
+    pub name: String,
+    /// Rigid bodies.
+    pub bodies: Vec<Body>,
+    /// Joints between bodies or to the ground.
+    pub joints: Vec<Joint>,
+    /// Lumped muscles.
+    pub muscles: Vec<Muscle>,
+    /// Points whose motion is reported.
+    pub markers: Vec<Marker>,
+    /// Acceleration of gravity in mm/ms², where there is gravity.
+    pub gravity: Option<Vector3<f64>>,
+}
+
+/// A rigid body in the reference configuration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Unique name.
+    pub name: String,
+    /// Mass in g.
+    pub mass: f64,
+    /// Principal moments of inertia about the centre of mass in g mm².
+    pub inertia: [f64; 3],
+    /// Centre of mass in mm.
+    pub centre: Vector3<f64>,
+    /// Principal axes as columns: the directors d₁, d₂, d₃.
+    pub directors: Matrix3<f64>,
+    /// Shape, for pictures.
+    pub shape: Shape,
+}
+
+/// Outline of a body about its centre, in its director frame, in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// Cylinder along d₃.
+    Cylinder {
+        /// Length along d₃.
+        length: f64,
+        /// Radius.
+        radius: f64,
+    },
+    /// Box with edges along the directors.
+    Box {
+        /// Edge lengths.
+        size: [f64; 3],
+    },
+    /// Sphere.
+    Sphere {
+        /// Radius.
+        radius: f64,
+    },
+    /// Not drawn.
+    None,
+}
+
+/// A joint at a point of the reference configuration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Unique name.
+    pub name: String,
+    /// What it lets move.
+    pub kind: JointKind,
+    /// Body on the side of the root; `None` is the ground.
+    pub parent: Option<usize>,
+    /// Body on the other side.
+    pub child: usize,
+    /// Place in mm, in the ground frame.
+    pub at: Vector3<f64>,
+    /// Damping of the joint coordinate: N mm ms for an angle, N ms/mm for a displacement; `None` leaves no trace.
+    pub damping: Option<f64>,
+}
+
+/// What a joint lets move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum JointKind {
+    /// Rotation about a unit axis.
+    Revolute {
+        /// Unit axis in the ground frame.
+        axis: Vector3<f64>,
+    },
+    /// Translation along a unit axis.
+    Prismatic {
+        /// Unit axis in the ground frame.
+        axis: Vector3<f64>,
+    },
+    /// Rotation about a point.
+    Spherical,
+    /// Nothing.
+    Fixed,
+}
+
+/// A material point of a body, or of the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attachment {
+    /// The body; `None` is the ground.
+    pub body: Option<usize>,
+    /// Place in the reference configuration in mm, in the ground frame.
+    pub at: Vector3<f64>,
+}
+
+/// A stacked dielectric elastomer between two material points, with one stretch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Muscle {
+    /// Unique name.
+    pub name: String,
+    /// Start of the span.
+    pub from: Attachment,
+    /// End of the span.
+    pub to: Attachment,
+    /// Sides of the rectangular cross-section at rest in mm.
+    pub cross_section: [f64; 2],
+    /// Thickness of one layer at rest in mm.
+    pub layer_thickness: f64,
+    /// Elastomer.
+    pub material: Material,
+    /// Whether the inertia of the changing cross-section is called for.
+    pub section_inertia: bool,
+}
+
+/// A dielectric elastomer. What is `None` leaves no trace.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Density in g/mm³.
+    pub density: Option<f64>,
+    /// Shear modulus μ in MPa.
+    pub shear_modulus: f64,
+    /// First Lamé constant λ in MPa; lumped muscles keep their volume and do not read it.
+    pub lame_lambda: Option<f64>,
+    /// Electric constants.
+    pub electric: Option<Electric>,
+    /// Viscosity η in MPa ms, σ_vis = η d.
+    pub viscosity: Option<f64>,
+}
+
+/// Constants of the electric energy c₁ E·E + c₂ C:(E⊗E) − ½ ε J C⁻¹:(E⊗E), in N/V².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Electric {
+    /// c₁.
+    pub c1: f64,
+    /// c₂.
+    pub c2: f64,
+    /// Permittivity ε of the last term: vacuum's, or the whole of an ideal dielectric.
+    pub permittivity: f64,
+}
+
+/// A named material point whose path is reported.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Marker {
+    /// Unique name.
+    pub name: String,
+    /// The point.
+    pub point: Attachment,
+}
+
+/// Permittivity of vacuum in N/V² (F/m), CODATA value in the decimals of the reference solutions.
+pub const VACUUM_PERMITTIVITY: f64 = 8.854_187_817e-12;

@@ -1,0 +1,52 @@
+//! A nonlinear program: minimise f(x) subject to g_L ≤ g(x) ≤ g_U and x_L ≤ x ≤ x_U.
+
+/// Lower and upper bounds, one of each per entry; ±∞ where there is none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bounds {
+    /// Lower bounds.
+    pub lower: Vec<f64>,
+    /// Upper bounds.
+    pub upper: Vec<f64>,
+}
+
+/// Places of the stored entries of a sparse matrix, zero-based; a place listed twice counts as a sum.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Entries {
+    /// Row of each entry.
+    pub rows: Vec<u32>,
+    /// Column of each entry.
+    pub cols: Vec<u32>,
+}
+
+/// Minimise f(x) subject to g_L ≤ g(x) ≤ g_U and x_L ≤ x ≤ x_U.
+///
+/// Structures never change during the life of the object. A quantity that does not exist at `x`
+/// (an inverted element, a muscle of no length) is written as NaN; solvers then step back.
+pub trait Nlp {
+    /// Bounds of the variables.
+    fn variables(&self) -> Bounds;
+    /// Bounds of the constraints; an equality has equal bounds.
+    fn constraints(&self) -> Bounds;
+    /// Places of the constraint Jacobian ∇g.
+    fn jacobian_structure(&self) -> Entries;
+    /// Places of the Lagrangian Hessian, lower triangle.
+    fn hessian_structure(&self) -> Entries;
+    /// f(x).
+    fn objective(&mut self, x: &[f64]) -> f64;
+    /// ∇f(x).
+    fn gradient(&mut self, x: &[f64], grad: &mut [f64]);
+    /// g(x).
+    fn constraint(&mut self, x: &[f64], g: &mut [f64]);
+    /// Values of ∇g(x) at the places of `jacobian_structure`.
+    fn jacobian(&mut self, x: &[f64], values: &mut [f64]);
+    /// Values of σ ∇²f(x) + Σ yᵢ ∇²gᵢ(x) at the places of `hessian_structure`.
+    fn hessian(&mut self, x: &[f64], sigma: f64, costates: &[f64], values: &mut [f64]);
+    /// What variable `i` is, for messages.
+    fn variable_name(&self, i: usize) -> String {
+        format!("x[{i}]")
+    }
+    /// What constraint `i` is, for messages.
+    fn constraint_name(&self, i: usize) -> String {
+        format!("g[{i}]")
+    }
+}
