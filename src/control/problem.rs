@@ -1,6 +1,7 @@
 //! What is asked of a system: simulate it, find its equilibrium, or steer it. Units g, mm, ms, N, V.
 
 use crate::ipopt::OptionValue;
+use crate::model::Coordinates;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -14,15 +15,6 @@ pub enum Task {
     Equilibrium(Vec<f64>, Option<Coordinates>),
     /// Find optimal voltages.
     Control(Box<Control>),
-}
-
-/// Coordinates in which a problem is solved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Coordinates {
-    /// Independent joint coordinates; joints form a tree.
-    Reduced,
-    /// Directors with multipliers; any graph of bodies and joints.
-    Redundant,
 }
 
 /// A state of rest, or of given motion.

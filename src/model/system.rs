@@ -161,3 +161,20 @@ pub struct Marker {
 
 /// Permittivity of vacuum in N/V² (F/m), CODATA value in the decimals of the reference solutions.
 pub const VACUUM_PERMITTIVITY: f64 = 8.854_187_817e-12;
+
+impl Muscle {
+    /// Rest length in mm.
+    pub fn length(&self) -> f64 {
+        (self.to.at - self.from.at).norm()
+    }
+
+    /// Rest volume in mm³.
+    pub fn volume(&self) -> f64 {
+        self.cross_section[0] * self.cross_section[1] * self.length()
+    }
+
+    /// Mass in g; `None` where the material has no density.
+    pub fn mass(&self) -> Option<f64> {
+        self.material.density.map(|rho| rho * self.volume())
+    }
+}

@@ -1,0 +1,103 @@
+//! Quantities that path limits and goals bound.
+
+use crate::energy::Energy;
+use crate::math::{Jet, Vector};
+use nalgebra::SVector;
+
+/// `(x − c)·n`, arguments: x.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// c in mm.
+    pub origin: Vector,
+    /// n.
+    pub normal: Vector,
+}
+
+impl Energy<3> for Place {
+    const DEGREE: usize = 1;
+
+    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
+        let mut jet = Jet::constant((p - self.origin).dot(&self.normal));
+        jet.gradient = self.normal;
+        jet.value_w = self.normal.dot(w);
+        jet
+    }
+}
+
+/// `|x − c|²/s²`, arguments: x. The squared stretch of a muscle, the distance from a centre.
+#[derive(Clone, Copy, Debug)]
+pub struct SquaredDistance {
+    /// c in mm.
+    pub centre: Vector,
+    /// s in mm.
+    pub scale: f64,
+}
+
+impl Energy<3> for SquaredDistance {
+    const DEGREE: usize = 2;
+    const ISOTROPIC: bool = true;
+
+    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
+        Jet::dot(0, 0, &(p - self.centre), w) * (1.0 / (self.scale * self.scale))
+    }
+}
+
+/// `Σ ((x − c)_i/a_i)¹⁶`, arguments: x. At least 3 only outside the box with half edges a.
+#[derive(Clone, Copy, Debug)]
+pub struct OutsideBox {
+    /// c in mm.
+    pub centre: Vector,
+    /// a in mm.
+    pub half: Vector,
+}
+
+impl Energy<3> for OutsideBox {
+    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
+        let axis = |i: usize| {
+            let x = (Jet::argument(i, p, w) + -self.centre[i]) * (1.0 / self.half[i]);
+            x.powi(16)
+        };
+        axis(0) + axis(1) + axis(2)
+    }
+}
+
+/// `V²/(E² I)` with I = |r|²/L₀²: the squared ratio of the true field |V|/(t Λ) to a limit, arguments: r and V.
+#[derive(Clone, Copy, Debug)]
+pub struct SquaredField {
+    /// Rest length L₀ in mm.
+    pub length: f64,
+    /// Voltage t E that reaches the limit field E at rest length, in V.
+    pub voltage: f64,
+}
+
+impl Energy<4> for SquaredField {
+    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> Jet<4, ORDER> {
+        let i = Jet::dot(0, 0, p, w) * (1.0 / (self.length * self.length));
+        let v = Jet::argument(3, p, w) * (1.0 / self.voltage);
+        v.squared() * i.recip()
+    }
+}
+
+/// Angle `atan2(b·c, a·c)` of the vector c in the plane of two perpendicular unit vectors a, b; arguments a, b, c.
+///
+/// The branch is the one nearest to `near`.
+#[derive(Clone, Copy, Debug)]
+pub struct Angle {
+    /// An angle in rad of the branch that is meant.
+    pub near: f64,
+}
+
+impl Energy<9> for Angle {
+    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 9>, w: &SVector<f64, 9>) -> Jet<9, ORDER> {
+        let cosine = Jet::dot(0, 6, p, w);
+        let sine = Jet::dot(3, 6, p, w);
+        // With the reference angle β: angle = β + atan2(s cos β − c sin β, c cos β + s sin β), and atan2(y, x) = atan(y/x) for x > 0.
+        let reference = sine.value.atan2(cosine.value);
+        let (sin, cos) = reference.sin_cos();
+        let y = sine * cos - cosine * sin;
+        let x = cosine * cos + sine * sin;
+        let ratio = y * x.recip();
+        let turns = ((self.near - reference) / std::f64::consts::TAU).round();
+        ratio.map([0.0, 1.0, 0.0, -2.0]) + (reference + turns * std::f64::consts::TAU)
+    }
+}

@@ -1,0 +1,115 @@
+//! The lumped muscle: a stack of equal cells that keep their volume, with one stretch.
+//!
+//! All through the polynomial invariant I = Λ² = |r|²/L₀² of the span r (physics.md, 3.1 to 3.3).
+
+use crate::energy::Energy;
+use crate::math::Jet;
+use nalgebra::SVector;
+
+/// Elastic energy `V₀ μ/2 (2/√I + I − 3)` of a muscle, arguments: span r. NaN for r = 0.
+#[derive(Clone, Copy, Debug)]
+pub struct ElasticCell {
+    /// Rest length L₀ in mm.
+    pub length: f64,
+    /// Rest volume V₀ in mm³.
+    pub volume: f64,
+    /// Shear modulus μ in MPa.
+    pub shear_modulus: f64,
+}
+
+impl ElasticCell {
+    /// μ/2 V₀ (2/√I + I − 3) as a function of I: value and three derivatives.
+    #[inline]
+    fn of_squared_stretch(&self, i: f64) -> [f64; 4] {
+        let c = 0.5 * self.shear_modulus * self.volume;
+        let r = 1.0 / i;
+        let s = r.sqrt();
+        [
+            c * (2.0 * s + i - 3.0),
+            c * (1.0 - s * r),
+            c * 1.5 * s * r * r,
+            c * -3.75 * s * r * r * r,
+        ]
+    }
+}
+
+impl Energy<3> for ElasticCell {
+    #[inline]
+    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
+        let i = Jet::dot(0, 0, p, w) * (1.0 / (self.length * self.length));
+        i.map(self.of_squared_stretch(i.value))
+    }
+}
+
+/// Electro-elastic energy of a muscle, arguments: span r and voltage V. NaN for r = 0.
+///
+/// `W = V₀ { μ/2 (2/√I + I − 3) + [c₁ + c₂ I − ε/(2I)] (V/t)² }`; the charge on the electrodes is −∂W/∂V.
+#[derive(Clone, Copy, Debug)]
+pub struct DielectricCell {
+    /// The elastic part.
+    pub elastic: ElasticCell,
+    /// c₁ in N/V².
+    pub c1: f64,
+    /// c₂ in N/V².
+    pub c2: f64,
+    /// ε in N/V².
+    pub permittivity: f64,
+    /// Layer thickness t in mm.
+    pub layer: f64,
+}
+
+impl Energy<4> for DielectricCell {
+    #[inline]
+    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> Jet<4, ORDER> {
+        let i = Jet::dot(0, 0, p, w) * (1.0 / (self.elastic.length * self.elastic.length));
+        let voltage = Jet::argument(3, p, w);
+        // W as a function of the two values I and V; no mixed powers beyond these.
+        let (x, r) = (i.value, 1.0 / i.value);
+        let k = self.elastic.volume / (self.layer * self.layer);
+        let e = [
+            k * (self.c1 + self.c2 * x - 0.5 * self.permittivity * r),
+            k * (self.c2 + 0.5 * self.permittivity * r * r),
+            k * (-self.permittivity * r * r * r),
+            k * (3.0 * self.permittivity * r * r * r * r),
+        ];
+        let u = self.elastic.of_squared_stretch(x);
+        let v = voltage.value;
+        let (iw, vw) = (i.value_w, voltage.value_w);
+        let mut outer = Jet::<2, ORDER>::constant(u[0] + e[0] * v * v);
+        outer.gradient = [u[1] + e[1] * v * v, 2.0 * e[0] * v].into();
+        if ORDER >= 2 {
+            let mixed = 2.0 * e[1] * v;
+            outer.hessian = [[u[2] + e[2] * v * v, mixed], [mixed, 2.0 * e[0]]].into();
+        }
+        if ORDER >= 3 {
+            let mixed = 2.0 * (e[2] * v * iw + e[1] * vw);
+            outer.value_w = outer.gradient[0] * iw + outer.gradient[1] * vw;
+            outer.gradient_w = outer.hessian * nalgebra::Vector2::new(iw, vw);
+            outer.hessian_w = [
+                [(u[3] + e[3] * v * v) * iw + 2.0 * e[2] * v * vw, mixed],
+                [mixed, 2.0 * e[1] * iw],
+            ]
+            .into();
+        }
+        Jet::compose(&outer, &[i, voltage])
+    }
+}
+
+/// Kinetic energy of the changing cross-section, `½ ρ V₀ (X̂² + Ŷ²)/192 · İ² I^(−5/2)`, arguments: r̄ and ṙ.
+#[derive(Clone, Copy, Debug)]
+pub struct SectionInertia {
+    /// Rest length L₀ in mm.
+    pub length: f64,
+    /// ρ V₀ (X̂² + Ŷ²)/192 in g mm².
+    pub moment: f64,
+}
+
+impl Energy<6> for SectionInertia {
+    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
+        let scale = 1.0 / (self.length * self.length);
+        let i = Jet::dot(0, 0, p, w) * scale;
+        let rate = Jet::dot(0, 3, p, w) * (2.0 * scale);
+        let power = i.sqrt() * i.squared();
+        rate.squared() * power.recip() * (0.5 * self.moment)
+    }
+}

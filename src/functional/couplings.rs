@@ -1,0 +1,155 @@
+//! Which vectors and scalars meet in second derivatives, and the blocks they meet in.
+
+use crate::math::{Matrix, Vector};
+use std::collections::HashMap;
+
+/// The pairs that couple at one site; laid down once by the effects, the same for every interval.
+///
+/// Vector pairs come in both orders.
+#[derive(Clone, Debug, Default)]
+pub struct Couplings {
+    /// Vector pairs with full 3 × 3 blocks.
+    pub full: Vec<(usize, usize)>,
+    /// Vector pairs whose blocks are multiples of the identity.
+    pub isotropic: Vec<(usize, usize)>,
+    /// Vector and scalar.
+    pub mixed: Vec<(usize, usize)>,
+    /// Scalar pairs, row ≥ column.
+    pub scalars: Vec<(usize, usize)>,
+    slots: HashMap<(u8, usize, usize), usize>,
+}
+
+impl Couplings {
+    fn slot(
+        slots: &mut HashMap<(u8, usize, usize), usize>,
+        list: &mut Vec<(usize, usize)>,
+        kind: u8,
+        pair: (usize, usize),
+    ) -> usize {
+        *slots.entry((kind, pair.0, pair.1)).or_insert_with(|| {
+            list.push(pair);
+            list.len() - 1
+        })
+    }
+
+    /// Slot of a full block of the vectors a, b.
+    pub fn add_full(&mut self, a: usize, b: usize) -> usize {
+        Self::slot(&mut self.slots, &mut self.full, 0, (b, a));
+        Self::slot(&mut self.slots, &mut self.full, 0, (a, b))
+    }
+
+    /// Slot of an isotropic block of the vectors a, b.
+    pub fn add_isotropic(&mut self, a: usize, b: usize) -> usize {
+        Self::slot(&mut self.slots, &mut self.isotropic, 1, (b, a));
+        Self::slot(&mut self.slots, &mut self.isotropic, 1, (a, b))
+    }
+
+    /// Slot of the coupling of vector a and scalar s.
+    pub fn add_mixed(&mut self, a: usize, s: usize) -> usize {
+        Self::slot(&mut self.slots, &mut self.mixed, 2, (a, s))
+    }
+
+    /// Slot of the coupling of two scalars.
+    pub fn add_scalars(&mut self, s: usize, t: usize) -> usize {
+        Self::slot(&mut self.slots, &mut self.scalars, 3, (s.max(t), s.min(t)))
+    }
+
+    /// Slot of the transposed full pair.
+    pub fn transposed_full(&self, slot: usize) -> usize {
+        let (a, b) = self.full[slot];
+        self.slots[&(0, b, a)]
+    }
+
+    /// Slot of the transposed isotropic pair.
+    pub fn transposed_isotropic(&self, slot: usize) -> usize {
+        let (a, b) = self.isotropic[slot];
+        self.slots[&(1, b, a)]
+    }
+}
+
+/// Second derivatives on one interval, one entry for each coupling; `[2 r + s]` for the instants k + r, k + s.
+#[derive(Clone, Debug, Default)]
+pub struct Blocks {
+    /// Full blocks.
+    pub full: Vec<[Matrix; 4]>,
+    /// Factors of the identity.
+    pub isotropic: Vec<[f64; 4]>,
+    /// Vector at the instants k, k + 1 against scalar.
+    pub mixed: Vec<[Vector; 2]>,
+    /// Scalar against scalar.
+    pub scalars: Vec<f64>,
+}
+
+/// Which instants of an interval a reader asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sides {
+    /// Blocks (k, k), (k, k+1), (k+1, k), (k+1, k+1).
+    pub blocks: [bool; 4],
+}
+
+impl Sides {
+    /// All four blocks.
+    pub const ALL: Self = Self { blocks: [true; 4] };
+    /// Only the rows of t_k against t_{k+1}: what one step forward needs.
+    pub const FORWARD: Self = Self {
+        blocks: [false, true, false, false],
+    };
+    /// Only the block of the first instant: what an instant needs.
+    pub const HERE: Self = Self {
+        blocks: [true, false, false, false],
+    };
+}
+
+/// First and second derivatives of a sum on one interval.
+#[derive(Clone, Debug, Default)]
+pub struct Part {
+    /// ∂/∂x_k and ∂/∂x_{k+1}.
+    pub forces: [Vec<Vector>; 2],
+    /// ∂/∂s.
+    pub rows: Vec<f64>,
+    /// Second derivatives.
+    pub blocks: Blocks,
+    /// ∂²/∂x∂h at both instants.
+    pub horizon_forces: [Vec<Vector>; 2],
+    /// ∂²/∂s∂h.
+    pub horizon_rows: Vec<f64>,
+    /// ∂²/∂h².
+    pub horizon: f64,
+}
+
+impl Part {
+    /// Zeros for the couplings of a site.
+    pub fn new(vectors: usize, scalars: usize, couplings: &Couplings) -> Self {
+        let zeros = || vec![Vector::zeros(); vectors];
+        Self {
+            forces: [zeros(), zeros()],
+            rows: vec![0.0; scalars],
+            blocks: Blocks {
+                full: vec![[Matrix::zeros(); 4]; couplings.full.len()],
+                isotropic: vec![[0.0; 4]; couplings.isotropic.len()],
+                mixed: vec![[Vector::zeros(); 2]; couplings.mixed.len()],
+                scalars: vec![0.0; couplings.scalars.len()],
+            },
+            horizon_forces: [zeros(), zeros()],
+            horizon_rows: vec![0.0; scalars],
+            horizon: 0.0,
+        }
+    }
+
+    /// Back to zero.
+    pub fn clear(&mut self) {
+        for side in &mut self.forces {
+            side.fill(Vector::zeros());
+        }
+        self.rows.fill(0.0);
+        self.blocks.full.fill([Matrix::zeros(); 4]);
+        self.blocks.isotropic.fill([0.0; 4]);
+        self.blocks.mixed.fill([Vector::zeros(); 2]);
+        self.blocks.scalars.fill(0.0);
+        for side in &mut self.horizon_forces {
+            side.fill(Vector::zeros());
+        }
+        self.horizon_rows.fill(0.0);
+        self.horizon = 0.0;
+    }
+}

@@ -1,0 +1,120 @@
+//! A term of a sum, and the sum.
+
+use crate::functional::{Couplings, Part, Sides};
+use crate::math::Vector;
+use std::fmt::Debug;
+
+/// How far derivatives are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// Forces: first derivatives.
+    Gradient,
+    /// Also second derivatives.
+    Hessian,
+    /// Also both contracted with a direction.
+    Third,
+}
+
+/// What an effect reads on one interval.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// Vectors at t_k and t_{k+1}.
+    pub vectors: [&'a [Vector]; 2],
+    /// Rates of the vectors along the direction.
+    pub along: [&'a [Vector]; 2],
+    /// Scalars of the site: voltages of the interval, multipliers of the instant.
+    pub scalars: &'a [f64],
+    /// Rates of the scalars along the direction.
+    pub scalars_along: &'a [f64],
+    /// Interval length in ms.
+    pub h: f64,
+    /// Whether the interval length is itself an argument.
+    pub horizon: Horizon,
+    /// Which blocks are asked for.
+    pub sides: Sides,
+}
+
+/// What the interval length is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Horizon {
+    /// A given number.
+    Given,
+    /// An argument: derivatives with respect to it are asked for.
+    Free,
+}
+
+/// Where an effect adds its derivatives.
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// The derivatives.
+    pub plain: Part,
+    /// The derivatives contracted with the direction.
+    pub contracted: Part,
+}
+
+/// A term of a sum: all elements of one kind at one site.
+pub trait Effect: Debug + Send + Sync {
+    /// Name for reports.
+    fn name(&self) -> &str;
+
+    /// How many elements there are.
+    fn elements(&self) -> usize;
+
+    /// Registers the couplings of the elements, and remembers where they lie.
+    fn couple(&mut self, couplings: &mut Couplings);
+
+    /// The value: for an interval h times the sum over the elements; a virtual work counts as zero.
+    fn value(&self, frame: &Frame<'_>) -> f64;
+
+    /// Adds the derivatives.
+    fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output);
+}
+
+/// A sum of effects at one site.
+#[derive(Debug, Default)]
+pub struct Sum {
+    /// The effects.
+    pub effects: Vec<Box<dyn Effect>>,
+    /// What couples in them.
+    pub couplings: Couplings,
+    /// Number of vectors.
+    pub vectors: usize,
+    /// Number of scalars of the site.
+    pub scalars: usize,
+}
+
+impl Sum {
+    /// A sum over effects that read `vectors` vectors and `scalars` scalars.
+    pub fn new(mut effects: Vec<Box<dyn Effect>>, vectors: usize, scalars: usize) -> Self {
+        let mut couplings = Couplings::default();
+        for effect in &mut effects {
+            effect.couple(&mut couplings);
+        }
+        Self {
+            effects,
+            couplings,
+            vectors,
+            scalars,
+        }
+    }
+
+    /// Storage for the derivatives.
+    pub fn output(&self) -> Output {
+        let part = Part::new(self.vectors, self.scalars, &self.couplings);
+        Output {
+            plain: part.clone(),
+            contracted: part,
+        }
+    }
+
+    /// The derivatives on one interval, in place of what `out` held.
+    pub fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output) {
+        out.plain.clear();
+        if level == Level::Third {
+            out.contracted.clear();
+        }
+        for effect in &self.effects {
+            effect.evaluate(level, frame, out);
+        }
+    }
+}

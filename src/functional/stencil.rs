@@ -1,0 +1,33 @@
+//! Where in time an argument is read: the midpoint rule, and nothing else.
+
+/// How an argument samples a vector over one interval `[t_k, t_{k+1}]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stencil {
+    /// x_k.
+    Here,
+    /// (x_k + x_{k+1})/2.
+    Mid,
+    /// (x_{k+1} − x_k)/h.
+    Rate,
+}
+
+impl Stencil {
+    /// Weights of the two instants for the interval length h.
+    #[inline]
+    pub fn weights(self, h: f64) -> [f64; 2] {
+        match self {
+            Self::Here => [1.0, 0.0],
+            Self::Mid => [0.5, 0.5],
+            Self::Rate => [-1.0 / h, 1.0 / h],
+        }
+    }
+}
+
+/// Which vector an argument reads, and where in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct VectorArg {
+    /// Index of the vector.
+    pub vector: usize,
+    /// Where in time.
+    pub stencil: Stencil,
+}

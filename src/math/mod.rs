@@ -1,0 +1,15 @@
+//! Numbers that carry their derivatives.
+
+mod jet;
+
+pub use jet::Jet;
+
+/// A vector of space.
+pub type Vector = nalgebra::Vector3<f64>;
+/// A linear map of space.
+pub type Matrix = nalgebra::Matrix3<f64>;
+
+/// The matrix â with â b = a × b.
+pub fn skew(a: &Vector) -> Matrix {
+    a.cross_matrix()
+}

@@ -1,0 +1,428 @@
+//! What a scene calls for, effect by effect. This is the only place that makes effects: what is absent makes none.
+
+use crate::energy::{
+    Coincidence, DielectricCell, ElasticCell, Gravity, Orthogonality, SectionInertia, ViscousCell,
+};
+use crate::functional::{Effect, Element, Group, Inertia, PointMass, Stencil, VectorArg};
+use crate::kinematics::{MaterialVector, Pose, Vectors};
+use crate::math::Vector;
+use crate::model::joints::triad;
+use crate::model::system::{Attachment, Joint, JointKind, Muscle, System};
+
+/// A list of effects on its way to a sum.
+type Effects = Vec<Box<dyn Effect>>;
+
+/// Makes the effects of a system and collects the vectors they read.
+#[derive(Debug)]
+pub(super) struct Builder<'a> {
+    system: &'a System,
+    reference: &'a [Pose],
+    vectors: &'a mut Vectors,
+    /// Muscle of each voltage.
+    pub(super) voltages: Vec<usize>,
+    /// Vector of the span of each muscle.
+    pub(super) spans: Vec<usize>,
+}
+
+fn mid(vector: usize) -> VectorArg {
+    VectorArg {
+        vector,
+        stencil: Stencil::Mid,
+    }
+}
+
+fn rate(vector: usize) -> VectorArg {
+    VectorArg {
+        vector,
+        stencil: Stencil::Rate,
+    }
+}
+
+fn here(vector: usize) -> VectorArg {
+    VectorArg {
+        vector,
+        stencil: Stencil::Here,
+    }
+}
+
+/// A group of elements as an effect, unless there are none.
+macro_rules! group {
+    ($effects:expr, $site:ident, $m:literal, $name:expr, $scale:expr, $elements:expr) => {
+        let elements = $elements;
+        if !elements.is_empty() {
+            $effects.push(
+                Box::new(Group::<_, $m, _, _>::$site($name, $scale, elements)) as Box<dyn Effect>,
+            );
+        }
+    };
+}
+
+impl<'a> Builder<'a> {
+    pub(super) fn new(system: &'a System, reference: &'a [Pose], vectors: &'a mut Vectors) -> Self {
+        let mut builder = Self {
+            system,
+            reference,
+            vectors,
+            voltages: Vec::new(),
+            spans: Vec::new(),
+        };
+        for (m, muscle) in system.muscles.iter().enumerate() {
+            let span =
+                MaterialVector::span(&builder.point(&muscle.from), &builder.point(&muscle.to));
+            let span = builder.vectors.index(span);
+            builder.spans.push(span);
+            if muscle.material.electric.is_some() {
+                builder.voltages.push(m);
+            }
+        }
+        builder
+    }
+
+    fn point(&self, a: &Attachment) -> MaterialVector {
+        MaterialVector::point(a.body, &a.at, self.reference)
+    }
+
+    /// Effects of the intervals.
+    pub(super) fn intervals(&mut self) -> Effects {
+        let mut effects = Effects::new();
+        let inertia = |name: &str, masses: Vec<PointMass>, effects: &mut Effects| {
+            if !masses.is_empty() {
+                effects.push(Box::new(Inertia::new(name, masses)));
+            }
+        };
+        inertia("body inertia", self.body_masses(), &mut effects);
+        inertia("muscle inertia", self.muscle_masses(), &mut effects);
+        group!(
+            effects,
+            intervals,
+            6,
+            "section inertia",
+            1.0,
+            self.section_inertia()
+        );
+        group!(effects, intervals, 3, "gravity", -1.0, self.gravity());
+        group!(
+            effects,
+            intervals,
+            3,
+            "muscle elasticity",
+            -1.0,
+            self.elastic()
+        );
+        group!(
+            effects,
+            intervals,
+            4,
+            "muscle electroelasticity",
+            -1.0,
+            self.dielectric()
+        );
+        group!(
+            effects,
+            intervals,
+            9,
+            "muscle viscosity",
+            1.0,
+            self.viscous()
+        );
+        effects
+    }
+
+    fn body_masses(&mut self) -> Vec<PointMass> {
+        let mut masses = Vec::new();
+        for (b, body) in self.system.bodies.iter().enumerate() {
+            let centre = MaterialVector::point(Some(b), &body.centre, self.reference);
+            masses.push(PointMass {
+                vector: self.vectors.index(centre),
+                mass: body.mass,
+            });
+            let [j1, j2, j3] = body.inertia;
+            for (i, euler) in [j2 + j3 - j1, j3 + j1 - j2, j1 + j2 - j3]
+                .into_iter()
+                .enumerate()
+            {
+                if euler != 0.0 {
+                    let axis: Vector = body.directors.column(i).into();
+                    let director = MaterialVector::direction(Some(b), &axis, self.reference);
+                    masses.push(PointMass {
+                        vector: self.vectors.index(director),
+                        mass: 0.5 * euler,
+                    });
+                }
+            }
+        }
+        masses
+    }
+
+    /// Midpoint of a muscle.
+    fn middle(&mut self, muscle: &Muscle) -> usize {
+        let middle =
+            MaterialVector::combine(0.5, &self.point(&muscle.from), 0.5, &self.point(&muscle.to));
+        self.vectors.index(middle)
+    }
+
+    /// A uniform rod: m/6 (|va|² + va·vb + |vb|²) = m/2 |v_mid|² + m/24 |ṙ|².
+    fn muscle_masses(&mut self) -> Vec<PointMass> {
+        let mut masses = Vec::new();
+        for (m, muscle) in self.system.muscles.iter().enumerate() {
+            if let Some(mass) = muscle.mass() {
+                masses.push(PointMass {
+                    vector: self.middle(muscle),
+                    mass,
+                });
+                masses.push(PointMass {
+                    vector: self.spans[m],
+                    mass: mass / 12.0,
+                });
+            }
+        }
+        masses
+    }
+
+    fn section_inertia(&self) -> Vec<Element<SectionInertia, 2, 0>> {
+        let element = |(muscle, &span): (&Muscle, &usize)| {
+            let mass = muscle.section_inertia.then(|| muscle.mass()).flatten()?;
+            let [x, y] = muscle.cross_section;
+            let energy = SectionInertia {
+                length: muscle.length(),
+                moment: mass * (x * x + y * y) / 192.0,
+            };
+            Some(Element {
+                energy,
+                vectors: [mid(span), rate(span)],
+                scalars: [],
+            })
+        };
+        self.system
+            .muscles
+            .iter()
+            .zip(&self.spans)
+            .filter_map(element)
+            .collect()
+    }
+
+    fn gravity(&mut self) -> Vec<Element<Gravity, 1, 0>> {
+        let Some(g) = self.system.gravity else {
+            return Vec::new();
+        };
+        let mut elements = Vec::new();
+        let mut add = |vector: usize, mass: f64| {
+            elements.push(Element {
+                energy: Gravity { weight: g * mass },
+                vectors: [mid(vector)],
+                scalars: [],
+            });
+        };
+        for (b, body) in self.system.bodies.iter().enumerate() {
+            let centre = MaterialVector::point(Some(b), &body.centre, self.reference);
+            add(self.vectors.index(centre), body.mass);
+        }
+        for muscle in &self.system.muscles {
+            if let Some(mass) = muscle.mass() {
+                add(self.middle(muscle), mass);
+            }
+        }
+        elements
+    }
+
+    fn elastic_cell(muscle: &Muscle) -> ElasticCell {
+        ElasticCell {
+            length: muscle.length(),
+            volume: muscle.volume(),
+            shear_modulus: muscle.material.shear_modulus,
+        }
+    }
+
+    fn elastic(&self) -> Vec<Element<ElasticCell, 1, 0>> {
+        let passive = |(muscle, _): &(&Muscle, &usize)| muscle.material.electric.is_none();
+        let element = |(muscle, &span): (&Muscle, &usize)| Element {
+            energy: Self::elastic_cell(muscle),
+            vectors: [mid(span)],
+            scalars: [],
+        };
+        self.system
+            .muscles
+            .iter()
+            .zip(&self.spans)
+            .filter(passive)
+            .map(element)
+            .collect()
+    }
+
+    fn dielectric(&self) -> Vec<Element<DielectricCell, 1, 1>> {
+        let element = |(v, &m): (usize, &usize)| {
+            let muscle = &self.system.muscles[m];
+            let electric = muscle
+                .material
+                .electric
+                .expect("a voltage belongs to a dielectric muscle");
+            let energy = DielectricCell {
+                elastic: Self::elastic_cell(muscle),
+                c1: electric.c1,
+                c2: electric.c2,
+                permittivity: electric.permittivity,
+                layer: muscle.layer_thickness,
+            };
+            Element {
+                energy,
+                vectors: [mid(self.spans[m])],
+                scalars: [v],
+            }
+        };
+        self.voltages.iter().enumerate().map(element).collect()
+    }
+
+    fn viscous(&self) -> Vec<Element<ViscousCell, 3, 0>> {
+        let element = |(muscle, &span): (&Muscle, &usize)| {
+            let energy = ViscousCell {
+                coefficient: 1.5 * muscle.material.viscosity? * muscle.volume(),
+            };
+            Some(Element {
+                energy,
+                vectors: [mid(span), mid(span), rate(span)],
+                scalars: [],
+            })
+        };
+        self.system
+            .muscles
+            .iter()
+            .zip(&self.spans)
+            .filter_map(element)
+            .collect()
+    }
+
+    /// Constraints of redundant coordinates, `−h₀ λ·g`, and the names of their multipliers.
+    pub(super) fn constraints(&mut self, h0: f64) -> (Effects, Vec<String>) {
+        let mut rigid = Constraints::default();
+        for (b, body) in self.system.bodies.iter().enumerate() {
+            let axis = |i: usize| {
+                MaterialVector::direction(Some(b), &body.directors.column(i).into(), self.reference)
+            };
+            let d = [axis(0), axis(1), axis(2)];
+            for i in 0..3 {
+                for j in i..3 {
+                    let (product, factor) = if i == j { (1.0, 0.5) } else { (0.0, 1.0) };
+                    let name = format!("{} d{}.d{}", body.name, i + 1, j + 1);
+                    rigid.dot(self.vectors, name, &d[i], &d[j], product, factor);
+                }
+            }
+        }
+        let mut joints = Constraints {
+            names: rigid.names,
+            ..Constraints::default()
+        };
+        for joint in &self.system.joints {
+            self.joint(joint, &mut joints);
+        }
+        let mut effects = Effects::new();
+        group!(effects, instants, 7, "rigid bodies", -h0, rigid.dots);
+        group!(effects, instants, 7, "joint directions", -h0, joints.dots);
+        group!(effects, instants, 6, "joint points", -h0, joints.points);
+        (effects, joints.names)
+    }
+
+    fn joint(&mut self, joint: &Joint, out: &mut Constraints) {
+        let parent =
+            |direction: &Vector| MaterialVector::direction(joint.parent, direction, self.reference);
+        let child = |direction: &Vector| {
+            MaterialVector::direction(Some(joint.child), direction, self.reference)
+        };
+        let span = MaterialVector::span(
+            &MaterialVector::point(joint.parent, &joint.at, self.reference),
+            &MaterialVector::point(Some(joint.child), &joint.at, self.reference),
+        );
+        let name = |what: &str| format!("{} {what}", joint.name);
+        let mut parallel = |vectors: &mut Vectors| {
+            let axes = [Vector::x(), Vector::y(), Vector::z()];
+            for i in 0..3 {
+                let (p, c) = (parent(&axes[i]), child(&axes[(i + 1) % 3]));
+                out.dot(
+                    vectors,
+                    name(&format!("direction {}", i + 1)),
+                    &p,
+                    &c,
+                    0.0,
+                    1.0,
+                );
+            }
+        };
+        match joint.kind {
+            JointKind::Spherical => out.point(self.vectors, &joint.name, span),
+            JointKind::Fixed => {
+                parallel(self.vectors);
+                out.point(self.vectors, &joint.name, span);
+            }
+            JointKind::Revolute { axis } => {
+                for (i, direction) in triad(&axis).iter().enumerate() {
+                    let (p, c) = (parent(&axis), child(direction));
+                    out.dot(
+                        self.vectors,
+                        name(&format!("axis {}", i + 1)),
+                        &p,
+                        &c,
+                        0.0,
+                        1.0,
+                    );
+                }
+                out.point(self.vectors, &joint.name, span);
+            }
+            JointKind::Prismatic { axis } => {
+                parallel(self.vectors);
+                for (i, direction) in triad(&axis).iter().enumerate() {
+                    out.dot(
+                        self.vectors,
+                        name(&format!("offset {}", i + 1)),
+                        &parent(direction),
+                        &span,
+                        0.0,
+                        1.0,
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Constraints on their way to groups; multipliers are numbered in the order of the names.
+#[derive(Default)]
+struct Constraints {
+    dots: Vec<Element<Orthogonality, 2, 1>>,
+    points: Vec<Element<Coincidence, 1, 3>>,
+    names: Vec<String>,
+}
+
+impl Constraints {
+    fn dot(
+        &mut self,
+        vectors: &mut Vectors,
+        name: String,
+        a: &MaterialVector,
+        b: &MaterialVector,
+        product: f64,
+        factor: f64,
+    ) {
+        let scalar = self.names.len();
+        self.names.push(name);
+        let args = [
+            here(vectors.index(a.clone())),
+            here(vectors.index(b.clone())),
+        ];
+        self.dots.push(Element {
+            energy: Orthogonality { product, factor },
+            vectors: args,
+            scalars: [scalar],
+        });
+    }
+
+    fn point(&mut self, vectors: &mut Vectors, joint: &str, span: MaterialVector) {
+        let first = self.names.len();
+        self.names
+            .extend(["x", "y", "z"].map(|axis| format!("{joint} point {axis}")));
+        let args = [here(vectors.index(span))];
+        self.points.push(Element {
+            energy: Coincidence,
+            vectors: args,
+            scalars: [first, first + 1, first + 2],
+        });
+    }
+}

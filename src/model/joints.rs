@@ -1,0 +1,104 @@
+//! Joint coordinates read from poses.
+
+use crate::kinematics::{MaterialVector, Pose};
+use crate::math::Vector;
+use crate::model::system::{Joint, JointKind, System};
+
+/// Two unit vectors that complete a unit vector n to a right-handed triad (a, b, n).
+pub fn triad(n: &Vector) -> [Vector; 2] {
+    let helper = if n.x.abs() < 0.6 {
+        Vector::x()
+    } else if n.y.abs() < 0.6 {
+        Vector::y()
+    } else {
+        Vector::z()
+    };
+    let a = helper.cross(n).normalize();
+    [a, n.cross(&a)]
+}
+
+/// How the coordinate of a joint is read from the poses of its bodies.
+#[derive(Clone, Debug)]
+pub struct JointGauge {
+    /// Index among the joint coordinates; `None` where the joint has none.
+    pub coordinate: Option<usize>,
+    /// Vectors a, b of the parent and c of the child, whose angle is the coordinate; or n, span for a displacement.
+    pub measure: Measure,
+}
+
+/// What the coordinate is.
+#[derive(Clone, Debug)]
+pub enum Measure {
+    /// atan2(b·c, a·c).
+    Angle {
+        /// a, b, c.
+        vectors: [MaterialVector; 3],
+    },
+    /// n·r.
+    Displacement {
+        /// n, fixed in the parent.
+        axis: MaterialVector,
+        /// Span r from the parent to the child.
+        span: MaterialVector,
+    },
+    /// No coordinate.
+    None,
+}
+
+impl System {
+    /// Index of the coordinate of each joint: revolute and prismatic joints have one, in the order of the scene.
+    pub fn joint_coordinates(&self) -> Vec<Option<usize>> {
+        let mut next = 0;
+        let index = |joint: &Joint| match joint.kind {
+            JointKind::Revolute { .. } | JointKind::Prismatic { .. } => {
+                next += 1;
+                Some(next - 1)
+            }
+            JointKind::Spherical | JointKind::Fixed => None,
+        };
+        self.joints.iter().map(index).collect()
+    }
+}
+
+impl JointGauge {
+    /// The gauge of joint `index` of a system; `coordinates` are those of [`System::joint_coordinates`].
+    pub fn new(joint: &Joint, coordinate: Option<usize>, reference: &[Pose]) -> Self {
+        let parent =
+            |direction: &Vector| MaterialVector::direction(joint.parent, direction, reference);
+        let child =
+            |direction: &Vector| MaterialVector::direction(Some(joint.child), direction, reference);
+        let measure = match joint.kind {
+            JointKind::Revolute { axis } => {
+                let [a, b] = triad(&axis);
+                Measure::Angle {
+                    vectors: [parent(&a), parent(&b), child(&a)],
+                }
+            }
+            JointKind::Prismatic { axis } => Measure::Displacement {
+                axis: parent(&axis),
+                span: MaterialVector::span(
+                    &MaterialVector::point(joint.parent, &joint.at, reference),
+                    &MaterialVector::point(Some(joint.child), &joint.at, reference),
+                ),
+            },
+            JointKind::Spherical | JointKind::Fixed => Measure::None,
+        };
+        Self {
+            coordinate,
+            measure,
+        }
+    }
+
+    /// The coordinate at poses; an angle in the branch nearest to `near`; zero where there is none.
+    pub fn read(&self, poses: &[Pose], near: f64) -> f64 {
+        match &self.measure {
+            Measure::Angle { vectors } => {
+                let [a, b, c] = vectors.each_ref().map(|v| v.at(poses));
+                let angle = b.dot(&c).atan2(a.dot(&c));
+                angle + ((near - angle) / std::f64::consts::TAU).round() * std::f64::consts::TAU
+            }
+            Measure::Displacement { axis, span } => axis.at(poses).dot(&span.at(poses)),
+            Measure::None => 0.0,
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Where the entries of a step-periodic block-tridiagonal matrix lie.
+//!
+//! With z_k the coordinates and multipliers of instant k and s_k the scalars of interval k, second derivatives of a sum
+//! over a horizon exist only at (z_k, z_k), (z_{k+1}, z_k), (z_k, z_{k+1}), (z_k, s_k), (z_{k+1}, s_k), (s_k, s_k), and
+//! at the interval length against all of these. One table of slots serves every interval.
+
+use std::collections::HashMap;
+
+/// Places of the entries of one kind of block, in the order in which they were asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Pattern {
+    entries: Vec<(usize, usize)>,
+    slots: HashMap<(usize, usize), usize>,
+}
+
+impl Pattern {
+    /// Slot of an entry, which joins the pattern if it is new.
+    pub fn slot(&mut self, row: usize, col: usize) -> usize {
+        *self.slots.entry((row, col)).or_insert_with(|| {
+            self.entries.push((row, col));
+            self.entries.len() - 1
+        })
+    }
+
+    /// All entries, by slot.
+    pub fn entries(&self) -> &[(usize, usize)] {
+        &self.entries
+    }
+}
+
+/// The blocks of one step and their places in its segment of the values.
+#[derive(Clone, Debug, Default)]
+pub struct Layout {
+    /// (z_k, z_k).
+    pub same: Pattern,
+    /// (z_{k+1}, z_k), and likewise (z_k, z_{k+1}).
+    pub cross: Pattern,
+    /// (z_k, s_k), and likewise (z_{k+1}, s_k).
+    pub mixed: Pattern,
+    /// (s_k, s_k), lower triangle.
+    pub scalars: Pattern,
+    /// Number of entries of z.
+    pub unknowns: usize,
+    /// Number of scalars of an interval.
+    pub interval_scalars: usize,
+}
+
+impl Layout {
+    /// Places of (z_k, z_k).
+    pub fn same_at(&self, k: usize) -> usize {
+        k * self.stride()
+    }
+
+    /// Places of (z_{k+1}, z_k).
+    pub fn lower_at(&self, k: usize) -> usize {
+        self.same_at(k) + self.same.entries.len()
+    }
+
+    /// Places of (z_k, z_{k+1}).
+    pub fn upper_at(&self, k: usize) -> usize {
+        self.lower_at(k) + self.cross.entries.len()
+    }
+
+    /// Places of (z_{k+side}, s_k).
+    pub fn mixed_at(&self, k: usize, side: usize) -> usize {
+        self.upper_at(k) + self.cross.entries.len() + side * self.mixed.entries.len()
+    }
+
+    /// Places of (s_k, s_k).
+    pub fn scalars_at(&self, k: usize) -> usize {
+        self.mixed_at(k, 2)
+    }
+
+    /// Places of (z_k, h).
+    pub fn horizon_at(&self, k: usize) -> usize {
+        self.scalars_at(k) + self.scalars.entries.len()
+    }
+
+    /// Places of (s_k, h).
+    pub fn horizon_scalars_at(&self, k: usize) -> usize {
+        self.horizon_at(k) + self.unknowns
+    }
+
+    /// Length of the segment of one step.
+    pub fn stride(&self) -> usize {
+        self.same.entries.len()
+            + 2 * self.cross.entries.len()
+            + 2 * self.mixed.entries.len()
+            + self.scalars.entries.len()
+            + self.unknowns
+            + self.interval_scalars
+    }
+
+    /// Place of (h, h) for a horizon of `intervals`.
+    pub fn horizon_square_at(&self, intervals: usize) -> usize {
+        (intervals + 1) * self.stride()
+    }
+
+    /// Length of the values of a horizon.
+    pub fn values(&self, intervals: usize) -> usize {
+        self.horizon_square_at(intervals) + 1
+    }
+}

@@ -1,0 +1,276 @@
+//! A functional seen through coordinates.
+
+use crate::functional::{Frame, Horizon, Level, Output, Sides, Sum};
+use crate::math::Vector;
+use crate::reduction::instant::Instant;
+use crate::reduction::motion::Motion;
+use crate::reduction::pattern::Layout;
+use crate::reduction::pull_back::{PullBack, Site, Target};
+
+/// Sums over intervals and instants as functions of the coordinates z of the instants and the scalars of the intervals.
+#[derive(Debug)]
+pub struct Reduced {
+    /// Coordinates and the vectors that follow from them.
+    pub motion: Motion,
+    /// Sum over intervals; its scalars are voltages.
+    pub intervals: Sum,
+    /// Sum over instants; its scalars are multipliers.
+    pub instants: Sum,
+    interval_plan: PullBack,
+    instant_plan: PullBack,
+    curvature: Vec<[usize; 2]>,
+    layout: Layout,
+}
+
+/// Storage that one evaluation needs, allocated once for each thread.
+#[derive(Clone, Debug)]
+pub struct Scratch {
+    /// Derivatives of the last interval.
+    pub interval: Output,
+    /// Derivatives of the last instant.
+    pub instant: Output,
+    local: Vec<f64>,
+    zeros: Vec<f64>,
+}
+
+impl Reduced {
+    /// Lays down the structure.
+    pub fn new(motion: Motion, intervals: Sum, instants: Sum) -> Self {
+        let mut layout = Layout {
+            unknowns: motion.unknowns(),
+            interval_scalars: intervals.scalars,
+            ..Layout::default()
+        };
+        let interval_plan =
+            PullBack::new(&intervals.couplings, &motion, &mut layout, Site::Intervals);
+        let instant_plan = PullBack::new(&instants.couplings, &motion, &mut layout, Site::Instants);
+        let entries = motion.tree.iter().flat_map(|tree| tree.curvature_entries());
+        let curvature = entries
+            .map(|(i, k)| [layout.same.slot(i, k), layout.same.slot(k, i)])
+            .collect();
+        Self {
+            motion,
+            intervals,
+            instants,
+            interval_plan,
+            instant_plan,
+            curvature,
+            layout,
+        }
+    }
+
+    /// Where entries lie.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Storage for evaluations.
+    pub fn scratch(&self) -> Scratch {
+        Scratch {
+            interval: self.intervals.output(),
+            instant: self.instants.output(),
+            local: vec![0.0; self.interval_plan.local().max(self.instant_plan.local())],
+            zeros: vec![0.0; self.intervals.scalars],
+        }
+    }
+
+    /// Evaluates the interval between two instants and adds its forces to theirs; at level `Third` along their
+    /// directions, with contracted forces.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "an interval has two ends, scalars and a length"
+    )]
+    pub fn evaluate_interval(
+        &self,
+        level: Level,
+        a: &mut Instant,
+        b: &mut Instant,
+        scalars: &[f64],
+        h: f64,
+        horizon: Horizon,
+        sides: Sides,
+        scratch: &mut Scratch,
+    ) {
+        let frame = Frame {
+            vectors: [&a.x, &b.x],
+            along: [&a.w, &b.w],
+            scalars,
+            scalars_along: &scratch.zeros,
+            h,
+            horizon,
+            sides,
+        };
+        self.intervals
+            .evaluate(level, &frame, &mut scratch.interval);
+        let out = &scratch.interval;
+        add(&mut a.forces, &out.plain.forces[0]);
+        add(&mut b.forces, &out.plain.forces[1]);
+        if level == Level::Third {
+            add(&mut a.contracted, &out.contracted.forces[0]);
+            add(&mut b.contracted, &out.contracted.forces[1]);
+        }
+    }
+
+    /// Adds the second derivatives of the interval evaluated last to the values of step k: ∇² at level `Hessian`, the
+    /// lower triangle of ∇³ along the directions at level `Third`.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "an interval has two ends, scalars and a length"
+    )]
+    pub fn pull_back_interval(
+        &self,
+        level: Level,
+        a: &Instant,
+        b: &Instant,
+        horizon: Horizon,
+        sides: Sides,
+        k: usize,
+        scratch: &mut Scratch,
+        values: &mut [f64],
+    ) {
+        let layout = &self.layout;
+        let target = Target {
+            blocks: [
+                layout.same_at(k),
+                layout.upper_at(k),
+                layout.lower_at(k),
+                layout.same_at(k + 1),
+            ],
+            mixed: [layout.mixed_at(k, 0), layout.mixed_at(k, 1)],
+            scalars: layout.scalars_at(k),
+        };
+        let Scratch {
+            interval, local, ..
+        } = scratch;
+        let (plain, contracted) = (&interval.plain, &interval.contracted);
+        match level {
+            Level::Gradient => return,
+            Level::Hessian => {
+                self.interval_plan
+                    .hessian([a, b], plain, sides, &target, local, values)
+            }
+            Level::Third => {
+                self.interval_plan
+                    .third([a, b], plain, contracted, sides, &target, local, values)
+            }
+        }
+        if horizon == Horizon::Free {
+            let part = if level == Level::Third {
+                contracted
+            } else {
+                plain
+            };
+            for (side, instant) in [a, b].into_iter().enumerate() {
+                let at = layout.horizon_at(k + side);
+                let rows = &mut values[at..at + layout.unknowns];
+                self.motion
+                    .pull_back(&instant.columns, &part.horizon_forces[side], rows);
+                if level == Level::Third && self.motion.tree.is_some() {
+                    self.motion
+                        .pull_back(&instant.columns_l, &plain.horizon_forces[side], rows);
+                }
+            }
+            let at = layout.horizon_scalars_at(k);
+            for (value, row) in values[at..at + layout.interval_scalars]
+                .iter_mut()
+                .zip(&part.horizon_rows)
+            {
+                *value += row;
+            }
+        }
+    }
+
+    /// Evaluates an instant and adds its forces.
+    pub fn evaluate_instant(&self, level: Level, instant: &mut Instant, scratch: &mut Scratch) {
+        let n = self.motion.coordinates;
+        let frame = Frame {
+            vectors: [&instant.x, &instant.x],
+            along: [&instant.w, &instant.w],
+            scalars: &instant.z[n..],
+            scalars_along: &instant.l[n..],
+            h: 1.0,
+            horizon: Horizon::Given,
+            sides: Sides::HERE,
+        };
+        self.instants.evaluate(level, &frame, &mut scratch.instant);
+        add(&mut instant.forces, &scratch.instant.plain.forces[0]);
+        if level == Level::Third {
+            add(
+                &mut instant.contracted,
+                &scratch.instant.contracted.forces[0],
+            );
+        }
+    }
+
+    /// Adds the second derivatives of the instant evaluated last, and the curvature of its coordinates under all forces
+    /// on it, to the values of instant k; levels as for an interval.
+    pub fn pull_back_instant(
+        &self,
+        level: Level,
+        instant: &mut Instant,
+        k: usize,
+        scratch: &mut Scratch,
+        values: &mut [f64],
+    ) {
+        let same = self.layout.same_at(k);
+        let target = Target {
+            blocks: [same; 4],
+            mixed: [same, usize::MAX],
+            scalars: usize::MAX,
+        };
+        let Scratch {
+            instant: output,
+            local,
+            ..
+        } = scratch;
+        let (plain, contracted) = (&output.plain, &output.contracted);
+        match level {
+            Level::Gradient => return,
+            Level::Hessian => self.instant_plan.hessian(
+                [instant, instant],
+                plain,
+                Sides::HERE,
+                &target,
+                local,
+                values,
+            ),
+            Level::Third => self.instant_plan.third(
+                [instant, instant],
+                plain,
+                contracted,
+                Sides::HERE,
+                &target,
+                local,
+                values,
+            ),
+        }
+        if let Some(tree) = &self.motion.tree {
+            let values = &mut values[same..];
+            match level {
+                Level::Third => tree.curvature_along(instant, &self.curvature, values),
+                _ => tree.curvature(instant, &self.curvature, values),
+            }
+        }
+    }
+
+    /// Adds Pᵀ R to the first rows and the rows of the multipliers to the others.
+    ///
+    /// The instant has to be evaluated last.
+    pub fn rows(&self, instant: &Instant, scratch: &Scratch, rows: &mut [f64]) {
+        self.motion
+            .pull_back(&instant.columns, &instant.forces, rows);
+        for (row, value) in rows[self.motion.coordinates..]
+            .iter_mut()
+            .zip(&scratch.instant.plain.rows)
+        {
+            *row += value;
+        }
+    }
+}
+
+/// Adds one list of vectors to another.
+fn add(sum: &mut [Vector], list: &[Vector]) {
+    for (s, v) in sum.iter_mut().zip(list) {
+        *s += v;
+    }
+}

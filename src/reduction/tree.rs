@@ -1,0 +1,398 @@
+//! Kinematic trees: joint coordinates, and the derivatives of all vectors by them.
+//!
+//! For a joint j with axis a_j through c_j the column of P on every descendant is `a_j × (φ − c_j)`, `a_j × d_I`
+//! (revolute) or `a_j`, `0` (prismatic). Second derivatives nest, the joint nearest the root outermost:
+//! ∂_i ∂_k x = a_i × (a_k × v). Contracted with forces R one matrix `N_k = Σ v Rᵀ` and one force f_k per joint carry
+//! the curvature (physics.md, 5.3),
+//!
+//! ```text
+//! (R·P′)_ik = a_iᵀ N_k a_k − (a_i·a_k) tr N_k          prismatic k:  f_k·(a_i × a_k)
+//! ```
+//!
+//! and R·P″_l is its derivative along l, in which axes and points move with the twists of their parents.
+
+use crate::kinematics::{MaterialVector, Pose, Term};
+use crate::math::{Matrix, Vector, skew};
+use crate::reduction::instant::{Instant, Moments, TreeState};
+use nalgebra::{Rotation3, Unit};
+
+/// What a joint of a tree lets move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TreeKind {
+    /// Rotation about the axis.
+    Revolute,
+    /// Translation along the axis.
+    Prismatic,
+    /// Nothing.
+    Fixed,
+}
+
+/// A joint of a tree; joints stand in an order in which parents come first.
+#[derive(Clone, Debug)]
+pub struct TreeJoint {
+    /// What it lets move.
+    pub kind: TreeKind,
+    /// Parent body; `None` is the ground.
+    pub parent: Option<usize>,
+    /// Child body.
+    pub child: usize,
+    /// Unit axis in the parent's directors.
+    pub axis: Vector,
+    /// Point in the parent's directors, from its centre.
+    pub point: Vector,
+    /// Directors of the child relative to the parent at zero.
+    pub directors: Matrix,
+    /// Centre of the child relative to the point at zero, in the parent's directors.
+    pub centre: Vector,
+    /// Index of the joint coordinate; `None` for a fixed joint.
+    pub coordinate: Option<usize>,
+}
+
+/// A column of an articulated vector: the joint, and the part of the vector that the joint moves.
+#[derive(Clone, Debug)]
+struct Column {
+    joint: usize,
+    terms: Vec<Term>,
+    /// Sum of the centre coefficients.
+    centre: f64,
+}
+
+/// A kinematic tree and the vectors on it.
+#[derive(Clone, Debug)]
+pub struct Tree {
+    joints: Vec<TreeJoint>,
+    /// Joint that carries each body.
+    carrier: Vec<usize>,
+    /// Joint before each joint on its way to the ground.
+    before: Vec<Option<usize>>,
+    vectors: Vec<MaterialVector>,
+    columns: Vec<Column>,
+    /// Coordinates that move each vector.
+    supports: Vec<Vec<usize>>,
+    /// Pairs of joints (i, k) on one path, i not behind k.
+    paths: Vec<(usize, usize)>,
+}
+
+impl Tree {
+    /// The tree of `joints` over `bodies` bodies, each the child of exactly one joint, and the vectors on it.
+    pub fn new(joints: Vec<TreeJoint>, bodies: usize, vectors: &[MaterialVector]) -> Self {
+        let mut carrier = vec![usize::MAX; bodies];
+        for (j, joint) in joints.iter().enumerate() {
+            carrier[joint.child] = j;
+        }
+        assert!(
+            carrier.iter().all(|&j| j != usize::MAX),
+            "every body of a tree is carried by a joint"
+        );
+        let before = joints
+            .iter()
+            .map(|joint| joint.parent.map(|b| carrier[b]))
+            .collect();
+        let mut tree = Self {
+            joints,
+            carrier,
+            before,
+            vectors: vectors.to_vec(),
+            columns: Vec::new(),
+            supports: Vec::new(),
+            paths: Vec::new(),
+        };
+        tree.lay_columns();
+        tree
+    }
+
+    /// Joints from the one that carries `body` to the ground.
+    fn path(&self, body: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(Some(self.carrier[body]), |&j| self.before[j])
+    }
+
+    fn lay_columns(&mut self) {
+        let mut columns = Vec::new();
+        let mut supports = Vec::new();
+        for vector in &self.vectors {
+            let mut support = Vec::new();
+            for (j, joint) in self.joints.iter().enumerate() {
+                let Some(coordinate) = joint.coordinate else {
+                    continue;
+                };
+                let moved = |t: &&Term| t.body.is_some_and(|b| self.path(b).any(|i| i == j));
+                let terms: Vec<Term> = vector.terms.iter().filter(moved).copied().collect();
+                let centre: f64 = terms.iter().map(|t| t.centre).sum();
+                let still = joint.kind == TreeKind::Prismatic && centre == 0.0;
+                if !terms.is_empty() && !still {
+                    support.push(coordinate);
+                    columns.push(Column {
+                        joint: j,
+                        terms,
+                        centre,
+                    });
+                }
+            }
+            supports.push(support);
+        }
+        let mut paths = Vec::new();
+        for k in 0..self.joints.len() {
+            for i in std::iter::successors(Some(k), |&j| self.before[j]) {
+                let moving = |j: usize| self.joints[j].kind != TreeKind::Fixed;
+                let turning = self.joints[i].kind == TreeKind::Revolute
+                    && (i != k || self.joints[k].kind == TreeKind::Revolute);
+                if moving(i) && moving(k) && turning {
+                    paths.push((i, k));
+                }
+            }
+        }
+        (self.columns, self.supports, self.paths) = (columns, supports, paths);
+    }
+
+    /// The joints.
+    pub fn joints(&self) -> &[TreeJoint] {
+        &self.joints
+    }
+
+    /// Number of joint coordinates.
+    pub fn coordinates(&self) -> usize {
+        self.joints
+            .iter()
+            .filter(|j| j.coordinate.is_some())
+            .count()
+    }
+
+    /// Coordinates that move each vector: the structure of P.
+    pub fn supports(&self) -> &[Vec<usize>] {
+        &self.supports
+    }
+
+    /// Coordinates that the curvature couples; both orders are meant.
+    pub fn curvature_entries(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let coordinate = |j: usize| {
+            self.joints[j]
+                .coordinate
+                .expect("a moving joint has a coordinate")
+        };
+        self.paths
+            .iter()
+            .map(move |&(i, k)| (coordinate(i), coordinate(k)))
+    }
+
+    /// Storage for an instant.
+    pub fn state(&self) -> TreeState {
+        let joints = self.joints.len();
+        TreeState {
+            poses: vec![Pose::GROUND; self.carrier.len()],
+            axes: vec![Vector::zeros(); joints],
+            points: vec![Vector::zeros(); joints],
+            axes_l: vec![Vector::zeros(); joints],
+            points_l: vec![Vector::zeros(); joints],
+            twists: vec![[Vector::zeros(); 2]; self.carrier.len()],
+            moments: vec![Moments::default(); joints],
+        }
+    }
+
+    /// Number of columns of all vectors.
+    pub fn columns(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Poses of all bodies at joint coordinates u, from root to leaves.
+    pub fn place(&self, u: &[f64], state: &mut TreeState) {
+        for (j, joint) in self.joints.iter().enumerate() {
+            let parent = joint.parent.map_or(Pose::GROUND, |b| state.poses[b]);
+            let axis = parent.directors * joint.axis;
+            let point = parent.point(&joint.point);
+            let value = joint.coordinate.map_or(0.0, |c| u[c]);
+            let mut pose = Pose {
+                centre: point + parent.directors * joint.centre,
+                directors: parent.directors * joint.directors,
+            };
+            match joint.kind {
+                TreeKind::Revolute => {
+                    let turn = Rotation3::from_axis_angle(&Unit::new_unchecked(joint.axis), value);
+                    let turned = parent.directors * turn.matrix();
+                    pose.centre = point + turned * joint.centre;
+                    pose.directors = turned * joint.directors;
+                }
+                TreeKind::Prismatic => pose.centre += axis * value,
+                TreeKind::Fixed => {}
+            }
+            state.axes[j] = axis;
+            state.points[j] = point;
+            state.poses[joint.child] = pose;
+        }
+    }
+
+    /// Values of all vectors at the poses.
+    pub fn vectors(&self, state: &TreeState, x: &mut [Vector]) {
+        for (vector, value) in self.vectors.iter().zip(x) {
+            *value = vector.at(&state.poses);
+        }
+    }
+
+    #[inline]
+    fn moved(column: &Column, state: &TreeState) -> Vector {
+        let at = |t: &Term| t.at(&state.poses[t.body.expect("joints move bodies")]);
+        column.terms.iter().map(at).sum()
+    }
+
+    /// Columns of P.
+    pub fn tangent(&self, state: &TreeState, columns: &mut [Vector]) {
+        for (column, value) in self.columns.iter().zip(columns) {
+            let axis = state.axes[column.joint];
+            *value = match self.joints[column.joint].kind {
+                TreeKind::Revolute => axis.cross(
+                    &(Self::moved(column, state) - state.points[column.joint] * column.centre),
+                ),
+                _ => axis * column.centre,
+            };
+        }
+    }
+
+    /// Twists along l, derivatives of axes, points and columns along l, and w = P l.
+    pub fn along(&self, instant: &mut Instant) {
+        let Instant {
+            l,
+            w,
+            columns_l,
+            tree,
+            ..
+        } = instant;
+        for (j, joint) in self.joints.iter().enumerate() {
+            let [omega, origin] = joint
+                .parent
+                .map_or([Vector::zeros(); 2], |b| tree.twists[b]);
+            let (axis, point) = (tree.axes[j], tree.points[j]);
+            tree.axes_l[j] = omega.cross(&axis);
+            tree.points_l[j] = origin + omega.cross(&point);
+            let rate = joint.coordinate.map_or(0.0, |c| l[c]);
+            tree.twists[joint.child] = match joint.kind {
+                TreeKind::Revolute => [omega + axis * rate, origin + point.cross(&axis) * rate],
+                TreeKind::Prismatic => [omega, origin + axis * rate],
+                TreeKind::Fixed => [omega, origin],
+            };
+        }
+        let velocity = |t: &Term| {
+            let body = t.body.expect("the ground is at rest");
+            let [omega, origin] = tree.twists[body];
+            origin * t.centre + omega.cross(&t.at(&tree.poses[body]))
+        };
+        for (vector, rate) in self.vectors.iter().zip(w) {
+            *rate = vector
+                .terms
+                .iter()
+                .filter(|t| t.body.is_some())
+                .map(velocity)
+                .sum();
+        }
+        for (column, value) in self.columns.iter().zip(columns_l) {
+            let j = column.joint;
+            *value = match self.joints[j].kind {
+                TreeKind::Revolute => {
+                    let arm = Self::moved(column, tree) - tree.points[j] * column.centre;
+                    let velocity: Vector = column.terms.iter().map(velocity).sum();
+                    let arm_l = velocity - tree.points_l[j] * column.centre;
+                    tree.axes_l[j].cross(&arm) + tree.axes[j].cross(&arm_l)
+                }
+                _ => tree.axes_l[j] * column.centre,
+            };
+        }
+    }
+
+    /// Moments of the forces R on all vectors, gathered from the leaves to the root; with rates along l where `rates`
+    /// holds the contracted forces.
+    fn gather(&self, instant: &mut Instant, rates: bool) {
+        let Instant {
+            forces,
+            contracted,
+            tree,
+            ..
+        } = instant;
+        tree.moments.fill(Moments::default());
+        for (a, vector) in self.vectors.iter().enumerate() {
+            for term in &vector.terms {
+                let Some(body) = term.body else { continue };
+                let x = term.at(&tree.poses[body]);
+                let m = &mut tree.moments[self.carrier[body]];
+                m.moment += x * forces[a].transpose();
+                m.force += forces[a] * term.centre;
+                if rates {
+                    let [omega, origin] = tree.twists[body];
+                    let x_l = origin * term.centre + omega.cross(&x);
+                    m.moment_l += x_l * forces[a].transpose() + x * contracted[a].transpose();
+                    m.force_l += contracted[a] * term.centre;
+                }
+            }
+        }
+        for j in (0..self.joints.len()).rev() {
+            if let Some(i) = self.before[j] {
+                let m = tree.moments[j];
+                let sum = &mut tree.moments[i];
+                sum.moment += m.moment;
+                sum.force += m.force;
+                sum.moment_l += m.moment_l;
+                sum.force_l += m.force_l;
+            }
+        }
+    }
+
+    /// Adds R·P′ at the slots of `curvature_entries`, both orders: `slots[e]` is (i, k), (k, i).
+    pub fn curvature(&self, instant: &mut Instant, slots: &[[usize; 2]], values: &mut [f64]) {
+        self.gather(instant, false);
+        let tree = &instant.tree;
+        let mut of = usize::MAX;
+        let mut y = Vector::zeros();
+        for (&(i, k), slot) in self.paths.iter().zip(slots) {
+            if k != of {
+                of = k;
+                let m = &tree.moments[k];
+                let axis = tree.axes[k];
+                y = match self.joints[k].kind {
+                    TreeKind::Revolute => {
+                        let moment = m.moment - tree.points[k] * m.force.transpose();
+                        moment * axis - axis * moment.trace()
+                    }
+                    _ => axis.cross(&m.force),
+                };
+            }
+            let value = tree.axes[i].dot(&y);
+            values[slot[0]] += value;
+            if i != k {
+                values[slot[1]] += value;
+            }
+        }
+    }
+
+    /// Adds (Hᵀw)·P′ + R·P″_l at the slots of `curvature_entries`, both orders.
+    pub fn curvature_along(&self, instant: &mut Instant, slots: &[[usize; 2]], values: &mut [f64]) {
+        self.gather(instant, true);
+        let tree = &instant.tree;
+        let mut of = usize::MAX;
+        let (mut y, mut y_l) = (Vector::zeros(), Vector::zeros());
+        for (&(i, k), slot) in self.paths.iter().zip(slots) {
+            if k != of {
+                of = k;
+                let m = &tree.moments[k];
+                let (a, a_l) = (tree.axes[k], tree.axes_l[k]);
+                (y, y_l) = match self.joints[k].kind {
+                    TreeKind::Revolute => {
+                        let (c, c_l) = (tree.points[k], tree.points_l[k]);
+                        let n = m.moment - c * m.force.transpose();
+                        let n_l =
+                            m.moment_l - c_l * m.force.transpose() - c * m.force_l.transpose();
+                        (
+                            n * a - a * n.trace(),
+                            n_l * a + n * a_l - a_l * n.trace() - a * n_l.trace(),
+                        )
+                    }
+                    _ => (
+                        skew(&a) * m.force,
+                        a_l.cross(&m.force) + a.cross(&m.force_l),
+                    ),
+                };
+            }
+            let value = tree.axes_l[i].dot(&y) + tree.axes[i].dot(&y_l);
+            values[slot[0]] += value;
+            if i != k {
+                values[slot[1]] += value;
+            }
+        }
+    }
+}
