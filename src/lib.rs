@@ -1,6 +1,7 @@
 //! Simulation and optimal control of systems driven by dielectric elastomer muscles.
 
 pub mod control;
+pub mod dynamics;
 pub mod energy;
 pub mod functional;
 pub mod ipopt;
@@ -9,3 +10,4 @@ pub mod math;
 pub mod model;
 pub mod nlp;
 pub mod reduction;
+pub mod sparse;

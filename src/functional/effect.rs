@@ -52,6 +52,19 @@ pub struct Output {
     pub contracted: Part,
 }
 
+/// What an effect is in the energy balance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Kinetic energy.
+    Kinetic,
+    /// Potential energy.
+    Potential,
+    /// Virtual work of forces without a potential.
+    VirtualWork,
+    /// Constraints times multipliers.
+    Constraint,
+}
+
 /// A term of a sum: all elements of one kind at one site.
 pub trait Effect: Debug + Send + Sync {
     /// Name for reports.
@@ -63,8 +76,14 @@ pub trait Effect: Debug + Send + Sync {
     /// Registers the couplings of the elements, and remembers where they lie.
     fn couple(&mut self, couplings: &mut Couplings);
 
-    /// The value: for an interval h times the sum over the elements; a virtual work counts as zero.
-    fn value(&self, frame: &Frame<'_>) -> f64;
+    /// What the effect is in the energy balance.
+    fn kind(&self) -> Kind;
+
+    /// Kinetic or potential energy at the midpoint of an interval in mJ; the work that a virtual work does over it.
+    fn energy(&self, frame: &Frame<'_>) -> f64;
+
+    /// Adds the momenta ∂T/∂ẋ at vectors x with rates v.
+    fn momentum(&self, x: &[Vector], v: &[Vector], out: &mut [Vector]);
 
     /// Adds the derivatives.
     fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output);

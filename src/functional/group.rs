@@ -10,7 +10,7 @@
 
 use crate::energy::Energy;
 use crate::functional::{
-    Couplings, Effect, Frame, Horizon, Level, Output, Part, Stencil, VectorArg,
+    Couplings, Effect, Frame, Horizon, Kind, Level, Output, Part, Stencil, VectorArg,
 };
 use crate::math::{Jet, Matrix, Vector};
 use nalgebra::SVector;
@@ -413,12 +413,51 @@ where
         self.slots = self.elements.iter().map(&mut lay).collect();
     }
 
-    fn value(&self, frame: &Frame<'_>) -> f64 {
-        let sum = |element: &Element<E, NV, NS>| {
-            let (p, w) = Self::arguments(element, frame, Level::Gradient);
+    fn kind(&self) -> Kind {
+        match (self.site, E::VIRTUAL) {
+            (Site::Instants, _) => Kind::Constraint,
+            (Site::Intervals, 0) if self.scale > 0.0 => Kind::Kinetic,
+            (Site::Intervals, 0) => Kind::Potential,
+            (Site::Intervals, _) => Kind::VirtualWork,
+        }
+    }
+
+    fn energy(&self, frame: &Frame<'_>) -> f64 {
+        let energy = |element: &Element<E, NV, NS>| {
+            let (mut p, w) = Self::arguments(element, frame, Level::Gradient);
+            for (i, arg) in element.vectors.iter().enumerate().take(E::VIRTUAL) {
+                let step = frame.vectors[1][arg.vector] - frame.vectors[0][arg.vector];
+                p.fixed_rows_mut::<3>(3 * i).copy_from(&step);
+            }
             element.energy.jet::<1>(&p, &w).value
         };
-        self.factor(frame.h) * self.elements.iter().map(sum).sum::<f64>()
+        self.elements.iter().map(energy).sum()
+    }
+
+    fn momentum(&self, x: &[Vector], v: &[Vector], out: &mut [Vector]) {
+        if self.kind() != Kind::Kinetic {
+            return;
+        }
+        for element in &self.elements {
+            let mut p = SVector::<f64, M>::zeros();
+            for (i, arg) in element.vectors.iter().enumerate() {
+                let value = if arg.stencil == Stencil::Rate {
+                    v[arg.vector]
+                } else {
+                    x[arg.vector]
+                };
+                p.fixed_rows_mut::<3>(3 * i).copy_from(&value);
+            }
+            let gradient = element.energy.jet::<1>(&p, &SVector::zeros()).gradient;
+            for (i, arg) in element
+                .vectors
+                .iter()
+                .enumerate()
+                .filter(|(_, arg)| arg.stencil == Stencil::Rate)
+            {
+                out[arg.vector] += gradient.fixed_rows::<3>(3 * i) * self.scale;
+            }
+        }
     }
 
     fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output) {

@@ -1,6 +1,7 @@
 //! Kinetic energy of point masses: the one effect whose second derivative never changes.
 
-use crate::functional::{Couplings, Effect, Frame, Horizon, Level, Output};
+use crate::functional::{Couplings, Effect, Frame, Horizon, Kind, Level, Output};
+use crate::math::Vector;
 
 /// A mass on a material vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,10 +51,20 @@ impl Effect for Inertia {
             .collect();
     }
 
-    fn value(&self, frame: &Frame<'_>) -> f64 {
+    fn kind(&self) -> Kind {
+        Kind::Kinetic
+    }
+
+    fn energy(&self, frame: &Frame<'_>) -> f64 {
         let [x, y] = frame.vectors;
         let square = |m: &PointMass| m.mass * (y[m.vector] - x[m.vector]).norm_squared();
-        self.masses.iter().map(square).sum::<f64>() * 0.5 / frame.h
+        self.masses.iter().map(square).sum::<f64>() * 0.5 / (frame.h * frame.h)
+    }
+
+    fn momentum(&self, _x: &[Vector], v: &[Vector], out: &mut [Vector]) {
+        for m in &self.masses {
+            out[m.vector] += v[m.vector] * m.mass;
+        }
     }
 
     fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output) {

@@ -161,6 +161,19 @@ impl Model {
         }
     }
 
+    /// Whether coordinate `i` is a length, rather than an angle or a component of a director.
+    pub fn is_length(&self, i: usize) -> bool {
+        match self.coordinates {
+            Coordinates::Redundant => i % 12 < 3,
+            Coordinates::Reduced => {
+                let prismatic =
+                    |j: &system::Joint| matches!(j.kind, system::JointKind::Prismatic { .. });
+                let joint = self.gauges.iter().position(|g| g.coordinate == Some(i));
+                joint.is_some_and(|j| prismatic(&self.system.joints[j]))
+            }
+        }
+    }
+
     /// Coordinates of an instant at given joint coordinates (rad or mm, by joint; zero where a joint has none).
     pub fn coordinates_at(&self, joints: &[f64]) -> Vec<f64> {
         match self.coordinates {

@@ -73,8 +73,6 @@ pub struct Joint {
     pub child: usize,
     /// Place in mm, in the ground frame.
     pub at: Vector3<f64>,
-    /// Damping of the joint coordinate: N mm ms for an angle, N ms/mm for a displacement; `None` leaves no trace.
-    pub damping: Option<f64>,
 }
 
 /// What a joint lets move.

@@ -253,6 +253,20 @@ impl Reduced {
         }
     }
 
+    /// Momentum Pᵀ ∂T/∂ẋ of each coordinate of a placed instant with rates `rates` of the coordinates.
+    pub fn momentum(&self, instant: &mut Instant, rates: &[f64]) -> Vec<f64> {
+        instant.l.fill(0.0);
+        instant.l[..rates.len()].copy_from_slice(rates);
+        self.motion.along(instant);
+        let mut momenta = vec![Vector::zeros(); instant.x.len()];
+        for effect in &self.intervals.effects {
+            effect.momentum(&instant.x, &instant.w, &mut momenta);
+        }
+        let mut rows = vec![0.0; self.motion.coordinates];
+        self.motion.pull_back(&instant.columns, &momenta, &mut rows);
+        rows
+    }
+
     /// Adds Pᵀ R to the first rows and the rows of the multipliers to the others.
     ///
     /// The instant has to be evaluated last.

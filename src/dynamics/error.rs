@@ -1,0 +1,62 @@
+//! Why a step or an equilibrium was not found.
+
+use thiserror::Error;
+
+/// A step forward in time failed and was not accepted.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum StepError {
+    /// Newton's method did not converge, although the step was halved.
+    #[error(
+        "no convergence of the step from t = {time} ms, even with a step of {step} ms; last residuals relative to the first: {residuals:?}"
+    )]
+    NoConvergence {
+        /// Start of the step in ms.
+        time: f64,
+        /// Smallest step that was tried in ms.
+        step: f64,
+        /// Residual norms of the last attempt, relative to the first.
+        residuals: Vec<f64>,
+    },
+    /// The tangent is singular.
+    #[error(
+        "singular tangent at t = {time} ms with a step of {step} ms ({name} is not determined)"
+    )]
+    Singular {
+        /// Start of the step in ms.
+        time: f64,
+        /// Step in ms.
+        step: f64,
+        /// The unknown whose pivot vanished.
+        name: String,
+    },
+}
+
+/// No static equilibrium was found.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum EquilibriumError {
+    /// The path of equilibria under growing voltages ends.
+    #[error(
+        "no equilibrium under these voltages: the path of equilibria under growing voltages ends at {:.2} % of them (pull-in or a limit point)",
+        100.0 * fraction
+    )]
+    LimitPoint {
+        /// Largest fraction of the voltages for which there was an equilibrium.
+        fraction: f64,
+    },
+    /// Nothing holds the system.
+    #[error(
+        "no unique equilibrium: {name} is not determined; nothing holds it, or constraints are redundant"
+    )]
+    Singular {
+        /// The unknown whose pivot vanished.
+        name: String,
+    },
+    /// Constraints cannot be met.
+    #[error("the scene does not fit together: {name} is violated by {value:.3e}")]
+    Assembly {
+        /// The worst constraint.
+        name: String,
+        /// Its value.
+        value: f64,
+    },
+}

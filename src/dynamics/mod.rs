@@ -1,0 +1,13 @@
+//! Motion in time and rest: two readers of the discrete action.
+
+mod equilibrium;
+mod error;
+mod history;
+mod simulate;
+mod stepper;
+
+pub use equilibrium::{Equilibrium, equilibrium};
+pub use error::{EquilibriumError, StepError};
+pub use history::History;
+pub use simulate::{Start, simulate};
+pub use stepper::{Stepper, StepperReport};

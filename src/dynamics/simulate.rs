@@ -1,0 +1,79 @@
+//! Simulation: step after step, recorded.
+
+use crate::dynamics::{History, StepError, Stepper};
+use crate::model::Model;
+use std::ops::ControlFlow;
+
+/// Where a motion starts: coordinates z and the momentum of each coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// Coordinates and multipliers.
+    pub z: Vec<f64>,
+    /// Momenta.
+    pub momentum: Vec<f64>,
+}
+
+impl Start {
+    /// At rest.
+    pub fn at_rest(model: &Model, z: Vec<f64>) -> Self {
+        Self {
+            z,
+            momentum: vec![0.0; model.coordinate_count()],
+        }
+    }
+
+    /// With given rates of the coordinates.
+    pub fn with_rates(model: &Model, z: Vec<f64>, rates: &[f64]) -> Self {
+        let mut instant = model.action.motion.instant();
+        instant.z.copy_from_slice(&z);
+        model.action.motion.place(&mut instant);
+        let momentum = model.action.momentum(&mut instant, rates);
+        Self { z, momentum }
+    }
+}
+
+/// Integrates `steps` steps of `h` ms; `scalars` gives the voltages of the interval between two times, by scalar.
+///
+/// After each step `observer` sees its number and may end the motion.
+///
+/// The history ends where a step fails; the error says why.
+pub fn simulate(
+    model: &Model,
+    start: &Start,
+    h: f64,
+    steps: usize,
+    scalars: impl Fn(f64, f64) -> Vec<f64>,
+    mut observer: impl FnMut(usize) -> ControlFlow<()>,
+) -> (History, Option<StepError>) {
+    let n = model.coordinate_count();
+    let mut stepper = Stepper::new(model, &start.z, &start.momentum);
+    let mut history = History {
+        times: vec![0.0],
+        z: vec![start.z.clone()],
+        momenta: vec![start.momentum.clone()],
+        ..History::default()
+    };
+    let mut failure = None;
+    for k in 0..steps {
+        let (from, to) = (k as f64 * h, (k + 1) as f64 * h);
+        let voltages = scalars(from, to);
+        match stepper.step(h, &voltages) {
+            Ok(multipliers) => {
+                history.z[k][n..].copy_from_slice(&multipliers);
+                history.times.push(to);
+                history.z.push(stepper.coordinates().to_vec());
+                history.momenta.push(stepper.momentum().to_vec());
+                history.scalars.push(voltages);
+            }
+            Err(error) => {
+                failure = Some(error);
+                break;
+            }
+        }
+        if observer(k + 1).is_break() {
+            break;
+        }
+    }
+    history.report = stepper.report();
+    (history, failure)
+}

@@ -1,0 +1,266 @@
+//! One step forward: Newton on the rows of one instant of the discrete Euler–Lagrange equations.
+//!
+//! With the momentum p_k = P_kᵀ (D₂L_d(q_{k−1}, q_k) + f⁺) known, the unknowns u_{k+1} and λ_k solve
+//!
+//! ```text
+//! p_k + P_kᵀ [ D₁L_d(q_k, q_{k+1}) + f⁻ − h₀ G(q_k)ᵀ λ_k ] = 0,     g(q_{k+1}) = 0.
+//! ```
+
+use crate::dynamics::StepError;
+use crate::functional::{Horizon, Level, Sides};
+use crate::model::Model;
+use crate::reduction::{Instant, Scratch};
+use crate::sparse::Direct;
+
+/// Limit of Newton iterations in one step.
+const ITERATIONS: usize = 16;
+/// How often a step is halved before it is refused.
+const HALVINGS: u32 = 10;
+/// Convergence: the error after a Newton update of relative size δ is of order δ².
+const UPDATE: f64 = 1e-9;
+
+/// What the steps cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StepperReport {
+    /// Steps taken, halved ones included.
+    pub steps: usize,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Steps that had to be halved.
+    pub halved: usize,
+}
+
+/// State at one instant and the storage to go on from it.
+#[derive(Debug)]
+pub struct Stepper<'m> {
+    model: &'m Model,
+    here: Instant,
+    next: Instant,
+    /// Momentum P_kᵀ p_k by coordinate, in the units of an action per coordinate.
+    momentum: Vec<f64>,
+    /// Rates of the coordinates over the last step, for the first guess.
+    rates: Vec<f64>,
+    time: f64,
+    scratch: Scratch,
+    values: Vec<f64>,
+    /// (value, entry of the matrix).
+    gather: Vec<(usize, usize)>,
+    matrix: Vec<f64>,
+    solver: Direct,
+    residual: Vec<f64>,
+    scales: Vec<f64>,
+    report: StepperReport,
+}
+
+impl<'m> Stepper<'m> {
+    /// Starts at coordinates `z` with the momentum of each coordinate at time zero.
+    pub fn new(model: &'m Model, z: &[f64], momentum: &[f64]) -> Self {
+        let motion = &model.action.motion;
+        let (n, layout) = (motion.coordinates, model.action.layout());
+        let mut entries = Vec::new();
+        let mut gather = Vec::new();
+        let mut take = |value: usize, entry: (usize, usize)| {
+            gather.push((value, entries.len()));
+            entries.push(entry);
+        };
+        for (slot, &entry) in layout.cross.entries().iter().enumerate() {
+            take(layout.upper_at(0) + slot, entry);
+        }
+        for (slot, &(row, col)) in layout.same.entries().iter().enumerate() {
+            if row < n && col >= n {
+                take(layout.same_at(0) + slot, (row, col));
+            }
+            if row >= n && col < n {
+                take(layout.same_at(1) + slot, (row, col));
+            }
+        }
+        let (mut here, next) = (motion.instant(), motion.instant());
+        here.z.copy_from_slice(z);
+        motion.place(&mut here);
+        let length = model.length();
+        let scale = |i: usize| if model.is_length(i) { length } else { 1.0 };
+        Self {
+            model,
+            here,
+            next,
+            momentum: momentum.to_vec(),
+            rates: vec![0.0; n],
+            time: 0.0,
+            scratch: model.action.scratch(),
+            values: vec![0.0; layout.values(1)],
+            matrix: vec![0.0; entries.len()],
+            solver: Direct::new(motion.unknowns(), &entries),
+            gather,
+            residual: vec![0.0; motion.unknowns()],
+            scales: (0..n).map(scale).collect(),
+            report: StepperReport::default(),
+        }
+    }
+
+    /// Time in ms.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Coordinates now, and the multipliers of the step that led away from the instant before.
+    pub fn coordinates(&self) -> &[f64] {
+        &self.here.z
+    }
+
+    /// The instant now.
+    pub fn instant(&self) -> &Instant {
+        &self.here
+    }
+
+    /// Momentum of each coordinate.
+    pub fn momentum(&self) -> &[f64] {
+        &self.momentum
+    }
+
+    /// What the steps cost so far.
+    pub fn report(&self) -> StepperReport {
+        self.report
+    }
+
+    /// Goes on by `h` ms under constant voltages (by scalar of an interval); returns the multipliers at the start.
+    ///
+    /// # Errors
+    /// The step and its halves fail; the state is then that of the last accepted step.
+    pub fn step(&mut self, h: f64, scalars: &[f64]) -> Result<Vec<f64>, StepError> {
+        let n = self.model.action.motion.coordinates;
+        let (mut done, mut part) = (0.0, h);
+        let mut multipliers = None;
+        let mut halvings = 0;
+        while done < h * (1.0 - 1e-12) {
+            part = part.min(h - done);
+            match self.attempt(part, scalars) {
+                Ok(()) => {
+                    done += part;
+                    multipliers.get_or_insert_with(|| self.next.z[n..].to_vec());
+                }
+                Err(error) if halvings == HALVINGS => return Err(error),
+                Err(_) => {
+                    halvings += 1;
+                    self.report.halved += 1;
+                    part *= 0.5;
+                }
+            }
+        }
+        Ok(multipliers.unwrap_or_default())
+    }
+
+    fn evaluate(&mut self, level: Level, h: f64, scalars: &[f64]) {
+        let action = &self.model.action;
+        let n = action.motion.coordinates;
+        let constrained = action.motion.multipliers > 0;
+        let Self {
+            here,
+            next,
+            scratch,
+            values,
+            residual,
+            ..
+        } = self;
+        action.motion.place(next);
+        for instant in [&mut *here, &mut *next] {
+            instant.forces.fill(crate::math::Vector::zeros());
+        }
+        if level >= Level::Hessian {
+            values.fill(0.0);
+        }
+        residual[..n].copy_from_slice(&self.momentum);
+        residual[n..].fill(0.0);
+        let (given, forward) = (Horizon::Given, Sides::FORWARD);
+        action.evaluate_interval(level, here, next, scalars, h, given, forward, scratch);
+        action.pull_back_interval(level, here, next, given, forward, 0, scratch, values);
+        if constrained {
+            // Multipliers of the step act at its start, constraints hold at its end.
+            action.evaluate_instant(level, next, scratch);
+            action.pull_back_instant(level, next, 1, scratch, values);
+            residual[n..].copy_from_slice(&scratch.instant.plain.rows);
+            here.z[n..].copy_from_slice(&next.z[n..]);
+            action.evaluate_instant(level, here, scratch);
+            action.pull_back_instant(level, here, 0, scratch, values);
+        }
+        action
+            .motion
+            .pull_back(&here.columns, &here.forces, &mut residual[..n]);
+    }
+
+    /// One Newton solution; accepted only when it converged.
+    fn attempt(&mut self, h: f64, scalars: &[f64]) -> Result<(), StepError> {
+        let n = self.model.action.motion.coordinates;
+        let m = self.model.action.motion.unknowns();
+        for i in 0..n {
+            self.next.z[i] = self.here.z[i] + h * self.rates[i];
+        }
+        let saved: Vec<f64> = self.here.z[n..].to_vec();
+        self.next.z[n..].copy_from_slice(&saved);
+        let mut residuals = Vec::with_capacity(ITERATIONS);
+        for _ in 0..ITERATIONS {
+            self.report.iterations += 1;
+            self.evaluate(Level::Hessian, h, scalars);
+            let norm = self.residual.iter().map(|r| r * r).sum::<f64>().sqrt();
+            residuals.push(norm);
+            if !norm.is_finite() {
+                break;
+            }
+            self.matrix.fill(0.0);
+            for &(value, entry) in &self.gather {
+                self.matrix[entry] += self.values[value];
+            }
+            if let Err(singular) = self.solver.factor(&self.matrix) {
+                self.here.z[n..].copy_from_slice(&saved);
+                let name = self.model.unknown_name(singular.column);
+                return Err(StepError::Singular {
+                    time: self.time,
+                    step: h,
+                    name,
+                });
+            }
+            self.solver.solve(&mut self.residual);
+            let mut size: f64 = 0.0;
+            for i in 0..m {
+                self.next.z[i] -= self.residual[i];
+                if i < n {
+                    size = size.max((self.residual[i] / self.scales[i]).abs());
+                }
+            }
+            if size < UPDATE {
+                self.accept(h, scalars);
+                return Ok(());
+            }
+        }
+        self.here.z[n..].copy_from_slice(&saved);
+        let first = residuals.first().copied().unwrap_or(f64::NAN);
+        let residuals = residuals
+            .iter()
+            .rev()
+            .take(4)
+            .rev()
+            .map(|r| r / first)
+            .collect();
+        Err(StepError::NoConvergence {
+            time: self.time,
+            step: h,
+            residuals,
+        })
+    }
+
+    fn accept(&mut self, h: f64, scalars: &[f64]) {
+        self.evaluate(Level::Gradient, h, scalars);
+        let motion = &self.model.action.motion;
+        self.momentum.fill(0.0);
+        motion.pull_back(
+            &self.next.columns,
+            &self.scratch.interval.plain.forces[1],
+            &mut self.momentum,
+        );
+        for (i, rate) in self.rates.iter_mut().enumerate() {
+            *rate = (self.next.z[i] - self.here.z[i]) / h;
+        }
+        std::mem::swap(&mut self.here, &mut self.next);
+        self.time += h;
+        self.report.steps += 1;
+    }
+}
