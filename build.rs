@@ -21,7 +21,12 @@ fn main() {
         println!("cargo::error={INSTALL}");
         return;
     };
-    for path in &ipopt.link_paths {
+    let holds_ipopt = |path: &&PathBuf| {
+        ["so", "dylib"]
+            .iter()
+            .any(|end| path.join(format!("libipopt.{end}")).exists())
+    };
+    for path in ipopt.link_paths.iter().filter(holds_ipopt) {
         println!("cargo::rustc-link-search=native={}", path.display());
     }
     println!("cargo::rustc-link-lib=dylib=ipopt");

@@ -87,7 +87,7 @@ impl<'a> Evaluator<'a> {
         self.derivatives_at.copy_from_slice(x);
         self.record.evaluations.gradient += 1;
         timed(&mut self.record.seconds.gradient, || {
-            self.nlp.gradient(x, grad)
+            self.nlp.gradient(x, grad);
         });
         self.accepts(grad)
     }
@@ -96,7 +96,7 @@ impl<'a> Evaluator<'a> {
     pub(super) fn constraints(&mut self, x: &[f64], g: &mut [f64]) -> bool {
         self.record.evaluations.constraints += 1;
         timed(&mut self.record.seconds.constraints, || {
-            self.nlp.constraint(x, g)
+            self.nlp.constraint(x, g);
         });
         self.accepts(g)
     }
@@ -106,7 +106,7 @@ impl<'a> Evaluator<'a> {
         self.derivatives_at.copy_from_slice(x);
         self.record.evaluations.jacobian += 1;
         timed(&mut self.record.seconds.jacobian, || {
-            self.nlp.jacobian(x, values)
+            self.nlp.jacobian(x, values);
         });
         self.accepts(values)
     }
@@ -121,7 +121,7 @@ impl<'a> Evaluator<'a> {
     ) -> bool {
         self.record.evaluations.hessian += 1;
         timed(&mut self.record.seconds.hessian, || {
-            self.nlp.hessian(x, sigma, costates, values)
+            self.nlp.hessian(x, sigma, costates, values);
         });
         self.accepts(values)
     }

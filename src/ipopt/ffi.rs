@@ -296,7 +296,6 @@ unsafe extern "C" fn constraint(
     }
 }
 
-#[expect(clippy::too_many_arguments, reason = "declared by Ipopt")]
 unsafe extern "C" fn jacobian(
     n: c_int,
     x: *mut f64,
@@ -322,7 +321,6 @@ unsafe extern "C" fn jacobian(
     }
 }
 
-#[expect(clippy::too_many_arguments, reason = "declared by Ipopt")]
 unsafe extern "C" fn hessian(
     n: c_int,
     x: *mut f64,
@@ -353,7 +351,6 @@ unsafe extern "C" fn hessian(
     }
 }
 
-#[expect(clippy::too_many_arguments, reason = "declared by Ipopt")]
 unsafe extern "C" fn iteration(
     mode: c_int,
     number: c_int,

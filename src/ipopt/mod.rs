@@ -25,6 +25,8 @@ pub use status::Status;
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum IpoptError {
     /// Ipopt does not know the option, or the value is of another kind or out of range.
+    ///
+    /// Ipopt then writes a line of its own to standard output, where it is silent otherwise.
     #[error("Ipopt rejects the option {name} = {value}{}", hint(.nearest.as_deref()))]
     OptionRejected {
         /// Name of the option.

@@ -30,7 +30,7 @@ pub struct Iteration {
     pub iteration: usize,
     /// f(x), or the objective of the restoration phase.
     pub objective: f64,
-    /// Greatest violation of a constraint.
+    /// Greatest violation of a constraint, where an inequality is an equality with a slack variable.
     pub primal_infeasibility: f64,
     /// Greatest entry of the gradient of the Lagrangian.
     pub dual_infeasibility: f64,

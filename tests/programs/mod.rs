@@ -4,6 +4,7 @@
 
 use proboscis::nlp::{Bounds, Entries, Nlp};
 
+type Objective = Box<dyn FnMut(&[f64]) -> f64 + Send>;
 type Values = Box<dyn FnMut(&[f64], &mut [f64]) + Send>;
 type HessianValues = Box<dyn FnMut(&[f64], f64, &[f64], &mut [f64]) + Send>;
 
@@ -13,7 +14,7 @@ pub(crate) struct Program {
     pub(crate) constraints: Bounds,
     pub(crate) jacobian_places: Vec<(u32, u32)>,
     pub(crate) hessian_places: Vec<(u32, u32)>,
-    pub(crate) f: Box<dyn FnMut(&[f64]) -> f64 + Send>,
+    pub(crate) f: Objective,
     pub(crate) grad: Values,
     pub(crate) g: Values,
     pub(crate) jac: Values,
