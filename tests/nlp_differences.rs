@@ -196,3 +196,69 @@ fn equal_seeds_give_equal_reports() {
         check(&mut hs071(), &POINT, 10).hessian
     );
 }
+
+/// Σ (xᵢ₊₁ − xᵢ²)² subject to xᵢ xᵢ₊₁ = 1 for all neighbours.
+fn chain(n: usize) -> Program {
+    let count = u32::try_from(n).expect("a small number");
+    let neighbours = move || (0..count - 1).map(|i| (i, i + 1));
+    Program {
+        variables: bounds(&vec![(-10.0, 10.0); n]),
+        constraints: bounds(&vec![(1.0, 1.0); n - 1]),
+        jacobian_places: neighbours()
+            .flat_map(|(i, next)| [(i, i), (i, next)])
+            .collect(),
+        hessian_places: neighbours()
+            .flat_map(|(i, next)| [(i, i), (next, next), (next, i)])
+            .collect(),
+        f: Box::new(|x| x.windows(2).map(|x| (x[1] - x[0] * x[0]).powi(2)).sum()),
+        grad: Box::new(|x, grad| {
+            grad.fill(0.0);
+            for i in 0..x.len() - 1 {
+                let r = x[i + 1] - x[i] * x[i];
+                grad[i] -= 4.0 * x[i] * r;
+                grad[i + 1] += 2.0 * r;
+            }
+        }),
+        g: Box::new(|x, g| {
+            for (g, x) in g.iter_mut().zip(x.windows(2)) {
+                *g = x[0] * x[1];
+            }
+        }),
+        jac: Box::new(|x, values| {
+            for (values, x) in values.chunks_exact_mut(2).zip(x.windows(2)) {
+                values.copy_from_slice(&[x[1], x[0]]);
+            }
+        }),
+        hess: Box::new(|x, sigma, y, values| {
+            for ((values, x), y) in values.chunks_exact_mut(3).zip(x.windows(2)).zip(y) {
+                values[0] = sigma * (12.0 * x[0] * x[0] - 4.0 * x[1]);
+                values[1] = sigma * 2.0;
+                values[2] = sigma * -4.0 * x[0] + y;
+            }
+        }),
+    }
+}
+
+#[test]
+fn a_thousand_variables_are_checked() {
+    let n = 1000;
+    let x: Vec<f64> = (0..n).map(|i| 1.5 + f64::from(i).sin()).collect();
+    let mut program = chain(x.len());
+    let report = check(&mut program, &x, 7);
+    assert!(report.is_consistent(), "{report}");
+    program.hessian_places[3 * 500 + 2] = (501, 499);
+    let report = check(&mut program, &x, 7);
+    let mut places: Vec<_> = report
+        .wrong
+        .iter()
+        .map(|w| (w.row.as_str(), w.column.as_str(), w.place))
+        .collect();
+    places.sort_by_key(|place| place.1);
+    assert_eq!(
+        places,
+        [
+            ("x[501]", "x[499]", Place::Stored),
+            ("x[501]", "x[500]", Place::Missing)
+        ]
+    );
+}

@@ -18,118 +18,19 @@
 //! Rounding alone then stays near 4e-8, a wrong entry counts fully if it is not a thousand times smaller than its
 //! row, and one a million times smaller still counts 1e-3: [`TOLERANCE`] lies between.
 
-use std::fmt;
+mod comparison;
+mod report;
 
 use crate::nlp::{Entries, Nlp};
+
+use comparison::Comparison;
+pub use report::{Matrix, Place, Report, WrongEntry};
 
 /// Relative error above which an entry is taken for wrong.
 pub const TOLERANCE: f64 = 1e-6;
 
-/// Part of the row's size below which an entry is not measured by its own size.
-const FLOOR: f64 = 1e-3;
-
 /// Wrong entries listed in a report.
 const LISTED: usize = 20;
-
-/// A matrix of first or second derivatives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Matrix {
-    /// ∇f, one row.
-    Gradient,
-    /// ∇g.
-    Jacobian,
-    /// Hessian of the Lagrangian, lower triangle.
-    Hessian,
-}
-
-/// Whether an entry has a place in the structure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// It has.
-    Stored,
-    /// It has none, so that its analytic value is zero.
-    Missing,
-}
-
-/// An entry whose analytic value and difference disagree.
-#[derive(Clone, Debug, PartialEq)]
-pub struct WrongEntry {
-    /// The matrix.
-    pub matrix: Matrix,
-    /// What the row belongs to.
-    pub row: String,
-    /// The variable of the column.
-    pub column: String,
-    /// Whether the structure has this entry.
-    pub place: Place,
-    /// Value given by the program.
-    pub analytic: f64,
-    /// Value from differences.
-    pub difference: f64,
-    /// Relative error.
-    pub error: f64,
-}
-
-/// What a check found.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Report {
-    /// Greatest relative error of the gradient.
-    pub gradient: f64,
-    /// Greatest relative error of the Jacobian.
-    pub jacobian: f64,
-    /// Greatest relative error of the Hessian.
-    pub hessian: f64,
-    /// Entries in error by more than [`TOLERANCE`], the worst first; at most twenty.
-    pub wrong: Vec<WrongEntry>,
-    /// Variables along which a value is NaN or ±∞ a small step away, so that nothing was checked there.
-    pub unchecked: Vec<String>,
-}
-
-impl Report {
-    /// True if every derivative was checked and none is wrong.
-    #[must_use]
-    pub const fn is_consistent(&self) -> bool {
-        self.wrong.is_empty() && self.unchecked.is_empty()
-    }
-}
-
-impl fmt::Display for Report {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            gradient,
-            jacobian,
-            hessian,
-            ..
-        } = self;
-        writeln!(
-            f,
-            "greatest relative errors: gradient {gradient:.1e}, Jacobian {jacobian:.1e}, Hessian {hessian:.1e}"
-        )?;
-        for WrongEntry {
-            matrix,
-            row,
-            column,
-            place,
-            analytic,
-            difference,
-            error,
-        } in &self.wrong
-        {
-            let value = match place {
-                Place::Stored => format!("{analytic:.9e}"),
-                Place::Missing => "no entry".to_owned(),
-            };
-            writeln!(
-                f,
-                "{matrix:?} ({row}, {column}): {value}, differences {difference:.9e}, error {error:.1e}"
-            )?;
-        }
-        for column in &self.unchecked {
-            writeln!(f, "{column}: not checked, a value does not exist nearby")?;
-        }
-        Ok(())
-    }
-}
 
 /// Compares all derivatives of `nlp` at `x` with central differences; `seed` picks σ and y.
 ///
@@ -299,135 +200,6 @@ impl Sample {
             .chain(&self.lagrangian)
             .all(|value| value.is_finite())
     }
-}
-
-/// A sparse matrix beside its differences.
-struct Comparison {
-    /// Analytic entries by column, duplicates summed, sorted by row.
-    columns: Vec<Vec<(usize, f64)>>,
-    /// t: size of the terms of the differenced value of each row.
-    terms: Vec<f64>,
-    /// r: greatest entry of each row.
-    largest: Vec<f64>,
-    /// Entries seen so far: those stored and those whose difference is not zero.
-    pairs: Vec<Pair>,
-}
-
-struct Pair {
-    row: usize,
-    column: usize,
-    place: Place,
-    analytic: f64,
-    difference: f64,
-}
-
-impl Comparison {
-    fn new(places: &Entries, values: &[f64], terms: Vec<f64>, columns: usize) -> Self {
-        let mut by_column = vec![Vec::<(usize, f64)>::new(); columns];
-        for ((&row, &col), &value) in places.rows.iter().zip(&places.cols).zip(values) {
-            assert!(
-                (row as usize) < terms.len(),
-                "row {row} of the structure lies outside the matrix"
-            );
-            by_column[col as usize].push((row as usize, value));
-        }
-        for column in &mut by_column {
-            column.sort_by_key(|&(row, _)| row);
-            column.dedup_by(|duplicate, first| {
-                let same = duplicate.0 == first.0;
-                if same {
-                    first.1 += duplicate.1;
-                }
-                same
-            });
-        }
-        Self {
-            columns: by_column,
-            largest: vec![0.0; terms.len()],
-            terms,
-            pairs: Vec::new(),
-        }
-    }
-
-    /// Adds |aᵢⱼ xⱼ| to the size of the terms of row i.
-    fn add_linear_terms(&mut self, x: &[f64]) {
-        for (column, x) in self.columns.iter().zip(x) {
-            for &(row, value) in column {
-                self.terms[row] += (value * x).abs();
-            }
-        }
-    }
-
-    /// Puts the rows from `first` on of a column beside their differences.
-    fn compare(&mut self, column: usize, first: usize, difference: impl Fn(usize) -> f64) {
-        let mut stored = self.columns[column].iter().copied().peekable();
-        assert!(
-            stored.peek().is_none_or(|&(row, _)| row >= first),
-            "column {column} has an entry above the diagonal"
-        );
-        for row in first..self.terms.len() {
-            let (place, analytic) = match stored.next_if(|&(stored_row, _)| stored_row == row) {
-                Some((_, value)) => (Place::Stored, value),
-                None => (Place::Missing, 0.0),
-            };
-            let difference = difference(row);
-            if place == Place::Stored || difference != 0.0 {
-                self.largest[row] = self.largest[row].max(analytic.abs()).max(difference.abs());
-                self.pairs.push(Pair {
-                    row,
-                    column,
-                    place,
-                    analytic,
-                    difference,
-                });
-            }
-        }
-    }
-
-    /// The greatest error; entries whose error is above the tolerance are added to `wrong`.
-    fn judge(
-        &self,
-        matrix: Matrix,
-        row_name: impl Fn(usize) -> String,
-        nlp: &dyn Nlp,
-        wrong: &mut Vec<WrongEntry>,
-    ) -> f64 {
-        let mut greatest = 0.0_f64;
-        for &Pair {
-            row,
-            column,
-            place,
-            analytic,
-            difference,
-        } in &self.pairs
-        {
-            let error = relative_error(analytic, difference, self.largest[row] + self.terms[row]);
-            greatest = greatest.max(error);
-            if error > TOLERANCE {
-                let (row, column) = (row_name(row), nlp.variable_name(column));
-                wrong.push(WrongEntry {
-                    matrix,
-                    row,
-                    column,
-                    place,
-                    analytic,
-                    difference,
-                    error,
-                });
-            }
-        }
-        greatest
-    }
-}
-
-/// |a − d| / max(|a|, |d|, `row`/1000); infinite if `a` is not a number.
-fn relative_error(analytic: f64, difference: f64, row: f64) -> f64 {
-    if analytic == difference {
-        return 0.0;
-    }
-    let error =
-        (analytic - difference).abs() / analytic.abs().max(difference.abs()).max(FLOOR * row);
-    if error.is_nan() { f64::INFINITY } else { error }
 }
 
 /// The generator `splitmix64` of S. Vigna (public domain).
