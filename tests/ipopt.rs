@@ -483,6 +483,38 @@ fn a_stop_within_the_restoration_phase_returns_its_iterate() {
 }
 
 #[test]
+fn the_better_of_the_last_two_points_is_returned() {
+    // Along the tangent of the circle x² + y² = 1 from (1, 0), the first step leads away from it to where the Jacobian
+    // turns out not to exist.
+    let mut jacobians = 0;
+    let mut program = Program {
+        variables: bounds(&[(f64::NEG_INFINITY, f64::INFINITY); 2]),
+        constraints: bounds(&[(1.0, 1.0)]),
+        jacobian_places: vec![(0, 0), (0, 1)],
+        hessian_places: vec![(0, 0), (1, 1)],
+        f: Box::new(|x| x[0] + x[1]),
+        grad: Box::new(|_, grad| grad.fill(1.0)),
+        g: Box::new(|x, g| g[0] = x[0] * x[0] + x[1] * x[1]),
+        jac: Box::new(move |x, values| {
+            jacobians += 1;
+            let exists = jacobians == 1;
+            values.copy_from_slice(&if exists {
+                [2.0 * x[0], 2.0 * x[1]]
+            } else {
+                [f64::NAN; 2]
+            });
+        }),
+        hess: Box::new(|_, _, y, values| values.fill(2.0 * y[0])),
+    };
+    let solution = run(&mut program, &[1.0, 0.0], &Options::default());
+    assert_eq!(solution.status, Status::InvalidNumber);
+    assert_eq!(
+        (solution.x, solution.constraints),
+        (vec![1.0, 0.0], vec![1.0])
+    );
+}
+
+#[test]
 fn wall_time_is_limited() {
     let mut slow = rosenbrock();
     let mut objective = rosenbrock().f;

@@ -117,7 +117,12 @@ pub fn solve(
 
     let mut end = Ending::at(nlp, &variables, &constraints, x);
     if !status.is_solved() {
-        let latest = Ending::at(nlp, &variables, &constraints, record.latest);
+        // Iterates may leave the bounds by 1e-8 (`bound_relax_factor`); the point that Ipopt returns does not.
+        let mut x = record.latest;
+        for ((x, lower), upper) in x.iter_mut().zip(&variables.lower).zip(&variables.upper) {
+            *x = x.max(*lower).min(*upper);
+        }
+        let latest = Ending::at(nlp, &variables, &constraints, x);
         if latest.violation < end.violation {
             end = latest;
         }

@@ -85,7 +85,8 @@ impl Default for Options {
 impl Options {
     /// All options that Ipopt is given, by name.
     ///
-    /// Ipopt is silent, reads no options file from the working directory, and leaves the scaling to the problem.
+    /// Ipopt is silent, reads no options file from the working directory, and leaves the scaling to the
+    /// problem; the point it returns keeps to the bounds, which Ipopt since 3.14 does only when asked.
     pub(super) fn settings(&self) -> BTreeMap<String, OptionValue> {
         let mut settings = BTreeMap::new();
         let mut text = |name: &str, value: &str| {
@@ -95,6 +96,7 @@ impl Options {
         text("option_file_name", "");
         text("linear_solver", "mumps");
         text("nlp_scaling_method", "none");
+        text("honor_original_bounds", "yes");
         text("fixed_variable_treatment", "make_parameter");
         if let Start::PrimalDual { .. } = self.start {
             text("warm_start_init_point", "yes");

@@ -89,8 +89,9 @@ pub struct Evaluations {
 /// What a solve returns, whatever its status.
 ///
 /// If the status is not [`is_solved`](Status::is_solved), `x` is the point at which Ipopt gave up or the latest iterate it
-/// had accepted, whichever violates constraints and bounds less; a point where f or g does not exist counts as worst.
-/// The two differ after a stop within the restoration phase or a failed one. `costates` are always those of Ipopt.
+/// had told, whichever violates constraints and bounds less; a point where f or g does not exist counts as worst.
+/// The two differ if Ipopt gave up on the way to the next iterate, for instance for want of a derivative there.
+/// `costates` are always those of Ipopt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     /// How the solve ended.
