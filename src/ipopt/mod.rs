@@ -1,12 +1,223 @@
-//! Ipopt behind one safe function over the trait [`Nlp`](crate::nlp::Nlp).
+//! Ipopt behind one safe function over the trait [`Nlp`].
+//!
+//! One solve runs at a time in a process, because Ipopt with MUMPS is not made for more: a second call waits. For the
+//! same reason an observer or an [`Nlp`] must not call [`solve`] itself.
 
-/// A value of an Ipopt option.
-#[derive(Clone, Debug, PartialEq)]
-pub enum OptionValue {
-    /// Integer option.
-    Integer(i32),
-    /// Real option.
-    Number(f64),
-    /// Text option.
-    Text(String),
+mod evaluation;
+mod ffi;
+pub mod interrupt;
+mod options;
+mod solution;
+mod status;
+
+use std::ops::ControlFlow;
+
+use thiserror::Error;
+
+use crate::nlp::{Bounds, Entries, Nlp};
+
+use evaluation::Evaluator;
+pub use options::{MUMPS_ORDERING, OptionValue, Options, Start};
+pub use solution::{Costates, Evaluations, Iteration, Point, Seconds, Solution};
+pub use status::Status;
+
+/// Why Ipopt could not be called.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum IpoptError {
+    /// Ipopt does not know the option, or the value is of another kind or out of range.
+    ///
+    /// Ipopt then writes a line of its own to standard output, where it is silent otherwise.
+    #[error("Ipopt rejects the option {name} = {value}{}", hint(.nearest.as_deref()))]
+    OptionRejected {
+        /// Name of the option.
+        name: String,
+        /// The value given.
+        value: OptionValue,
+        /// The known option with the most similar name; none if the name is known, so that the value must be wrong.
+        nearest: Option<String>,
+    },
+    /// Ipopt takes no problem without variables, nor constraints without any entry in their Jacobian.
+    #[error(
+        "Ipopt cannot work on {variables} variables and {constraints} constraints with {entries} entries in their Jacobian"
+    )]
+    ProblemNotCreated {
+        /// Number of variables.
+        variables: usize,
+        /// Number of constraints.
+        constraints: usize,
+        /// Number of entries of the Jacobian.
+        entries: usize,
+    },
+}
+
+fn hint(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |nearest| format!("; did you mean {nearest}?"))
+}
+
+/// Solves `nlp` from `start`.
+///
+/// `observer` hears of every iterate and may ask to stop; so may Ctrl-C, see [`interrupt`]. A panic of `nlp` or `observer`
+/// goes on when Ipopt has returned.
+///
+/// # Errors
+///
+/// If Ipopt rejects an option or the problem as such. A solve that fails is no error but a [`Status`].
+///
+/// # Panics
+///
+/// If the lengths of bounds, structures and starting point contradict each other, or if [`Start::PrimalDual`] is asked for
+/// without multipliers.
+pub fn solve(
+    nlp: &mut dyn Nlp,
+    start: &Point,
+    options: &Options,
+    observer: &mut dyn FnMut(&Iteration) -> ControlFlow<()>,
+) -> Result<Solution, IpoptError> {
+    let (variables, constraints) = (nlp.variables(), nlp.constraints());
+    let (jacobian, hessian) = (nlp.jacobian_structure(), nlp.hessian_structure());
+    let (n, m) = (variables.lower.len(), constraints.lower.len());
+    check_structure(&jacobian, m, n, "Jacobian");
+    check_structure(&hessian, n, n, "Hessian");
+    assert!(
+        hessian
+            .rows
+            .iter()
+            .zip(&hessian.cols)
+            .all(|(row, col)| row >= col),
+        "lower triangle of the Hessian"
+    );
+    let mut x = start.x.clone();
+    let mut costates = starting_costates(start, options.start, n, m);
+
+    let entries = jacobian.rows.len();
+    let mut problem = ffi::Problem::new(&variables, &constraints, entries, hessian.rows.len())
+        .ok_or(IpoptError::ProblemNotCreated {
+            variables: n,
+            constraints: m,
+            entries,
+        })?;
+    for (name, value) in options.settings() {
+        if !problem.set(&name, &value) {
+            let nearest = options::nearest(&name).map(str::to_owned);
+            return Err(IpoptError::OptionRejected {
+                name,
+                value,
+                nearest,
+            });
+        }
+    }
+
+    let mut evaluator = Evaluator::new(nlp, observer, jacobian, hessian, &x, options.max_seconds);
+    let code = problem.solve(&mut evaluator, &mut x, &mut costates);
+    let record = evaluator.into_record();
+    let status = match Status::from_code(code) {
+        status if status.is_solved() => status,
+        status => record.stopped.unwrap_or(status),
+    };
+
+    let mut end = Ending::at(nlp, &variables, &constraints, x);
+    if !status.is_solved() {
+        // Iterates may leave the bounds by 1e-8 (`bound_relax_factor`); the point that Ipopt returns does not.
+        let mut x = record.latest;
+        for ((x, lower), upper) in x.iter_mut().zip(&variables.lower).zip(&variables.upper) {
+            *x = x.max(*lower).min(*upper);
+        }
+        let latest = Ending::at(nlp, &variables, &constraints, x);
+        if latest.violation < end.violation {
+            end = latest;
+        }
+    }
+    for values in [
+        &mut costates.constraints,
+        &mut costates.lower,
+        &mut costates.upper,
+    ] {
+        for value in values.iter_mut().filter(|value| !value.is_finite()) {
+            *value = 0.0;
+        }
+    }
+    Ok(Solution {
+        status,
+        x: end.x,
+        objective: end.objective,
+        constraints: end.constraints,
+        costates,
+        iterations: record.iterations,
+        seconds: record.seconds,
+        evaluations: record.evaluations,
+        failed_evaluations: record.failed,
+    })
+}
+
+/// A point where a solve may end.
+struct Ending {
+    x: Vec<f64>,
+    objective: f64,
+    constraints: Vec<f64>,
+    violation: f64,
+}
+
+impl Ending {
+    /// f, g and the greatest violation of a bound or constraint at `x`; the latter is infinite where f or g does not exist.
+    fn at(nlp: &mut dyn Nlp, variables: &Bounds, constraints: &Bounds, x: Vec<f64>) -> Self {
+        let mut g = vec![0.0; constraints.lower.len()];
+        let objective = nlp.objective(&x);
+        nlp.constraint(&x, &mut g);
+        let exists = objective.is_finite() && x.iter().chain(&g).all(|value| value.is_finite());
+        let violation = match exists {
+            true => violation(variables, &x).max(violation(constraints, &g)),
+            false => f64::INFINITY,
+        };
+        Self {
+            x,
+            objective,
+            constraints: g,
+            violation,
+        }
+    }
+}
+
+/// Greatest distance of a value outside its bounds.
+fn violation(bounds: &Bounds, values: &[f64]) -> f64 {
+    let bounds = bounds.lower.iter().zip(&bounds.upper);
+    values
+        .iter()
+        .zip(bounds)
+        .fold(0.0, |worst, (value, (lower, upper))| {
+            worst.max(lower - value).max(value - upper)
+        })
+}
+
+/// The multipliers to begin with; zeros unless they are asked for.
+fn starting_costates(start: &Point, kind: Start, n: usize, m: usize) -> Costates {
+    assert_eq!(
+        start.x.len(),
+        n,
+        "one value per variable in the starting point"
+    );
+    match kind {
+        Start::Cold | Start::Primal { .. } => Costates {
+            constraints: vec![0.0; m],
+            lower: vec![0.0; n],
+            upper: vec![0.0; n],
+        },
+        Start::PrimalDual { .. } => start
+            .costates
+            .clone()
+            .expect("a primal-dual start has multipliers"),
+    }
+}
+
+fn check_structure(entries: &Entries, rows: usize, cols: usize, matrix: &str) {
+    let below =
+        |indices: &[u32], count: usize| indices.iter().all(|&index| (index as usize) < count);
+    assert_eq!(
+        entries.rows.len(),
+        entries.cols.len(),
+        "as many rows as columns in the structure of the {matrix}"
+    );
+    assert!(
+        below(&entries.rows, rows) && below(&entries.cols, cols),
+        "{matrix} of {rows} rows and {cols} columns"
+    );
 }

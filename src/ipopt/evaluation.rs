@@ -1,0 +1,187 @@
+//! The nonlinear program as Ipopt asks for it: timed, counted, refused where it does not exist, and remembered.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use crate::ipopt::interrupt;
+use crate::ipopt::solution::{Evaluations, Iteration, Seconds};
+use crate::ipopt::status::Status;
+use crate::nlp::{Entries, Nlp};
+
+/// Records of iterations for which room is made beforehand.
+const RESERVED_ITERATIONS: usize = 4096;
+
+/// Answers the questions of Ipopt about one nonlinear program.
+///
+/// A quantity that is NaN or ±∞ anywhere is refused, and Ipopt then shortens its step.
+///
+/// Before Ipopt tells of an iterate it has asked for the derivatives there, because it needs them to tell the dual
+/// infeasibility; at points which it merely tries it asks for f and g alone. So the point at which derivatives were
+/// asked last, seen when an iteration is told, is the iterate (in the restoration phase that one's own). This
+/// matters for Ipopt before 3.14, which has no call for it.
+pub(super) struct Evaluator<'a> {
+    nlp: &'a mut dyn Nlp,
+    observer: &'a mut dyn FnMut(&Iteration) -> ControlFlow<()>,
+    jacobian: Entries,
+    hessian: Entries,
+    began: Instant,
+    max_seconds: f64,
+    derivatives_at: Vec<f64>,
+    record: Record,
+}
+
+/// What is left of a solve besides the answer of Ipopt.
+pub(super) struct Record {
+    /// One record per iteration.
+    pub(super) iterations: Vec<Iteration>,
+    /// The latest iterate told; before the first one, the starting point.
+    pub(super) latest: Vec<f64>,
+    /// Why the solve was stopped from outside, if it was.
+    pub(super) stopped: Option<Status>,
+    /// Where the time went; `total` and `solver` are filled in at the end.
+    pub(super) seconds: Seconds,
+    /// How often each quantity was asked for.
+    pub(super) evaluations: Evaluations,
+    /// How many of them met NaN or ±∞.
+    pub(super) failed: usize,
+}
+
+impl<'a> Evaluator<'a> {
+    /// Answers for `nlp`, whose structures are given, in a solve that begins now at `start`.
+    pub(super) fn new(
+        nlp: &'a mut dyn Nlp,
+        observer: &'a mut dyn FnMut(&Iteration) -> ControlFlow<()>,
+        jacobian: Entries,
+        hessian: Entries,
+        start: &[f64],
+        max_seconds: Option<f64>,
+    ) -> Self {
+        Self {
+            nlp,
+            observer,
+            jacobian,
+            hessian,
+            began: Instant::now(),
+            max_seconds: max_seconds.unwrap_or(f64::INFINITY),
+            derivatives_at: start.to_vec(),
+            record: Record {
+                iterations: Vec::with_capacity(RESERVED_ITERATIONS),
+                latest: start.to_vec(),
+                stopped: None,
+                seconds: Seconds::default(),
+                evaluations: Evaluations::default(),
+                failed: 0,
+            },
+        }
+    }
+
+    /// f(x).
+    pub(super) fn objective(&mut self, x: &[f64]) -> Option<f64> {
+        self.record.evaluations.objective += 1;
+        let f = timed(&mut self.record.seconds.objective, || self.nlp.objective(x));
+        self.accepts(&[f]).then_some(f)
+    }
+
+    /// ∇f(x).
+    pub(super) fn gradient(&mut self, x: &[f64], grad: &mut [f64]) -> bool {
+        self.derivatives_at.copy_from_slice(x);
+        self.record.evaluations.gradient += 1;
+        timed(&mut self.record.seconds.gradient, || {
+            self.nlp.gradient(x, grad);
+        });
+        self.accepts(grad)
+    }
+
+    /// g(x).
+    pub(super) fn constraints(&mut self, x: &[f64], g: &mut [f64]) -> bool {
+        self.record.evaluations.constraints += 1;
+        timed(&mut self.record.seconds.constraints, || {
+            self.nlp.constraint(x, g);
+        });
+        self.accepts(g)
+    }
+
+    /// Values of ∇g(x).
+    pub(super) fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> bool {
+        self.derivatives_at.copy_from_slice(x);
+        self.record.evaluations.jacobian += 1;
+        timed(&mut self.record.seconds.jacobian, || {
+            self.nlp.jacobian(x, values);
+        });
+        self.accepts(values)
+    }
+
+    /// Values of σ ∇²f(x) + Σ yᵢ ∇²gᵢ(x).
+    pub(super) fn hessian(
+        &mut self,
+        x: &[f64],
+        sigma: f64,
+        costates: &[f64],
+        values: &mut [f64],
+    ) -> bool {
+        self.record.evaluations.hessian += 1;
+        timed(&mut self.record.seconds.hessian, || {
+            self.nlp.hessian(x, sigma, costates, values);
+        });
+        self.accepts(values)
+    }
+
+    /// Places of ∇g.
+    pub(super) const fn jacobian_structure(&self) -> &Entries {
+        &self.jacobian
+    }
+
+    /// Places of the Hessian.
+    pub(super) const fn hessian_structure(&self) -> &Entries {
+        &self.hessian
+    }
+
+    /// Takes note of an accepted iterate and says whether to go on.
+    pub(super) fn iteration(&mut self, iteration: &Iteration) -> ControlFlow<()> {
+        self.record.iterations.push(*iteration);
+        self.record.latest.copy_from_slice(&self.derivatives_at);
+        let verdict = timed(&mut self.record.seconds.observer, || {
+            (self.observer)(iteration)
+        });
+        self.record.stopped = if verdict.is_break() || interrupt::requested() {
+            Some(Status::Interrupted)
+        } else if self.began.elapsed().as_secs_f64() >= self.max_seconds {
+            Some(Status::TimeLimit)
+        } else {
+            None
+        };
+        match self.record.stopped {
+            Some(_) => ControlFlow::Break(()),
+            None => ControlFlow::Continue(()),
+        }
+    }
+
+    /// Ends the solve.
+    pub(super) fn into_record(mut self) -> Record {
+        let seconds = &mut self.record.seconds;
+        seconds.total = self.began.elapsed().as_secs_f64();
+        let outside = seconds.objective
+            + seconds.gradient
+            + seconds.constraints
+            + seconds.jacobian
+            + seconds.hessian
+            + seconds.observer;
+        seconds.solver = (seconds.total - outside).max(0.0);
+        self.record
+    }
+
+    /// Whether all `values` are finite; if not, that is counted.
+    fn accepts(&mut self, values: &[f64]) -> bool {
+        let finite = values.iter().all(|value| value.is_finite());
+        self.record.failed += usize::from(!finite);
+        finite
+    }
+}
+
+/// What `evaluate` returns, with its duration added to `seconds`.
+fn timed<T>(seconds: &mut f64, evaluate: impl FnOnce() -> T) -> T {
+    let began = Instant::now();
+    let value = evaluate();
+    *seconds += began.elapsed().as_secs_f64();
+    value
+}

@@ -1,0 +1,407 @@
+//! The C interface of Ipopt: bindings, the callbacks over one guard against panics, and one lock around a solve.
+//!
+//! The header differs between versions: up to 3.13 `Bool` is `int`, `Number` is `double` and `Index` is `int`; since
+//! 3.14 `Bool` is `bool`, and the other two are old names of `ipnumber` and `ipindex`, which are `double` and `int`
+//! unless Ipopt was built for single precision or long indices (then this file does not compile). So truth values
+//! are written with `Bool::from` and read by comparison with it, and nothing else depends on the version.
+
+#![expect(unsafe_code, reason = "C interface of Ipopt")]
+
+use std::any::Any;
+use std::ffi::{CString, c_int, c_void};
+use std::mem;
+use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::ptr::{self, NonNull};
+use std::slice;
+use std::sync::{Mutex, MutexGuard, Once, PoisonError};
+
+use crate::ipopt::evaluation::Evaluator;
+use crate::ipopt::options::OptionValue;
+use crate::ipopt::solution::{Costates, Iteration};
+use crate::nlp::{Bounds, Entries};
+
+use bindings::Bool;
+
+/// What `bindgen` makes of `IpStdCInterface.h`.
+#[allow(
+    non_camel_case_types,
+    non_snake_case,
+    non_upper_case_globals,
+    missing_docs,
+    missing_debug_implementations,
+    unreachable_pub,
+    dead_code,
+    clippy::all,
+    reason = "generated from a C header that differs between versions"
+)]
+mod bindings {
+    include!(concat!(env!("OUT_DIR"), "/ipopt.rs"));
+}
+
+/// Ipopt with MUMPS keeps state of its own for the whole process: one problem exists at a time.
+static LOCK: Mutex<()> = Mutex::new(());
+
+/// A problem known to Ipopt; while it exists, no other thread has one.
+pub(super) struct Problem {
+    handle: NonNull<bindings::IpoptProblemInfo>,
+    variables: usize,
+    constraints: usize,
+    _lock: MutexGuard<'static, ()>,
+}
+
+/// An evaluator, and the panic that ended its work, if any.
+struct Session<'e, 'a> {
+    evaluator: &'e mut Evaluator<'a>,
+    panic: Option<Box<dyn Any + Send>>,
+}
+
+impl Problem {
+    /// Waits until no other problem exists, and creates one; `None` if Ipopt refuses it.
+    pub(super) fn new(
+        variables: &Bounds,
+        constraints: &Bounds,
+        jacobian: usize,
+        hessian: usize,
+    ) -> Option<Self> {
+        // The lock protects no data, so a panic elsewhere leaves nothing in disorder.
+        let lock = LOCK.lock().unwrap_or_else(PoisonError::into_inner);
+        use_one_blas_thread();
+        let count = |number: usize| c_int::try_from(number).ok();
+        let (n, m) = (variables.lower.len(), constraints.lower.len());
+        assert!(
+            variables.upper.len() == n && constraints.upper.len() == m,
+            "as many upper as lower bounds"
+        );
+        // SAFETY: the bounds are arrays of `n` and `m` numbers, which Ipopt copies; the callbacks have the types that the
+        // header declares.
+        let handle = unsafe {
+            bindings::CreateIpoptProblem(
+                count(n)?,
+                variables.lower.as_ptr().cast_mut(),
+                variables.upper.as_ptr().cast_mut(),
+                count(m)?,
+                constraints.lower.as_ptr().cast_mut(),
+                constraints.upper.as_ptr().cast_mut(),
+                count(jacobian)?,
+                count(hessian)?,
+                0,
+                Some(objective),
+                Some(constraint),
+                Some(gradient),
+                Some(self::jacobian),
+                Some(self::hessian),
+            )
+        };
+        let problem = Self {
+            handle: NonNull::new(handle)?,
+            variables: n,
+            constraints: m,
+            _lock: lock,
+        };
+        // SAFETY: the handle is valid; the callback has the type that the header declares.
+        unsafe { bindings::SetIntermediateCallback(handle, Some(iteration)) };
+        Some(problem)
+    }
+
+    /// Sets an option and says whether Ipopt takes it.
+    pub(super) fn set(&mut self, name: &str, value: &OptionValue) -> bool {
+        let Ok(name) = CString::new(name) else {
+            return false;
+        };
+        let name = name.as_ptr().cast_mut();
+        let handle = self.handle.as_ptr();
+        let taken = match value {
+            // SAFETY: the handle is valid, and Ipopt copies the name, which ends in NUL.
+            OptionValue::Integer(value) => unsafe {
+                bindings::AddIpoptIntOption(handle, name, *value)
+            },
+            // SAFETY: as above.
+            OptionValue::Number(value) => unsafe {
+                bindings::AddIpoptNumOption(handle, name, *value)
+            },
+            OptionValue::Text(value) => {
+                let Ok(value) = CString::new(value.as_str()) else {
+                    return false;
+                };
+                // SAFETY: as above; the value is copied too and ends in NUL.
+                unsafe { bindings::AddIpoptStrOption(handle, name, value.as_ptr().cast_mut()) }
+            }
+        };
+        taken != Bool::from(false)
+    }
+
+    /// Solves from `x` and `costates`, leaves the final values there, and returns Ipopt's code for the outcome.
+    ///
+    /// A panic in the evaluator ends the solve and goes on from here.
+    pub(super) fn solve(
+        self,
+        evaluator: &mut Evaluator<'_>,
+        x: &mut [f64],
+        costates: &mut Costates,
+    ) -> i32 {
+        assert_eq!(x.len(), self.variables, "one value per variable");
+        assert_eq!(
+            costates.lower.len(),
+            self.variables,
+            "one multiplier per lower bound"
+        );
+        assert_eq!(
+            costates.upper.len(),
+            self.variables,
+            "one multiplier per upper bound"
+        );
+        assert_eq!(
+            costates.constraints.len(),
+            self.constraints,
+            "one multiplier per constraint"
+        );
+        let mut session = Session {
+            evaluator,
+            panic: None,
+        };
+        // SAFETY: the handle is valid and the arrays have the lengths it was created with. The session outlives the call and
+        // is reached through the pointer alone meanwhile; Ipopt calls back from this thread only, one call at a time.
+        let code = unsafe {
+            bindings::IpoptSolve(
+                self.handle.as_ptr(),
+                x.as_mut_ptr(),
+                ptr::null_mut(),
+                ptr::null_mut(),
+                costates.constraints.as_mut_ptr(),
+                costates.lower.as_mut_ptr(),
+                costates.upper.as_mut_ptr(),
+                (&raw mut session).cast(),
+            )
+        };
+        let panic = session.panic.take();
+        drop(self);
+        match panic {
+            Some(panic) => resume_unwind(panic),
+            None => code,
+        }
+    }
+}
+
+impl Drop for Problem {
+    fn drop(&mut self) {
+        // SAFETY: the handle came from `CreateIpoptProblem` and is freed once, here; the lock is released afterwards.
+        unsafe { bindings::FreeIpoptProblem(self.handle.as_ptr()) };
+    }
+}
+
+/// Runs `evaluate` and answers Ipopt whether it succeeded.
+///
+/// A panic must not pass through C++: it is kept for the end, and every further question is answered by "failed".
+///
+/// # Safety
+///
+/// `session` is the pointer that [`Problem::solve`] gave to Ipopt, within that call.
+unsafe fn guard(session: *mut c_void, evaluate: impl FnOnce(&mut Evaluator<'_>) -> bool) -> Bool {
+    // SAFETY: the caller vouches that the session exists and is not borrowed elsewhere.
+    let session = unsafe { &mut *session.cast::<Session<'_, '_>>() };
+    let succeeded = session.panic.is_none()
+        && catch_unwind(AssertUnwindSafe(|| evaluate(session.evaluator))).unwrap_or_else(|panic| {
+            session.panic = Some(panic);
+            false
+        });
+    Bool::from(succeeded)
+}
+
+/// `length` numbers at `start`, which may be null if there are none.
+///
+/// # Safety
+///
+/// Unless `length` is zero, `start` points to that many numbers which nobody writes to during the life of the slice.
+unsafe fn read<'s>(start: *const f64, length: c_int) -> &'s [f64] {
+    match usize::try_from(length) {
+        // SAFETY: the caller vouches for it.
+        Ok(length) if length > 0 => unsafe { slice::from_raw_parts(start, length) },
+        _ => &[],
+    }
+}
+
+/// `length` places to fill at `start`, which may be null if there are none.
+///
+/// # Safety
+///
+/// Unless `length` is zero, `start` points to that many initialised values which nobody else uses during the life of the slice.
+unsafe fn write<'s, T>(start: *mut T, length: c_int) -> &'s mut [T] {
+    match usize::try_from(length) {
+        // SAFETY: the caller vouches for it.
+        Ok(length) if length > 0 => unsafe { slice::from_raw_parts_mut(start, length) },
+        _ => &mut [],
+    }
+}
+
+/// Copies the places of a sparse matrix, which fit into `c_int` since the numbers of rows and columns do.
+fn copy_entries(entries: &Entries, rows: &mut [c_int], cols: &mut [c_int]) -> bool {
+    let copy = |from: &[u32], to: &mut [c_int]| {
+        from.len() == to.len()
+            && from
+                .iter()
+                .zip(to)
+                .all(|(&from, to)| c_int::try_from(from).map(|index| *to = index).is_ok())
+    };
+    copy(&entries.rows, rows) && copy(&entries.cols, cols)
+}
+
+unsafe extern "C" fn objective(
+    n: c_int,
+    x: *mut f64,
+    _new_x: Bool,
+    value: *mut f64,
+    session: *mut c_void,
+) -> Bool {
+    // SAFETY: Ipopt passes the session, `n` variables and a place for the value.
+    unsafe {
+        guard(session, |evaluator| match evaluator.objective(read(x, n)) {
+            Some(f) => {
+                *value = f;
+                true
+            }
+            None => false,
+        })
+    }
+}
+
+unsafe extern "C" fn gradient(
+    n: c_int,
+    x: *mut f64,
+    _new_x: Bool,
+    grad: *mut f64,
+    session: *mut c_void,
+) -> Bool {
+    // SAFETY: Ipopt passes the session, `n` variables and `n` places for the gradient.
+    unsafe {
+        guard(session, |evaluator| {
+            evaluator.gradient(read(x, n), write(grad, n))
+        })
+    }
+}
+
+unsafe extern "C" fn constraint(
+    n: c_int,
+    x: *mut f64,
+    _new_x: Bool,
+    m: c_int,
+    g: *mut f64,
+    session: *mut c_void,
+) -> Bool {
+    // SAFETY: Ipopt passes the session, `n` variables and `m` places for the constraints.
+    unsafe {
+        guard(session, |evaluator| {
+            evaluator.constraints(read(x, n), write(g, m))
+        })
+    }
+}
+
+unsafe extern "C" fn jacobian(
+    n: c_int,
+    x: *mut f64,
+    _new_x: Bool,
+    _m: c_int,
+    entries: c_int,
+    rows: *mut c_int,
+    cols: *mut c_int,
+    values: *mut f64,
+    session: *mut c_void,
+) -> Bool {
+    // SAFETY: Ipopt passes the session and either `entries` places for rows and columns, or `n` variables and `entries`
+    // places for the values.
+    unsafe {
+        guard(session, |evaluator| match values.is_null() {
+            true => copy_entries(
+                evaluator.jacobian_structure(),
+                write(rows, entries),
+                write(cols, entries),
+            ),
+            false => evaluator.jacobian(read(x, n), write(values, entries)),
+        })
+    }
+}
+
+unsafe extern "C" fn hessian(
+    n: c_int,
+    x: *mut f64,
+    _new_x: Bool,
+    sigma: f64,
+    m: c_int,
+    costates: *mut f64,
+    _new_costates: Bool,
+    entries: c_int,
+    rows: *mut c_int,
+    cols: *mut c_int,
+    values: *mut f64,
+    session: *mut c_void,
+) -> Bool {
+    // SAFETY: Ipopt passes the session and either `entries` places for rows and columns, or `n` variables, `m` multipliers
+    // and `entries` places for the values.
+    unsafe {
+        guard(session, |evaluator| match values.is_null() {
+            true => copy_entries(
+                evaluator.hessian_structure(),
+                write(rows, entries),
+                write(cols, entries),
+            ),
+            false => {
+                evaluator.hessian(read(x, n), sigma, read(costates, m), write(values, entries))
+            }
+        })
+    }
+}
+
+unsafe extern "C" fn iteration(
+    mode: c_int,
+    number: c_int,
+    objective: f64,
+    primal_infeasibility: f64,
+    dual_infeasibility: f64,
+    mu: f64,
+    step_norm: f64,
+    regularization: f64,
+    alpha_dual: f64,
+    alpha_primal: f64,
+    line_search_trials: c_int,
+    session: *mut c_void,
+) -> Bool {
+    let told = Iteration {
+        iteration: usize::try_from(number).unwrap_or_default(),
+        objective,
+        primal_infeasibility,
+        dual_infeasibility,
+        mu,
+        step_norm,
+        regularization,
+        alpha_dual,
+        alpha_primal,
+        line_search_trials: usize::try_from(line_search_trials).unwrap_or_default(),
+        restoration: mode != 0,
+    };
+    // SAFETY: Ipopt passes the session.
+    unsafe {
+        guard(session, |evaluator| {
+            evaluator.iteration(&told) == ControlFlow::Continue(())
+        })
+    }
+}
+
+/// Makes OpenBLAS, if Ipopt was linked with it, work in one thread: two are slower on these systems and change the iterates.
+///
+/// OpenBLAS reads its environment variables while it is loaded, before `main`, so that setting them here would come too late.
+fn use_one_blas_thread() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        // SAFETY: the name ends in NUL; `dlsym` looks it up among the libraries already loaded and returns null if there is none.
+        let symbol =
+            unsafe { libc::dlsym(libc::RTLD_DEFAULT, c"openblas_set_num_threads".as_ptr()) };
+        if !symbol.is_null() {
+            // SAFETY: OpenBLAS declares `void openblas_set_num_threads(int)`, and the lock keeps its other users of this
+            // crate out.
+            let set_num_threads =
+                unsafe { mem::transmute::<*mut c_void, unsafe extern "C" fn(c_int)>(symbol) };
+            // SAFETY: as above.
+            unsafe { set_num_threads(1) };
+        }
+    });
+}

@@ -1,0 +1,291 @@
+//! What a solve is asked: tolerance, limits, kind of start, and any option of Ipopt by name.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// Ordering of the linear solver's elimination unless `mumps_pivot_order` says otherwise: approximate minimum fill,
+/// the fastest one measured on the linear systems of trajectory optimisation (AMD, 0, is five times slower).
+pub const MUMPS_ORDERING: i32 = 2;
+
+/// Distance kept from bounds, and fraction of their gap, when a warm start is pushed inside them.
+const PUSH: f64 = 1e-9;
+
+/// A value of an Ipopt option.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OptionValue {
+    /// Integer option.
+    Integer(i32),
+    /// Real option.
+    Number(f64),
+    /// Text option.
+    Text(String),
+}
+
+impl fmt::Display for OptionValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Integer(value) => write!(f, "{value}"),
+            Self::Number(value) => write!(f, "{value:?}"),
+            Self::Text(value) => write!(f, "\"{value}\""),
+        }
+    }
+}
+
+/// What the starting point is worth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Start {
+    /// A guess: Ipopt moves it well inside the bounds.
+    Cold,
+    /// Variables close to a solution: they are hardly moved; the multipliers are estimated.
+    Primal {
+        /// First barrier parameter; [`Start::PRIMAL`] suits the same problem, 1e-4 one with another goal.
+        mu_init: f64,
+    },
+    /// Variables and multipliers close to a solution: both are hardly moved.
+    PrimalDual {
+        /// First barrier parameter; [`Start::PRIMAL_DUAL`] suits the same problem.
+        mu_init: f64,
+    },
+}
+
+impl Start {
+    /// [`Start::Primal`] for a problem that hardly changed.
+    pub const PRIMAL: Self = Self::Primal { mu_init: 1e-6 };
+    /// [`Start::PrimalDual`] for a problem that hardly changed.
+    pub const PRIMAL_DUAL: Self = Self::PrimalDual { mu_init: 1e-8 };
+}
+
+/// What a solve is asked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Scaled optimality error at which a point counts as solution (`tol`).
+    pub tolerance: f64,
+    /// Iterations allowed (`max_iter`).
+    pub max_iterations: usize,
+    /// Wall time allowed in seconds, looked at once per iteration.
+    pub max_seconds: Option<f64>,
+    /// What the starting point is worth.
+    pub start: Start,
+    /// Further options of Ipopt by name; they override all others.
+    pub extra: BTreeMap<String, OptionValue>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-8,
+            max_iterations: 500,
+            max_seconds: None,
+            start: Start::Cold,
+            extra: BTreeMap::new(),
+        }
+    }
+}
+
+impl Options {
+    /// All options that Ipopt is given, by name.
+    ///
+    /// Ipopt is silent, reads no options file from the working directory, and leaves the scaling to the
+    /// problem; the point it returns keeps to the bounds, which Ipopt since 3.14 does only when asked.
+    pub(super) fn settings(&self) -> BTreeMap<String, OptionValue> {
+        let mut settings = BTreeMap::new();
+        let mut text = |name: &str, value: &str| {
+            settings.insert(name.to_owned(), OptionValue::Text(value.to_owned()))
+        };
+        text("sb", "yes");
+        text("option_file_name", "");
+        text("linear_solver", "mumps");
+        text("nlp_scaling_method", "none");
+        text("honor_original_bounds", "yes");
+        text("fixed_variable_treatment", "make_parameter");
+        if let Start::PrimalDual { .. } = self.start {
+            text("warm_start_init_point", "yes");
+        }
+
+        let mut integer =
+            |name: &str, value: i32| settings.insert(name.to_owned(), OptionValue::Integer(value));
+        integer("print_level", 0);
+        integer(
+            "max_iter",
+            i32::try_from(self.max_iterations).unwrap_or(i32::MAX),
+        );
+        integer("mumps_pivot_order", MUMPS_ORDERING);
+
+        let mut number =
+            |name: &str, value: f64| settings.insert(name.to_owned(), OptionValue::Number(value));
+        number("tol", self.tolerance);
+        let pushes: &[&str] = match self.start {
+            Start::Cold => &[],
+            Start::Primal { .. } => &[
+                "bound_push",
+                "bound_frac",
+                "slack_bound_push",
+                "slack_bound_frac",
+            ],
+            Start::PrimalDual { .. } => &[
+                "warm_start_bound_push",
+                "warm_start_bound_frac",
+                "warm_start_slack_bound_push",
+                "warm_start_slack_bound_frac",
+                "warm_start_mult_bound_push",
+            ],
+        };
+        for name in pushes {
+            number(name, PUSH);
+        }
+        if let Start::Primal { mu_init } | Start::PrimalDual { mu_init } = self.start {
+            number("mu_init", mu_init);
+        }
+
+        for (name, value) in &self.extra {
+            settings.insert(name.clone(), of_the_right_kind(name, value));
+        }
+        settings
+    }
+}
+
+/// A whole number written for a real option, made real.
+fn of_the_right_kind(name: &str, value: &OptionValue) -> OptionValue {
+    match value {
+        OptionValue::Integer(value) if REAL.contains(&name) => {
+            OptionValue::Number(f64::from(*value))
+        }
+        value => value.clone(),
+    }
+}
+
+/// The option of Ipopt whose name resembles `name` most, if any does and `name` itself is none.
+pub(super) fn nearest(name: &str) -> Option<&'static str> {
+    let known = || REAL.iter().chain(INTEGER).chain(TEXT).copied();
+    if known().any(|option| option == name) {
+        return None;
+    }
+    known()
+        .map(|option| (strsim::normalized_damerau_levenshtein(name, option), option))
+        .filter(|(similarity, _)| *similarity > 0.5)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, option)| option)
+}
+
+/// Common options that take a real number.
+const REAL: &[&str] = &[
+    "acceptable_compl_inf_tol",
+    "acceptable_constr_viol_tol",
+    "acceptable_dual_inf_tol",
+    "acceptable_obj_change_tol",
+    "acceptable_tol",
+    "alpha_for_y_tol",
+    "barrier_tol_factor",
+    "bound_frac",
+    "bound_mult_init_val",
+    "bound_push",
+    "bound_relax_factor",
+    "compl_inf_tol",
+    "constr_mult_init_max",
+    "constr_viol_tol",
+    "diverging_iterates_tol",
+    "dual_inf_tol",
+    "first_hessian_perturbation",
+    "jacobian_regularization_value",
+    "kappa_sigma",
+    "max_cpu_time",
+    "max_hessian_perturbation",
+    "max_wall_time",
+    "min_hessian_perturbation",
+    "mu_init",
+    "mu_linear_decrease_factor",
+    "mu_max",
+    "mu_max_fact",
+    "mu_min",
+    "mu_superlinear_decrease_power",
+    "mu_target",
+    "mumps_dep_tol",
+    "mumps_pivtol",
+    "mumps_pivtolmax",
+    "nlp_lower_bound_inf",
+    "nlp_scaling_max_gradient",
+    "nlp_upper_bound_inf",
+    "obj_scaling_factor",
+    "resto_penalty_parameter",
+    "resto_proximity_weight",
+    "required_infeasibility_reduction",
+    "slack_bound_frac",
+    "slack_bound_push",
+    "tau_min",
+    "theta_max_fact",
+    "theta_min_fact",
+    "tol",
+    "warm_start_bound_frac",
+    "warm_start_bound_push",
+    "warm_start_mult_bound_push",
+    "warm_start_mult_init_max",
+    "warm_start_slack_bound_frac",
+    "warm_start_slack_bound_push",
+    "warm_start_target_mu",
+];
+
+/// Common options that take an integer.
+const INTEGER: &[&str] = &[
+    "acceptable_iter",
+    "accept_after_max_steps",
+    "file_print_level",
+    "limited_memory_max_history",
+    "max_filter_resets",
+    "max_iter",
+    "max_refinement_steps",
+    "max_resto_iter",
+    "max_soc",
+    "max_soft_resto_iters",
+    "min_refinement_steps",
+    "mumps_mem_percent",
+    "mumps_permuting_scaling",
+    "mumps_pivot_order",
+    "mumps_print_level",
+    "mumps_scaling",
+    "print_frequency_iter",
+    "print_level",
+    "quality_function_max_section_steps",
+    "watchdog_shortened_iter_trigger",
+    "watchdog_trial_iter_max",
+];
+
+/// Common options that take a text.
+const TEXT: &[&str] = &[
+    "accept_every_trial_step",
+    "adaptive_mu_globalization",
+    "alpha_for_y",
+    "bound_mult_init_method",
+    "check_derivatives_for_naninf",
+    "derivative_test",
+    "evaluate_orig_obj_at_resto_trial",
+    "expect_infeasible_problem",
+    "fixed_mu_oracle",
+    "fixed_variable_treatment",
+    "hessian_approximation",
+    "hessian_constant",
+    "honor_original_bounds",
+    "jac_c_constant",
+    "jac_d_constant",
+    "least_square_init_duals",
+    "least_square_init_primal",
+    "line_search_method",
+    "linear_scaling_on_demand",
+    "linear_solver",
+    "linear_system_scaling",
+    "mehrotra_algorithm",
+    "mu_allow_fast_monotone_decrease",
+    "mu_oracle",
+    "mu_strategy",
+    "nlp_scaling_method",
+    "option_file_name",
+    "output_file",
+    "print_info_string",
+    "print_timing_statistics",
+    "print_user_options",
+    "recalc_y",
+    "sb",
+    "skip_corr_if_neg_curv",
+    "start_with_resto",
+    "warm_start_init_point",
+    "warm_start_same_structure",
+];

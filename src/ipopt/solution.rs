@@ -1,0 +1,126 @@
+//! Where a solve starts, what it passes through and what it returns.
+
+use crate::ipopt::Status;
+
+/// Multipliers of constraints and bounds, in the sign convention of Ipopt:
+/// ∇f(x) + Σ yᵢ ∇gᵢ(x) − z_L + z_U = 0 with z_L, z_U ≥ 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Costates {
+    /// y, one per constraint.
+    pub constraints: Vec<f64>,
+    /// z_L, one per variable.
+    pub lower: Vec<f64>,
+    /// z_U, one per variable.
+    pub upper: Vec<f64>,
+}
+
+/// A point to start from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Point {
+    /// The variables.
+    pub x: Vec<f64>,
+    /// Their multipliers, read by [`Start::PrimalDual`](crate::ipopt::Start::PrimalDual) alone.
+    pub costates: Option<Costates>,
+}
+
+/// One line of the iteration log, told after the iterate was accepted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iteration {
+    /// Number of the iteration; the starting point is number zero.
+    pub iteration: usize,
+    /// f(x), or the objective of the restoration phase.
+    pub objective: f64,
+    /// Greatest violation of a constraint, where an inequality is an equality with a slack variable.
+    pub primal_infeasibility: f64,
+    /// Greatest entry of the gradient of the Lagrangian.
+    pub dual_infeasibility: f64,
+    /// Barrier parameter.
+    pub mu: f64,
+    /// Greatest entry of the step in the variables.
+    pub step_norm: f64,
+    /// What was added to the diagonal of the Hessian to make the step a descent direction.
+    pub regularization: f64,
+    /// Fraction of the step taken in the bound multipliers.
+    pub alpha_dual: f64,
+    /// Fraction of the step taken in the variables.
+    pub alpha_primal: f64,
+    /// Points tried until one was accepted.
+    pub line_search_trials: usize,
+    /// True in the restoration phase, which minimises the violation of the constraints instead of f.
+    pub restoration: bool,
+}
+
+/// Wall time in seconds, and where it went.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Seconds {
+    /// From the first to the last instruction of Ipopt; waiting for another solve to end is not part of it.
+    pub total: f64,
+    /// Inside Ipopt and its linear solver: `total` less all of the following.
+    pub solver: f64,
+    /// Evaluating f.
+    pub objective: f64,
+    /// Evaluating ∇f.
+    pub gradient: f64,
+    /// Evaluating g.
+    pub constraints: f64,
+    /// Evaluating ∇g.
+    pub jacobian: f64,
+    /// Evaluating the Hessian of the Lagrangian.
+    pub hessian: f64,
+    /// Spent by the observer.
+    pub observer: f64,
+}
+
+/// How often Ipopt asked for each quantity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Evaluations {
+    /// Times f was evaluated.
+    pub objective: usize,
+    /// Times ∇f was evaluated.
+    pub gradient: usize,
+    /// Times g was evaluated.
+    pub constraints: usize,
+    /// Times ∇g was evaluated.
+    pub jacobian: usize,
+    /// Times the Hessian of the Lagrangian was evaluated.
+    pub hessian: usize,
+}
+
+/// What a solve returns, whatever its status.
+///
+/// If the status is not [`is_solved`](Status::is_solved), `x` is the point at which Ipopt gave up or the latest iterate it
+/// had told, whichever violates constraints and bounds less; a point where f or g does not exist counts as worst.
+/// The two differ if Ipopt gave up on the way to the next iterate, for instance for want of a derivative there.
+/// `costates` are always those of Ipopt.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// How the solve ended.
+    pub status: Status,
+    /// The variables.
+    pub x: Vec<f64>,
+    /// f(x).
+    pub objective: f64,
+    /// g(x).
+    pub constraints: Vec<f64>,
+    /// Multipliers of constraints and bounds; zero where Ipopt left something that is not a number.
+    pub costates: Costates,
+    /// One record per iteration.
+    pub iterations: Vec<Iteration>,
+    /// Where the time went.
+    pub seconds: Seconds,
+    /// How often each quantity was asked for.
+    pub evaluations: Evaluations,
+    /// How many of these met NaN or ±∞, so that the solver stepped back.
+    pub failed_evaluations: usize,
+}
+
+impl Solution {
+    /// The point to start a related problem from.
+    #[must_use]
+    pub fn to_point(&self) -> Point {
+        Point {
+            x: self.x.clone(),
+            costates: Some(self.costates.clone()),
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! One sparse matrix beside its differences.
+
+use super::TOLERANCE;
+use super::report::{Matrix, Place, WrongEntry};
+use crate::nlp::{Entries, Nlp};
+
+/// Part of the row's size below which an entry is not measured by its own size.
+const FLOOR: f64 = 1e-3;
+
+/// A sparse matrix beside its differences.
+pub(super) struct Comparison {
+    /// Analytic entries by column, duplicates summed, sorted by row.
+    columns: Vec<Vec<(usize, f64)>>,
+    /// t: size of the terms of the differenced value of each row.
+    terms: Vec<f64>,
+    /// r: greatest entry of each row.
+    largest: Vec<f64>,
+    /// Entries seen so far: those stored and those whose difference is not zero.
+    pairs: Vec<Pair>,
+}
+
+struct Pair {
+    row: usize,
+    column: usize,
+    place: Place,
+    analytic: f64,
+    difference: f64,
+}
+
+impl Comparison {
+    pub(super) fn new(places: &Entries, values: &[f64], terms: Vec<f64>, columns: usize) -> Self {
+        let mut by_column = vec![Vec::<(usize, f64)>::new(); columns];
+        for ((&row, &col), &value) in places.rows.iter().zip(&places.cols).zip(values) {
+            assert!(
+                (row as usize) < terms.len(),
+                "row {row} of the structure lies outside the matrix"
+            );
+            by_column[col as usize].push((row as usize, value));
+        }
+        for column in &mut by_column {
+            column.sort_by_key(|&(row, _)| row);
+            column.dedup_by(|duplicate, first| {
+                let same = duplicate.0 == first.0;
+                if same {
+                    first.1 += duplicate.1;
+                }
+                same
+            });
+        }
+        Self {
+            columns: by_column,
+            largest: vec![0.0; terms.len()],
+            terms,
+            pairs: Vec::new(),
+        }
+    }
+
+    /// Adds |aᵢⱼ xⱼ| to the size of the terms of row i.
+    pub(super) fn add_linear_terms(&mut self, x: &[f64]) {
+        for (column, x) in self.columns.iter().zip(x) {
+            for &(row, value) in column {
+                self.terms[row] += (value * x).abs();
+            }
+        }
+    }
+
+    /// Puts the rows from `first` on of a column beside their differences.
+    pub(super) fn compare(
+        &mut self,
+        column: usize,
+        first: usize,
+        difference: impl Fn(usize) -> f64,
+    ) {
+        let mut stored = self.columns[column].iter().copied().peekable();
+        assert!(
+            stored.peek().is_none_or(|&(row, _)| row >= first),
+            "column {column} has an entry above the diagonal"
+        );
+        for row in first..self.terms.len() {
+            let (place, analytic) = match stored.next_if(|&(stored_row, _)| stored_row == row) {
+                Some((_, value)) => (Place::Stored, value),
+                None => (Place::Missing, 0.0),
+            };
+            let difference = difference(row);
+            if place == Place::Stored || difference != 0.0 {
+                self.largest[row] = self.largest[row].max(analytic.abs()).max(difference.abs());
+                self.pairs.push(Pair {
+                    row,
+                    column,
+                    place,
+                    analytic,
+                    difference,
+                });
+            }
+        }
+    }
+
+    /// The greatest error; entries whose error is above the tolerance are added to `wrong`.
+    pub(super) fn judge(
+        &self,
+        matrix: Matrix,
+        row_name: impl Fn(usize) -> String,
+        nlp: &dyn Nlp,
+        wrong: &mut Vec<WrongEntry>,
+    ) -> f64 {
+        let mut greatest = 0.0_f64;
+        for &Pair {
+            row,
+            column,
+            place,
+            analytic,
+            difference,
+        } in &self.pairs
+        {
+            let error = relative_error(analytic, difference, self.largest[row] + self.terms[row]);
+            greatest = greatest.max(error);
+            if error > TOLERANCE {
+                let (row, column) = (row_name(row), nlp.variable_name(column));
+                wrong.push(WrongEntry {
+                    matrix,
+                    row,
+                    column,
+                    place,
+                    analytic,
+                    difference,
+                    error,
+                });
+            }
+        }
+        greatest
+    }
+}
+
+/// |a − d| / max(|a|, |d|, `row`/1000); infinite if `a` is not a number.
+fn relative_error(analytic: f64, difference: f64, row: f64) -> f64 {
+    if analytic == difference {
+        return 0.0;
+    }
+    let error =
+        (analytic - difference).abs() / analytic.abs().max(difference.abs()).max(FLOOR * row);
+    if error.is_nan() { f64::INFINITY } else { error }
+}
