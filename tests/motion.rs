@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 
 fn case(name: &str, segments: usize, coordinates: Coordinates) {
     let file = reference(name);
-    let model = Model::new(trunk(segments), Some(coordinates), 5.0).unwrap();
+    let model = Model::new(trunk(segments), Some(coordinates), 5.0, &[]).unwrap();
     let zero = model.coordinates_at(&vec![0.0; segments]);
     let hold = numbers(&file["hold_voltage_V"]);
     let scalars = model.scalars(&hold);

@@ -1,2 +1,20 @@
-//! Optimal control.
+//! Optimal control: direct transcription of the discrete action (DMOCC).
+
+mod boundary;
+mod error;
+mod guess;
+mod limits;
+mod objective;
 pub mod problem;
+mod solution;
+mod transcription;
+mod unknowns;
+
+pub use boundary::{Boundary, Goal};
+pub use error::BoundaryError;
+pub use guess::guess;
+pub use limits::Limits;
+pub use objective::Cost;
+pub use solution::{Costates, Solved};
+pub use transcription::Transcription;
+pub use unknowns::{Row, Unknowns, Variable};

@@ -1,7 +1,7 @@
 //! What is asked of a system: simulate it, find its equilibrium, or steer it. Units g, mm, ms, N, V.
 
 use crate::ipopt::OptionValue;
-use crate::model::Coordinates;
+use crate::model::{Coordinates, Region};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -160,25 +160,6 @@ pub enum Side {
     Inside,
     /// Outside.
     Outside,
-}
-
-/// A region of space in mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Region {
-    /// Box between two corners.
-    Box {
-        /// Lower corner.
-        min: Vector3<f64>,
-        /// Upper corner.
-        max: Vector3<f64>,
-    },
-    /// Ball.
-    Sphere {
-        /// Centre.
-        centre: Vector3<f64>,
-        /// Radius.
-        radius: f64,
-    },
 }
 
 /// Where the solver starts.

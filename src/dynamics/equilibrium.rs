@@ -106,6 +106,7 @@ impl<'m> Statics<'m> {
             h,
             Horizon::Given,
             Sides::ALL,
+            &[],
             scratch,
         );
         action.pull_back_interval(
@@ -121,7 +122,7 @@ impl<'m> Statics<'m> {
         for (force, other) in a.forces.iter_mut().zip(&b.forces) {
             *force += other;
         }
-        action.evaluate_instant(Level::Hessian, a, scratch);
+        action.evaluate_instant(Level::Hessian, a, &[], scratch);
         action.pull_back_instant(Level::Hessian, a, 0, scratch, values);
         self.residual.fill(0.0);
         action.rows(a, scratch, &mut self.residual);

@@ -171,15 +171,15 @@ impl<'m> Stepper<'m> {
         residual[..n].copy_from_slice(&self.momentum);
         residual[n..].fill(0.0);
         let (given, forward) = (Horizon::Given, Sides::FORWARD);
-        action.evaluate_interval(level, here, next, scalars, h, given, forward, scratch);
+        action.evaluate_interval(level, here, next, scalars, h, given, forward, &[], scratch);
         action.pull_back_interval(level, here, next, given, forward, 0, scratch, values);
         if constrained {
             // Multipliers of the step act at its start, constraints hold at its end.
-            action.evaluate_instant(level, next, scratch);
+            action.evaluate_instant(level, next, &[], scratch);
             action.pull_back_instant(level, next, 1, scratch, values);
             residual[n..].copy_from_slice(&scratch.instant.plain.rows);
             here.z[n..].copy_from_slice(&next.z[n..]);
-            action.evaluate_instant(level, here, scratch);
+            action.evaluate_instant(level, here, &[], scratch);
             action.pull_back_instant(level, here, 0, scratch, values);
         }
         action

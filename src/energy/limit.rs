@@ -101,3 +101,20 @@ impl Energy<9> for Angle {
         ratio.map([0.0, 1.0, 0.0, -2.0]) + (reference + turns * std::f64::consts::TAU)
     }
 }
+
+/// `n·r`, arguments: n and r. The coordinate of a prismatic joint.
+#[derive(Clone, Copy, Debug)]
+pub struct Projection;
+
+impl Energy<6> for Projection {
+    const DEGREE: usize = 2;
+    const ISOTROPIC: bool = true;
+
+    fn couples(i: usize, j: usize) -> bool {
+        i != j
+    }
+
+    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
+        Jet::dot(0, 3, p, w)
+    }
+}

@@ -8,7 +8,7 @@ mod viscosity;
 
 pub use constraint::{Coincidence, Orthogonality};
 pub use gravity::Gravity;
-pub use limit::{Angle, OutsideBox, Place, SquaredDistance, SquaredField};
+pub use limit::{Angle, OutsideBox, Place, Projection, SquaredDistance, SquaredField};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
 pub use viscosity::ViscousCell;
 

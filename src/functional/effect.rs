@@ -32,6 +32,8 @@ pub struct Frame<'a> {
     pub horizon: Horizon,
     /// Which blocks are asked for.
     pub sides: Sides,
+    /// Weights of the measures of the site in the contraction at level `Third`.
+    pub weights: &'a [f64],
 }
 
 /// What the interval length is.
@@ -89,11 +91,34 @@ pub trait Effect: Debug + Send + Sync {
     fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output);
 }
 
-/// A sum of effects at one site.
+/// A quantity at one site that is read by itself: a path limit, a goal.
+pub trait Measure: Debug + Send + Sync {
+    /// Registers what the quantity couples.
+    fn couple(&mut self, couplings: &mut Couplings);
+
+    /// Vectors it reads.
+    fn vectors(&self) -> Vec<usize>;
+
+    /// Scalars it reads.
+    fn scalars(&self) -> Vec<usize>;
+
+    /// Its value.
+    fn value(&self, frame: &Frame<'_>) -> f64;
+
+    /// Adds its gradient.
+    fn gradient(&self, frame: &Frame<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]);
+
+    /// Adds its gradient and Hessian times a weight.
+    fn add_weighted(&self, weight: f64, frame: &Frame<'_>, part: &mut Part);
+}
+
+/// A sum of effects at one site, and the quantities that are measured there.
 #[derive(Debug, Default)]
 pub struct Sum {
     /// The effects.
     pub effects: Vec<Box<dyn Effect>>,
+    /// The quantities.
+    pub measures: Vec<Box<dyn Measure>>,
     /// What couples in them.
     pub couplings: Couplings,
     /// Number of vectors.
@@ -104,13 +129,22 @@ pub struct Sum {
 
 impl Sum {
     /// A sum over effects that read `vectors` vectors and `scalars` scalars.
-    pub fn new(mut effects: Vec<Box<dyn Effect>>, vectors: usize, scalars: usize) -> Self {
+    pub fn new(
+        mut effects: Vec<Box<dyn Effect>>,
+        mut measures: Vec<Box<dyn Measure>>,
+        vectors: usize,
+        scalars: usize,
+    ) -> Self {
         let mut couplings = Couplings::default();
         for effect in &mut effects {
             effect.couple(&mut couplings);
         }
+        for measure in &mut measures {
+            measure.couple(&mut couplings);
+        }
         Self {
             effects,
+            measures,
             couplings,
             vectors,
             scalars,
@@ -134,6 +168,11 @@ impl Sum {
         }
         for effect in &self.effects {
             effect.evaluate(level, frame, out);
+        }
+        if level == Level::Third {
+            for (measure, &weight) in self.measures.iter().zip(frame.weights) {
+                measure.add_weighted(weight, frame, &mut out.contracted);
+            }
         }
     }
 }

@@ -10,7 +10,7 @@
 
 use crate::energy::Energy;
 use crate::functional::{
-    Couplings, Effect, Frame, Horizon, Kind, Level, Output, Part, Stencil, VectorArg,
+    Couplings, Effect, Frame, Horizon, Kind, Level, Measure, Output, Part, Stencil, VectorArg,
 };
 use crate::math::{Jet, Matrix, Vector};
 use nalgebra::SVector;
@@ -215,57 +215,6 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
         rates
     }
 
-    /// Values of the elements.
-    pub fn values(&self, frame: &Frame<'_>, out: &mut [f64]) {
-        for (element, value) in self.elements.iter().zip(out) {
-            let (p, w) = Self::arguments(element, frame, Level::Gradient);
-            *value = self.scale * element.energy.jet::<1>(&p, &w).value;
-        }
-    }
-
-    /// Value and first derivatives of one element, added to the forces and rows.
-    pub fn gradient_of(
-        &self,
-        index: usize,
-        frame: &Frame<'_>,
-        forces: &mut [Vec<Vector>; 2],
-        rows: &mut [f64],
-    ) {
-        let element = &self.elements[index];
-        let (p, w) = Self::arguments(element, frame, Level::Gradient);
-        let jet = element.energy.jet::<1>(&p, &w);
-        Self::add_gradient(
-            element,
-            &jet.gradient,
-            self.scale,
-            frame.h,
-            |_| true,
-            forces,
-            rows,
-        );
-    }
-
-    /// Adds `Σ y_e ∇E_e` and `Σ y_e ∇²E_e` to a part.
-    pub fn add_weighted(&self, weights: &[f64], frame: &Frame<'_>, part: &mut Part) {
-        for ((element, slots), y) in self.elements.iter().zip(&self.slots).zip(weights) {
-            let (p, w) = Self::arguments(element, frame, Level::Gradient);
-            let jet = element.energy.jet::<2>(&p, &w);
-            let c = self.scale * y;
-            Self::add_gradient(
-                element,
-                &jet.gradient,
-                c,
-                frame.h,
-                |_| true,
-                &mut part.forces,
-                &mut part.rows,
-            );
-            if E::DEGREE >= 2 {
-                Self::add_hessian((element, slots), &jet.hessian, c, frame, |_, _| true, part);
-            }
-        }
-    }
-
     fn evaluate_element<const ORDER: usize>(
         &self,
         (element, slots): (&Element<E, NV, NS>, &Slots<NV, NS>),
@@ -466,6 +415,70 @@ where
                 (Level::Gradient, _) => self.evaluate_element::<1>(pair, level, frame, out),
                 (Level::Third, 0) => self.evaluate_element::<3>(pair, level, frame, out),
                 _ => self.evaluate_element::<2>(pair, level, frame, out),
+            }
+        }
+    }
+}
+
+impl<E, const M: usize, const NV: usize, const NS: usize> Measure for Group<E, M, NV, NS>
+where
+    E: Energy<M>,
+{
+    fn couple(&mut self, couplings: &mut Couplings) {
+        Effect::couple(self, couplings);
+    }
+
+    fn vectors(&self) -> Vec<usize> {
+        self.elements
+            .iter()
+            .flat_map(|e| e.vectors.iter().map(|v| v.vector))
+            .collect()
+    }
+
+    fn scalars(&self) -> Vec<usize> {
+        self.elements.iter().flat_map(|e| e.scalars).collect()
+    }
+
+    fn value(&self, frame: &Frame<'_>) -> f64 {
+        let value = |element: &Element<E, NV, NS>| {
+            let (p, w) = Self::arguments(element, frame, Level::Gradient);
+            element.energy.jet::<1>(&p, &w).value
+        };
+        self.scale * self.elements.iter().map(value).sum::<f64>()
+    }
+
+    fn gradient(&self, frame: &Frame<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]) {
+        for element in &self.elements {
+            let (p, w) = Self::arguments(element, frame, Level::Gradient);
+            let jet = element.energy.jet::<1>(&p, &w);
+            Self::add_gradient(
+                element,
+                &jet.gradient,
+                self.scale,
+                frame.h,
+                |_| true,
+                forces,
+                rows,
+            );
+        }
+    }
+
+    fn add_weighted(&self, weight: f64, frame: &Frame<'_>, part: &mut Part) {
+        for (element, slots) in self.elements.iter().zip(&self.slots) {
+            let (p, w) = Self::arguments(element, frame, Level::Gradient);
+            let jet = element.energy.jet::<2>(&p, &w);
+            let c = self.scale * weight;
+            Self::add_gradient(
+                element,
+                &jet.gradient,
+                c,
+                frame.h,
+                |_| true,
+                &mut part.forces,
+                &mut part.rows,
+            );
+            if E::DEGREE >= 2 {
+                Self::add_hessian((element, slots), &jet.hessian, c, frame, |_, _| true, part);
             }
         }
     }

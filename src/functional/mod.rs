@@ -17,7 +17,7 @@ mod inertia;
 mod stencil;
 
 pub use couplings::{Blocks, Couplings, Part, Sides};
-pub use effect::{Effect, Frame, Horizon, Kind, Level, Output, Sum};
+pub use effect::{Effect, Frame, Horizon, Kind, Level, Measure, Output, Sum};
 pub use group::{Element, Group};
 pub use inertia::{Inertia, PointMass};
 pub use stencil::{Stencil, VectorArg};

@@ -1,10 +1,10 @@
 //! The joint graph: a spanning tree from the ground, and the joints that close loops.
 
-use crate::kinematics::{MaterialVector, Pose};
+use crate::kinematics::{MaterialVector, Pose, Term};
 use crate::math::Vector;
 use crate::model::ModelError;
 use crate::model::system::{JointKind, System};
-use crate::reduction::{Tree, TreeJoint, TreeKind};
+use crate::reduction::{Motion, Tree, TreeJoint, TreeKind};
 
 /// Joints in an order from the ground outwards, those that close loops, and bodies that nothing holds.
 #[derive(Clone, Debug)]
@@ -158,16 +158,52 @@ impl Graph {
     /// Poses at joint coordinates (by joint), along the spanning tree.
     pub fn poses(&self, system: &System, reference: &[Pose], joints: &[f64]) -> Vec<Pose> {
         let tree = self.tree(system, reference, &[]);
-        let mut u = vec![0.0; tree.coordinates()];
-        for (coordinate, &value) in system.joint_coordinates().iter().zip(joints) {
-            if let Some(c) = coordinate {
-                if *c < u.len() {
-                    u[*c] = value;
-                }
-            }
-        }
         let mut state = tree.state();
-        tree.place(&u, &mut state);
+        tree.place(&Self::coordinates(system, joints), &mut state);
         state.poses
+    }
+
+    /// Rates of the vectors φ, d₁, d₂, d₃ of all bodies at joint coordinates with given rates (by joint).
+    pub fn rates(
+        &self,
+        system: &System,
+        reference: &[Pose],
+        joints: &[f64],
+        rates: &[f64],
+    ) -> Vec<f64> {
+        let term = |body: usize, i: usize| Term {
+            body: Some(body),
+            centre: if i == 0 { 1.0 } else { 0.0 },
+            directors: if i == 0 {
+                Vector::zeros()
+            } else {
+                Vector::ith(i - 1, 1.0)
+            },
+        };
+        let all = (0..system.bodies.len()).flat_map(|b| (0..4).map(move |i| (b, i)));
+        let vectors: Vec<MaterialVector> = all
+            .map(|(b, i)| MaterialVector {
+                terms: vec![term(b, i)],
+            })
+            .collect();
+        let motion = Motion::articulated(self.tree(system, reference, &vectors), 0);
+        let mut instant = motion.instant();
+        let (u, l) = (
+            Self::coordinates(system, joints),
+            Self::coordinates(system, rates),
+        );
+        let count = instant.z.len();
+        instant.z.copy_from_slice(&u[..count]);
+        instant.l.copy_from_slice(&l[..count]);
+        motion.place(&mut instant);
+        motion.along(&mut instant);
+        instant.w.iter().flat_map(|w| [w.x, w.y, w.z]).collect()
+    }
+
+    /// Values of the joint coordinates from one value a joint.
+    fn coordinates(system: &System, joints: &[f64]) -> Vec<f64> {
+        let coordinates = system.joint_coordinates();
+        let with_coordinate = coordinates.iter().zip(joints).filter(|(c, _)| c.is_some());
+        with_coordinate.map(|(_, &value)| value).collect()
     }
 }

@@ -4,11 +4,13 @@ mod effects;
 mod error;
 mod graph;
 mod joints;
+mod quantity;
 pub mod system;
 
 pub use error::ModelError;
 pub use graph::Graph;
 pub use joints::JointGauge;
+pub use quantity::{Quantity, Region};
 pub use system::{System, VACUUM_PERMITTIVITY};
 
 use crate::functional::Sum;
@@ -62,7 +64,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// Builds the model of a system for intervals of about `h0` ms.
+    /// Builds the model of a system for intervals of about `h0` ms, in which `quantities` can be measured.
     ///
     /// Without a choice the coordinates are reduced where the joints form a tree that the reduction knows.
     ///
@@ -72,14 +74,10 @@ impl Model {
         system: System,
         coordinates: Option<Coordinates>,
         h0: f64,
+        quantities: &[Quantity],
     ) -> Result<Self, ModelError> {
+        let coordinates = Self::choose(&system, coordinates)?;
         let graph = Graph::new(&system);
-        let coordinates = match (coordinates, graph.obstacle(&system)) {
-            (Some(Coordinates::Reduced), Some(obstacle)) => return Err(obstacle),
-            (Some(choice), _) => choice,
-            (None, Some(_)) => Coordinates::Redundant,
-            (None, None) => Coordinates::Reduced,
-        };
         let pose = |body: &system::Body| Pose {
             centre: body.centre,
             directors: body.directors,
@@ -99,6 +97,7 @@ impl Model {
             .iter()
             .map(|m| vectors.index(point(&m.point)))
             .collect();
+        let measures = quantity::measures(quantities, &system, &reference, &voltages, &mut vectors);
         let list = vectors.list();
         let multipliers = multiplier_names.len();
         let motion = match coordinates {
@@ -107,8 +106,8 @@ impl Model {
             }
             Coordinates::Redundant => Motion::redundant(system.bodies.len(), list, multipliers),
         };
-        let intervals = Sum::new(intervals, list.len(), voltages.len());
-        let instants = Sum::new(instants, list.len(), multipliers);
+        let intervals = Sum::new(intervals, measures.intervals, list.len(), voltages.len());
+        let instants = Sum::new(instants, measures.instants, list.len(), multipliers);
         let gauge = |(joint, coordinate)| JointGauge::new(joint, coordinate, &reference);
         let gauges = system
             .joints
@@ -129,6 +128,28 @@ impl Model {
             reference,
             system,
         })
+    }
+
+    /// The coordinates of a system: those asked for, or reduced where the joints form a tree that the reduction knows.
+    ///
+    /// # Errors
+    /// Reduced coordinates were asked for and do not exist.
+    pub fn choose(
+        system: &System,
+        coordinates: Option<Coordinates>,
+    ) -> Result<Coordinates, ModelError> {
+        match (coordinates, Graph::new(system).obstacle(system)) {
+            (Some(Coordinates::Reduced), Some(obstacle)) => Err(obstacle),
+            (Some(choice), _) => Ok(choice),
+            (None, Some(_)) => Ok(Coordinates::Redundant),
+            (None, None) => Ok(Coordinates::Reduced),
+        }
+    }
+
+    /// Rates of director coordinates at joint coordinates with given rates.
+    pub fn redundant_rates(&self, joints: &[f64], rates: &[f64]) -> Vec<f64> {
+        self.graph
+            .rates(&self.system, &self.reference, joints, rates)
     }
 
     /// Poses of the reference configuration.

@@ -165,18 +165,29 @@ impl Motion {
 
     /// Adds Pᵀ R to the rows of the coordinates.
     pub fn pull_back(&self, columns: &[Vector], forces: &[Vector], rows: &mut [f64]) {
-        for (dependence, force) in self.vectors.iter().zip(forces) {
-            match dependence {
-                Dependence::Articulated { first, support } => {
-                    for (column, &row) in columns[*first..].iter().zip(support) {
-                        rows[row] += column.dot(force);
-                    }
+        for (vector, force) in forces.iter().enumerate() {
+            self.pull_back_one(vector, columns, force, rows);
+        }
+    }
+
+    /// Adds Pᵀ f for a force on one vector.
+    pub fn pull_back_one(
+        &self,
+        vector: usize,
+        columns: &[Vector],
+        force: &Vector,
+        rows: &mut [f64],
+    ) {
+        match &self.vectors[vector] {
+            Dependence::Articulated { first, support } => {
+                for (column, &row) in columns[*first..].iter().zip(support) {
+                    rows[row] += column.dot(force);
                 }
-                Dependence::Linear { parts, .. } => {
-                    for &(first, c) in parts {
-                        for i in 0..3 {
-                            rows[first + i] += c * force[i];
-                        }
+            }
+            Dependence::Linear { parts, .. } => {
+                for &(first, c) in parts {
+                    for i in 0..3 {
+                        rows[first + i] += c * force[i];
                     }
                 }
             }

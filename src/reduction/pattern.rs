@@ -22,6 +22,11 @@ impl Pattern {
         })
     }
 
+    /// Slot of an entry of the pattern.
+    pub fn find(&self, row: usize, col: usize) -> Option<usize> {
+        self.slots.get(&(row, col)).copied()
+    }
+
     /// All entries, by slot.
     pub fn entries(&self) -> &[(usize, usize)] {
         &self.entries

@@ -75,7 +75,7 @@ impl Reduced {
     }
 
     /// Evaluates the interval between two instants and adds its forces to theirs; at level `Third` along their
-    /// directions, with contracted forces.
+    /// directions, with contracted forces and the measures of the site by their weights.
     #[expect(
         clippy::too_many_arguments,
         reason = "an interval has two ends, scalars and a length"
@@ -89,6 +89,7 @@ impl Reduced {
         h: f64,
         horizon: Horizon,
         sides: Sides,
+        weights: &[f64],
         scratch: &mut Scratch,
     ) {
         let frame = Frame {
@@ -99,6 +100,7 @@ impl Reduced {
             h,
             horizon,
             sides,
+            weights,
         };
         self.intervals
             .evaluate(level, &frame, &mut scratch.interval);
@@ -181,7 +183,13 @@ impl Reduced {
     }
 
     /// Evaluates an instant and adds its forces.
-    pub fn evaluate_instant(&self, level: Level, instant: &mut Instant, scratch: &mut Scratch) {
+    pub fn evaluate_instant(
+        &self,
+        level: Level,
+        instant: &mut Instant,
+        weights: &[f64],
+        scratch: &mut Scratch,
+    ) {
         let n = self.motion.coordinates;
         let frame = Frame {
             vectors: [&instant.x, &instant.x],
@@ -191,6 +199,7 @@ impl Reduced {
             h: 1.0,
             horizon: Horizon::Given,
             sides: Sides::HERE,
+            weights,
         };
         self.instants.evaluate(level, &frame, &mut scratch.instant);
         add(&mut instant.forces, &scratch.instant.plain.forces[0]);

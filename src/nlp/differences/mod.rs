@@ -27,7 +27,7 @@ use comparison::Comparison;
 pub use report::{Matrix, Place, Report, WrongEntry};
 
 /// Relative error above which an entry is taken for wrong.
-pub const TOLERANCE: f64 = 1e-6;
+pub const TOLERANCE: f64 = 1e-5;
 
 /// Wrong entries listed in a report.
 const LISTED: usize = 20;

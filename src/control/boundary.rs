@@ -1,0 +1,188 @@
+//! Start and goal: which coordinates they give, which equations they add, and the voltages at rest.
+
+use crate::control::error::BoundaryError;
+use crate::control::limits::Limits;
+use crate::control::problem::{Control, State};
+use crate::dynamics::{Start, equilibrium};
+use crate::functional::Level;
+use crate::model::{Coordinates, Model, Quantity, System};
+
+/// A control problem's model with its start and goal.
+#[derive(Debug)]
+pub struct Boundary {
+    /// Where the motion starts.
+    pub start: Start,
+    /// Where it ends.
+    pub goal: Goal,
+    /// Voltages at rest before the start and after the goal (V, one per muscle), where known.
+    pub rest: [Option<Vec<f64>>; 2],
+    /// Limits and goal equations.
+    pub limits: Limits,
+}
+
+/// The final state: at rest, with these coordinates given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Goal {
+    /// Given coordinates; `None` where the optimisation decides.
+    pub coordinates: Vec<Option<f64>>,
+}
+
+impl Boundary {
+    /// Builds the model of a control problem and resolves its start and goal.
+    ///
+    /// # Errors
+    /// The model does not exist in the coordinates, or a state of rest does not exist.
+    pub fn resolve(
+        system: &System,
+        control: &Control,
+        h0: f64,
+    ) -> Result<(Model, Self), BoundaryError> {
+        let coordinates = Model::choose(system, control.coordinates)?;
+        let redundant = coordinates == Coordinates::Redundant;
+        let mut limits = Limits::new(&control.limits, system, redundant);
+        let all_joints = all_joints_given(system, &control.goal);
+        match &control.goal {
+            State::Markers(places) => {
+                for (&marker, place) in places {
+                    for axis in 0..3 {
+                        let name = format!(
+                            "goal {} of marker {}",
+                            ["x", "y", "z"][axis],
+                            system.markers[marker].name
+                        );
+                        limits.add_goal(Quantity::MarkerPlace { marker, axis }, place[axis], name);
+                    }
+                }
+            }
+            State::JointAngles { angles, .. } if redundant && !all_joints => {
+                for (&joint, &near) in angles {
+                    let name = format!("goal of {}", system.joints[joint].name);
+                    limits.add_goal(Quantity::Joint { joint, near }, near, name);
+                }
+            }
+            _ => {}
+        }
+        let model = Model::new(system.clone(), Some(coordinates), h0, &limits.quantities())?;
+        let start = resolve_start(&model, &control.start, "start")?;
+        let n = model.coordinate_count();
+        let mut given = vec![None; n];
+        match &control.goal {
+            State::RestAtVoltages(voltages) => {
+                let rest = rest_at(&model, voltages, "goal")?;
+                given = rest[..n].iter().copied().map(Some).collect();
+            }
+            State::JointAngles { angles, .. } if redundant && all_joints => {
+                let joints: Vec<f64> = (0..system.joints.len())
+                    .map(|j| angles.get(&j).copied().unwrap_or(0.0))
+                    .collect();
+                let z = model.coordinates_at(&joints);
+                given = z[..n].iter().copied().map(Some).collect();
+            }
+            State::JointAngles { angles, .. } if !redundant => {
+                for (&joint, &value) in angles {
+                    if let Some(c) = model.gauges[joint].coordinate {
+                        given[c] = Some(value);
+                    }
+                }
+            }
+            _ => {}
+        }
+        let voltages = |state: &State| match state {
+            State::RestAtVoltages(v) => Some(v.clone()),
+            _ => None,
+        };
+        let rest = [voltages(&control.start), voltages(&control.goal)];
+        Ok((
+            model,
+            Self {
+                start,
+                goal: Goal { coordinates: given },
+                rest,
+                limits,
+            },
+        ))
+    }
+}
+
+/// Whether a goal gives the coordinates of all joints of a tree.
+fn all_joints_given(system: &System, goal: &State) -> bool {
+    let State::JointAngles { angles, .. } = goal else {
+        return false;
+    };
+    let coordinates = system.joint_coordinates();
+    let named = |(j, c): (usize, &Option<usize>)| c.is_none() || angles.contains_key(&j);
+    Model::choose(system, Some(Coordinates::Reduced)).is_ok()
+        && coordinates.iter().enumerate().all(named)
+}
+
+/// The equilibrium under voltages (V, one per muscle).
+fn rest_at(
+    model: &Model,
+    voltages: &[f64],
+    place: &'static str,
+) -> Result<Vec<f64>, BoundaryError> {
+    let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+    let found = equilibrium(model, &zero, &model.scalars(voltages));
+    Ok(found
+        .map_err(|source| BoundaryError::NoEquilibrium { place, source })?
+        .z)
+}
+
+/// Coordinates and momenta of a start.
+///
+/// # Errors
+/// There is no equilibrium, or joint coordinates do not fit the loops of the scene.
+pub fn resolve_start(
+    model: &Model,
+    state: &State,
+    place: &'static str,
+) -> Result<Start, BoundaryError> {
+    match state {
+        State::RestAtVoltages(voltages) => {
+            Ok(Start::at_rest(model, rest_at(model, voltages, place)?))
+        }
+        State::JointAngles { angles, rates } => {
+            let value = |map: &std::collections::BTreeMap<usize, f64>, j: usize| {
+                map.get(&j).copied().unwrap_or(0.0)
+            };
+            let joints = |map| {
+                (0..model.gauges.len())
+                    .map(|j| value(map, j))
+                    .collect::<Vec<f64>>()
+            };
+            let z = model.coordinates_at(&joints(angles));
+            check_constraints(model, &z, place)?;
+            let n = model.coordinate_count();
+            // Rates of redundant coordinates are those of the poses a short time away, linear in the joint rates.
+            let rates = match model.coordinates {
+                Coordinates::Reduced => model.coordinates_at(&joints(rates))[..n].to_vec(),
+                Coordinates::Redundant => model.redundant_rates(&joints(angles), &joints(rates)),
+            };
+            Ok(Start::with_rates(model, z, &rates))
+        }
+        State::Markers(_) => unreachable!("marker positions are a goal"),
+    }
+}
+
+/// Checks the constraints that the coordinates leave open.
+fn check_constraints(model: &Model, z: &[f64], place: &'static str) -> Result<(), BoundaryError> {
+    let mut instant = model.action.motion.instant();
+    let mut scratch = model.action.scratch();
+    instant.z.copy_from_slice(z);
+    model.action.motion.place(&mut instant);
+    model
+        .action
+        .evaluate_instant(Level::Gradient, &mut instant, &[], &mut scratch);
+    let rows = &scratch.instant.plain.rows;
+    let worst = (0..rows.len()).max_by(|&a, &b| rows[a].abs().total_cmp(&rows[b].abs()));
+    let Some(worst) = worst else { return Ok(()) };
+    let value = rows[worst].abs() / model.multiplier_time;
+    if value > 1e-9 * model.length() {
+        return Err(BoundaryError::Inconsistent {
+            place,
+            name: model.multiplier_names[worst].clone(),
+            value,
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,46 @@
+//! Why a control problem has no start, no goal or no solution to look for.
+
+use crate::dynamics::EquilibriumError;
+use crate::model::ModelError;
+use thiserror::Error;
+
+/// A control problem is not well posed.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum BoundaryError {
+    /// The model does not exist in these coordinates.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A state of rest does not exist.
+    #[error("{place}: {source}")]
+    NoEquilibrium {
+        /// `start` or `goal`.
+        place: &'static str,
+        /// Why.
+        source: EquilibriumError,
+    },
+    /// A given configuration is not at rest under its voltages.
+    #[error(
+        "{place}: the given joint coordinates do not fit the loops of the scene: {name} is violated by {value:.3e}"
+    )]
+    Inconsistent {
+        /// `start` or `goal`.
+        place: &'static str,
+        /// The worst constraint.
+        name: String,
+        /// Its value.
+        value: f64,
+    },
+    /// More equations than unknowns.
+    #[error(
+        "the problem is overdetermined: {equations} equations (of them {goals} of the goal) for {unknowns} unknowns; \
+         take fewer final conditions, more intervals or more muscles"
+    )]
+    Overdetermined {
+        /// Equality constraints.
+        equations: usize,
+        /// Equations of the goal among them.
+        goals: usize,
+        /// Free variables.
+        unknowns: usize,
+    },
+}

@@ -1,0 +1,160 @@
+//! Where the solver starts: interpolated between start and goal, simulated, or an earlier solution.
+
+use crate::control::boundary::Boundary;
+use crate::control::problem::{Control, Guess};
+use crate::control::solution::{Costates, Solved};
+use crate::dynamics::{History, simulate};
+use crate::model::{Coordinates, Model};
+use std::ops::ControlFlow;
+
+/// Volts added to the rest voltages: at zero the motion does not depend on a voltage to first order.
+const LIFT: f64 = 100.0;
+
+/// A start of the solver: a motion, an interval length, and costates where they are known.
+#[derive(Clone, Debug)]
+pub struct Initial {
+    /// Coordinates, multipliers and voltages.
+    pub history: History,
+    /// Interval length in ms.
+    pub h: f64,
+    /// Costates and bound multipliers.
+    pub costates: Option<Costates>,
+}
+
+/// The guess of a control problem on `control.intervals` intervals of about `h` ms; `earlier` is the solution it names.
+pub fn guess(
+    model: &Model,
+    boundary: &Boundary,
+    control: &Control,
+    h: f64,
+    earlier: Option<&Solved>,
+) -> Initial {
+    let intervals = control.intervals;
+    match (&control.guess, earlier) {
+        (Guess::Solution(_), Some(solved)) => from_solution(model, boundary, solved, intervals, h),
+        (Guess::Simulate(voltages), _) => {
+            let scalars = model.scalars(voltages);
+            let start = &boundary.start;
+            let constant = |_: f64, _: f64| scalars.clone();
+            let (mut history, _) = simulate(model, start, h, intervals, constant, |_| {
+                ControlFlow::Continue(())
+            });
+            // A simulation that ends early is held where it ended.
+            while history.intervals() < intervals {
+                history.z.push(history.z[history.z.len() - 1].clone());
+                history.scalars.push(scalars.clone());
+            }
+            Initial {
+                history,
+                h,
+                costates: None,
+            }
+        }
+        _ => interpolate(model, boundary, intervals, h),
+    }
+}
+
+/// 3s² − 2s³ between start and goal; rest voltages of the goal lifted by 100 V.
+fn interpolate(model: &Model, boundary: &Boundary, intervals: usize, h: f64) -> Initial {
+    let n = model.coordinate_count();
+    let start = &boundary.start.z;
+    let mut end = start.clone();
+    for (value, given) in end.iter_mut().zip(&boundary.goal.coordinates) {
+        *value = given.unwrap_or(*value);
+    }
+    let smooth = |s: f64| s * s * (3.0 - 2.0 * s);
+    let ends = joints_of(model, start).zip(joints_of(model, &end));
+    let z = (0..=intervals).map(|k| {
+        let s = smooth(k as f64 / intervals as f64);
+        match (&ends, model.coordinates) {
+            // Between poses of a tree the path leads over joint coordinates.
+            (Some((a, b)), Coordinates::Redundant) => {
+                let joints: Vec<f64> = a.iter().zip(b).map(|(a, b)| a + s * (b - a)).collect();
+                model.coordinates_at(&joints)
+            }
+            _ => {
+                let mut z = start.clone();
+                for i in 0..n {
+                    z[i] += s * (end[i] - start[i]);
+                }
+                z[n..].fill(0.0);
+                z
+            }
+        }
+    });
+    let rest = boundary.rest[1].as_ref().or(boundary.rest[0].as_ref());
+    let held: Vec<f64> = rest.map_or_else(|| vec![0.0; model.system.muscles.len()], Clone::clone);
+    let scalars: Vec<f64> = model.scalars(&held).iter().map(|v| v + LIFT).collect();
+    let history = History {
+        times: (0..=intervals).map(|k| k as f64 * h).collect(),
+        z: z.collect(),
+        scalars: vec![scalars; intervals],
+        ..History::default()
+    };
+    Initial {
+        history,
+        h,
+        costates: None,
+    }
+}
+
+/// Joint coordinates of a state, where the joints form a tree.
+fn joints_of(model: &Model, z: &[f64]) -> Option<Vec<f64>> {
+    Model::choose(&model.system, Some(Coordinates::Reduced)).ok()?;
+    let mut instant = model.action.motion.instant();
+    instant.z.copy_from_slice(z);
+    model.action.motion.place(&mut instant);
+    Some(model.joints(&instant, &vec![0.0; model.gauges.len()]))
+}
+
+/// An earlier solution: as it is on the same grid in the same coordinates, resampled otherwise.
+fn from_solution(
+    model: &Model,
+    boundary: &Boundary,
+    solved: &Solved,
+    intervals: usize,
+    h: f64,
+) -> Initial {
+    let same_grid = solved.intervals() == intervals;
+    let duration = solved.times[solved.intervals()];
+    let h = if duration > 0.0 {
+        duration / intervals as f64
+    } else {
+        h
+    };
+    let resample = |k: usize| {
+        let s = k as f64 / intervals as f64 * solved.intervals() as f64;
+        let i = (s.floor() as usize).min(solved.intervals() - 1);
+        let f = s - i as f64;
+        let (a, b) = (&solved.joints[i], &solved.joints[i + 1]);
+        let joints: Vec<f64> = a.iter().zip(b).map(|(a, b)| a + f * (b - a)).collect();
+        model.coordinates_at(&joints)
+    };
+    let exact = same_grid
+        && solved.coordinates == model.coordinates
+        && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
+    let z = (0..=intervals)
+        .map(|k| {
+            if exact {
+                solved.z[k].clone()
+            } else {
+                resample(k)
+            }
+        })
+        .collect();
+    let voltages = (0..intervals).map(|k| {
+        let s = (k as f64 + 0.5) / intervals as f64 * solved.intervals() as f64;
+        model.scalars(&solved.voltages[(s as usize).min(solved.intervals() - 1)])
+    });
+    let history = History {
+        times: (0..=intervals).map(|k| k as f64 * h).collect(),
+        z,
+        scalars: voltages.collect(),
+        ..History::default()
+    };
+    Initial {
+        history,
+        h,
+        costates: if exact { solved.costates.clone() } else { None },
+    }
+}

@@ -1,0 +1,156 @@
+//! Path limits and goals as bounded quantities at instants and in intervals.
+
+use crate::control::problem::{Limit, Side};
+use crate::model::{Quantity, Region, System};
+
+/// A quantity with bounds at some instants or intervals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bounded {
+    /// What is measured.
+    pub quantity: Quantity,
+    /// Lower bound.
+    pub lower: f64,
+    /// Upper bound.
+    pub upper: f64,
+    /// At the final instant only (a goal), or everywhere (a limit).
+    pub place: Place,
+    /// Words for messages.
+    pub name: String,
+}
+
+/// Where a quantity is bounded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// At every instant, or in every interval.
+    Everywhere,
+    /// At the last instant.
+    Goal,
+}
+
+/// All bounded quantities of a problem.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Limits {
+    /// The quantities.
+    pub list: Vec<Bounded>,
+}
+
+/// Σ ξ¹⁶ ≥ 3 holds only outside the box.
+const OUTSIDE_BOX: f64 = 3.0;
+
+impl Limits {
+    /// The path limits of a problem. Joint limits become measures only where `measure_joints`; in joint coordinates
+    /// they are bounds of variables.
+    pub fn new(limits: &[Limit], system: &System, measure_joints: bool) -> Self {
+        let mut list = Vec::new();
+        for limit in limits {
+            let mut add = |quantity, lower, upper, name| {
+                list.push(Bounded {
+                    quantity,
+                    lower,
+                    upper,
+                    place: Place::Everywhere,
+                    name,
+                });
+            };
+            match *limit {
+                Limit::JointAngle { joint, min, max } => {
+                    if measure_joints {
+                        let near = match (min.is_finite(), max.is_finite()) {
+                            (true, true) => 0.5 * (min + max),
+                            _ => 0.0,
+                        };
+                        let name = format!("limit of {}", system.joints[joint].name);
+                        add(Quantity::Joint { joint, near }, min, max, name);
+                    }
+                }
+                Limit::Stretch { muscle, min, max } => {
+                    let name = format!("stretch of {}", system.muscles[muscle].name);
+                    add(
+                        Quantity::SquaredStretch { muscle },
+                        min * min,
+                        max * max,
+                        name,
+                    );
+                }
+                Limit::ElectricField { muscle, max } => {
+                    if system.muscles[muscle].material.electric.is_some() {
+                        let name = format!("electric field of {}", system.muscles[muscle].name);
+                        add(
+                            Quantity::SquaredField { muscle, limit: max },
+                            f64::NEG_INFINITY,
+                            1.0,
+                            name,
+                        );
+                    }
+                }
+                Limit::Marker {
+                    marker,
+                    region,
+                    side,
+                } => {
+                    let name = &system.markers[marker].name;
+                    match (region, side) {
+                        (Region::Box { min, max }, Side::Inside) => {
+                            for axis in 0..3 {
+                                let name = format!(
+                                    "{} of marker {name} inside its box",
+                                    ["x", "y", "z"][axis]
+                                );
+                                add(
+                                    Quantity::MarkerPlace { marker, axis },
+                                    min[axis],
+                                    max[axis],
+                                    name,
+                                );
+                            }
+                        }
+                        (Region::Box { .. }, Side::Outside) => {
+                            let name = format!("marker {name} outside its box");
+                            add(
+                                Quantity::MarkerRegion { marker, region },
+                                OUTSIDE_BOX,
+                                f64::INFINITY,
+                                name,
+                            );
+                        }
+                        (Region::Sphere { .. }, Side::Inside) => {
+                            let name = format!("marker {name} inside its sphere");
+                            add(
+                                Quantity::MarkerRegion { marker, region },
+                                f64::NEG_INFINITY,
+                                1.0,
+                                name,
+                            );
+                        }
+                        (Region::Sphere { .. }, Side::Outside) => {
+                            let name = format!("marker {name} outside its sphere");
+                            add(
+                                Quantity::MarkerRegion { marker, region },
+                                1.0,
+                                f64::INFINITY,
+                                name,
+                            );
+                        }
+                    }
+                }
+            }
+        }
+        Self { list }
+    }
+
+    /// Adds an equality at the final instant.
+    pub fn add_goal(&mut self, quantity: Quantity, value: f64, name: String) {
+        self.list.push(Bounded {
+            quantity,
+            lower: value,
+            upper: value,
+            place: Place::Goal,
+            name,
+        });
+    }
+
+    /// What is measured, in order.
+    pub fn quantities(&self) -> Vec<Quantity> {
+        self.list.iter().map(|b| b.quantity).collect()
+    }
+}

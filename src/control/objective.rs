@@ -1,0 +1,136 @@
+//! The objective: a weighted sum of effort, rate and duration, polynomial in voltages and interval length.
+//!
+//! Voltages v in kV, interval length τ in s:
+//!
+//! ```text
+//! f = a τ Σ_k |v_k|² + b/τ Σ_{k=0..N} |v_k − v_{k−1}|² + c N τ,     v_{−1}, v_N: rest voltages of start and goal.
+//! ```
+
+use crate::control::problem::Objective;
+
+/// The objective with the voltages at rest before and after.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cost {
+    weights: Objective,
+    scalars: usize,
+    intervals: usize,
+    /// Rest voltages before the first and after the last interval in kV.
+    ends: [Option<Vec<f64>>; 2],
+}
+
+impl Cost {
+    /// An objective over `intervals` intervals; `ends` are the rest voltages in kV where they are known.
+    pub fn new(
+        weights: Objective,
+        scalars: usize,
+        intervals: usize,
+        ends: [Option<Vec<f64>>; 2],
+    ) -> Self {
+        Self {
+            weights,
+            scalars,
+            intervals,
+            ends,
+        }
+    }
+
+    /// Whether neighbouring intervals couple.
+    pub fn couples_intervals(&self) -> bool {
+        self.weights.rate != 0.0 && self.intervals > 1
+    }
+
+    /// Voltage s of interval k, where k = 0 is the rest before the first.
+    fn jump(&self, v: &[f64], k: usize, s: usize) -> Option<f64> {
+        let at = |k: usize| v[k * self.scalars + s];
+        let before = if k == 0 {
+            self.ends[0].as_ref().map(|e| e[s])
+        } else {
+            Some(at(k - 1))
+        };
+        let after = if k == self.intervals {
+            self.ends[1].as_ref().map(|e| e[s])
+        } else {
+            Some(at(k))
+        };
+        Some(after? - before?)
+    }
+
+    fn squares(&self, v: &[f64]) -> (f64, f64) {
+        let effort = v.iter().map(|x| x * x).sum();
+        let jumps = (0..=self.intervals).flat_map(|k| (0..self.scalars).map(move |s| (k, s)));
+        let rate = jumps
+            .filter_map(|(k, s)| self.jump(v, k, s))
+            .map(|j| j * j)
+            .sum();
+        (effort, rate)
+    }
+
+    /// f at voltages v (kV, interval by interval) and interval length τ (s).
+    pub fn value(&self, v: &[f64], tau: f64) -> f64 {
+        let (effort, rate) = self.squares(v);
+        let w = &self.weights;
+        let mut sum = w.effort * tau * effort + w.duration * self.intervals as f64 * tau;
+        if w.rate != 0.0 {
+            sum += w.rate * rate / tau;
+        }
+        sum
+    }
+
+    /// ∂f/∂v into `out`; returns ∂f/∂τ.
+    pub fn gradient(&self, v: &[f64], tau: f64, out: &mut [f64]) -> f64 {
+        let w = &self.weights;
+        for (g, x) in out.iter_mut().zip(v) {
+            *g = 2.0 * w.effort * tau * x;
+        }
+        if w.rate != 0.0 {
+            for k in 0..=self.intervals {
+                for s in 0..self.scalars {
+                    let Some(jump) = self.jump(v, k, s) else {
+                        continue;
+                    };
+                    let slope = 2.0 * w.rate / tau * jump;
+                    if k > 0 {
+                        out[(k - 1) * self.scalars + s] -= slope;
+                    }
+                    if k < self.intervals {
+                        out[k * self.scalars + s] += slope;
+                    }
+                }
+            }
+        }
+        let (effort, rate) = self.squares(v);
+        w.effort * effort - w.rate * rate / (tau * tau) + w.duration * self.intervals as f64
+    }
+
+    /// ∂²f/∂v² of one voltage of interval k with itself.
+    pub fn curvature(&self, k: usize, tau: f64) -> f64 {
+        let before = k > 0 || self.ends[0].is_some();
+        let after = k + 1 < self.intervals || self.ends[1].is_some();
+        let jumps = f64::from(u8::from(before) + u8::from(after));
+        2.0 * self.weights.effort * tau + 2.0 * self.weights.rate / tau * jumps
+    }
+
+    /// ∂²f of one voltage with the same voltage of the interval before.
+    pub fn coupling(&self, tau: f64) -> f64 {
+        -2.0 * self.weights.rate / tau
+    }
+
+    /// ∂²f/∂v∂τ into `out`; returns ∂²f/∂τ².
+    pub fn horizon(&self, v: &[f64], tau: f64, out: &mut [f64]) -> f64 {
+        let w = &self.weights;
+        let only_rate = Self {
+            weights: Objective {
+                effort: 0.0,
+                rate: w.rate,
+                duration: 0.0,
+            },
+            ..self.clone()
+        };
+        only_rate.gradient(v, tau, out);
+        for (g, x) in out.iter_mut().zip(v) {
+            *g = 2.0 * w.effort * x - *g / tau;
+        }
+        let (_, rate) = self.squares(v);
+        2.0 * w.rate * rate / (tau * tau * tau)
+    }
+}

@@ -1,0 +1,41 @@
+//! What is kept of a solution: enough to start any later run exactly.
+
+use crate::kinematics::Pose;
+use crate::model::Coordinates;
+
+/// A motion with voltages and, from an optimisation, costates. Times in ms, voltages in V.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solved {
+    /// Coordinates in which `z` and the costates are meant.
+    pub coordinates: Coordinates,
+    /// Instants.
+    pub times: Vec<f64>,
+    /// Joint coordinates by instant and joint.
+    pub joints: Vec<Vec<f64>>,
+    /// Poses by instant and body.
+    pub poses: Vec<Vec<Pose>>,
+    /// Coordinates and multipliers by instant.
+    pub z: Vec<Vec<f64>>,
+    /// Voltages by interval and muscle.
+    pub voltages: Vec<Vec<f64>>,
+    /// Multipliers of the optimisation.
+    pub costates: Option<Costates>,
+}
+
+/// Multipliers of an optimisation, unscaled, in the order of its rows and variables.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Costates {
+    /// Of the rows.
+    pub rows: Vec<f64>,
+    /// Of the lower bounds of the variables.
+    pub lower: Vec<f64>,
+    /// Of the upper bounds of the variables.
+    pub upper: Vec<f64>,
+}
+
+impl Solved {
+    /// Number of intervals.
+    pub fn intervals(&self) -> usize {
+        self.voltages.len()
+    }
+}
