@@ -1,0 +1,2 @@
+//! Motion of a system over time.
+pub mod trajectory;
