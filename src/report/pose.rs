@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 
 use crate::dynamics::trajectory::Trajectory;
-use crate::model::system::{Shape, System};
+use crate::model::system::{Attachment, Joint, System};
+use crate::report::axes::{Axis, Extent};
 use crate::report::body::{Tint, draw_back, draw_front, extent_points};
 use crate::report::canvas::{self, Align, Canvas, Place, Stroke};
 use crate::report::origin::Origin;
@@ -12,7 +13,7 @@ use crate::report::style::{self, Colour};
 use crate::report::view::View;
 
 /// Turn about y and elevation of the view in rad.
-const ANGLES: [f64; 2] = [0.5, 0.32];
+pub const ANGLES: [f64; 2] = [0.5, 0.32];
 /// Most width and height of the drawing in pt.
 const MOST: [f64; 2] = [400.0, 440.0];
 /// Margin around the drawing in pt.
@@ -177,7 +178,7 @@ impl Drawing<'_> {
     }
 
     fn joint_places(&self, k: usize) -> Vec<Vector3<f64>> {
-        let reference = |j: &crate::model::system::Joint| crate::model::system::Attachment {
+        let reference = |j: &Joint| Attachment {
             body: Some(j.child),
             at: j.at,
         };
@@ -348,7 +349,7 @@ fn colour_bar(canvas: &Canvas<'_>, [left, top]: Place, scale: f64) {
         [left, at(1.0)],
     ];
     canvas.outline(&frame, Stroke::solid(style::INK, 0.6));
-    let axis = crate::report::axes::Axis::linear("", crate::report::axes::Extent::Tight);
+    let axis = Axis::linear("", Extent::Tight);
     for (value, label) in axis.ticks([0.0, scale / 1e3], 5.0).major {
         let y = at(value * 1e3 / scale);
         canvas.line(
