@@ -103,7 +103,7 @@ impl Stage<'_> {
             let kilovolts = voltages.map_or(0.0, |v| v[i].abs() / 1e3);
             intensity.resize(mesh.vertices.len(), (kilovolts * 1e4).round() / 1e4);
         }
-        let stops = (0..=10).map(|i| f64::from(i) / 10.0);
+        let stops = (0..=8).map(|i| f64::from(i) / 8.0);
         let colours = stops.map(|s| ColorScaleElement(s, style::voltage(s).hex()));
         surface(&mesh)
             .name("muscles")

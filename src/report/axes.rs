@@ -16,7 +16,7 @@ pub enum Extent {
     Tight,
     /// A little further on both sides.
     Padded,
-    /// From zero to a little beyond the largest, for what is never negative.
+    /// From a little below zero to a little beyond the largest, for what is never negative.
     FromZero,
 }
 
@@ -76,7 +76,10 @@ impl Axis {
         let pad = 0.05 * (high - low).max(least);
         match self.extent {
             Extent::Tight if high > low => [low, high],
-            Extent::FromZero if low >= 0.0 => [0.0, if high > 0.0 { 1.06 * high } else { 1.0 }],
+            Extent::FromZero if low >= 0.0 => {
+                let high = if high > 0.0 { high } else { 1.0 };
+                [-0.03 * high, 1.06 * high]
+            }
             _ => [low - pad, high + pad],
         }
     }

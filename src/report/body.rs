@@ -53,7 +53,7 @@ pub fn extent_points(shape: &Shape, pose: &Pose) -> Vec<Vector3<f64>> {
 /// The far wall and the edges behind.
 pub fn draw_back(canvas: &Canvas<'_>, view: &View, shape: &Shape, pose: &Pose, tint: Tint) {
     let outline = outline(view, shape, pose);
-    canvas.fill(&outline, tint.colour().mix(style::PAPER, 0.55), 0.55);
+    canvas.fill(&outline, tint.colour().mix(style::PAPER, 0.45), 0.6);
     let faint = Stroke::solid(tint.edge(), 0.5).faint(0.45);
     match *shape {
         Shape::Cylinder { length, radius } => {
@@ -76,16 +76,16 @@ pub fn draw_back(canvas: &Canvas<'_>, view: &View, shape: &Shape, pose: &Pose, t
 pub fn draw_front(canvas: &Canvas<'_>, view: &View, shape: &Shape, pose: &Pose, tint: Tint) {
     let outline = outline(view, shape, pose);
     let edge = Stroke::solid(tint.edge(), 0.8);
-    canvas.fill(&outline, tint.colour(), 0.22);
+    canvas.fill(&outline, tint.colour(), 0.13);
     match *shape {
         Shape::Cylinder { length, radius } => {
             for band in bands(view, pose, length, radius) {
-                canvas.fill(&view.places(&band), style::PAPER, 0.045);
+                canvas.fill(&view.places(&band), style::PAPER, 0.022);
             }
             let d3 = pose.directors.column(2).into_owned();
             let facing = usize::from(d3.dot(&view.toward) > 0.0);
             let cap = view.places(&ends(pose, length, radius)[facing]);
-            canvas.fill(&cap, style::PAPER, 0.28);
+            canvas.fill(&cap, style::PAPER, 0.22);
             canvas.outline(&cap, Stroke::solid(tint.edge(), 0.7));
         }
         Shape::Box { size } => {

@@ -40,19 +40,18 @@ const HUES: [Colour; 6] = [
     Colour(0x56, 0xb4, 0xe9),
 ];
 
-/// Stops of the map `plasma` of matplotlib, perceptually uniform, at equal distances.
-const PLASMA: [Colour; 11] = [
-    Colour(0x0d, 0x08, 0x87),
-    Colour(0x41, 0x04, 0x9d),
-    Colour(0x6a, 0x00, 0xa8),
-    Colour(0x8f, 0x0d, 0xa4),
-    Colour(0xb1, 0x2a, 0x90),
-    Colour(0xcc, 0x47, 0x78),
-    Colour(0xe1, 0x64, 0x62),
-    Colour(0xf2, 0x84, 0x4b),
-    Colour(0xfc, 0xa6, 0x36),
-    Colour(0xfc, 0xce, 0x25),
-    Colour(0xf0, 0xf9, 0x21),
+/// Stops of the map `magma` of matplotlib, perceptually uniform, at equal distances: from its light end,
+/// for a muscle at rest, to the last one that is still a colour.
+const MAGMA: [Colour; 9] = [
+    Colour(0xfc, 0xfd, 0xbf),
+    Colour(0xfe, 0xcf, 0x92),
+    Colour(0xfe, 0x9f, 0x6d),
+    Colour(0xf7, 0x70, 0x5c),
+    Colour(0xde, 0x49, 0x68),
+    Colour(0xb7, 0x37, 0x79),
+    Colour(0x8c, 0x29, 0x81),
+    Colour(0x64, 0x1a, 0x80),
+    Colour(0x3b, 0x0f, 0x70),
 ];
 
 impl Colour {
@@ -105,9 +104,9 @@ pub fn muscle(i: usize) -> (Colour, Dash) {
 
 /// Colour of a voltage as a fraction of the full scale; clamped to [0, 1].
 pub fn voltage(fraction: f64) -> Colour {
-    let place = fraction.clamp(0.0, 1.0) * (PLASMA.len() - 1) as f64;
-    let below = (place as usize).min(PLASMA.len() - 2);
-    PLASMA[below].mix(PLASMA[below + 1], place - below as f64)
+    let place = fraction.clamp(0.0, 1.0) * (MAGMA.len() - 1) as f64;
+    let below = (place as usize).min(MAGMA.len() - 2);
+    MAGMA[below].mix(MAGMA[below + 1], place - below as f64)
 }
 
 /// Full scale of a voltage colour bar in V: the next round number above the highest voltage.

@@ -10,7 +10,7 @@ use proboscis::model::system::{
 const LENGTH: f64 = 50.0;
 
 /// A trunk of `count` segments along y, joint axes alternating z, x.
-pub fn system(count: usize) -> System {
+pub(crate) fn system(count: usize) -> System {
     let upright = Matrix3::from_columns(&[Vector3::z(), Vector3::x(), Vector3::y()]);
     let below = |i: usize| i.checked_sub(1);
     let material = Material {
@@ -92,7 +92,7 @@ fn axis(joint: usize) -> Vector3<f64> {
 }
 
 /// Forward kinematics of joint angles in rad at instants in ms, with voltages in V.
-pub fn trajectory(
+pub(crate) fn trajectory(
     system: &System,
     times: Vec<f64>,
     joints: Vec<Vec<f64>>,
@@ -123,7 +123,7 @@ pub fn trajectory(
 }
 
 /// A damped swing over `intervals` of 15 ms towards a bend, each joint at its own pace.
-pub fn swing(system: &System, intervals: usize) -> Trajectory {
+pub(crate) fn swing(system: &System, intervals: usize) -> Trajectory {
     let count = system.joints.len();
     let times: Vec<_> = (0..=intervals).map(|k| 15.0 * k as f64).collect();
     let angle = |t: f64, i: usize| {
