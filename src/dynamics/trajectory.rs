@@ -16,7 +16,7 @@ pub struct Pose {
 /// What changes over time: N + 1 instants and the N intervals between them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trajectory {
-    /// Instants in ms, N + 1 of them.
+    /// Instants in ms, N + 1 of them; at least one.
     pub times: Vec<f64>,
     /// Joint coordinates in rad or mm, per instant; named by [`Trajectory::coordinates`].
     pub joints: Vec<Vec<f64>>,

@@ -22,8 +22,8 @@ use crate::report::{Run, style, tip_path};
 /// Most frames of the animation; a longer motion is shown at evenly spread instants.
 const FRAMES: usize = 80;
 /// Shortest and longest time in ms that a frame stays.
-const PACE: [f64; 2] = [20.0, 120.0];
-/// The least a page needs to know of a built-in control.
+const PACE: [f64; 2] = [40.0, 120.0];
+/// Why building a button or a step of the slider cannot fail.
 const COMPLETE: &str = "an animation step needs no more than its frame";
 
 /// The figure: a trace of bodies, one of muscles, one of joints, then the marker paths.
@@ -103,7 +103,7 @@ impl Stage<'_> {
             let kilovolts = voltages.map_or(0.0, |v| v[i].abs() / 1e3);
             intensity.resize(mesh.vertices.len(), (kilovolts * 1e4).round() / 1e4);
         }
-        let stops = (0..=8).map(|i| f64::from(i) / 8.0);
+        let stops = (0..=6).map(|i| f64::from(i) / 6.0);
         let colours = stops.map(|s| ColorScaleElement(s, style::voltage(s).hex()));
         surface(&mesh)
             .name("muscles")

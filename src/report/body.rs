@@ -53,7 +53,7 @@ pub fn extent_points(shape: &Shape, pose: &Pose) -> Vec<Vector3<f64>> {
 /// The far wall and the edges behind.
 pub fn draw_back(canvas: &Canvas<'_>, view: &View, shape: &Shape, pose: &Pose, tint: Tint) {
     let outline = outline(view, shape, pose);
-    canvas.fill(&outline, tint.colour().mix(style::PAPER, 0.45), 0.6);
+    canvas.fill(&outline, tint.colour().mix(style::PAPER, 0.45), 0.72);
     let faint = Stroke::solid(tint.edge(), 0.5).faint(0.45);
     match *shape {
         Shape::Cylinder { length, radius } => {
@@ -76,7 +76,7 @@ pub fn draw_back(canvas: &Canvas<'_>, view: &View, shape: &Shape, pose: &Pose, t
 pub fn draw_front(canvas: &Canvas<'_>, view: &View, shape: &Shape, pose: &Pose, tint: Tint) {
     let outline = outline(view, shape, pose);
     let edge = Stroke::solid(tint.edge(), 0.8);
-    canvas.fill(&outline, tint.colour(), 0.13);
+    canvas.fill(&outline, tint.colour(), 0.08);
     match *shape {
         Shape::Cylinder { length, radius } => {
             for band in bands(view, pose, length, radius) {

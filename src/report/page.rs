@@ -1,7 +1,5 @@
 //! `report.html`: one page that needs nothing else, with the motion in space to turn and to play.
 
-use std::fmt::Write;
-
 use plotly::color::Rgb;
 use plotly::common::{DashType, Line, LineShape, Mode};
 use plotly::layout::{Axis, HoverMode, Legend, Margin};
@@ -46,7 +44,10 @@ pub fn html(run: &Run<'_>) -> String {
     for (heading, id, label, series) in &figures {
         body.push_str(&section(heading, id, 420, &over_time(label, series)));
     }
-    let _ = write!(body, "<footer>{}</footer>\n", escape(&run.origin.line()));
+    body.push_str(&format!(
+        "<footer>{}</footer>\n",
+        escape(&run.origin.line())
+    ));
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\

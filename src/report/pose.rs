@@ -161,7 +161,7 @@ impl Drawing<'_> {
             if normal.dot(&view.toward) <= 0.0 {
                 continue;
             }
-            let shade = 0.45 * (1.0 - normal.dot(&light).max(0.0));
+            let shade = 0.34 * (1.0 - normal.dot(&light).max(0.0));
             let places = view.places(&face.corners);
             canvas.fill(&places, colour.mix(style::INK, shade), 1.0);
             let is_side = normal.dot(&prism.halves[2]).abs() < 0.5 * prism.halves[2].norm();

@@ -41,8 +41,8 @@ const HUES: [Colour; 6] = [
 ];
 
 /// Stops of the map `magma` of matplotlib, perceptually uniform, at equal distances: from its light end,
-/// for a muscle at rest, to the last one that is still a colour.
-const MAGMA: [Colour; 9] = [
+/// for a muscle at rest, to where it would turn dark.
+const MAGMA: [Colour; 7] = [
     Colour(0xfc, 0xfd, 0xbf),
     Colour(0xfe, 0xcf, 0x92),
     Colour(0xfe, 0x9f, 0x6d),
@@ -50,8 +50,6 @@ const MAGMA: [Colour; 9] = [
     Colour(0xde, 0x49, 0x68),
     Colour(0xb7, 0x37, 0x79),
     Colour(0x8c, 0x29, 0x81),
-    Colour(0x64, 0x1a, 0x80),
-    Colour(0x3b, 0x0f, 0x70),
 ];
 
 impl Colour {
@@ -94,7 +92,7 @@ pub fn hue(i: usize) -> Colour {
 /// Colour and dash of muscle `i`, counted from zero: the pair at a joint shares a hue;
 /// agonists (muscles 1, 3, …) are solid, antagonists (muscles 2, 4, …) dashed.
 pub fn muscle(i: usize) -> (Colour, Dash) {
-    let dash = if i % 2 == 0 {
+    let dash = if i.is_multiple_of(2) {
         Dash::Solid
     } else {
         Dash::Dashed
@@ -120,5 +118,6 @@ pub fn voltage_scale<'a>(voltages: impl IntoIterator<Item = &'a Vec<f64>>) -> f6
         return 1000.0;
     }
     let step = 10_f64.powf(highest.log10().floor()) / 2.0;
-    (highest / step - 1e-9).ceil() * step
+    // A bound that the solver relaxed a little does not open the next step.
+    (highest / step - 1e-4).ceil() * step
 }
