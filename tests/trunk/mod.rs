@@ -22,9 +22,9 @@ pub(crate) fn system(count: usize) -> System {
     };
     let muscle = |i: usize| {
         let joint = i / 2;
-        let side = if i % 2 == 0 { 15.0 } else { -15.0 };
+        let side = if i.is_multiple_of(2) { 15.0 } else { -15.0 };
         let arm = side
-            * if joint % 2 == 0 {
+            * if joint.is_multiple_of(2) {
                 Vector3::x()
             } else {
                 Vector3::z()
@@ -84,7 +84,7 @@ pub(crate) fn system(count: usize) -> System {
 }
 
 fn axis(joint: usize) -> Vector3<f64> {
-    if joint % 2 == 0 {
+    if joint.is_multiple_of(2) {
         Vector3::z()
     } else {
         Vector3::x()
