@@ -4,6 +4,7 @@ pub mod atomic;
 pub mod axes;
 pub mod body;
 pub mod canvas;
+pub mod colour_bar;
 pub mod joints;
 pub mod lines;
 pub mod origin;
