@@ -10,4 +10,6 @@ pub mod math;
 pub mod model;
 pub mod nlp;
 pub mod reduction;
+pub mod report;
+pub mod scene;
 pub mod sparse;

@@ -5,6 +5,7 @@ mod error;
 mod history;
 mod simulate;
 mod stepper;
+pub mod trajectory;
 
 pub use equilibrium::{Equilibrium, equilibrium};
 pub use error::{EquilibriumError, StepError};

@@ -1,0 +1,153 @@
+//! A rigid body drawn as glass: what lies behind, then what lies before its inside.
+
+use nalgebra::Vector3;
+
+use crate::dynamics::trajectory::Pose;
+use crate::model::system::Shape;
+use crate::report::canvas::{Canvas, Stroke};
+use crate::report::solids::{Prism, circle};
+use crate::report::style::{self, Colour};
+use crate::report::view::{View, hull};
+
+/// Which of the two states a drawing shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tint {
+    /// The initial configuration in light grey.
+    Ghost,
+    /// The deflected state in colour.
+    Coloured,
+}
+
+impl Tint {
+    fn colour(self) -> Colour {
+        match self {
+            Self::Ghost => style::GHOST,
+            Self::Coloured => style::BODY,
+        }
+    }
+
+    fn edge(self) -> Colour {
+        match self {
+            Self::Ghost => style::GHOST.mix(style::INK, 0.1),
+            Self::Coloured => style::BODY.mix(style::INK, 0.45),
+        }
+    }
+}
+
+/// Nested bands of light on a curved surface.
+const BANDS: usize = 9;
+
+/// Points in mm whose hull is the outline of a body.
+pub fn extent_points(shape: &Shape, pose: &Pose) -> Vec<Vector3<f64>> {
+    match *shape {
+        Shape::Cylinder { length, radius } => ends(pose, length, radius).concat(),
+        Shape::Box { size } => Prism::block(pose, size).corners().to_vec(),
+        Shape::Sphere { radius } => [Vector3::x(), Vector3::y(), Vector3::z()]
+            .iter()
+            .flat_map(|e| [pose.centre + e * radius, pose.centre - e * radius])
+            .collect(),
+        Shape::None => vec![],
+    }
+}
+
+/// The far wall and the edges behind.
+pub fn draw_back(canvas: &Canvas<'_>, view: &View, shape: &Shape, pose: &Pose, tint: Tint) {
+    let outline = outline(view, shape, pose);
+    canvas.fill(&outline, tint.colour().mix(style::PAPER, 0.45), 0.72);
+    let faint = Stroke::solid(tint.edge(), 0.5).faint(0.45);
+    match *shape {
+        Shape::Cylinder { length, radius } => {
+            for end in ends(pose, length, radius) {
+                canvas.outline(&view.places(&end), faint);
+            }
+        }
+        Shape::Box { size } => {
+            for face in Prism::block(pose, size).faces() {
+                if face.normal.dot(&view.toward) <= 0.0 {
+                    canvas.outline(&view.places(&face.corners), faint);
+                }
+            }
+        }
+        Shape::Sphere { .. } | Shape::None => {}
+    }
+}
+
+/// The near wall with its light, and the edges in front.
+pub fn draw_front(canvas: &Canvas<'_>, view: &View, shape: &Shape, pose: &Pose, tint: Tint) {
+    let outline = outline(view, shape, pose);
+    let edge = Stroke::solid(tint.edge(), 0.8);
+    canvas.fill(&outline, tint.colour(), 0.08);
+    match *shape {
+        Shape::Cylinder { length, radius } => {
+            for band in bands(view, pose, length, radius) {
+                canvas.fill(&view.places(&band), style::PAPER, 0.022);
+            }
+            let d3 = pose.directors.column(2).into_owned();
+            let facing = usize::from(d3.dot(&view.toward) > 0.0);
+            let cap = view.places(&ends(pose, length, radius)[facing]);
+            canvas.fill(&cap, style::PAPER, 0.22);
+            canvas.outline(&cap, Stroke::solid(tint.edge(), 0.7));
+        }
+        Shape::Box { size } => {
+            for face in Prism::block(pose, size).faces() {
+                let normal = face.normal.normalize();
+                if normal.dot(&view.toward) > 0.0 {
+                    let light = normal
+                        .dot(&(view.up - view.right * 0.5).normalize())
+                        .max(0.0);
+                    let places = view.places(&face.corners);
+                    canvas.fill(&places, style::PAPER, 0.3 * light);
+                    canvas.outline(&places, edge);
+                }
+            }
+        }
+        Shape::Sphere { radius } => {
+            for i in 0..BANDS {
+                let share = 0.9 * (1.0 - i as f64 / BANDS as f64);
+                let shift = (view.up - view.right) * (0.25 * radius * (1.0 - share));
+                let ring = circle(pose.centre + shift, view.right, view.up, share * radius);
+                canvas.fill(&view.places(&ring), style::PAPER, 0.05);
+            }
+        }
+        Shape::None => {}
+    }
+    canvas.outline(&outline, edge);
+}
+
+fn outline(view: &View, shape: &Shape, pose: &Pose) -> Vec<[f64; 2]> {
+    match *shape {
+        Shape::Sphere { radius } => view.places(&circle(pose.centre, view.right, view.up, radius)),
+        _ => hull(view.places(&extent_points(shape, pose))),
+    }
+}
+
+/// The two end circles of a cylinder, at −d₃ and +d₃.
+fn ends(pose: &Pose, length: f64, radius: f64) -> [Vec<Vector3<f64>>; 2] {
+    let [d1, d2, d3] = [0, 1, 2].map(|i| pose.directors.column(i).into_owned());
+    [-0.5, 0.5].map(|side| circle(pose.centre + d3 * (side * length), d1, d2, radius))
+}
+
+/// Bands of a cylinder's near wall, each within the one before, around where the light falls.
+fn bands(view: &View, pose: &Pose, length: f64, radius: f64) -> Vec<Vec<Vector3<f64>>> {
+    let d3 = pose.directors.column(2).into_owned();
+    let near = view.toward - d3 * d3.dot(&view.toward);
+    if near.norm() < 1e-6 {
+        return vec![];
+    }
+    let near = near.normalize();
+    let side = d3.cross(&near);
+    let left = -side.dot(&view.right).signum();
+    let surface = |angle: f64, end: f64| {
+        let (s, c) = angle.sin_cos();
+        pose.centre + d3 * (end * length / 2.0) + radius * (c * near + s * side)
+    };
+    (0..BANDS)
+        .map(|i| {
+            let half = 1.15 * (1.0 - i as f64 / BANDS as f64);
+            let arc = |j: usize| 0.35 * left + half * (j as f64 / 8.0 - 1.0);
+            let lower = (0..=16).map(|j| surface(arc(j), -1.0));
+            let upper = (0..=16).rev().map(|j| surface(arc(j), 1.0));
+            lower.chain(upper).collect()
+        })
+        .collect()
+}

@@ -1,0 +1,70 @@
+//! Joint coordinates and energies over time.
+
+use crate::dynamics::trajectory::{Observations, Trajectory};
+use crate::model::system::System;
+use crate::report::axes::{Axis, Extent};
+use crate::report::lines::{LinePlot, Series};
+use crate::report::origin::Origin;
+use crate::report::style;
+
+/// Joint coordinates as curves over time in s: angles in degrees, displacements in mm.
+pub fn curves(system: &System, trajectory: &Trajectory) -> Vec<Series> {
+    let coordinates = trajectory.coordinates(system).into_iter().enumerate();
+    coordinates
+        .map(|(i, coordinate)| {
+            let factor = if coordinate.unit == "rad" {
+                1_f64.to_degrees()
+            } else {
+                1.0
+            };
+            let instants = trajectory.times.iter().zip(&trajectory.joints);
+            let points = instants.map(|(t, u)| [t / 1e3, factor * u[i]]).collect();
+            Series::curve(coordinate.name, points, style::hue(i))
+        })
+        .collect()
+}
+
+/// Label of the vertical axis of [`curves`].
+pub fn label(system: &System, trajectory: &Trajectory) -> &'static str {
+    let coordinates = trajectory.coordinates(system);
+    let has = |unit| coordinates.iter().any(|c| c.unit == unit);
+    match (has("rad"), has("mm")) {
+        (_, false) => "joint angle [°]",
+        (false, true) => "joint displacement [mm]",
+        (true, true) => "joint coordinate [°, mm]",
+    }
+}
+
+/// `joint_angles.svg`: joint coordinates over time in s.
+pub fn svg(system: &System, trajectory: &Trajectory, origin: &Origin) -> String {
+    LinePlot::new(
+        Axis::linear("time [s]", Extent::Tight),
+        Axis::linear(label(system, trajectory), Extent::Padded),
+        curves(system, trajectory),
+    )
+    .svg(origin)
+}
+
+/// The observed columns whose name speaks of energy, over time in s; in N mm, which is mJ.
+pub fn energies(trajectory: &Trajectory, observations: &Observations) -> Vec<Series> {
+    let columns = observations.columns.iter();
+    columns
+        .filter(|column| column.name.contains("energy"))
+        .enumerate()
+        .map(|(i, column)| {
+            let instants = trajectory.times.iter().zip(&column.values);
+            let points = instants.map(|(t, e)| [t / 1e3, *e]).collect();
+            Series::curve(column.name.replace('_', " "), points, style::hue(i))
+        })
+        .collect()
+}
+
+/// `energy.svg`: the energies over time in s.
+pub fn energy_svg(energies: Vec<Series>, origin: &Origin) -> String {
+    LinePlot::new(
+        Axis::linear("time [s]", Extent::Tight),
+        Axis::linear("energy [mJ]", Extent::Padded),
+        energies,
+    )
+    .svg(origin)
+}

@@ -1,0 +1,320 @@
+//! Curves over a pair of axes: the plot that the other figures share.
+
+use crate::report::axes::{Axis, Scale};
+use crate::report::canvas::{self, Align, Canvas, Place, Stroke, text_width};
+use crate::report::origin::Origin;
+use crate::report::style::{self, Colour, Dash};
+
+/// A named curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Name in the legend; empty for none.
+    pub name: String,
+    /// Points (x, y) in the units of the axes; a point that is not finite interrupts the curve.
+    pub points: Vec<[f64; 2]>,
+    /// Colour of line and marks.
+    pub colour: Colour,
+    /// Whether and how the points are joined.
+    pub line: Option<Dash>,
+    /// Width of the line in pt.
+    pub width: f64,
+    /// Mark at each point.
+    pub mark: Mark,
+}
+
+/// Mark at a point of a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mark {
+    /// None.
+    None,
+    /// A ring.
+    Ring,
+    /// A disc.
+    Disc,
+}
+
+impl Series {
+    /// A solid curve without marks.
+    pub fn curve(name: impl Into<String>, points: Vec<[f64; 2]>, colour: Colour) -> Self {
+        Self {
+            name: name.into(),
+            points,
+            colour,
+            line: Some(Dash::Solid),
+            width: style::CURVE,
+            mark: Mark::None,
+        }
+    }
+
+    /// The same, dashed or solid.
+    pub fn dashed(self, dash: Dash) -> Self {
+        Self {
+            line: Some(dash),
+            ..self
+        }
+    }
+
+    /// The same with a mark at each point.
+    pub fn marked(self, mark: Mark) -> Self {
+        Self { mark, ..self }
+    }
+
+    /// Marks alone.
+    pub fn unjoined(self) -> Self {
+        Self { line: None, ..self }
+    }
+}
+
+/// Whether a unit is equally long on both axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Aspect {
+    /// The frame is filled.
+    Free,
+    /// One unit, one length: for places in a plane.
+    Equal,
+}
+
+/// Curves over a pair of axes, legend to the right.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinePlot {
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// The curves, later ones on top.
+    pub series: Vec<Series>,
+    /// Free or equal units.
+    pub aspect: Aspect,
+    /// Width and height of the frame in pt; with equal units the most they may be.
+    pub frame: [f64; 2],
+}
+
+/// Margins in pt around the frame: left, top, bottom.
+const MARGIN: [f64; 3] = [62.0, 14.0, 44.0];
+/// Height of a legend entry in pt.
+const ENTRY: f64 = 16.0;
+/// Length of a line sample in the legend in pt.
+const SAMPLE: f64 = 26.0;
+
+impl LinePlot {
+    /// A plot with free units and the usual frame.
+    pub fn new(x: Axis, y: Axis, series: Vec<Series>) -> Self {
+        Self {
+            x,
+            y,
+            series,
+            aspect: Aspect::Free,
+            frame: [400.0, 250.0],
+        }
+    }
+
+    /// The plot as an SVG document.
+    pub fn svg(&self, origin: &Origin) -> String {
+        let (frame, ranges) = self.layout();
+        let entries: Vec<_> = self.series.iter().filter(|s| !s.name.is_empty()).collect();
+        let rows = (((frame[1] + ENTRY / 2.0) / ENTRY) as usize).max(1);
+        let column = entries
+            .iter()
+            .map(|s| text_width(&s.name, style::TICK_SIZE))
+            .fold(0.0, f64::max)
+            + SAMPLE
+            + 22.0;
+        let columns = entries.len().div_ceil(rows) as f64;
+        let size = [
+            MARGIN[0] + frame[0] + 18.0 + columns * column,
+            MARGIN[1] + frame[1] + MARGIN[2],
+        ];
+        canvas::svg(size, origin, |canvas| {
+            let plot = Frame {
+                canvas,
+                corner: [MARGIN[0], MARGIN[1]],
+                size: frame,
+                ranges,
+            };
+            plot.axes(&self.x, &self.y);
+            for series in &self.series {
+                plot.series(series, &self.x, &self.y);
+            }
+            plot.border();
+            let left = MARGIN[0] + frame[0] + 18.0;
+            for (i, series) in entries.iter().enumerate() {
+                let place = [
+                    left + (i / rows) as f64 * column,
+                    MARGIN[1] + ENTRY * ((i % rows) as f64 + 0.5),
+                ];
+                legend_entry(canvas, place, series);
+            }
+        })
+    }
+
+    /// Size of the frame in pt and ranges of positions on both axes.
+    fn layout(&self) -> ([f64; 2], [[f64; 2]; 2]) {
+        let points = || self.series.iter().flat_map(|s| &s.points);
+        let ranges = [
+            self.x.range(points().map(|p| p[0])),
+            self.y.range(points().map(|p| p[1])),
+        ];
+        let [dx, dy] = ranges.map(|[low, high]| high - low);
+        let frame = match self.aspect {
+            Aspect::Free => self.frame,
+            Aspect::Equal => {
+                let scale = (self.frame[0] / dx).min(self.frame[1] / dy);
+                return equal_frame(ranges, scale);
+            }
+        };
+        (frame, ranges)
+    }
+}
+
+/// A frame whose units are equally long; a motion along a line still gets a strip of paper.
+fn equal_frame(ranges: [[f64; 2]; 2], scale: f64) -> ([f64; 2], [[f64; 2]; 2]) {
+    const LEAST: f64 = 120.0;
+    let lengths = ranges.map(|[low, high]| (scale * (high - low)).max(LEAST));
+    let widen = |axis: usize| {
+        let [low, high] = ranges[axis];
+        let (middle, half) = ((low + high) / 2.0, lengths[axis] / scale / 2.0);
+        [middle - half, middle + half]
+    };
+    (lengths, [widen(0), widen(1)])
+}
+
+/// The rectangle between the axes.
+struct Frame<'a, 'b> {
+    canvas: &'a Canvas<'b>,
+    corner: Place,
+    size: [f64; 2],
+    ranges: [[f64; 2]; 2],
+}
+
+impl Frame<'_, '_> {
+    fn horizontal(&self, position: f64) -> f64 {
+        let [low, high] = self.ranges[0];
+        self.corner[0] + self.size[0] * (position - low) / (high - low)
+    }
+
+    fn vertical(&self, position: f64) -> f64 {
+        let [low, high] = self.ranges[1];
+        self.corner[1] + self.size[1] * (high - position) / (high - low)
+    }
+
+    /// Grid, ticks and labels.
+    fn axes(&self, x: &Axis, y: &Axis) {
+        let [left, top] = self.corner;
+        let (right, bottom) = (left + self.size[0], top + self.size[1]);
+        let grid = Stroke::solid(style::GRID, 0.6);
+        let tick = Stroke::solid(style::INK, 0.8);
+        let canvas = self.canvas;
+
+        let ticks = x.ticks(self.ranges[0], (self.size[0] / 62.0).max(2.0));
+        for (position, label) in &ticks.major {
+            let at = self.horizontal(*position);
+            canvas.line(&[[at, top], [at, bottom]], grid);
+            canvas.line(&[[at, bottom], [at, bottom + 4.0]], tick);
+            let place = [at, bottom + 13.0];
+            canvas.text(place, label, style::TICK_SIZE, style::INK, Align::Centre);
+        }
+        for position in &ticks.minor {
+            let at = self.horizontal(*position);
+            canvas.line(&[[at, bottom], [at, bottom + 2.2]], tick);
+        }
+
+        let ticks = y.ticks(self.ranges[1], (self.size[1] / 42.0).max(2.0));
+        for (position, label) in &ticks.major {
+            let at = self.vertical(*position);
+            canvas.line(&[[left, at], [right, at]], grid);
+            canvas.line(&[[left - 4.0, at], [left, at]], tick);
+            let place = [left - 8.0, at];
+            canvas.text(place, label, style::TICK_SIZE, style::INK, Align::Right);
+        }
+        for position in &ticks.minor {
+            let at = self.vertical(*position);
+            canvas.line(&[[left - 2.2, at], [left, at]], tick);
+        }
+
+        let middle = [(left + right) / 2.0, bottom + 31.0];
+        canvas.text(
+            middle,
+            &x.label,
+            style::LABEL_SIZE,
+            style::INK,
+            Align::Centre,
+        );
+        let middle = [left - 46.0, (top + bottom) / 2.0];
+        canvas.text(
+            middle,
+            &y.label,
+            style::LABEL_SIZE,
+            style::INK,
+            Align::Upwards,
+        );
+        if y.scale == Scale::Linear && self.ranges[1][0] < 0.0 && self.ranges[1][1] > 0.0 {
+            let zero = self.vertical(0.0);
+            canvas.line(
+                &[[left, zero], [right, zero]],
+                Stroke::solid(style::MUTED, 0.6),
+            );
+        }
+    }
+
+    fn series(&self, series: &Series, x: &Axis, y: &Axis) {
+        let places: Vec<_> = series
+            .points
+            .iter()
+            .map(|p| {
+                [
+                    self.horizontal(x.position(p[0])),
+                    self.vertical(y.position(p[1])),
+                ]
+            })
+            .collect();
+        trace(self.canvas, &places, series);
+    }
+
+    fn border(&self) {
+        let [left, top] = self.corner;
+        let (right, bottom) = (left + self.size[0], top + self.size[1]);
+        let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
+        self.canvas
+            .outline(&corners, Stroke::solid(style::INK, 0.8));
+    }
+}
+
+/// Line and marks of a series along places on the sheet.
+fn trace(canvas: &Canvas<'_>, places: &[Place], series: &Series) {
+    if let Some(dash) = series.line {
+        let stroke = Stroke {
+            dash,
+            ..Stroke::solid(series.colour, series.width)
+        };
+        canvas.line(places, stroke);
+    }
+    let rim = Stroke::solid(series.colour, 1.4);
+    for place in places {
+        match series.mark {
+            Mark::None => {}
+            Mark::Ring => canvas.disc(*place, 3.4, style::PAPER, rim),
+            Mark::Disc => canvas.disc(*place, 3.0, series.colour, rim),
+        }
+    }
+}
+
+fn legend_entry(canvas: &Canvas<'_>, [left, at]: Place, series: &Series) {
+    let sample = Series {
+        mark: Mark::None,
+        ..series.clone()
+    };
+    trace(canvas, &[[left, at], [left + SAMPLE, at]], &sample);
+    let mark = Series {
+        line: None,
+        ..series.clone()
+    };
+    trace(canvas, &[[left + SAMPLE / 2.0, at]], &mark);
+    let place = [left + SAMPLE + 6.0, at];
+    canvas.text(
+        place,
+        &series.name,
+        style::TICK_SIZE,
+        style::INK,
+        Align::Left,
+    );
+}

@@ -1,0 +1,98 @@
+//! What a run leaves behind: tables, figures and a page.
+pub mod animation;
+pub mod atomic;
+pub mod axes;
+pub mod body;
+pub mod canvas;
+pub mod colour_bar;
+pub mod joints;
+pub mod lines;
+pub mod origin;
+pub mod page;
+pub mod pose;
+pub mod solids;
+pub mod style;
+pub mod table;
+pub mod tip_path;
+pub mod view;
+pub mod voltages;
+
+use std::path::{Path, PathBuf};
+
+use crate::dynamics::trajectory::{Observations, Trajectory};
+use crate::model::system::System;
+use crate::report::atomic::WriteError;
+use crate::report::origin::Origin;
+
+/// What there is to show of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Run<'a> {
+    /// The system that moved.
+    pub system: &'a System,
+    /// Its motion and voltages.
+    pub trajectory: &'a Trajectory,
+    /// Name of the motion in legends, such as `optimal voltages`.
+    pub name: &'a str,
+    /// What was observed at the instants, see [`Trajectory::observe`]; energies are columns whose name contains `energy`, in N mm.
+    pub observations: &'a Observations,
+    /// Another motion of the same system and its name, such as `constant voltages`.
+    pub comparison: Option<(&'a str, &'a Trajectory)>,
+    /// Where the results come from.
+    pub origin: &'a Origin,
+    /// Title of the page.
+    pub title: &'a str,
+    /// Rows of the page's table.
+    pub summary: &'a [(String, String)],
+}
+
+/// Writes tables, figures and page into a folder, which is made where it is missing; the files written, in order.
+///
+/// A figure of what does not exist (voltages of no muscles, energies that were not observed) is not written.
+pub fn write_run(folder: &Path, run: &Run<'_>) -> Result<Vec<PathBuf>, WriteError> {
+    let Run {
+        system,
+        trajectory,
+        observations,
+        origin,
+        ..
+    } = *run;
+    std::fs::create_dir_all(folder).map_err(|cause| WriteError {
+        path: folder.to_owned(),
+        cause,
+    })?;
+    let mut motions: Vec<_> = run.comparison.into_iter().collect();
+    motions.push((run.name, trajectory));
+    let energies = joints::energies(trajectory, observations);
+
+    let mut files = vec![
+        (
+            "trajectory.csv",
+            table::trajectory_csv(observations, origin),
+        ),
+        (
+            "controls.csv",
+            table::controls_csv(trajectory, system, origin),
+        ),
+        ("configuration.svg", pose::svg(system, trajectory, origin)),
+    ];
+    if !system.muscles.is_empty() {
+        files.push(("voltages.svg", voltages::svg(system, trajectory, origin)));
+    }
+    if !system.markers.is_empty() {
+        files.push(("tip_path.svg", tip_path::svg(system, &motions, origin)));
+    }
+    if !trajectory.coordinates(system).is_empty() {
+        files.push(("joint_angles.svg", joints::svg(system, trajectory, origin)));
+    }
+    if !energies.is_empty() {
+        files.push(("energy.svg", joints::energy_svg(energies, origin)));
+    }
+    files.push(("report.html", page::html(run)));
+
+    let written = files.into_iter().map(|(name, text)| {
+        let path = folder.join(name);
+        atomic::write(&path, text.as_bytes())?;
+        Ok(path)
+    });
+    written.collect()
+}

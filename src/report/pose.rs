@@ -1,0 +1,318 @@
+//! The system in space: initial configuration in light grey, last instant coloured by voltage.
+
+use nalgebra::Vector3;
+
+use crate::dynamics::trajectory::Trajectory;
+use crate::model::system::{Attachment, Joint, System};
+use crate::report::body::{Tint, draw_back, draw_front, extent_points};
+use crate::report::canvas::{self, Align, Canvas, Place, Stroke};
+use crate::report::colour_bar::colour_bar;
+use crate::report::origin::Origin;
+use crate::report::solids::{Prism, circle};
+use crate::report::style::{self, Colour};
+use crate::report::view::View;
+
+/// Turn about y and elevation of the view in rad.
+pub const ANGLES: [f64; 2] = [0.5, 0.32];
+/// Most width and height of the drawing in pt.
+const MOST: [f64; 2] = [400.0, 440.0];
+/// Margin around the drawing in pt.
+const MARGIN: f64 = 22.0;
+/// Width of the column with colour bar and names in pt.
+const SIDE: f64 = 112.0;
+/// Lines across a muscle that hint at its layers.
+const LAYERS: usize = 12;
+
+/// `configuration.svg`: first and last instant in axonometric view with y upwards, muscles coloured by
+/// the voltage of the last interval, and the path of each marker.
+pub fn svg(system: &System, trajectory: &Trajectory, origin: &Origin) -> String {
+    let last = trajectory.times.len().saturating_sub(1);
+    let view = View::axonometric(ANGLES[0], ANGLES[1]);
+    let ground = ground_plate(system);
+    let mut points: Vec<_> = ground.clone();
+    for k in [0, last] {
+        for (body, pose) in system.bodies.iter().zip(&trajectory.poses[k]) {
+            points.extend(extent_points(&body.shape, pose));
+        }
+        for i in 0..system.muscles.len() {
+            points.extend(Prism::muscle(system, trajectory, k, i).corners());
+        }
+    }
+    for marker in &system.markers {
+        points.extend((0..=last).map(|k| trajectory.point(k, &marker.point, system)));
+    }
+    let (view, [width, height]) = view.fitted(&points, [MARGIN, MARGIN], MOST);
+    let size = [
+        width.max(120.0) + 2.0 * MARGIN + SIDE,
+        height.max(230.0) + 2.0 * MARGIN,
+    ];
+    let scale = style::voltage_scale(&trajectory.voltages);
+    let drawing = Drawing {
+        system,
+        trajectory,
+        view,
+        scale,
+    };
+    canvas::svg(size, origin, |canvas| {
+        drawing.ground(canvas, &ground);
+        if last > 0 {
+            drawing.instant(canvas, 0, Tint::Ghost);
+        }
+        drawing.instant(canvas, last, Tint::Coloured);
+        drawing.paths(canvas);
+        let left = size[0] - SIDE + 14.0;
+        colour_bar(canvas, [left, MARGIN + 14.0], scale);
+        drawing.names(canvas, [left, MARGIN + 168.0], last);
+        drawing.triad(canvas, [left + 22.0, size[1] - MARGIN - 16.0]);
+    })
+}
+
+/// A disc in the ground below the points that are held by it, in mm; empty where nothing is.
+fn ground_plate(system: &System) -> Vec<Vector3<f64>> {
+    let muscles = system.muscles.iter().flat_map(|m| [m.from, m.to]);
+    let joints = system.joints.iter().filter(|j| j.parent.is_none());
+    let held: Vec<_> = muscles
+        .filter(|point| point.body.is_none())
+        .map(|point| point.at)
+        .chain(joints.map(|j| j.at))
+        .collect();
+    if held.is_empty() {
+        return vec![];
+    }
+    let centre = held.iter().sum::<Vector3<f64>>() / held.len() as f64;
+    let lowest = held.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+    let spread = held.iter().map(|p| (p - centre).xz().norm());
+    let radius = 1.6 * spread.fold(0.0, f64::max) + 8.0;
+    let middle = Vector3::new(centre.x, lowest, centre.z);
+    circle(middle, Vector3::x(), Vector3::z(), radius)
+}
+
+struct Drawing<'a> {
+    system: &'a System,
+    trajectory: &'a Trajectory,
+    view: View,
+    /// Full scale of the colours in V.
+    scale: f64,
+}
+
+impl Drawing<'_> {
+    fn ground(&self, canvas: &Canvas<'_>, plate: &[Vector3<f64>]) {
+        let places = self.view.places(plate);
+        let thickness = 4.0;
+        let lower: Vec<Place> = places.iter().map(|p| [p[0], p[1] + thickness]).collect();
+        canvas.fill(&lower, style::GHOST.mix(style::INK, 0.25), 1.0);
+        canvas.fill(&places, style::GRID, 1.0);
+        canvas.outline(&places, Stroke::solid(style::GHOST, 0.6));
+    }
+
+    /// Bodies as glass around muscles and joints, what is far first.
+    fn instant(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
+        let view = &self.view;
+        let poses = &self.trajectory.poses[k];
+        let mut bodies: Vec<_> = self.system.bodies.iter().zip(poses).collect();
+        bodies.sort_by(|(_, a), (_, b)| view.depth(&a.centre).total_cmp(&view.depth(&b.centre)));
+        for (body, pose) in &bodies {
+            draw_back(canvas, view, &body.shape, pose, tint);
+        }
+        let mut muscles: Vec<_> = (0..self.system.muscles.len())
+            .map(|i| (i, Prism::muscle(self.system, self.trajectory, k, i)))
+            .collect();
+        muscles.sort_by(|(_, a), (_, b)| view.depth(&a.centre).total_cmp(&view.depth(&b.centre)));
+        let axis_depth = |prism: &Prism| {
+            let near = self.joint_places(k).into_iter().min_by(|a, b| {
+                let distance = |p: &Vector3<f64>| (p - prism.centre).norm();
+                distance(a).total_cmp(&distance(b))
+            });
+            near.map_or(f64::NEG_INFINITY, |joint| view.depth(&joint))
+        };
+        let (behind, before): (Vec<_>, Vec<_>) = muscles
+            .into_iter()
+            .partition(|(_, prism)| view.depth(&prism.centre) < axis_depth(prism));
+        for (i, prism) in &behind {
+            self.muscle(canvas, prism, self.colour(k, *i, tint));
+        }
+        self.joints(canvas, k, tint);
+        for (i, prism) in &before {
+            self.muscle(canvas, prism, self.colour(k, *i, tint));
+        }
+        for (body, pose) in &bodies {
+            draw_front(canvas, view, &body.shape, pose, tint);
+        }
+    }
+
+    /// Colour of a muscle: its voltage in the interval that ends at instant `k`.
+    fn colour(&self, k: usize, muscle: usize, tint: Tint) -> Colour {
+        match tint {
+            Tint::Ghost => style::GRID,
+            Tint::Coloured => {
+                let voltages = self.trajectory.voltages.get(k.saturating_sub(1));
+                style::voltage(voltages.map_or(0.0, |v| v[muscle].abs() / self.scale))
+            }
+        }
+    }
+
+    /// The faces that look at the viewer, lit from the upper left, with lines that hint at the layers.
+    fn muscle(&self, canvas: &Canvas<'_>, prism: &Prism, colour: Colour) {
+        let view = &self.view;
+        let light = (view.toward + view.up * 0.9 - view.right * 0.7).normalize();
+        let edge = colour.mix(style::INK, 0.35);
+        for face in prism.faces() {
+            let normal = face.normal.normalize();
+            if normal.dot(&view.toward) <= 0.0 {
+                continue;
+            }
+            let shade = 0.34 * (1.0 - normal.dot(&light).max(0.0));
+            let places = view.places(&face.corners);
+            canvas.fill(&places, colour.mix(style::INK, shade), 1.0);
+            let is_side = normal.dot(&prism.halves[2]).abs() < 0.5 * prism.halves[2].norm();
+            if is_side {
+                for layer in 1..LAYERS {
+                    let height = 2.0 * layer as f64 / LAYERS as f64 - 1.0;
+                    let across = slice(&face.corners, &prism.halves[2], prism.centre, height);
+                    let line = Stroke::solid(edge, 0.35).faint(0.55);
+                    canvas.line(&view.places(&across), line);
+                }
+            }
+            canvas.outline(&places, Stroke::solid(edge, 0.5));
+        }
+    }
+
+    fn joint_places(&self, k: usize) -> Vec<Vector3<f64>> {
+        let reference = |j: &Joint| Attachment {
+            body: Some(j.child),
+            at: j.at,
+        };
+        let joints = self.system.joints.iter();
+        joints
+            .map(|j| self.trajectory.point(k, &reference(j), self.system))
+            .collect()
+    }
+
+    /// A line through the joints of each body, and a disc at each joint.
+    fn joints(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
+        let ink = match tint {
+            Tint::Ghost => style::GHOST,
+            Tint::Coloured => style::INK.mix(style::PAPER, 0.25),
+        };
+        let places = self.view.places(&self.joint_places(k));
+        for (joint, place) in self.system.joints.iter().zip(&places) {
+            let centre = self.trajectory.poses[k][joint.child].centre;
+            canvas.line(&[*place, self.view.place(&centre)], Stroke::solid(ink, 1.1));
+            if let Some(parent) = joint.parent {
+                let centre = self.trajectory.poses[k][parent].centre;
+                canvas.line(&[*place, self.view.place(&centre)], Stroke::solid(ink, 1.1));
+            }
+        }
+        for place in places {
+            canvas.disc(place, 2.6, style::PAPER, Stroke::solid(ink, 1.1));
+        }
+    }
+
+    fn paths(&self, canvas: &Canvas<'_>) {
+        for marker in &self.system.markers {
+            let path: Vec<_> = (0..self.trajectory.times.len())
+                .map(|k| self.trajectory.point(k, &marker.point, self.system))
+                .collect();
+            let places = self.view.places(&path);
+            canvas.line(&places, Stroke::solid(style::INK, 1.1));
+            if let [first, .., last] = places[..] {
+                let rim = Stroke::solid(style::INK, 1.1);
+                canvas.disc(first, 2.8, style::PAPER, rim);
+                canvas.disc(last, 2.4, style::INK, rim);
+            }
+        }
+    }
+
+    /// What the drawn things are.
+    fn names(&self, canvas: &Canvas<'_>, [left, top]: Place, last: usize) {
+        let time = |k: usize| {
+            let seconds = format!("{:.3}", self.trajectory.times[k] / 1e3);
+            format!("{} s", seconds.trim_end_matches('0').trim_end_matches('.'))
+        };
+        let swatch = |at: f64, colour: Colour| {
+            let corners = [[0.0, -4.0], [14.0, -4.0], [14.0, 4.0], [0.0, 4.0]];
+            let corners = corners.map(|c| [left + c[0], at + c[1]]);
+            canvas.fill(&corners, colour.mix(style::PAPER, 0.55), 1.0);
+            canvas.outline(&corners, Stroke::solid(colour, 0.8));
+        };
+        let mut rows = vec![];
+        if last > 0 {
+            rows.push((format!("at {}", time(0)), style::GHOST));
+        }
+        rows.push((format!("at {}", time(last)), style::BODY));
+        for (i, (name, colour)) in rows.iter().enumerate() {
+            let at = top + 16.0 * i as f64;
+            swatch(at, *colour);
+            canvas.text(
+                [left + 20.0, at],
+                name,
+                style::TICK_SIZE,
+                style::INK,
+                Align::Left,
+            );
+        }
+        for (i, marker) in self.system.markers.iter().enumerate().take(3) {
+            let at = top + 16.0 * (rows.len() + i) as f64;
+            canvas.line(
+                &[[left, at], [left + 14.0, at]],
+                Stroke::solid(style::INK, 1.1),
+            );
+            let name = format!("path of {}", marker.name);
+            canvas.text(
+                [left + 20.0, at],
+                &name,
+                style::TICK_SIZE,
+                style::INK,
+                Align::Left,
+            );
+        }
+    }
+
+    /// The axes of the ground frame, and a bar of a round length.
+    fn triad(&self, canvas: &Canvas<'_>, at: Place) {
+        let unit = View {
+            scale: 24.0,
+            origin: at,
+            ..self.view
+        };
+        for (name, axis) in [
+            ("x", Vector3::x()),
+            ("y", Vector3::y()),
+            ("z", Vector3::z()),
+        ] {
+            canvas.line(&[at, unit.place(&axis)], Stroke::solid(style::MUTED, 1.0));
+            let place = unit.place(&(axis * 1.4));
+            canvas.text(place, name, style::TICK_SIZE, style::INK, Align::Centre);
+        }
+        let rough = 60.0 / self.view.scale;
+        let power = 10_f64.powf(rough.log10().floor());
+        let round = [5.0, 2.0, 1.0].into_iter().find(|m| m * power <= rough);
+        let length = round.unwrap_or(1.0) * power;
+        let (left, top) = (at[0] - 22.0, at[1] - 64.0);
+        let right = left + length * self.view.scale;
+        canvas.line(&[[left, top], [right, top]], Stroke::solid(style::INK, 1.6));
+        let label = format!("{length} mm");
+        canvas.text(
+            [left, top - 10.0],
+            &label,
+            style::TICK_SIZE,
+            style::INK,
+            Align::Left,
+        );
+    }
+}
+
+/// The line across a side face at `height` from −1 to 1 along the length of its prism.
+fn slice(
+    corners: &[Vector3<f64>; 4],
+    half: &Vector3<f64>,
+    centre: Vector3<f64>,
+    height: f64,
+) -> Vec<Vector3<f64>> {
+    let at = |p: &Vector3<f64>| (p - centre).dot(half) / half.norm_squared();
+    let edges = (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
+    edges
+        .filter(|(a, b)| (at(a) - height) * (at(b) - height) < 0.0)
+        .map(|(a, b)| a + (b - a) * ((height - at(&a)) / (at(&b) - at(&a))))
+        .collect()
+}

@@ -1,0 +1,92 @@
+//! Tables: observations and voltages as CSV, and aligned text.
+
+use std::fmt::Write;
+
+use crate::dynamics::trajectory::{Observations, Trajectory};
+use crate::model::system::System;
+use crate::report::origin::Origin;
+
+/// `trajectory.csv`: one row per instant, headers `name [unit]`; each number reads back identical.
+pub fn trajectory_csv(observations: &Observations, origin: &Origin) -> String {
+    let columns = &observations.columns;
+    let header = columns.iter().map(|c| match c.unit {
+        "" => c.name.clone(),
+        unit => format!("{} [{unit}]", c.name),
+    });
+    let rows = columns.iter().map(|c| c.values.len()).max().unwrap_or(0);
+    csv(
+        origin,
+        header,
+        (0..rows).map(|k| {
+            columns
+                .iter()
+                .map(move |c| c.values.get(k).copied().unwrap_or(f64::NAN))
+        }),
+    )
+}
+
+/// `controls.csv`: one row per interval with its start and end in ms and the voltage of each muscle in V.
+pub fn controls_csv(trajectory: &Trajectory, system: &System, origin: &Origin) -> String {
+    let header = ["start [ms]".to_owned(), "end [ms]".to_owned()]
+        .into_iter()
+        .chain(system.muscles.iter().map(|m| format!("{} [V]", m.name)));
+    let ends = trajectory.times.windows(2);
+    csv(
+        origin,
+        header,
+        ends.zip(&trajectory.voltages)
+            .map(|(ends, voltages)| ends.iter().chain(voltages).copied()),
+    )
+}
+
+/// Rows of cells as text in columns: the first to the left, the others to the right.
+pub fn aligned(rows: &[Vec<String>]) -> String {
+    let width = |column: usize| {
+        let cells = rows.iter().filter_map(|row| row.get(column));
+        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let widths: Vec<_> = (0..columns).map(width).collect();
+    let mut text = String::new();
+    for row in rows {
+        let mut line = String::new();
+        for (column, (cell, &width)) in row.iter().zip(&widths).enumerate() {
+            match column {
+                0 => write!(line, "{cell:<width$}"),
+                _ => write!(line, "  {cell:>width$}"),
+            }
+            .expect("writing to a string does not fail");
+        }
+        text.push_str(line.trim_end());
+        text.push('\n');
+    }
+    text
+}
+
+fn csv<R>(
+    origin: &Origin,
+    header: impl Iterator<Item = String>,
+    rows: impl Iterator<Item = R>,
+) -> String
+where
+    R: Iterator<Item = f64>,
+{
+    let header: Vec<_> = header.map(|name| quoted(&name)).collect();
+    let mut text = format!("# {}\n{}\n", origin.line(), header.join(","));
+    for row in rows {
+        // The shortest decimal that reads back as the same number.
+        let cells: Vec<_> = row.map(|value| format!("{value:?}")).collect();
+        text.push_str(&cells.join(","));
+        text.push('\n');
+    }
+    text
+}
+
+/// A cell of RFC 4180: quoted where a comma, a quote or a line break asks for it.
+fn quoted(cell: &str) -> String {
+    if cell.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.to_owned()
+    }
+}

@@ -1,0 +1,91 @@
+//! Paths of the markers in the plane in which they move most.
+
+use nalgebra::Vector3;
+
+use crate::dynamics::trajectory::Trajectory;
+use crate::model::system::{Marker, System};
+use crate::report::axes::{Axis, Extent};
+use crate::report::lines::{Aspect, LinePlot, Mark, Series};
+use crate::report::origin::Origin;
+use crate::report::style;
+
+/// Places in mm of a marker at all instants.
+pub fn path(system: &System, trajectory: &Trajectory, marker: &Marker) -> Vec<Vector3<f64>> {
+    (0..trajectory.times.len())
+        .map(|k| trajectory.point(k, &marker.point, system))
+        .collect()
+}
+
+/// The two axes of largest extent, horizontal first: y is never horizontal, and x goes before z.
+fn plane<'a>(points: impl Iterator<Item = &'a Vector3<f64>>) -> [usize; 2] {
+    let (mut low, mut high) = (
+        Vector3::repeat(f64::INFINITY),
+        Vector3::repeat(f64::NEG_INFINITY),
+    );
+    for point in points.filter(|p| p.iter().all(|x| x.is_finite())) {
+        (low, high) = (low.inf(point), high.sup(point));
+    }
+    let extent = high - low;
+    // Among equals the plane x–z is preferred, then x–y.
+    let smallest = [1, 2, 0]
+        .into_iter()
+        .min_by(|&a, &b| extent[a].total_cmp(&extent[b]));
+    match smallest {
+        Some(0) => [2, 1],
+        Some(2) => [0, 1],
+        _ => [0, 2],
+    }
+}
+
+/// `tip_path.svg`: the motion of each marker under each named trajectory, with its start and end.
+///
+/// The last trajectory is the one that matters: drawn strong and on top of the others.
+pub fn svg(system: &System, trajectories: &[(&str, &Trajectory)], origin: &Origin) -> String {
+    let paths: Vec<_> = trajectories
+        .iter()
+        .map(|(name, trajectory)| {
+            let markers = system.markers.iter();
+            let paths: Vec<_> = markers.map(|m| path(system, trajectory, m)).collect();
+            (name, paths)
+        })
+        .collect();
+    let [horizontal, vertical] = plane(paths.iter().flat_map(|(_, paths)| paths.iter().flatten()));
+    let flat = |p: &Vector3<f64>| [p[horizontal], p[vertical]];
+    let mut series = Vec::new();
+    let (mut starts, mut ends) = (Vec::new(), Vec::new());
+    for (i, (name, paths)) in paths.iter().enumerate() {
+        let is_main = i + 1 == trajectories.len();
+        for (j, (path, marker)) in paths.iter().zip(&system.markers).enumerate() {
+            let name = match system.markers.len() {
+                1 => (*name).to_string(),
+                _ => format!("{}, {name}", marker.name),
+            };
+            let colour = match (is_main, j) {
+                (true, _) => style::hue(j),
+                (false, 0) => style::MUTED,
+                (false, _) => style::hue(j).mix(style::PAPER, 0.5),
+            };
+            let mut curve = Series::curve(name, path.iter().map(flat).collect(), colour);
+            curve.width = if is_main { 2.0 } else { 1.0 };
+            series.push(curve);
+            if is_main {
+                starts.extend(path.first().map(flat));
+                ends.extend(path.last().map(flat));
+            }
+        }
+    }
+    for (name, points, mark) in [("start", starts, Mark::Ring), ("end", ends, Mark::Disc)] {
+        series.push(
+            Series::curve(name, points, style::INK)
+                .marked(mark)
+                .unjoined(),
+        );
+    }
+    let axis = |i: usize| Axis::linear(format!("{} [mm]", ["x", "y", "z"][i]), Extent::Padded);
+    let plot = LinePlot {
+        aspect: Aspect::Equal,
+        frame: [400.0, 300.0],
+        ..LinePlot::new(axis(horizontal), axis(vertical), series)
+    };
+    plot.svg(origin)
+}

@@ -1,0 +1,113 @@
+//! Orthographic view of the ground frame with the y axis upwards, and outlines in it.
+
+use nalgebra::Vector3;
+
+use crate::report::canvas::Place;
+
+/// An orthographic view; lengths in mm become lengths on the sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Unit vector to the right of the sheet.
+    pub right: Vector3<f64>,
+    /// Unit vector upwards on the sheet.
+    pub up: Vector3<f64>,
+    /// Unit vector towards the viewer.
+    pub toward: Vector3<f64>,
+    /// Points per mm.
+    pub scale: f64,
+    /// Place of the origin on the sheet in pt.
+    pub origin: Place,
+}
+
+impl View {
+    /// View with x to the right and z towards the viewer, turned by `azimuth` about y, raised by `elevation`; in rad.
+    pub fn axonometric(azimuth: f64, elevation: f64) -> Self {
+        let (sa, ca) = azimuth.sin_cos();
+        let (se, ce) = elevation.sin_cos();
+        let right = Vector3::new(ca, 0.0, -sa);
+        let toward = Vector3::new(sa * ce, se, ca * ce);
+        Self {
+            right,
+            up: toward.cross(&right),
+            toward,
+            scale: 1.0,
+            origin: [0.0, 0.0],
+        }
+    }
+
+    /// Place of a point on the sheet in pt.
+    pub fn place(&self, point: &Vector3<f64>) -> Place {
+        [
+            self.origin[0] + self.scale * self.right.dot(point),
+            self.origin[1] - self.scale * self.up.dot(point),
+        ]
+    }
+
+    /// Places of many points.
+    pub fn places<'a>(&self, points: impl IntoIterator<Item = &'a Vector3<f64>>) -> Vec<Place> {
+        points.into_iter().map(|p| self.place(p)).collect()
+    }
+
+    /// Distance towards the viewer in mm; what is larger hides what is smaller.
+    pub fn depth(&self, point: &Vector3<f64>) -> f64 {
+        self.toward.dot(point)
+    }
+
+    /// The same view, scaled and shifted so that the points fill a rectangle of at most `size` from `corner`;
+    /// also the size they take.
+    pub fn fitted(
+        self,
+        points: &[Vector3<f64>],
+        corner: Place,
+        size: [f64; 2],
+    ) -> (Self, [f64; 2]) {
+        let unit = Self {
+            scale: 1.0,
+            origin: [0.0, 0.0],
+            ..self
+        };
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for place in unit.places(points) {
+            for i in 0..2 {
+                low[i] = low[i].min(place[i]);
+                high[i] = high[i].max(place[i]);
+            }
+        }
+        if low.iter().chain(&high).any(|x| !x.is_finite()) {
+            return (unit, size);
+        }
+        let extent = [0, 1].map(|i| (high[i] - low[i]).max(1.0));
+        let scale = (size[0] / extent[0]).min(size[1] / extent[1]);
+        let fitted = Self {
+            scale,
+            origin: [0, 1].map(|i| corner[i] - scale * low[i]),
+            ..self
+        };
+        (fitted, extent.map(|e| scale * e))
+    }
+}
+
+/// Convex hull of places, by Andrew's monotone chain.
+pub fn hull(mut places: Vec<Place>) -> Vec<Place> {
+    places.retain(|p| p.iter().all(|x| x.is_finite()));
+    places.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    let turn = |o: Place, a: Place, b: Place| {
+        (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
+    };
+    let half = |places: &mut dyn Iterator<Item = Place>| {
+        let mut chain: Vec<Place> = Vec::new();
+        for place in places {
+            while let [.., a, b] = chain[..]
+                && turn(a, b, place) <= 0.0
+            {
+                chain.pop();
+            }
+            chain.push(place);
+        }
+        chain.pop();
+        chain
+    };
+    let mut outline = half(&mut places.iter().copied());
+    outline.extend(half(&mut places.iter().rev().copied()));
+    outline
+}
