@@ -4,3 +4,4 @@ pub mod control;
 pub mod ipopt;
 pub mod model;
 pub mod nlp;
+pub mod scene;
