@@ -203,8 +203,10 @@ impl Document {
 
     /// JSON readers keep the last of two equal keys without a word; here that is a mistake.
     fn refuse_repeated_keys(&self) -> Result<(), SceneError> {
+        let mut all = locate(&self.text);
+        all.sort_by_key(|found| found.value.start);
         let mut seen = HashSet::new();
-        for found in locate(&self.text) {
+        for found in all {
             if !seen.insert(found.place.clone()) {
                 let key = found.place.last_key().unwrap_or_default();
                 let what = format!("the key {key:?} twice");

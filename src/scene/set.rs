@@ -52,7 +52,7 @@ impl Override {
 
     /// Puts the value in its place.
     pub(crate) fn apply(&self, document: &mut Document) -> Result<(), SceneError> {
-        document.set.push(self.place.clone());
+        document.set.push(changed(&document.value, &self.place));
         match slot(&mut document.value, &self.place) {
             Ok(slot) => *slot = self.value.clone(),
             Err((found, expected)) => {
@@ -61,6 +61,22 @@ impl Override {
             }
         }
         Ok(())
+    }
+}
+
+/// The place itself, or the first one on the way to it that is not there yet.
+fn changed(root: &Value, place: &Place) -> Place {
+    let mut value = Some(root);
+    let missing = place.0.iter().position(|step| {
+        value = value.and_then(|value| match step {
+            Step::Key(key) => value.get(key),
+            Step::Index(index) => value.get(index),
+        });
+        value.is_none()
+    });
+    match missing {
+        Some(position) => Place(place.0[..=position].to_vec()),
+        None => place.clone(),
     }
 }
 
