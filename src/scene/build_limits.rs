@@ -7,7 +7,7 @@ use crate::scene::build_state::{driven_muscle, joint_value, joint_with_coordinat
 use crate::scene::error::SceneError;
 use crate::scene::quantity::{Angle, Length};
 use crate::scene::scope::Scope;
-use crate::scene::spec_problem::{
+use crate::scene::spec_limits::{
     ElectricFieldLimitSpec, JointAngleLimitSpec, LimitSpec, MarkerLimitSpec, RegionSpec,
     StretchLimitSpec,
 };

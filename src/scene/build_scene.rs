@@ -18,7 +18,7 @@ use crate::scene::spec_scene::{
 const SHORTEST_SPAN: f64 = 1e-9;
 
 /// Longest chain that the shorthand writes out.
-const LONGEST_CHAIN: usize = 10_000;
+const LONGEST_CHAIN: usize = 1000;
 
 /// The system that a scene means.
 pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System, SceneError> {
@@ -313,11 +313,12 @@ fn find_body(
     if name == "ground" {
         return Ok(None);
     }
-    let or_ground: Vec<String> = bodies
-        .iter()
-        .cloned()
-        .chain(["ground".to_owned()])
-        .collect();
+    if let Some(index) = bodies.iter().position(|body| body == name) {
+        return Ok(Some(index));
+    }
+    let or_ground = bodies.iter().map(String::as_str).chain(["ground"]);
     let expected = "the name of a body or \"ground\"";
-    scope.find(name, &or_ground, expected).map(Some)
+    Err(scope
+        .document
+        .wrong_name(&scope.place, name, expected, or_ground))
 }

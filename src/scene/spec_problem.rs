@@ -1,16 +1,15 @@
 //! A problem as it is written: the serde types of the problem file.
 
 use schemars::JsonSchema;
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{Error, IntoDeserializer, MapAccess, Unexpected, Visitor};
+use serde::de::{Error, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::marker::PhantomData;
 
-use crate::scene::quantity::{
-    ElectricField, JointCoordinate, JointRate, Length, Quantity, Time, Voltage,
-};
+use crate::scene::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::scene::quantity::{JointCoordinate, JointRate, Quantity, Time, Voltage};
+use crate::scene::spec_limits::LimitSpec;
 use crate::scene::spec_scene::{Point, SceneSpec};
 
 /// What is asked of a scene: exactly one of `simulate`, `equilibrium`, `control`.
@@ -165,120 +164,6 @@ pub struct ObjectiveSpec {
     pub duration: f64,
 }
 
-/// A path limit: exactly one of the four.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct LimitSpec {
-    /// Limits of a joint coordinate.
-    #[serde(default)]
-    pub joint_angle: Option<JointAngleLimitSpec>,
-    /// Limits of the stretch of a muscle.
-    #[serde(default)]
-    pub stretch: Option<StretchLimitSpec>,
-    /// Breakdown field of muscles.
-    #[serde(default)]
-    pub electric_field: Option<ElectricFieldLimitSpec>,
-    /// Region of a marker.
-    #[serde(default)]
-    pub marker: Option<MarkerLimitSpec>,
-}
-
-/// Limits of a joint coordinate: `min`, `max` or both.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct JointAngleLimitSpec {
-    /// Name of the joint.
-    pub joint: String,
-    /// Lower bound, SI unit rad or m.
-    #[serde(default)]
-    pub min: Option<Quantity<JointCoordinate>>,
-    /// Upper bound, SI unit rad or m.
-    #[serde(default)]
-    pub max: Option<Quantity<JointCoordinate>>,
-}
-
-/// Limits of the stretch of a muscle: `min`, `max` or both.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StretchLimitSpec {
-    /// Name of the muscle.
-    pub muscle: String,
-    /// Lower bound.
-    #[serde(default)]
-    pub min: Option<f64>,
-    /// Upper bound.
-    #[serde(default)]
-    pub max: Option<f64>,
-}
-
-/// Breakdown field of one muscle (`"muscle": name`) or all (`"muscles": "all"`).
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ElectricFieldLimitSpec {
-    /// Name of the muscle.
-    #[serde(default)]
-    pub muscle: Option<String>,
-    /// All muscles with an electric term.
-    #[serde(default)]
-    pub muscles: Option<All>,
-    /// Largest true field, SI unit V/m.
-    pub max: Quantity<ElectricField>,
-}
-
-/// All of them.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum All {
-    /// All of them.
-    All,
-}
-
-/// Region of a marker: exactly one of `inside` and `outside`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MarkerLimitSpec {
-    /// Name of the marker.
-    pub marker: String,
-    /// Where it stays.
-    #[serde(default)]
-    pub inside: Option<RegionSpec>,
-    /// What it stays out of.
-    #[serde(default)]
-    pub outside: Option<RegionSpec>,
-}
-
-/// A region: exactly one of the two.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RegionSpec {
-    /// Box between two corners.
-    #[serde(rename = "box", default)]
-    pub cuboid: Option<CornersSpec>,
-    /// Ball.
-    #[serde(default)]
-    pub sphere: Option<BallSpec>,
-}
-
-/// Two corners of a box.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CornersSpec {
-    /// Lower corner, SI unit m.
-    pub min: Point,
-    /// Upper corner, SI unit m.
-    pub max: Point,
-}
-
-/// A ball.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BallSpec {
-    /// Centre, SI unit m.
-    pub centre: Point,
-    /// Radius, SI unit m.
-    pub radius: Quantity<Length>,
-}
-
 /// Options of the solver.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -396,77 +281,6 @@ impl Default for VoltagesSpec {
     fn default() -> Self {
         Self::Constant(VoltageMap::new())
     }
-}
-
-/// A type that is read from one scalar, or from an object.
-trait ScalarOrObject<'de>: Sized {
-    /// Both, for messages.
-    const EXPECTED: &'static str;
-    /// Type of the scalar.
-    type Scalar: Deserialize<'de>;
-    /// Type of the object.
-    type Object: Deserialize<'de>;
-
-    fn scalar(scalar: Self::Scalar) -> Self;
-    fn object(object: Self::Object) -> Self;
-}
-
-/// Visits the scalar or the object, so that paths and messages of both survive.
-struct Either<T>(PhantomData<T>);
-
-impl<'de, T: ScalarOrObject<'de>> Visitor<'de> for Either<T> {
-    type Value = T;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(T::EXPECTED)
-    }
-
-    fn visit_str<E: Error>(self, text: &str) -> Result<T, E> {
-        T::Scalar::deserialize(text.into_deserializer()).map(T::scalar)
-    }
-
-    fn visit_f64<E: Error>(self, number: f64) -> Result<T, E> {
-        T::Scalar::deserialize(number.into_deserializer()).map(T::scalar)
-    }
-
-    fn visit_u64<E: Error>(self, number: u64) -> Result<T, E> {
-        self.visit_f64(number as f64)
-    }
-
-    fn visit_i64<E: Error>(self, number: i64) -> Result<T, E> {
-        self.visit_f64(number as f64)
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<T, A::Error> {
-        T::Object::deserialize(MapAccessDeserializer::new(map)).map(T::object)
-    }
-}
-
-/// Reads a type by [`Either`].
-macro_rules! scalar_or_object {
-    ($($type:ty: $scalar:ty = $from_scalar:expr, $object:ty = $from_object:expr, $expected:literal;)*) => {
-        $(
-            impl<'de> ScalarOrObject<'de> for $type {
-                const EXPECTED: &'static str = $expected;
-                type Scalar = $scalar;
-                type Object = $object;
-
-                fn scalar(scalar: $scalar) -> Self {
-                    $from_scalar(scalar)
-                }
-
-                fn object(object: $object) -> Self {
-                    $from_object(object)
-                }
-            }
-
-            impl<'de> Deserialize<'de> for $type {
-                fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                    deserializer.deserialize_any(Either(PhantomData))
-                }
-            }
-        )*
-    };
 }
 
 scalar_or_object! {
