@@ -517,6 +517,27 @@ fn units_are_read_in_all_spellings() {
     refused::<Length>("5 m rad");
 }
 
+#[test]
+fn conversions_agree_with_uom() {
+    use uom::si::{angle, electric_field, electric_potential, f64 as si, mass_density};
+    let voltage = si::ElectricPotential::new::<electric_potential::kilovolt>(1.7);
+    let field = si::ElectricField::new::<electric_field::volt_per_millimeter>(80.0);
+    let density = si::MassDensity::new::<mass_density::gram_per_cubic_centimeter>(1.2);
+    let turn = si::Angle::new::<angle::degree>(17.0);
+    for (ours, theirs) in [
+        (value::<Voltage>("1.7 kV"), voltage.value),
+        (value::<ElectricField>("80 V/mm"), field.value / 1e3),
+        (value::<Density>("1.2 g/cm^3"), density.value / 1e6),
+        (value::<Angle>("17 deg"), turn.value),
+    ] {
+        // One rounding on either side of each of two steps.
+        assert!(
+            (ours - theirs).abs() <= 4.0 * f64::EPSILON * theirs,
+            "{ours} {theirs}"
+        );
+    }
+}
+
 proptest! {
     #[test]
     fn a_quantity_is_the_same_in_every_prefix(number in -1e6..1e6_f64, index in 0..7_usize) {
