@@ -1,17 +1,9 @@
 //! What a motion leaves behind: instants, joint coordinates, poses, voltages and observed columns.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
-use crate::model::system::{Attachment, JointKind, System};
-
-/// Pose of a rigid body at an instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// Centre of mass in mm.
-    pub centre: Vector3<f64>,
-    /// The directors d₁, d₂, d₃ as columns, in the ground frame.
-    pub directors: Matrix3<f64>,
-}
+use crate::kinematics::Pose;
+use crate::model::system::{Attachment, Joint, JointKind, System};
 
 /// What changes over time: N + 1 instants and the N intervals between them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,7 +22,7 @@ impl Trajectory {
     /// Place in mm of a material point at instant `k`: c + R R₀ᵀ (X − c₀); points of the ground stay.
     pub fn point(&self, k: usize, point: &Attachment, system: &System) -> Vector3<f64> {
         match point.body {
-            Some(body) => self.poses[k][body].carry(point.at, &Pose::reference(system, body)),
+            Some(body) => self.poses[k][body].point(&system.bodies[body].pose().local(&point.at)),
             None => point.at,
         }
     }
@@ -40,38 +32,20 @@ impl Trajectory {
         self.times.len().saturating_sub(1)
     }
 
-    /// Names and units of the joint coordinates, in the order of `joints`: one for a revolute or
-    /// prismatic joint, none for a fixed one; spherical joints share evenly what remains.
+    /// Names and units of the joint coordinates, in the order of `joints`: one for each revolute or prismatic joint.
     pub fn coordinates(&self, system: &System) -> Vec<Coordinate> {
-        let count = |wanted: fn(&JointKind) -> bool| {
-            system.joints.iter().filter(|j| wanted(&j.kind)).count()
-        };
-        let spherical = count(|kind| matches!(kind, JointKind::Spherical));
-        let single = count(|kind| {
-            matches!(
-                kind,
-                JointKind::Revolute { .. } | JointKind::Prismatic { .. }
-            )
-        });
-        let total = self.joints.first().map_or(single, Vec::len);
-        let share = total
-            .saturating_sub(single)
-            .checked_div(spherical)
-            .unwrap_or(0);
-        let mut coordinates = Vec::new();
-        for joint in &system.joints {
-            let (suffixes, unit) = match joint.kind {
-                JointKind::Revolute { .. } => (vec![String::new()], "rad"),
-                JointKind::Prismatic { .. } => (vec![String::new()], "mm"),
-                JointKind::Spherical => ((1..=share).map(|i| format!("_{i}")).collect(), "rad"),
-                JointKind::Fixed => (vec![], ""),
+        let coordinate = |joint: &Joint| {
+            let unit = match joint.kind {
+                JointKind::Revolute { .. } => "rad",
+                JointKind::Prismatic { .. } => "mm",
+                JointKind::Spherical | JointKind::Fixed => return None,
             };
-            coordinates.extend(suffixes.iter().map(|suffix| Coordinate {
-                name: format!("{}{suffix}", joint.name),
+            Some(Coordinate {
+                name: joint.name.clone(),
                 unit,
-            }));
-        }
-        coordinates
+            })
+        };
+        system.joints.iter().filter_map(coordinate).collect()
     }
 
     /// What a motion shows by itself: time, joint coordinates and marker positions.
@@ -107,26 +81,10 @@ impl Trajectory {
 /// Name and unit of a joint coordinate.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Coordinate {
-    /// Name of the joint, numbered where a joint has several coordinates.
+    /// Name of the joint.
     pub name: String,
     /// `rad` or `mm`.
     pub unit: &'static str,
-}
-
-impl Pose {
-    /// Pose of a body in the reference configuration.
-    pub fn reference(system: &System, body: usize) -> Self {
-        let body = &system.bodies[body];
-        Self {
-            centre: body.centre,
-            directors: body.directors,
-        }
-    }
-
-    /// Where the material point that stands at `at` in the pose `reference` stands in this pose, in mm.
-    pub fn carry(&self, at: Vector3<f64>, reference: &Self) -> Vector3<f64> {
-        self.centre + self.directors * reference.directors.tr_mul(&(at - reference.centre))
-    }
 }
 
 /// Columns of numbers with names and units: one row per instant.

@@ -1,12 +1,14 @@
 //! Energies and virtual works: pure formulas, without index, mesh or time.
 
 mod constraint;
+mod damper;
 mod gravity;
 mod limit;
 mod muscle;
 mod viscosity;
 
 pub use constraint::{Coincidence, Orthogonality};
+pub use damper::{AngularDamper, LinearDamper};
 pub use gravity::Gravity;
 pub use limit::{Angle, OutsideBox, Place, Projection, SquaredDistance, SquaredField};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};

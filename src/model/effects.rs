@@ -1,12 +1,13 @@
 //! What a scene calls for, effect by effect. This is the only place that makes effects: what is absent makes none.
 
 use crate::energy::{
-    Coincidence, DielectricCell, ElasticCell, Gravity, Orthogonality, SectionInertia, ViscousCell,
+    AngularDamper, Coincidence, DielectricCell, ElasticCell, Gravity, LinearDamper, Orthogonality,
+    SectionInertia, ViscousCell,
 };
 use crate::functional::{Effect, Element, Group, Inertia, PointMass, Stencil, VectorArg};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
-use crate::model::joints::triad;
+use crate::model::joints::{JointGauge, Measure, triad};
 use crate::model::system::{Attachment, Joint, JointKind, Muscle, System};
 
 /// A list of effects on its way to a sum.
@@ -125,7 +126,74 @@ impl<'a> Builder<'a> {
             1.0,
             self.viscous()
         );
+        group!(
+            effects,
+            intervals,
+            27,
+            "joint damping",
+            1.0,
+            self.angular_dampers()
+        );
+        group!(
+            effects,
+            intervals,
+            18,
+            "joint damping",
+            1.0,
+            self.linear_dampers()
+        );
         effects
+    }
+
+    fn angular_dampers(&mut self) -> Vec<Element<AngularDamper, 9, 0>> {
+        let mut elements = Vec::new();
+        for joint in &self.system.joints {
+            let Some(coefficient) = joint.damping else {
+                continue;
+            };
+            if let Measure::Angle { vectors } = JointGauge::new(joint, None, self.reference).measure
+            {
+                let [a, b, x] = vectors.map(|v| self.vectors.index(v));
+                let args = [
+                    mid(a),
+                    mid(b),
+                    mid(x),
+                    mid(a),
+                    mid(b),
+                    mid(x),
+                    rate(a),
+                    rate(b),
+                    rate(x),
+                ];
+                elements.push(Element {
+                    energy: AngularDamper { coefficient },
+                    vectors: args,
+                    scalars: [],
+                });
+            }
+        }
+        elements
+    }
+
+    fn linear_dampers(&mut self) -> Vec<Element<LinearDamper, 6, 0>> {
+        let mut elements = Vec::new();
+        for joint in &self.system.joints {
+            let Some(coefficient) = joint.damping else {
+                continue;
+            };
+            if let Measure::Displacement { axis, span } =
+                JointGauge::new(joint, None, self.reference).measure
+            {
+                let [n, r] = [axis, span].map(|v| self.vectors.index(v));
+                let args = [mid(n), mid(r), mid(n), mid(r), rate(n), rate(r)];
+                elements.push(Element {
+                    energy: LinearDamper { coefficient },
+                    vectors: args,
+                    scalars: [],
+                });
+            }
+        }
+        elements
     }
 
     fn body_masses(&mut self) -> Vec<PointMass> {

@@ -78,11 +78,7 @@ impl Model {
     ) -> Result<Self, ModelError> {
         let coordinates = Self::choose(&system, coordinates)?;
         let graph = Graph::new(&system);
-        let pose = |body: &system::Body| Pose {
-            centre: body.centre,
-            directors: body.directors,
-        };
-        let reference: Vec<Pose> = system.bodies.iter().map(pose).collect();
+        let reference: Vec<Pose> = system.bodies.iter().map(system::Body::pose).collect();
         let mut vectors = Vectors::default();
         let mut parts = effects::Builder::new(&system, &reference, &mut vectors);
         let intervals = parts.intervals();

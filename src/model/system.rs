@@ -1,5 +1,6 @@
 //! What a scene means: bodies, joints, muscles and markers in g, mm, ms, N, V, names resolved.
 
+use crate::kinematics::Pose;
 use nalgebra::{Matrix3, Vector3};
 
 /// A mechanical system; `None` for a body index is the ground.
@@ -73,6 +74,8 @@ pub struct Joint {
     pub child: usize,
     /// Place in mm, in the ground frame.
     pub at: Vector3<f64>,
+    /// Damping of the joint coordinate: N mm ms for an angle, N ms/mm for a displacement; `None` leaves no trace.
+    pub damping: Option<f64>,
 }
 
 /// What a joint lets move.
@@ -159,6 +162,16 @@ pub struct Marker {
 
 /// Permittivity of vacuum in N/V² (F/m), CODATA value in the decimals of the reference solutions.
 pub const VACUUM_PERMITTIVITY: f64 = 8.854_187_817e-12;
+
+impl Body {
+    /// Pose in the reference configuration.
+    pub fn pose(&self) -> Pose {
+        Pose {
+            centre: self.centre,
+            directors: self.directors,
+        }
+    }
+}
 
 impl Muscle {
     /// Rest length in mm.

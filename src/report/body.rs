@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::dynamics::trajectory::Pose;
+use crate::kinematics::Pose;
 use crate::model::system::Shape;
 use crate::report::canvas::{Canvas, Stroke};
 use crate::report::solids::{Prism, circle};

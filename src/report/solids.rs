@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use crate::dynamics::trajectory::{Pose, Trajectory};
+use crate::dynamics::trajectory::Trajectory;
+use crate::kinematics::Pose;
 use crate::model::system::{Attachment, Shape, System};
 
 /// Points around a circle.

@@ -73,6 +73,7 @@ pub fn trunk(segments: usize) -> System {
             parent,
             child: i,
             at,
+            damping: None,
         });
         for (m, sign) in [(1, 1.0), (2, -1.0)] {
             let offset = side * (15.0 * sign);

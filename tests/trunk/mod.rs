@@ -1,7 +1,8 @@
 //! The elephant trunk with made-up motions: six cylinders on revolute joints, twelve muscles.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
-use proboscis::dynamics::trajectory::{Pose, Trajectory};
+use proboscis::dynamics::trajectory::Trajectory;
+use proboscis::kinematics::Pose;
 use proboscis::model::system::{
     Attachment, Body, Joint, JointKind, Marker, Material, Muscle, Shape, System,
 };

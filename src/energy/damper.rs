@@ -1,0 +1,56 @@
+//! Joint dampers as virtual work.
+
+use crate::energy::Energy;
+use crate::math::Jet;
+use nalgebra::SVector;
+
+/// Virtual work `−d θ̇ δθ` of a revolute joint with `tan θ = s/c`, s = b·x, c = a·x, for vectors a, b of the parent and x
+/// of the child; arguments: δa, δb, δx, then their midpoints, then their rates.
+///
+/// `θ̇ = (ṡ c − ċ s)/(s² + c²)`, and likewise δθ.
+#[derive(Clone, Copy, Debug)]
+pub struct AngularDamper {
+    /// d in N mm ms.
+    pub coefficient: f64,
+}
+
+impl Energy<27> for AngularDamper {
+    const VIRTUAL: usize = 3;
+
+    fn jet<const ORDER: usize>(
+        &self,
+        p: &SVector<f64, 27>,
+        w: &SVector<f64, 27>,
+    ) -> Jet<27, ORDER> {
+        let (sine, cosine) = (Jet::dot(12, 15, p, w), Jet::dot(9, 15, p, w));
+        // Rate of a product of two vectors: one factor varies (at `shift`), the other stands.
+        let rate =
+            |a: usize, shift: usize| Jet::dot(a + shift, 15, p, w) + Jet::dot(a, 15 + shift, p, w);
+        let turning = |shift: usize| rate(12, shift) * cosine - rate(9, shift) * sine;
+        let virtual_rate = |a: usize| Jet::dot(a - 9, 15, p, w) + Jet::dot(a, 6, p, w);
+        let virtual_turning = virtual_rate(12) * cosine - virtual_rate(9) * sine;
+        let square = sine.squared() + cosine.squared();
+        turning(9) * virtual_turning * square.squared().recip() * -self.coefficient
+    }
+}
+
+/// Virtual work `−d ẏ δy` of a prismatic joint with y = n·r; arguments: δn, δr, then midpoints, then rates.
+#[derive(Clone, Copy, Debug)]
+pub struct LinearDamper {
+    /// d in N ms/mm.
+    pub coefficient: f64,
+}
+
+impl Energy<18> for LinearDamper {
+    const VIRTUAL: usize = 2;
+
+    fn jet<const ORDER: usize>(
+        &self,
+        p: &SVector<f64, 18>,
+        w: &SVector<f64, 18>,
+    ) -> Jet<18, ORDER> {
+        let virtual_rate = Jet::dot(0, 9, p, w) + Jet::dot(6, 3, p, w);
+        let rate = Jet::dot(12, 9, p, w) + Jet::dot(6, 15, p, w);
+        rate * virtual_rate * -self.coefficient
+    }
+}

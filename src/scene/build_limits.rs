@@ -1,0 +1,166 @@
+//! From path limits as written to indices, bounds and regions.
+
+use crate::control::problem::{Limit, Side};
+use crate::model::Region;
+use crate::model::system::System;
+use crate::scene::build_scene::{names, vector};
+use crate::scene::build_state::{driven_muscle, joint_value, joint_with_coordinate};
+use crate::scene::error::SceneError;
+use crate::scene::quantity::{Angle, Length};
+use crate::scene::scope::Scope;
+use crate::scene::spec_limits::{
+    ElectricFieldLimitSpec, JointAngleLimitSpec, LimitSpec, MarkerLimitSpec, RegionSpec,
+    StretchLimitSpec,
+};
+
+/// The limits that one entry stands for.
+pub(crate) fn limit(
+    spec: &LimitSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<Limit>, SceneError> {
+    let key = scope.exactly_one([
+        (
+            "joint_angle",
+            spec.joint_angle.as_ref().map(|_| "joint_angle"),
+        ),
+        ("stretch", spec.stretch.as_ref().map(|_| "stretch")),
+        (
+            "electric_field",
+            spec.electric_field.as_ref().map(|_| "electric_field"),
+        ),
+        ("marker", spec.marker.as_ref().map(|_| "marker")),
+    ])?;
+    let scope = scope.key(key);
+    let mut limits = Vec::new();
+    if let Some(spec) = &spec.joint_angle {
+        limits.push(joint_angle(spec, system, &scope)?);
+    }
+    if let Some(spec) = &spec.stretch {
+        limits.push(stretch(spec, system, &scope)?);
+    }
+    if let Some(spec) = &spec.electric_field {
+        limits.extend(electric_field(spec, system, &scope)?);
+    }
+    if let Some(spec) = &spec.marker {
+        limits.push(marker(spec, system, &scope)?);
+    }
+    Ok(limits)
+}
+
+fn joint_angle(
+    spec: &JointAngleLimitSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Limit, SceneError> {
+    let joint = joint_with_coordinate(&spec.joint, system, &scope.key("joint"))?;
+    let kinds = [Angle::kind(), Length::kind()];
+    let bound = |key: &str, quantity: Option<&_>, absent: f64| match quantity {
+        Some(quantity) => joint_value(quantity, &kinds, joint, system, &scope.key(key)),
+        None => Ok(absent),
+    };
+    let min = bound("min", spec.min.as_ref(), f64::NEG_INFINITY)?;
+    let max = bound("max", spec.max.as_ref(), f64::INFINITY)?;
+    check_bounds(min, max, spec.min.is_some() || spec.max.is_some(), scope)?;
+    Ok(Limit::JointAngle { joint, min, max })
+}
+
+fn stretch(
+    spec: &StretchLimitSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Limit, SceneError> {
+    let muscles = names(&system.muscles, |muscle| &muscle.name);
+    let expected = "the name of a muscle";
+    let muscle = scope.key("muscle").find(&spec.muscle, &muscles, expected)?;
+    for (key, bound) in [("min", spec.min), ("max", spec.max)] {
+        if let Some(bound) = bound.filter(|bound| *bound <= 0.0) {
+            return Err(scope
+                .key(key)
+                .wrong(bound.to_string(), "a positive stretch"));
+        }
+    }
+    let (min, max) = (spec.min.unwrap_or(0.0), spec.max.unwrap_or(f64::INFINITY));
+    check_bounds(min, max, spec.min.is_some() || spec.max.is_some(), scope)?;
+    Ok(Limit::Stretch { muscle, min, max })
+}
+
+fn check_bounds(min: f64, max: f64, there: bool, scope: &Scope<'_>) -> Result<(), SceneError> {
+    if !there {
+        return Err(scope.wrong("no bound", "\"min\", \"max\" or both"));
+    }
+    if min > max {
+        let found = "\"max\" below \"min\"";
+        return Err(scope.key("max").wrong(found, "bounds that are not crossed"));
+    }
+    Ok(())
+}
+
+fn electric_field(
+    spec: &ElectricFieldLimitSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<Limit>, SceneError> {
+    let max = scope.key("max").positive(&spec.max)?;
+    let one = spec.muscle.as_ref().map(Some);
+    let name = scope.exactly_one([("muscle", one), ("muscles", spec.muscles.map(|_| None))])?;
+    let muscles = match name {
+        Some(name) => vec![driven_muscle(name, system, &scope.key("muscle"))?],
+        None => (0..system.muscles.len())
+            .filter(|&muscle| system.muscles[muscle].material.electric.is_some())
+            .collect(),
+    };
+    let limit = |muscle| Limit::ElectricField { muscle, max };
+    Ok(muscles.into_iter().map(limit).collect())
+}
+
+fn marker(spec: &MarkerLimitSpec, system: &System, scope: &Scope<'_>) -> Result<Limit, SceneError> {
+    let markers = names(&system.markers, |marker| &marker.name);
+    let expected = "the name of a marker";
+    let marker = scope.key("marker").find(&spec.marker, &markers, expected)?;
+    let (region_spec, side, key) = scope.exactly_one([
+        (
+            "inside",
+            spec.inside
+                .as_ref()
+                .map(|region| (region, Side::Inside, "inside")),
+        ),
+        (
+            "outside",
+            spec.outside
+                .as_ref()
+                .map(|region| (region, Side::Outside, "outside")),
+        ),
+    ])?;
+    let region = region(region_spec, &scope.key(key))?;
+    Ok(Limit::Marker {
+        marker,
+        region,
+        side,
+    })
+}
+
+fn region(spec: &RegionSpec, scope: &Scope<'_>) -> Result<Region, SceneError> {
+    scope.exactly_one([
+        ("box", spec.cuboid.as_ref().map(|_| ())),
+        ("sphere", spec.sphere.as_ref().map(|_| ())),
+    ])?;
+    match (&spec.cuboid, &spec.sphere) {
+        (None, Some(ball)) => Ok(Region::Sphere {
+            centre: vector(&ball.centre),
+            radius: scope.key("sphere").key("radius").positive(&ball.radius)?,
+        }),
+        (Some(corners), _) => {
+            let (min, max) = (vector(&corners.min), vector(&corners.max));
+            for index in 0..3 {
+                if min[index] >= max[index] {
+                    let place = scope.key("box").key("max").index(index);
+                    let expected = format!("more than {} of \"min\"", corners.min[index]);
+                    return Err(place.wrong(corners.max[index].to_string(), expected));
+                }
+            }
+            Ok(Region::Box { min, max })
+        }
+        (None, None) => Err(scope.wrong("no region", "\"box\" or \"sphere\"")),
+    }
+}

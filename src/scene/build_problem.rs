@@ -1,0 +1,316 @@
+//! From a problem as written to the task it means, with one voltage per muscle and indices for names.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use crate::control::problem::{
+    Control, Duration, Guess, Objective, Simulation, Solver, State, Task, Voltages,
+};
+use crate::ipopt::OptionValue;
+use crate::model::Coordinates;
+use crate::model::system::System;
+use crate::scene::build_limits::limit;
+use crate::scene::build_state::{goal_state, start_state, voltages};
+use crate::scene::document::Document;
+use crate::scene::error::SceneError;
+use crate::scene::graph::{has_free_part, tree_freedoms};
+use crate::scene::scope::Scope;
+use crate::scene::solution::sampled_voltages;
+use crate::scene::spec_problem::{
+    ControlSpec, CoordinatesSpec, DurationSpec, GuessObjectSpec, GuessSpec, ObjectiveSpec,
+    OptionSpec, ProblemSpec, SimulateSpec, SolverSpec, VoltagesSpec,
+};
+
+/// The task that a problem asks of a system.
+pub(crate) fn build_problem(
+    problem: &ProblemSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Task, SceneError> {
+    type Build<'a> = Box<dyn FnOnce() -> Result<Task, SceneError> + 'a>;
+    let simulate = problem.simulate.as_ref().map(|spec| -> Build<'_> {
+        Box::new(|| simulation(spec, system, &scope.key("simulate")).map(Task::Simulate))
+    });
+    let equilibrium = problem.equilibrium.as_ref().map(|spec| -> Build<'_> {
+        Box::new(|| {
+            let scope = scope.key("equilibrium");
+            let voltages = voltages(&spec.voltages, system, &scope.key("voltages"))?;
+            let coordinates = coordinates(spec.coordinates, system, &scope)?;
+            Ok(Task::Equilibrium(voltages, coordinates))
+        })
+    });
+    let control = problem.control.as_ref().map(|spec| -> Build<'_> {
+        Box::new(|| {
+            let control = control(spec, system, &scope.key("control"))?;
+            Ok(Task::Control(Box::new(control)))
+        })
+    });
+    let build = scope.exactly_one([
+        ("simulate", simulate),
+        ("equilibrium", equilibrium),
+        ("control", control),
+    ])?;
+    build()
+}
+
+fn simulation(
+    spec: &SimulateSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Simulation, SceneError> {
+    let duration = scope.key("duration").positive(&spec.duration)?;
+    let place = scope.key("step");
+    let step = place.positive(&spec.step)?;
+    if step > duration {
+        let expected = format!(
+            "a step that is no longer than the duration {}",
+            spec.duration
+        );
+        return Err(place.wrong(spec.step.to_string(), expected));
+    }
+    let start = match &spec.start {
+        Some(start) => start_state(start, system, &scope.key("start"))?,
+        None => State::JointAngles {
+            angles: BTreeMap::new(),
+            rates: BTreeMap::new(),
+        },
+    };
+    let place = scope.key("voltages");
+    let voltages = match &spec.voltages {
+        VoltagesSpec::Constant(map) => Voltages::Constant(voltages(map, system, &place)?),
+        VoltagesSpec::Solution(solution) => {
+            let path = existing(&solution.solution, &place.key("solution"))?;
+            sampled_voltages(&Document::read(&path)?, system)?
+        }
+    };
+    Ok(Simulation {
+        duration,
+        step,
+        start,
+        voltages,
+        coordinates: coordinates(spec.coordinates, system, scope)?,
+    })
+}
+
+fn control(spec: &ControlSpec, system: &System, scope: &Scope<'_>) -> Result<Control, SceneError> {
+    let duration = duration(&spec.duration, &scope.key("duration"))?;
+    if spec.intervals == 0 {
+        return Err(scope.key("intervals").wrong("0", "1 interval or more"));
+    }
+    if system
+        .muscles
+        .iter()
+        .all(|muscle| muscle.material.electric.is_none())
+    {
+        let found = "a scene without any muscle that takes a voltage";
+        let expected =
+            "a muscle whose material has \"relative_permittivity\", or \"c1\" and \"c2\"";
+        return Err(scope.wrong(found, expected));
+    }
+    let voltage_bounds = voltage_bounds(spec, &scope.key("voltage_bounds"))?;
+    let start = start_state(&spec.start, system, &scope.key("start"))?;
+    let goal = goal_state(&spec.goal, system, &scope.key("goal"))?;
+    for (key, state) in [("start", &start), ("goal", &goal)] {
+        check_rest_voltages(state, system, voltage_bounds, &scope.key(key))?;
+    }
+    check_final_conditions(&goal, system, &scope.key("goal"))?;
+    let mut limits = Vec::new();
+    for (index, spec) in spec.limits.iter().enumerate() {
+        limits.extend(limit(spec, system, &scope.key("limits").index(index))?);
+    }
+    Ok(Control {
+        duration,
+        intervals: spec.intervals,
+        start,
+        goal,
+        voltage_bounds,
+        objective: objective(&spec.objective, &scope.key("objective"))?,
+        limits,
+        coordinates: coordinates(spec.coordinates, system, scope)?,
+        guess: guess(&spec.guess, system, &scope.key("guess"))?,
+        solver: solver(&spec.solver, &scope.key("solver"))?,
+    })
+}
+
+fn duration(spec: &DurationSpec, scope: &Scope<'_>) -> Result<Duration, SceneError> {
+    let free = match spec {
+        DurationSpec::Given(duration) => return scope.positive(duration).map(Duration::Given),
+        DurationSpec::Free(free) => free,
+    };
+    let min = scope.key("min").positive(&free.min)?;
+    let max = scope.key("max").positive(&free.max)?;
+    let guess = scope.key("guess").positive(&free.guess)?;
+    if min > max {
+        let expected = format!("a time that is no shorter than \"min\" {}", free.min);
+        return Err(scope.key("max").wrong(free.max.to_string(), expected));
+    }
+    if guess < min || guess > max {
+        let expected = format!("a time from {} to {}", free.min, free.max);
+        return Err(scope.key("guess").wrong(free.guess.to_string(), expected));
+    }
+    Ok(Duration::Free { min, max, guess })
+}
+
+fn voltage_bounds(spec: &ControlSpec, scope: &Scope<'_>) -> Result<[f64; 2], SceneError> {
+    let [lower, upper] = &spec.voltage_bounds;
+    let bounds = [lower.value(), upper.value()];
+    if bounds[0] < 0.0 {
+        return Err(scope
+            .index(0)
+            .wrong(lower.to_string(), "a voltage that is not negative"));
+    }
+    if bounds[0] > bounds[1] {
+        let expected = format!("an upper bound that is no less than the lower bound {lower}");
+        return Err(scope.index(1).wrong(upper.to_string(), expected));
+    }
+    Ok(bounds)
+}
+
+/// Rest voltages of muscles that take one lie in the bounds.
+fn check_rest_voltages(
+    state: &State,
+    system: &System,
+    [lower, upper]: [f64; 2],
+    scope: &Scope<'_>,
+) -> Result<(), SceneError> {
+    let State::RestAtVoltages(voltages) = state else {
+        return Ok(());
+    };
+    for (muscle, &voltage) in system.muscles.iter().zip(voltages) {
+        let outside = voltage < lower || voltage > upper;
+        if outside && muscle.material.electric.is_some() {
+            let place = scope.key("rest_at_voltages").key(&muscle.name);
+            let found = format!("{voltage} V");
+            let expected = format!("a voltage within the bounds {lower} V to {upper} V");
+            return Err(place.wrong(found, expected));
+        }
+    }
+    Ok(())
+}
+
+/// No more final conditions than degrees of freedom, where these can be counted from the joints.
+fn check_final_conditions(
+    goal: &State,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<(), SceneError> {
+    let (conditions, key) = match goal {
+        State::Markers(markers) => (3 * markers.len(), "markers"),
+        State::JointAngles { angles, .. } => (angles.len(), "joint_angles"),
+        State::RestAtVoltages(_) => return Ok(()),
+    };
+    match tree_freedoms(system.bodies.len(), &system.joints) {
+        Some(freedoms) if conditions > freedoms => {
+            let found = format!("{conditions} final conditions on positions");
+            let expected = format!("no more than the {freedoms} degrees of freedom");
+            Err(scope.key(key).wrong(found, expected))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn coordinates(
+    spec: Option<CoordinatesSpec>,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Option<Coordinates>, SceneError> {
+    let bodies = system.bodies.len();
+    let place = scope.key("coordinates");
+    match spec {
+        None => Ok(None),
+        Some(CoordinatesSpec::Redundant) => Ok(Some(Coordinates::Redundant)),
+        Some(CoordinatesSpec::Reduced) if tree_freedoms(bodies, &system.joints).is_none() => {
+            let found = "\"reduced\", though the joints close a loop";
+            Err(place.wrong(found, "\"redundant\""))
+        }
+        Some(CoordinatesSpec::Reduced) if has_free_part(bodies, &system.joints) => {
+            let found = "\"reduced\", though a body is free of the ground";
+            Err(place.wrong(found, "\"redundant\""))
+        }
+        Some(CoordinatesSpec::Reduced) => Ok(Some(Coordinates::Reduced)),
+    }
+}
+
+fn objective(spec: &ObjectiveSpec, scope: &Scope<'_>) -> Result<Objective, SceneError> {
+    let weights = [
+        ("effort", spec.effort),
+        ("rate", spec.rate),
+        ("duration", spec.duration),
+    ];
+    for (key, weight) in weights {
+        if weight < 0.0 {
+            let expected = "a weight that is not negative";
+            return Err(scope.key(key).wrong(weight.to_string(), expected));
+        }
+    }
+    if weights.iter().all(|(_, weight)| *weight == 0.0) {
+        let expected = "a positive weight of \"effort\", \"rate\" or \"duration\"";
+        return Err(scope.wrong("no weight", expected));
+    }
+    Ok(Objective {
+        effort: spec.effort,
+        rate: spec.rate,
+        duration: spec.duration,
+    })
+}
+
+fn guess(spec: &GuessSpec, system: &System, scope: &Scope<'_>) -> Result<Guess, SceneError> {
+    let GuessSpec::Object(GuessObjectSpec { simulate, solution }) = spec else {
+        return Ok(Guess::Interpolate);
+    };
+    match (simulate, solution) {
+        (Some(simulate), None) => {
+            let scope = scope.key("simulate").key("voltages");
+            voltages(&simulate.voltages, system, &scope).map(Guess::Simulate)
+        }
+        (None, Some(solution)) => existing(solution, &scope.key("solution")).map(Guess::Solution),
+        (simulate, solution) => {
+            let there = [
+                ("simulate", simulate.as_ref().map(|_| ())),
+                ("solution", solution.as_ref().map(|_| ())),
+            ];
+            scope.exactly_one(there).map(|()| Guess::Interpolate)
+        }
+    }
+}
+
+fn solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<Solver, SceneError> {
+    let tolerance = spec.tolerance.unwrap_or(1e-8);
+    if tolerance <= 0.0 {
+        let expected = "a positive tolerance";
+        return Err(scope
+            .key("tolerance")
+            .wrong(tolerance.to_string(), expected));
+    }
+    let max_iterations = spec.max_iterations.unwrap_or(500);
+    if i32::try_from(max_iterations).is_err() {
+        let expected = "a number of iterations below 2147483648";
+        let place = scope.key("max_iterations");
+        return Err(place.wrong(max_iterations.to_string(), expected));
+    }
+    let option = |(name, value): (&String, &OptionSpec)| {
+        let value = match value {
+            OptionSpec::Integer(integer) => OptionValue::Integer(*integer),
+            OptionSpec::Number(number) => OptionValue::Number(*number),
+            OptionSpec::Text(text) => OptionValue::Text(text.clone()),
+        };
+        (name.clone(), value)
+    };
+    Ok(Solver {
+        tolerance,
+        max_iterations,
+        ipopt: spec.ipopt.iter().map(option).collect(),
+    })
+}
+
+/// A file named in the problem: relative to the problem, otherwise to the current folder.
+fn existing(path: &str, scope: &Scope<'_>) -> Result<PathBuf, SceneError> {
+    let beside = scope.document.beside(path);
+    [beside, PathBuf::from(path)]
+        .into_iter()
+        .find(|path| path.is_file())
+        .ok_or_else(|| {
+            let found = format!("{path:?}, where there is no file");
+            scope.wrong(found, "the path of a solution.json")
+        })
+}

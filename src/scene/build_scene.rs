@@ -1,0 +1,324 @@
+//! From a scene as written to the system it means: names resolved and everything checked.
+
+use nalgebra::Vector3;
+
+use crate::model::system::{Attachment, Joint, JointKind, Marker, Material, Muscle, System};
+use crate::scene::build_body::{body, unit_axis};
+use crate::scene::build_material::materials;
+use crate::scene::error::SceneError;
+use crate::scene::expand::expanded;
+use crate::scene::graph::check_connected;
+use crate::scene::quantity::{Damping, Length, Measure, Quantity, RotationalDamping};
+use crate::scene::scope::Scope;
+use crate::scene::spec_scene::{
+    AxisSpec, ChainSpec, JointSpec, MuscleModel, MuscleSpec, Point, PointSpec, SceneSpec,
+};
+
+/// Spans shorter than this in mm have no direction.
+const SHORTEST_SPAN: f64 = 1e-9;
+
+/// Longest chain that the shorthand writes out.
+const LONGEST_CHAIN: usize = 1000;
+
+/// The system that a scene means.
+pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System, SceneError> {
+    let materials = materials(&scene.materials, &scope.key("materials"))?;
+    if let Some(chain) = &scene.chain {
+        check_chain(chain, &materials, &scope.key("chain"))?;
+    }
+    let bodies = Entries::new(scope, "bodies", scene.bodies.len());
+    let joints = Entries::new(scope, "joints", scene.joints.len());
+    let muscles = Entries::new(scope, "muscles", scene.muscles.len());
+    let markers = Entries::new(scope, "markers", scene.markers.len());
+
+    let scene = expanded(scene.clone());
+    let body_names = names(&scene.bodies, |body| &body.name);
+    bodies.unique(&body_names, &["ground"])?;
+    joints.unique(&names(&scene.joints, |joint| &joint.name), &[])?;
+    muscles.unique(&names(&scene.muscles, |muscle| &muscle.name), &["solution"])?;
+    markers.unique(&names(&scene.markers, |marker| &marker.name), &[])?;
+
+    let system = System {
+        bodies: bodies.build(&scene.bodies, body)?,
+        joints: joints.build(&scene.joints, |spec, scope| joint(spec, &body_names, scope))?,
+        muscles: muscles.build(&scene.muscles, |spec, scope| {
+            muscle(spec, &body_names, &materials, scope)
+        })?,
+        markers: markers.build(&scene.markers, |spec, scope| {
+            let point = attachment(&spec.body, &spec.at, &body_names, scope)?;
+            let name = spec.name.clone();
+            Ok(Marker { name, point })
+        })?,
+        gravity: scene
+            .gravity
+            .as_ref()
+            .map(vector)
+            .filter(|g| g.norm() > 0.0),
+        name: scene.name,
+    };
+    check_connected(&scene.bodies, &system.joints, |index| bodies.scope(index))?;
+    Ok(system)
+}
+
+/// One list of the scene; entries beyond the written ones come from the chain.
+struct Entries<'a> {
+    list: Scope<'a>,
+    chain: Scope<'a>,
+    written: usize,
+}
+
+impl<'a> Entries<'a> {
+    fn new(scene: &Scope<'a>, list: &str, written: usize) -> Self {
+        Self {
+            list: scene.key(list),
+            chain: scene.key("chain"),
+            written,
+        }
+    }
+
+    fn scope(&self, index: usize) -> Scope<'a> {
+        match index {
+            index if index < self.written => self.list.index(index),
+            _ => self.chain.clone(),
+        }
+    }
+
+    fn unique(&self, names: &[String], reserved: &[&str]) -> Result<(), SceneError> {
+        self.list.unique(names, reserved, |index| match index {
+            index if index < self.written => self.scope(index).key("name"),
+            _ => self.scope(index),
+        })
+    }
+
+    fn build<S, T>(
+        &self,
+        specs: &[S],
+        build: impl Fn(&S, &Scope<'a>) -> Result<T, SceneError>,
+    ) -> Result<Vec<T>, SceneError> {
+        let build = |(index, spec)| build(spec, &self.scope(index));
+        specs.iter().enumerate().map(build).collect()
+    }
+}
+
+/// Names of the entries of a list.
+pub(crate) fn names<T>(specs: &[T], name: impl Fn(&T) -> &String) -> Vec<String> {
+    specs.iter().map(|spec| name(spec).clone()).collect()
+}
+
+/// A vector of quantities in the units inside.
+pub(crate) fn vector<M: Measure>(entries: &[Quantity<M>; 3]) -> Vector3<f64> {
+    Vector3::from(entries.each_ref().map(Quantity::value))
+}
+
+/// What a chain needs to be written out.
+fn check_chain(
+    chain: &ChainSpec,
+    materials: &[(String, Material)],
+    scope: &Scope<'_>,
+) -> Result<(), SceneError> {
+    if !(1..=LONGEST_CHAIN).contains(&chain.segments) {
+        let expected = format!("a whole number from 1 to {LONGEST_CHAIN}");
+        return Err(scope
+            .key("segments")
+            .wrong(chain.segments.to_string(), expected));
+    }
+    let length = scope.key("length").positive(&chain.length)?;
+    scope.key("radius").positive(&chain.radius)?;
+    scope.key("mass").positive(&chain.mass)?;
+    if !(length * chain.segments as f64).is_finite() {
+        return Err(scope
+            .key("length")
+            .wrong(chain.length.to_string(), "a finite chain"));
+    }
+    let axis = unit_axis(&chain.axis, &scope.key("axis"))?;
+    let place = scope.key("first_joint_axis");
+    let joint_axis = unit_axis(&chain.first_joint_axis, &place)?;
+    if axis.dot(&joint_axis).abs() > 1e-9 {
+        let found = format!("{:?}", chain.first_joint_axis);
+        return Err(place.wrong(found, "an axis at right angles to \"axis\""));
+    }
+    if let Some(pair) = &chain.muscles {
+        let scope = scope.key("muscles");
+        find_material(&pair.material, materials, &scope)?;
+        scope.key("arm").positive(&pair.arm)?;
+        scope.key("rest_length").positive(&pair.rest_length)?;
+        positive_sides(&pair.cross_section, &scope)?;
+        scope
+            .key("layer_thickness")
+            .positive(&pair.layer_thickness)?;
+    }
+    Ok(())
+}
+
+fn joint(spec: &JointSpec, bodies: &[String], scope: &Scope<'_>) -> Result<Joint, SceneError> {
+    let kind = scope.exactly_one([
+        (
+            "revolute",
+            spec.revolute.as_ref().map(|_| JointKey::Revolute),
+        ),
+        (
+            "prismatic",
+            spec.prismatic.as_ref().map(|_| JointKey::Prismatic),
+        ),
+        (
+            "spherical",
+            spec.spherical.as_ref().map(|_| JointKey::Spherical),
+        ),
+        ("fixed", spec.fixed.as_ref().map(|_| JointKey::Fixed)),
+    ])?;
+    let axis = |key: &str, spec: &Option<AxisSpec>| {
+        let axis = spec.as_ref().map_or([0.0; 3], |spec| spec.axis);
+        unit_axis(&axis, &scope.key(key).key("axis"))
+    };
+    let place = scope.key("damping");
+    let (kind, damping_kind) = match kind {
+        JointKey::Revolute => {
+            let axis = axis("revolute", &spec.revolute)?;
+            (
+                JointKind::Revolute { axis },
+                Some(RotationalDamping::kind()),
+            )
+        }
+        JointKey::Prismatic => {
+            let axis = axis("prismatic", &spec.prismatic)?;
+            (JointKind::Prismatic { axis }, Some(Damping::kind()))
+        }
+        JointKey::Spherical => (JointKind::Spherical, None),
+        JointKey::Fixed => (JointKind::Fixed, None),
+    };
+    let damping = match (&spec.damping, damping_kind) {
+        (None, _) => None,
+        (Some(damping), None) => {
+            let expected = "no damping, as the joint is neither revolute nor prismatic";
+            return Err(place.wrong(damping.to_string(), expected));
+        }
+        (Some(damping), Some(kind)) => {
+            let value = damping.value_as(&kind);
+            let value = value.map_err(|found| place.wrong(found, kind.expected()))?;
+            if value < 0.0 {
+                let expected = format!("zero or a positive value: {}", kind.expected());
+                return Err(place.wrong(damping.to_string(), expected));
+            }
+            Some(value).filter(|&value| value > 0.0)
+        }
+    };
+    let parent = find_body(&spec.parent, bodies, &scope.key("parent"))?;
+    let place = scope.key("child");
+    let child = place.find(&spec.child, bodies, "the name of a body")?;
+    if parent == Some(child) {
+        let found = format!("{:?}, which is the parent too", spec.child);
+        return Err(place.wrong(found, "another body than the parent"));
+    }
+    Ok(Joint {
+        name: spec.name.clone(),
+        kind,
+        parent,
+        child,
+        at: vector(&spec.at),
+        damping,
+    })
+}
+
+enum JointKey {
+    Revolute,
+    Prismatic,
+    Spherical,
+    Fixed,
+}
+
+fn muscle(
+    spec: &MuscleSpec,
+    bodies: &[String],
+    materials: &[(String, Material)],
+    scope: &Scope<'_>,
+) -> Result<Muscle, SceneError> {
+    if spec.model == MuscleModel::FiniteElements {
+        let found = "\"finite_elements\", which is not available in this version";
+        return Err(scope.key("model").wrong(found, "\"lumped\""));
+    }
+    let material = find_material(&spec.material, materials, scope)?;
+    let end =
+        |key: &str, point: &PointSpec| attachment(&point.body, &point.at, bodies, &scope.key(key));
+    let (from, to) = (end("from", &spec.from)?, end("to", &spec.to)?);
+    let length = (to.at - from.at).norm();
+    if length.is_nan() || length < SHORTEST_SPAN {
+        let found = "the place where the muscle starts, which makes its length zero";
+        return Err(scope
+            .key("to")
+            .key("at")
+            .wrong(found, "another place than \"from\""));
+    }
+    if from.body == to.body {
+        let found = format!("{:?}, where the muscle starts too", spec.to.body);
+        return Err(scope
+            .key("to")
+            .key("body")
+            .wrong(found, "another body than \"from\""));
+    }
+    Ok(Muscle {
+        name: spec.name.clone(),
+        from,
+        to,
+        cross_section: positive_sides(&spec.cross_section, scope)?,
+        layer_thickness: scope
+            .key("layer_thickness")
+            .positive(&spec.layer_thickness)?,
+        material,
+        section_inertia: spec.section_inertia,
+    })
+}
+
+/// Sides of the cross-section of a muscle or of a pair.
+fn positive_sides(
+    sides: &[Quantity<Length>; 2],
+    scope: &Scope<'_>,
+) -> Result<[f64; 2], SceneError> {
+    let place = scope.key("cross_section");
+    let [first, second] = sides;
+    Ok([
+        place.index(0).positive(first)?,
+        place.index(1).positive(second)?,
+    ])
+}
+
+fn find_material(
+    name: &str,
+    materials: &[(String, Material)],
+    scope: &Scope<'_>,
+) -> Result<Material, SceneError> {
+    let names: Vec<String> = materials.iter().map(|(name, _)| name.clone()).collect();
+    let found = scope
+        .key("material")
+        .find(name, &names, "the name of a material");
+    found.map(|index| materials[index].1)
+}
+
+fn attachment(
+    body: &str,
+    at: &Point,
+    bodies: &[String],
+    scope: &Scope<'_>,
+) -> Result<Attachment, SceneError> {
+    let body = find_body(body, bodies, &scope.key("body"))?;
+    let at = vector(at);
+    Ok(Attachment { body, at })
+}
+
+/// Index of a body; `None` is the ground.
+fn find_body(
+    name: &str,
+    bodies: &[String],
+    scope: &Scope<'_>,
+) -> Result<Option<usize>, SceneError> {
+    if name == "ground" {
+        return Ok(None);
+    }
+    if let Some(index) = bodies.iter().position(|body| body == name) {
+        return Ok(Some(index));
+    }
+    let or_ground = bodies.iter().map(String::as_str).chain(["ground"]);
+    let expected = "the name of a body or \"ground\"";
+    Err(scope
+        .document
+        .wrong_name(&scope.place, name, expected, or_ground))
+}

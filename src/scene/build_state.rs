@@ -1,0 +1,179 @@
+//! From states and voltages as written to indices and one voltage per muscle.
+
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+
+use crate::control::problem::State;
+use crate::model::system::{JointKind, System};
+use crate::scene::build_scene::{names, vector};
+use crate::scene::error::SceneError;
+use crate::scene::quantity::{Angle, AngularVelocity, Kind, Length, Measure, Quantity, Velocity};
+use crate::scene::scope::Scope;
+use crate::scene::spec_problem::{GoalSpec, StartSpec, VoltageMap};
+use crate::scene::spec_scene::Point;
+
+/// One voltage per muscle in V, 0 where not named.
+pub(crate) fn voltages(
+    map: &VoltageMap,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<f64>, SceneError> {
+    let mut voltages = vec![0.0; system.muscles.len()];
+    for (name, voltage) in map {
+        voltages[driven_muscle(name, system, &scope.key(name))?] = voltage.value();
+    }
+    Ok(voltages)
+}
+
+/// Index of a muscle that takes a voltage.
+pub(crate) fn driven_muscle(
+    name: &str,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<usize, SceneError> {
+    let muscles = names(&system.muscles, |muscle| &muscle.name);
+    let index = scope.find(name, &muscles, "the name of a muscle")?;
+    if system.muscles[index].material.electric.is_some() {
+        return Ok(index);
+    }
+    let found = format!("{name:?}, whose material has no electric term");
+    Err(scope.wrong(
+        found,
+        "a muscle whose material has \"relative_permittivity\", or \"c1\" and \"c2\"",
+    ))
+}
+
+/// A state at the start.
+pub(crate) fn start_state(
+    spec: &StartSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<State, SceneError> {
+    let moving = spec.joint_angles.is_some() || spec.joint_rates.is_some();
+    let rest = spec.rest_at_voltages.as_ref().map(Some);
+    match scope.exactly_one([
+        ("rest_at_voltages", rest),
+        ("joint_angles", moving.then_some(None)),
+    ])? {
+        Some(map) => {
+            voltages(map, system, &scope.key("rest_at_voltages")).map(State::RestAtVoltages)
+        }
+        None => {
+            let kinds = [Angle::kind(), Length::kind()];
+            let angles = by_joint(
+                &spec.joint_angles,
+                &kinds,
+                system,
+                &scope.key("joint_angles"),
+            )?;
+            let kinds = [AngularVelocity::kind(), Velocity::kind()];
+            let rates = by_joint(&spec.joint_rates, &kinds, system, &scope.key("joint_rates"))?;
+            Ok(State::JointAngles { angles, rates })
+        }
+    }
+}
+
+/// A state at the end.
+pub(crate) fn goal_state(
+    spec: &GoalSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<State, SceneError> {
+    let key = scope.exactly_one([
+        (
+            "rest_at_voltages",
+            spec.rest_at_voltages.as_ref().map(|_| "rest_at_voltages"),
+        ),
+        (
+            "joint_angles",
+            spec.joint_angles.as_ref().map(|_| "joint_angles"),
+        ),
+        ("markers", spec.markers.as_ref().map(|_| "markers")),
+    ])?;
+    let scope = scope.key(key);
+    if let Some(map) = &spec.rest_at_voltages {
+        return voltages(map, system, &scope).map(State::RestAtVoltages);
+    }
+    if let Some(markers) = &spec.markers {
+        return marker_goals(markers, system, &scope).map(State::Markers);
+    }
+    let kinds = [Angle::kind(), Length::kind()];
+    let angles = by_joint(&spec.joint_angles, &kinds, system, &scope)?;
+    if angles.is_empty() {
+        return Err(scope.wrong("no joint", "the coordinate of a joint or more"));
+    }
+    let rates = BTreeMap::new();
+    Ok(State::JointAngles { angles, rates })
+}
+
+fn marker_goals(
+    markers: &BTreeMap<String, Point>,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BTreeMap<usize, Vector3<f64>>, SceneError> {
+    let all = names(&system.markers, |marker| &marker.name);
+    let mut goals = BTreeMap::new();
+    for (name, at) in markers {
+        let place = scope.key(name);
+        let index = place.find(name, &all, "the name of a marker")?;
+        if system.markers[index].point.body.is_none() {
+            let found = format!("{name:?}, which is fixed to the ground");
+            return Err(place.wrong(found, "a marker on a body"));
+        }
+        goals.insert(index, vector(at));
+    }
+    if goals.is_empty() {
+        return Err(scope.wrong("no marker", "the position of a marker or more"));
+    }
+    Ok(goals)
+}
+
+/// Values by joint index, of the first kind for rotations and of the second for translations.
+fn by_joint<M: Measure>(
+    map: &Option<BTreeMap<String, Quantity<M>>>,
+    kinds: &[Kind; 2],
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BTreeMap<usize, f64>, SceneError> {
+    let mut values = BTreeMap::new();
+    for (name, quantity) in map.iter().flatten() {
+        let place = scope.key(name);
+        let index = joint_with_coordinate(name, system, &place)?;
+        let value = joint_value(quantity, kinds, index, system, &place)?;
+        values.insert(index, value);
+    }
+    Ok(values)
+}
+
+/// Index of a joint that has one coordinate.
+pub(crate) fn joint_with_coordinate(
+    name: &str,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<usize, SceneError> {
+    let joints = names(&system.joints, |joint| &joint.name);
+    let index = scope.find(name, &joints, "the name of a joint")?;
+    match system.joints[index].kind {
+        JointKind::Revolute { .. } | JointKind::Prismatic { .. } => Ok(index),
+        JointKind::Spherical | JointKind::Fixed => {
+            let found = format!("{name:?}, which is neither revolute nor prismatic");
+            Err(scope.wrong(found, "a joint with one coordinate"))
+        }
+    }
+}
+
+/// A value of a joint in the kind that the joint calls for.
+pub(crate) fn joint_value<M: Measure>(
+    quantity: &Quantity<M>,
+    [angular, linear]: &[Kind; 2],
+    joint: usize,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<f64, SceneError> {
+    let kind = match system.joints[joint].kind {
+        JointKind::Prismatic { .. } => linear,
+        _ => angular,
+    };
+    let value = quantity.value_as(kind);
+    value.map_err(|found| scope.wrong(found, kind.expected()))
+}

@@ -1,0 +1,220 @@
+//! A JSON file as text and as values: reading, overrides, and mistakes with their place in it.
+
+use miette::NamedSource;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::collections::HashSet;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use crate::scene::error::{Mistake, SceneError, nearest};
+use crate::scene::locate::{Place, Step, locate};
+use crate::scene::wording::wording;
+
+/// A JSON file.
+#[derive(Debug)]
+pub(crate) struct Document {
+    /// Where it was read.
+    pub(crate) path: PathBuf,
+    /// Values, with overrides applied.
+    pub(crate) value: Value,
+    /// Places set on the command line.
+    pub(crate) set: Vec<Place>,
+    text: String,
+}
+
+impl Document {
+    /// Reads a file.
+    pub(crate) fn read(path: &Path) -> Result<Self, SceneError> {
+        let mut document = Self {
+            path: path.to_owned(),
+            value: Value::Null,
+            set: Vec::new(),
+            text: String::new(),
+        };
+        let bytes = std::fs::read(path).map_err(|error| {
+            let found = format!("no readable file ({error})");
+            document.mistake(&Place::default(), found, "a JSON file")
+        })?;
+        document.text = String::from_utf8(bytes).map_err(|error| {
+            let found = format!("a file that is not UTF-8 text ({})", error.utf8_error());
+            document.mistake(&Place::default(), found, "a JSON file")
+        })?;
+        document.value = serde_json::from_str(&document.text)
+            .map_err(|error| document.syntax_mistake(&error))?;
+        document.refuse_repeated_keys()?;
+        Ok(document)
+    }
+
+    /// A path that is relative to this file.
+    pub(crate) fn beside(&self, path: &str) -> PathBuf {
+        match self.path.parent() {
+            Some(folder) => folder.join(path),
+            None => PathBuf::from(path),
+        }
+    }
+
+    /// The values as a type, or the first mistake.
+    pub(crate) fn parse<T: DeserializeOwned>(&self) -> Result<T, SceneError> {
+        serde_path_to_error::deserialize(&self.value).map_err(|error| {
+            let steps = error.path().iter().filter_map(|segment| match segment {
+                serde_path_to_error::Segment::Seq { index } => Some(Step::Index(*index)),
+                serde_path_to_error::Segment::Map { key } => Some(Step::Key(key.clone())),
+                _ => None,
+            });
+            let place = Place(steps.collect());
+            let wording = wording(place.last_key(), &error.inner().to_string());
+            let at_key = wording.at_key;
+            self.describe(
+                &place,
+                wording.found,
+                wording.expected,
+                wording.nearest,
+                at_key,
+            )
+        })
+    }
+
+    /// A wrong value at a place.
+    pub(crate) fn mistake(
+        &self,
+        place: &Place,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> SceneError {
+        self.describe(place, found.into(), expected.into(), None, false)
+    }
+
+    /// A wrong name at a place, with the nearest right one.
+    pub(crate) fn wrong_name<'a>(
+        &self,
+        place: &Place,
+        name: &str,
+        expected: impl Into<String>,
+        candidates: impl IntoIterator<Item = &'a str>,
+    ) -> SceneError {
+        let (found, nearest) = (format!("{name:?}"), nearest(name, candidates));
+        // A name that is a key of the file is pointed at there.
+        let at_key = place.last_key() == Some(name);
+        self.describe(place, found, expected.into(), nearest, at_key)
+    }
+
+    fn describe(
+        &self,
+        place: &Place,
+        found: String,
+        expected: String,
+        nearest: Option<String>,
+        at_key: bool,
+    ) -> SceneError {
+        let overridden = self.set.iter().any(|set| place.is_within(set));
+        let span = if overridden {
+            None
+        } else {
+            self.span(place, at_key)
+        };
+        self.error(
+            place.to_string(),
+            found,
+            expected,
+            nearest,
+            span,
+            overridden,
+        )
+    }
+
+    fn error(
+        &self,
+        path: String,
+        found: String,
+        expected: String,
+        nearest: Option<String>,
+        span: Option<Range<usize>>,
+        overridden: bool,
+    ) -> SceneError {
+        let file = self.path.display().to_string();
+        let named = || NamedSource::new(&file, self.text.clone()).with_language("json");
+        Mistake {
+            source: span.map(|span| (named(), span)),
+            file,
+            path,
+            found,
+            expected,
+            nearest,
+            overridden,
+        }
+        .into()
+    }
+
+    /// Bytes of a value (or its key), or of the nearest value around it.
+    fn span(&self, place: &Place, at_key: bool) -> Option<Range<usize>> {
+        let all = locate(&self.text);
+        let mut place = place.clone();
+        let mut at_key = at_key;
+        loop {
+            if let Some(found) = all.iter().find(|found| found.place == place) {
+                return match &found.key {
+                    Some(key) if at_key => Some(key.clone()),
+                    _ => Some(found.value.clone()),
+                };
+            }
+            place = place.parent()?;
+            at_key = false;
+        }
+    }
+
+    /// A text that is no JSON: line and column, and the path where a value is the reason.
+    fn syntax_mistake(&self, error: &serde_json::Error) -> SceneError {
+        let line_start = self
+            .text
+            .split_inclusive('\n')
+            .take(error.line().saturating_sub(1))
+            .map(str::len)
+            .sum::<usize>();
+        let mut at = (line_start + error.column().saturating_sub(1)).min(self.text.len());
+        while !self.text.is_char_boundary(at) {
+            at -= 1;
+        }
+        if error.to_string().starts_with("number out of range") {
+            let number = |range: &Range<usize>| range.start <= at && at <= range.end;
+            if let Some(found) = locate(&self.text).iter().find(|found| number(&found.value)) {
+                let written = &self.text[found.value.clone()];
+                return self.mistake(
+                    &found.place,
+                    format!("{written}, which is not finite"),
+                    "a finite number",
+                );
+            }
+        }
+        let end = self.text[at..]
+            .chars()
+            .next()
+            .map_or(at, |c| at + c.len_utf8());
+        let found = format!("a mistake in the JSON text ({error})");
+        self.error(
+            String::new(),
+            found,
+            "JSON".into(),
+            None,
+            Some(at..end),
+            false,
+        )
+    }
+
+    /// JSON readers keep the last of two equal keys without a word; here that is a mistake.
+    fn refuse_repeated_keys(&self) -> Result<(), SceneError> {
+        let mut all = locate(&self.text);
+        all.sort_by_key(|found| found.value.start);
+        let mut seen = HashSet::new();
+        for found in all {
+            if !seen.insert(found.place.clone()) {
+                let key = found.place.last_key().unwrap_or_default();
+                let what = format!("the key {key:?} twice");
+                let (path, span) = (found.place.to_string(), found.key.unwrap_or(found.value));
+                let expected = "each key once".into();
+                return Err(self.error(path, what, expected, None, Some(span), false));
+            }
+        }
+        Ok(())
+    }
+}

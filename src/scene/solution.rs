@@ -1,0 +1,53 @@
+//! Voltages over time from an earlier `solution.json`.
+
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+use crate::control::problem::Voltages;
+use crate::model::system::System;
+use crate::scene::build_state::driven_muscle;
+use crate::scene::document::Document;
+use crate::scene::error::SceneError;
+use crate::scene::scope::Scope;
+
+/// What is read of a solution.
+#[derive(Debug, Deserialize)]
+struct Solution {
+    /// Instants in s.
+    time: Vec<f64>,
+    /// Voltages in V by muscle, one per interval.
+    voltages: BTreeMap<String, Vec<f64>>,
+}
+
+/// Voltages of a solution; 0 for muscles that it does not know.
+pub(crate) fn sampled_voltages(
+    document: &Document,
+    system: &System,
+) -> Result<Voltages, SceneError> {
+    let solution: Solution = document.parse()?;
+    let scope = Scope::of(document);
+    let place = scope.key("time");
+    if solution.time.len() < 2 {
+        let found = format!("{} instants", solution.time.len());
+        return Err(place.wrong(found, "2 instants or more"));
+    }
+    if let Some(index) = solution.time.windows(2).position(|pair| pair[0] >= pair[1]) {
+        let found = solution.time[index + 1].to_string();
+        return Err(place.index(index + 1).wrong(found, "increasing times"));
+    }
+    let ends: Vec<f64> = solution.time[1..].iter().map(|time| 1e3 * time).collect();
+    let mut rows = vec![vec![0.0; system.muscles.len()]; ends.len()];
+    for (name, history) in &solution.voltages {
+        let place = scope.key("voltages").key(name);
+        let muscle = driven_muscle(name, system, &place)?;
+        if history.len() != ends.len() {
+            let found = format!("{} voltages", history.len());
+            let expected = format!("{}, one per interval", ends.len());
+            return Err(place.wrong(found, expected));
+        }
+        for (row, voltage) in rows.iter_mut().zip(history) {
+            row[muscle] = *voltage;
+        }
+    }
+    Ok(Voltages::Sampled { ends, rows })
+}

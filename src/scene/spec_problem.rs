@@ -1,0 +1,330 @@
+//! A problem as it is written: the serde types of the problem file.
+
+use schemars::JsonSchema;
+use serde::de::{Error, MapAccess, Unexpected, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::marker::PhantomData;
+
+use crate::scene::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::scene::quantity::{JointCoordinate, JointRate, Quantity, Time, Voltage};
+use crate::scene::spec_limits::LimitSpec;
+use crate::scene::spec_scene::{Point, SceneSpec};
+
+/// What is asked of a scene: exactly one of `simulate`, `equilibrium`, `control`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ProblemSpec {
+    /// JSON Schema of this file, for editors.
+    #[serde(rename = "$schema", default)]
+    #[expect(dead_code, reason = "read by editors only")]
+    pub(crate) schema: Option<String>,
+    /// Path of the scene file, relative to this file, or the scene itself.
+    pub scene: SceneSource,
+    /// Forward simulation.
+    #[serde(default)]
+    pub simulate: Option<SimulateSpec>,
+    /// Static equilibrium.
+    #[serde(default)]
+    pub equilibrium: Option<EquilibriumSpec>,
+    /// Optimal control.
+    #[serde(default)]
+    pub control: Option<ControlSpec>,
+}
+
+/// Coordinates in which a problem is solved; reduced where the joints form a tree, unless written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CoordinatesSpec {
+    /// Independent joint coordinates.
+    Reduced,
+    /// Directors with multipliers.
+    Redundant,
+}
+
+/// Voltages by the names of muscles, SI unit V; 0 where not named.
+pub type VoltageMap = BTreeMap<String, Quantity<Voltage>>;
+
+/// A forward simulation.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SimulateSpec {
+    /// Length, SI unit s.
+    pub duration: Quantity<Time>,
+    /// Step, SI unit s.
+    pub step: Quantity<Time>,
+    /// Constant voltages, or those of a solution; 0 where not written.
+    #[serde(default)]
+    pub voltages: VoltagesSpec,
+    /// Where it starts; the reference configuration at rest where not written.
+    #[serde(default)]
+    pub start: Option<StartSpec>,
+    /// Coordinates.
+    #[serde(default)]
+    pub coordinates: Option<CoordinatesSpec>,
+}
+
+/// A static equilibrium.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EquilibriumSpec {
+    /// Voltages by the names of muscles, SI unit V; 0 where not named.
+    #[serde(default)]
+    pub voltages: VoltageMap,
+    /// Coordinates.
+    #[serde(default)]
+    pub coordinates: Option<CoordinatesSpec>,
+}
+
+/// An optimal control problem.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ControlSpec {
+    /// Final time, SI unit s, or its bounds and a guess.
+    pub duration: DurationSpec,
+    /// Number of intervals, 1 or more.
+    pub intervals: usize,
+    /// Initial state.
+    pub start: StartSpec,
+    /// Final state, at rest.
+    pub goal: GoalSpec,
+    /// Lower and upper bound of every voltage, SI unit V.
+    pub voltage_bounds: [Quantity<Voltage>; 2],
+    /// What is minimised.
+    pub objective: ObjectiveSpec,
+    /// Path limits.
+    #[serde(default)]
+    pub limits: Vec<LimitSpec>,
+    /// Coordinates.
+    #[serde(default)]
+    pub coordinates: Option<CoordinatesSpec>,
+    /// Where the solver starts.
+    #[serde(default)]
+    pub guess: GuessSpec,
+    /// Options of the solver.
+    #[serde(default)]
+    pub solver: SolverSpec,
+}
+
+/// A state at the start: exactly one of `rest_at_voltages` and joint coordinates.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StartSpec {
+    /// Static equilibrium under these voltages, SI unit V; 0 where not named.
+    #[serde(default)]
+    pub rest_at_voltages: Option<VoltageMap>,
+    /// Joint coordinates by joint, SI unit rad or m; 0 where not named.
+    #[serde(default)]
+    pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
+    /// Rates of joint coordinates by joint, SI unit rad/s or m/s; 0 where not named.
+    #[serde(default)]
+    pub joint_rates: Option<BTreeMap<String, Quantity<JointRate>>>,
+}
+
+/// A state at the end, at rest: exactly one of the three.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GoalSpec {
+    /// Static equilibrium under these voltages, SI unit V; 0 where not named.
+    #[serde(default)]
+    pub rest_at_voltages: Option<VoltageMap>,
+    /// Joint coordinates by joint, SI unit rad or m; free where not named.
+    #[serde(default)]
+    pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
+    /// Positions by marker, SI unit m.
+    #[serde(default)]
+    pub markers: Option<BTreeMap<String, Point>>,
+}
+
+/// Bounds of a free final time.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FreeDurationSpec {
+    /// Lower bound, SI unit s.
+    pub min: Quantity<Time>,
+    /// Upper bound, SI unit s.
+    pub max: Quantity<Time>,
+    /// Where the solver starts, SI unit s.
+    pub guess: Quantity<Time>,
+}
+
+/// Weights of the objective.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectiveSpec {
+    /// Weight of Σ h |V_k|², V in kV, h in s.
+    #[serde(default)]
+    pub effort: f64,
+    /// Weight of Σ |V_k − V_{k−1}|²/h, V in kV, h in s, with the rest voltages of start and goal at the ends.
+    #[serde(default)]
+    pub rate: f64,
+    /// Weight of the final time in s.
+    #[serde(default)]
+    pub duration: f64,
+}
+
+/// Options of the solver.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolverSpec {
+    /// Relative tolerance, 1e-8 where not written.
+    #[serde(default)]
+    pub tolerance: Option<f64>,
+    /// Limit of iterations, 500 where not written.
+    #[serde(default)]
+    pub max_iterations: Option<usize>,
+    /// Options of Ipopt by name.
+    #[serde(default)]
+    pub ipopt: BTreeMap<String, OptionSpec>,
+}
+
+/// A value of an option of Ipopt.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(
+    untagged,
+    expecting = "another kind of value, expected a whole number, a number or a text"
+)]
+pub enum OptionSpec {
+    /// Whole number.
+    Integer(i32),
+    /// Number.
+    Number(f64),
+    /// Text.
+    Text(String),
+}
+
+/// A simulation as a guess.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GuessSimulationSpec {
+    /// Constant voltages by the names of muscles, SI unit V; 0 where not named.
+    #[serde(default)]
+    pub voltages: VoltageMap,
+}
+
+/// An object of a guess: exactly one of the two.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GuessObjectSpec {
+    /// A simulation under constant voltages.
+    #[serde(default)]
+    pub simulate: Option<GuessSimulationSpec>,
+    /// Path of a `solution.json`, relative to this file or to the current folder.
+    #[serde(default)]
+    pub solution: Option<String>,
+}
+
+/// A word of a guess.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GuessWord {
+    /// Smooth interpolation between start and goal.
+    Interpolate,
+}
+
+/// A scene by its path, or the scene itself.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum SceneSource {
+    /// Path relative to the problem file.
+    Path(String),
+    /// The scene.
+    Inline(Box<SceneSpec>),
+}
+
+/// A time, or bounds of a free one.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum DurationSpec {
+    /// Given.
+    Given(Quantity<Time>),
+    /// Free.
+    Free(FreeDurationSpec),
+}
+
+/// A word or an object.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum GuessSpec {
+    /// `"interpolate"`.
+    Word(GuessWord),
+    /// An object.
+    Object(GuessObjectSpec),
+}
+
+impl Default for GuessSpec {
+    fn default() -> Self {
+        Self::Word(GuessWord::Interpolate)
+    }
+}
+
+/// Constant voltages by muscle, or `{"solution": path}`.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum VoltagesSpec {
+    /// Those of a `solution.json`.
+    Solution(SolutionSpec),
+    /// Constant.
+    Constant(VoltageMap),
+}
+
+/// A solution by its path.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolutionSpec {
+    /// Path of a `solution.json`, relative to this file or to the current folder.
+    pub solution: String,
+}
+
+impl Default for VoltagesSpec {
+    fn default() -> Self {
+        Self::Constant(VoltageMap::new())
+    }
+}
+
+scalar_or_object! {
+    SceneSource: String = Self::Path, Box<SceneSpec> = Self::Inline, "the path of a scene file or a scene";
+    DurationSpec: Quantity<Time> = Self::Given, FreeDurationSpec = Self::Free,
+        "a time, such as \"0.6 s\", or an object with \"min\", \"max\" and \"guess\"";
+    GuessSpec: GuessWord = Self::Word, GuessObjectSpec = Self::Object,
+        "\"interpolate\" or an object with \"simulate\" or \"solution\"";
+}
+
+impl<'de> Deserialize<'de> for VoltagesSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(VoltagesVisitor)
+    }
+}
+
+struct VoltagesVisitor;
+
+impl<'de> Visitor<'de> for VoltagesVisitor {
+    type Value = VoltagesSpec;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("voltages by muscle or an object with \"solution\"")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<VoltagesSpec, A::Error> {
+        let mut constant = VoltageMap::new();
+        let mut solution = None;
+        while let Some(key) = map.next_key::<String>()? {
+            if key == "solution" {
+                solution = Some(map.next_value()?);
+            } else {
+                constant.insert(key, map.next_value()?);
+            }
+        }
+        match solution {
+            None => Ok(VoltagesSpec::Constant(constant)),
+            Some(solution) if constant.is_empty() => {
+                Ok(VoltagesSpec::Solution(SolutionSpec { solution }))
+            }
+            Some(_) => {
+                let found = Unexpected::Other("\"solution\" beside voltages");
+                Err(A::Error::invalid_value(found, &self))
+            }
+        }
+    }
+}
