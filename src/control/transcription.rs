@@ -616,6 +616,7 @@ impl<'m> Transcription<'m> {
             self.values.fill(0.0);
         }
         let mut square = 0.0;
+        self.scratch.start();
         for k in 0..self.intervals {
             let (left, right) = self.instants.split_at_mut(k + 1);
             let (a, b) = (&mut left[k], &mut right[0]);
@@ -639,18 +640,27 @@ impl<'m> Transcription<'m> {
                 weights,
                 scratch,
             );
+            scratch.carry(level);
             action.pull_back_interval(
                 level,
                 a,
                 b,
                 self.horizon,
-                Sides::ALL,
+                Sides::CARRIED,
                 k,
                 scratch,
                 &mut self.values,
             );
             square += scratch.interval.contracted.horizon;
         }
+        let last = &self.instants[self.intervals];
+        action.pull_back_last(
+            level,
+            last,
+            self.intervals,
+            &mut self.scratch,
+            &mut self.values,
+        );
         for (k, instant) in self.instants.iter_mut().enumerate() {
             let weights = instant_weights(
                 &mut self.weights[0],

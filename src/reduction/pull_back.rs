@@ -7,7 +7,8 @@ use crate::functional::{Couplings, Part, Sides};
 use crate::math::{Matrix, Vector};
 use crate::reduction::instant::Instant;
 use crate::reduction::motion::{Dependence, Motion};
-use crate::reduction::pattern::Layout;
+use crate::reduction::pattern::{Layout, Pattern};
+use crate::reduction::tree::Packed;
 use std::collections::BTreeMap;
 
 /// A coupled pair of vectors.
@@ -16,7 +17,7 @@ struct Pair {
     slot: usize,
     /// Slot of the pair in the other order.
     transposed: usize,
-    /// First columns.
+    /// Where the columns of both start.
     first: [usize; 2],
 }
 
@@ -25,10 +26,13 @@ struct Pair {
 struct Articulated {
     rows: usize,
     cols: usize,
+    /// Strides of the columns.
+    stride: [usize; 2],
     full: Vec<Pair>,
     isotropic: Vec<Pair>,
-    same: Vec<usize>,
-    cross: Vec<usize>,
+    /// (place in the local matrix, place in the values), for blocks of one instant and between neighbours.
+    same: Vec<(usize, usize)>,
+    cross: Vec<(usize, usize)>,
 }
 
 /// One scalar entry c · block[i, j] of a pair of linear vectors.
@@ -47,6 +51,7 @@ enum Mixed {
     Articulated {
         slot: usize,
         column: usize,
+        stride: usize,
         place: usize,
     },
     Linear {
@@ -89,29 +94,20 @@ impl PullBack {
         for (slot, &(a, b)) in couplings.full.iter().enumerate() {
             let transposed = couplings.transposed_full(slot);
             match (&motion.vectors[a], &motion.vectors[b]) {
-                (
-                    Dependence::Articulated {
-                        first: f,
-                        support: s,
-                    },
-                    Dependence::Articulated {
-                        first: g,
-                        support: t,
-                    },
-                ) => {
-                    let group = Self::group(&mut groups, s, t, layout, site);
-                    group.full.push(Pair {
+                (Dependence::Articulated(a), Dependence::Articulated(b)) => {
+                    let pair = Pair {
                         slot,
                         transposed,
-                        first: [*f, *g],
-                    });
+                        first: [a.first, b.first],
+                    };
+                    Self::group(&mut groups, [a, b], layout, site)
+                        .full
+                        .push(pair);
                 }
                 (Dependence::Linear { parts: s, .. }, Dependence::Linear { parts: t, .. }) => {
-                    for i in 0..3 {
-                        for j in 0..3 {
-                            plan.full
-                                .extend(Self::linear(slot, s, t, (i, j), layout, site));
-                        }
+                    for entry in (0..9).map(|e| (e / 3, e % 3)) {
+                        plan.full
+                            .extend(Self::linear(slot, s, t, entry, layout, site));
                     }
                 }
                 _ => unreachable!("vectors of one scene are all articulated or all linear"),
@@ -120,22 +116,15 @@ impl PullBack {
         for (slot, &(a, b)) in couplings.isotropic.iter().enumerate() {
             let transposed = couplings.transposed_isotropic(slot);
             match (&motion.vectors[a], &motion.vectors[b]) {
-                (
-                    Dependence::Articulated {
-                        first: f,
-                        support: s,
-                    },
-                    Dependence::Articulated {
-                        first: g,
-                        support: t,
-                    },
-                ) => {
-                    let group = Self::group(&mut groups, s, t, layout, site);
-                    group.isotropic.push(Pair {
+                (Dependence::Articulated(a), Dependence::Articulated(b)) => {
+                    let pair = Pair {
                         slot,
                         transposed,
-                        first: [*f, *g],
-                    });
+                        first: [a.first, b.first],
+                    };
+                    Self::group(&mut groups, [a, b], layout, site)
+                        .isotropic
+                        .push(pair);
                 }
                 (Dependence::Linear { parts: s, .. }, Dependence::Linear { parts: t, .. }) => {
                     for i in 0..3 {
@@ -153,17 +142,19 @@ impl PullBack {
         plan.local = plan
             .articulated
             .iter()
-            .map(|g| 4 * g.rows * g.cols)
+            .map(|g| 4 * g.rows * g.stride[1])
             .max()
             .unwrap_or(0);
         for (slot, &(a, s)) in couplings.mixed.iter().enumerate() {
             match &motion.vectors[a] {
-                Dependence::Articulated { first, support } => {
-                    for (i, &row) in support.iter().enumerate() {
+                Dependence::Articulated(packed) => {
+                    for (i, &row) in packed.support.iter().enumerate() {
                         for place in site.mixed(layout, motion, row, s) {
+                            let (column, stride) = (packed.first + i, packed.stride);
                             plan.mixed.push(Mixed::Articulated {
                                 slot,
-                                column: first + i,
+                                column,
+                                stride,
                                 place,
                             });
                         }
@@ -196,27 +187,38 @@ impl PullBack {
         plan
     }
 
-    fn group<'a>(
-        groups: &'a mut BTreeMap<(Vec<usize>, Vec<usize>), Articulated>,
-        s: &[usize],
-        t: &[usize],
+    fn group<'g>(
+        groups: &'g mut BTreeMap<(Vec<usize>, Vec<usize>), Articulated>,
+        [a, b]: [&Packed; 2],
         layout: &mut Layout,
         site: Site,
-    ) -> &'a mut Articulated {
-        groups.entry((s.to_vec(), t.to_vec())).or_insert_with(|| {
-            let entries = || s.iter().flat_map(|&i| t.iter().map(move |&j| (i, j)));
-            Articulated {
-                rows: s.len(),
-                cols: t.len(),
-                full: Vec::new(),
-                isotropic: Vec::new(),
-                same: entries().map(|(i, j)| layout.same.slot(i, j)).collect(),
-                cross: match site {
-                    Site::Intervals => entries().map(|(i, j)| layout.cross.slot(i, j)).collect(),
-                    Site::Instants => Vec::new(),
-                },
-            }
-        })
+    ) -> &'g mut Articulated {
+        groups
+            .entry((a.support.clone(), b.support.clone()))
+            .or_insert_with(|| {
+                let places = |pattern: &mut Pattern| {
+                    let mut list = Vec::new();
+                    for (i, &row) in a.support.iter().enumerate() {
+                        for (j, &col) in b.support.iter().enumerate() {
+                            list.push((i * b.stride + j, pattern.slot(row, col)));
+                        }
+                    }
+                    list
+                };
+                Articulated {
+                    rows: a.support.len(),
+                    cols: b.support.len(),
+                    stride: [a.stride, b.stride],
+                    full: Vec::new(),
+                    isotropic: Vec::new(),
+                    same: places(&mut layout.same),
+                    cross: if site == Site::Intervals {
+                        places(&mut layout.cross)
+                    } else {
+                        Vec::new()
+                    },
+                }
+            })
     }
 
     fn linear(
@@ -256,35 +258,25 @@ impl PullBack {
     /// Adds Pᵀ H P.
     pub fn hessian(
         &self,
-        [a, b]: [&Instant; 2],
+        ends: [&Instant; 2],
         part: &Part,
         sides: Sides,
         target: &Target,
         local: &mut [f64],
         values: &mut [f64],
     ) {
-        let columns = [a.columns.as_slice(), b.columns.as_slice()];
+        let columns = ends.map(|e| e.columns.as_slice());
         for group in &self.articulated {
-            let size = group.rows * group.cols;
+            let size = group.rows * group.stride[1];
             let local = &mut local[..4 * size];
             local.fill(0.0);
             for side in (0..4).filter(|&s| sides.blocks[s]) {
-                let (ca, cb) = (columns[side / 2], columns[side % 2]);
                 let out = &mut local[side * size..(side + 1) * size];
-                for pair in &group.full {
-                    let block = &part.blocks.full[pair.slot][side];
-                    let rows = &ca[pair.first[0]..][..group.rows];
-                    for (j, column) in cb[pair.first[1]..][..group.cols].iter().enumerate() {
-                        add_column(out, group.cols, j, rows, &(block * column));
-                    }
-                }
-                for pair in &group.isotropic {
-                    let factor = part.blocks.isotropic[pair.slot][side];
-                    let rows = &ca[pair.first[0]..][..group.rows];
-                    for (j, column) in cb[pair.first[1]..][..group.cols].iter().enumerate() {
-                        add_column(out, group.cols, j, rows, &(column * factor));
-                    }
-                }
+                let ends = [columns[side / 2], columns[side % 2]];
+                group.blocks(|lanes, at| match lanes {
+                    Lanes::Eight => group.hessian::<8>(at, ends, side, part, out),
+                    Lanes::Four => group.hessian::<4>(at, ends, side, part, out),
+                });
             }
             group.scatter(sides, target, local, values);
         }
@@ -296,15 +288,21 @@ impl PullBack {
             values,
         );
         for entry in &self.mixed {
-            for side in 0..2 {
+            for side in (0..2).filter(|&side| target.mixed[side] != usize::MAX) {
                 let (place, value) = match *entry {
                     Mixed::Articulated {
                         slot,
                         column,
+                        stride,
                         place,
                     } => (
                         place,
-                        columns[side][column].dot(&part.blocks.mixed[slot][side]),
+                        dot(
+                            columns[side],
+                            column,
+                            stride,
+                            &part.blocks.mixed[slot][side],
+                        ),
                     ),
                     Mixed::Linear {
                         slot,
@@ -313,9 +311,7 @@ impl PullBack {
                         place,
                     } => (place, factor * part.blocks.mixed[slot][side][component]),
                 };
-                if target.mixed[side] != usize::MAX {
-                    values[target.mixed[side] + place] += value;
-                }
+                values[target.mixed[side] + place] += value;
             }
         }
         for &(slot, place) in &self.scalars {
@@ -348,62 +344,31 @@ impl PullBack {
     /// Adds the lower blocks of `Pᵀ H_w P + P′_lᵀ H P + Pᵀ Hᵀ P′_l`.
     pub fn third(
         &self,
-        [a, b]: [&Instant; 2],
-        plain: &Part,
-        contracted: &Part,
+        ends: [&Instant; 2],
+        [plain, contracted]: [&Part; 2],
         sides: Sides,
         target: &Target,
         local: &mut [f64],
         values: &mut [f64],
     ) {
-        let columns = [a.columns.as_slice(), b.columns.as_slice()];
-        let columns_l = [a.columns_l.as_slice(), b.columns_l.as_slice()];
+        let columns = ends.map(|e| e.columns.as_slice());
+        let columns_l = ends.map(|e| e.columns_l.as_slice());
         let lower = Sides {
             blocks: [sides.blocks[0], false, sides.blocks[2], sides.blocks[3]],
         };
         for group in &self.articulated {
-            let size = group.rows * group.cols;
+            let size = group.rows * group.stride[1];
             let local = &mut local[..4 * size];
             local.fill(0.0);
             for side in (0..4).filter(|&s| lower.blocks[s]) {
-                let (r, s) = (side / 2, side % 2);
-                let other = 2 * s + r;
                 let out = &mut local[side * size..(side + 1) * size];
-                for pair in &group.full {
-                    let (fa, fb) = (pair.first[0], pair.first[1]);
-                    let (rows, rows_l) = (
-                        &columns[r][fa..][..group.rows],
-                        &columns_l[r][fa..][..group.rows],
-                    );
-                    let h = &plain.blocks.full[pair.slot][side];
-                    let ht = &plain.blocks.full[pair.transposed][other];
-                    let hw = &contracted.blocks.full[pair.slot][side];
-                    for j in 0..group.cols {
-                        let (column, column_l) = (&columns[s][fb + j], &columns_l[s][fb + j]);
-                        add_column(
-                            out,
-                            group.cols,
-                            j,
-                            rows,
-                            &(hw * column + ht.tr_mul(column_l)),
-                        );
-                        add_column(out, group.cols, j, rows_l, &(h * column));
-                    }
-                }
-                for pair in &group.isotropic {
-                    let (fa, fb) = (pair.first[0], pair.first[1]);
-                    let (rows, rows_l) = (
-                        &columns[r][fa..][..group.rows],
-                        &columns_l[r][fa..][..group.rows],
-                    );
-                    let h = plain.blocks.isotropic[pair.slot][side];
-                    let hw = contracted.blocks.isotropic[pair.slot][side];
-                    for j in 0..group.cols {
-                        let (column, column_l) = (&columns[s][fb + j], &columns_l[s][fb + j]);
-                        add_column(out, group.cols, j, rows, &(column * hw + column_l * h));
-                        add_column(out, group.cols, j, rows_l, &(column * h));
-                    }
-                }
+                let (r, s) = (side / 2, side % 2);
+                let ends = [columns[r], columns[s], columns_l[r], columns_l[s]];
+                let parts = [plain, contracted];
+                group.blocks(|lanes, at| match lanes {
+                    Lanes::Eight => group.third::<8>(at, ends, side, parts, out),
+                    Lanes::Four => group.third::<4>(at, ends, side, parts, out),
+                });
             }
             group.scatter(lower, target, local, values);
         }
@@ -415,16 +380,26 @@ impl PullBack {
             values,
         );
         for entry in &self.mixed {
-            for side in 0..2 {
+            for side in (0..2).filter(|&side| target.mixed[side] != usize::MAX) {
                 let (place, value) = match *entry {
                     Mixed::Articulated {
                         slot,
                         column,
+                        stride,
                         place,
                     } => (
                         place,
-                        columns[side][column].dot(&contracted.blocks.mixed[slot][side])
-                            + columns_l[side][column].dot(&plain.blocks.mixed[slot][side]),
+                        dot(
+                            columns[side],
+                            column,
+                            stride,
+                            &contracted.blocks.mixed[slot][side],
+                        ) + dot(
+                            columns_l[side],
+                            column,
+                            stride,
+                            &plain.blocks.mixed[slot][side],
+                        ),
                     ),
                     Mixed::Linear {
                         slot,
@@ -436,9 +411,7 @@ impl PullBack {
                         factor * contracted.blocks.mixed[slot][side][component],
                     ),
                 };
-                if target.mixed[side] != usize::MAX {
-                    values[target.mixed[side] + place] += value;
-                }
+                values[target.mixed[side] + place] += value;
             }
         }
         for &(slot, place) in &self.scalars {
@@ -447,26 +420,165 @@ impl PullBack {
     }
 }
 
-/// out[i, j] += rows_i · v for all i.
+/// One column of a vector times a vector.
 #[inline]
-fn add_column(out: &mut [f64], cols: usize, j: usize, rows: &[Vector], v: &Vector) {
-    for (i, row) in rows.iter().enumerate() {
-        out[i * cols + j] += row.dot(v);
+fn dot(columns: &[f64], column: usize, stride: usize, v: &Vector) -> f64 {
+    columns[column] * v.x + columns[column + stride] * v.y + columns[column + 2 * stride] * v.z
+}
+
+/// How many columns are taken at once.
+#[derive(Clone, Copy, Debug)]
+enum Lanes {
+    Four,
+    Eight,
+}
+
+/// `L` columns from `at` of a vector, row by row.
+#[inline]
+fn take<const L: usize>(columns: &[f64], first: usize, stride: usize, at: usize) -> [[f64; L]; 3] {
+    let row = |i: usize| {
+        let start = first + i * stride + at;
+        let mut lanes = [0.0; L];
+        lanes.copy_from_slice(&columns[start..start + L]);
+        lanes
+    };
+    [row(0), row(1), row(2)]
+}
+
+/// Adds m b to `t`.
+#[inline]
+fn add_image<const L: usize>(
+    t: &mut [[f64; L]; 3],
+    m: impl Fn(usize, usize) -> f64,
+    b: &[[f64; L]; 3],
+) {
+    for (i, row) in t.iter_mut().enumerate() {
+        let (x, y, z) = (m(i, 0), m(i, 1), m(i, 2));
+        for l in 0..L {
+            row[l] += x * b[0][l] + y * b[1][l] + z * b[2][l];
+        }
     }
 }
 
 impl Articulated {
+    /// Calls `work` for each block of columns.
+    #[inline]
+    fn blocks(&self, mut work: impl FnMut(Lanes, usize)) {
+        let mut at = 0;
+        while at + 4 < self.cols {
+            work(Lanes::Eight, at);
+            at += 8;
+        }
+        if at < self.cols {
+            work(Lanes::Four, at);
+        }
+    }
+
+    /// Adds aᵀ t for the rows of the vector whose columns start at `first`.
+    #[inline]
+    fn add_product<const L: usize>(
+        &self,
+        a: &[f64],
+        first: usize,
+        t: &[[f64; L]; 3],
+        at: usize,
+        out: &mut [f64],
+    ) {
+        let stride = self.stride[0];
+        let (x, rest) = a[first..first + 3 * stride].split_at(stride);
+        let (y, z) = rest.split_at(stride);
+        let rows = out
+            .chunks_exact_mut(self.stride[1])
+            .zip(x.iter().zip(y.iter().zip(z)));
+        for (row, (x, (y, z))) in rows {
+            let row: &mut [f64; L] = (&mut row[at..at + L])
+                .try_into()
+                .expect("lanes lie in the row");
+            for l in 0..L {
+                row[l] += x * t[0][l] + y * t[1][l] + z * t[2][l];
+            }
+        }
+    }
+
+    #[inline]
+    fn hessian<const L: usize>(
+        &self,
+        at: usize,
+        [a, b]: [&[f64]; 2],
+        side: usize,
+        part: &Part,
+        out: &mut [f64],
+    ) {
+        for pair in &self.full {
+            let h = &part.blocks.full[pair.slot][side];
+            let mut t = [[0.0; L]; 3];
+            add_image(
+                &mut t,
+                |i, j| h[(i, j)],
+                &take(b, pair.first[1], self.stride[1], at),
+            );
+            self.add_product(a, pair.first[0], &t, at, out);
+        }
+        for pair in &self.isotropic {
+            let h = part.blocks.isotropic[pair.slot][side];
+            let t = take::<L>(b, pair.first[1], self.stride[1], at).map(|row| row.map(|x| h * x));
+            self.add_product(a, pair.first[0], &t, at, out);
+        }
+    }
+
+    #[inline]
+    fn third<const L: usize>(
+        &self,
+        at: usize,
+        [a, b, al, bl]: [&[f64]; 4],
+        side: usize,
+        [plain, contracted]: [&Part; 2],
+        out: &mut [f64],
+    ) {
+        let other = 2 * (side % 2) + side / 2;
+        for pair in &self.full {
+            let h = &plain.blocks.full[pair.slot][side];
+            let ht = &plain.blocks.full[pair.transposed][other];
+            let hw = &contracted.blocks.full[pair.slot][side];
+            let columns = take::<L>(b, pair.first[1], self.stride[1], at);
+            let columns_l = take::<L>(bl, pair.first[1], self.stride[1], at);
+            let (mut t, mut t_l) = ([[0.0; L]; 3], [[0.0; L]; 3]);
+            add_image(&mut t, |i, j| hw[(i, j)], &columns);
+            add_image(&mut t, |i, j| ht[(j, i)], &columns_l);
+            add_image(&mut t_l, |i, j| h[(i, j)], &columns);
+            self.add_product(a, pair.first[0], &t, at, out);
+            self.add_product(al, pair.first[0], &t_l, at, out);
+        }
+        for pair in &self.isotropic {
+            let h = plain.blocks.isotropic[pair.slot][side];
+            let hw = contracted.blocks.isotropic[pair.slot][side];
+            let columns = take::<L>(b, pair.first[1], self.stride[1], at);
+            let columns_l = take::<L>(bl, pair.first[1], self.stride[1], at);
+            let mut t = [[0.0; L]; 3];
+            let mut t_l = [[0.0; L]; 3];
+            for i in 0..3 {
+                for l in 0..L {
+                    t[i][l] = hw * columns[i][l] + h * columns_l[i][l];
+                    t_l[i][l] = h * columns[i][l];
+                }
+            }
+            self.add_product(a, pair.first[0], &t, at, out);
+            self.add_product(al, pair.first[0], &t_l, at, out);
+        }
+    }
+
     fn scatter(&self, sides: Sides, target: &Target, local: &[f64], values: &mut [f64]) {
-        let size = self.rows * self.cols;
+        let size = self.rows * self.stride[1];
         for side in (0..4).filter(|&s| sides.blocks[s]) {
-            let slots = if side == 1 || side == 2 {
+            let places = if side == 1 || side == 2 {
                 &self.cross
             } else {
                 &self.same
             };
-            let base = target.blocks[side];
-            for (value, &slot) in local[side * size..].iter().zip(slots) {
-                values[base + slot] += value;
+            let local = &local[side * size..(side + 1) * size];
+            let values = &mut values[target.blocks[side]..];
+            for &(from, to) in places {
+                values[to] += local[from];
             }
         }
     }
