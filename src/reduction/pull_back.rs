@@ -8,8 +8,9 @@ use crate::math::{Matrix, Vector};
 use crate::reduction::instant::Instant;
 use crate::reduction::motion::{Dependence, Motion};
 use crate::reduction::pattern::{Layout, Pattern};
-use crate::reduction::tree::Packed;
+use crate::reduction::tree::{LANES, Packed};
 use std::collections::BTreeMap;
+use wide::f64x4;
 
 /// A coupled pair of vectors.
 #[derive(Clone, Copy, Debug)]
@@ -21,18 +22,25 @@ struct Pair {
     first: [usize; 2],
 }
 
-/// All pairs of articulated vectors between two supports.
+/// Pairs of articulated vectors between two supports.
 #[derive(Clone, Debug)]
 struct Articulated {
     rows: usize,
-    cols: usize,
     /// Strides of the columns.
     stride: [usize; 2],
-    full: Vec<Pair>,
-    isotropic: Vec<Pair>,
-    /// (place in the local matrix, place in the values), for blocks of one instant and between neighbours.
-    same: Vec<(usize, usize)>,
-    cross: Vec<(usize, usize)>,
+    pairs: Vec<Pair>,
+    /// Places of the entries, for blocks of one instant and between neighbours.
+    same: Vec<Scatter>,
+    cross: Vec<Scatter>,
+}
+
+/// Where an entry of a local matrix goes.
+#[derive(Clone, Copy, Debug)]
+struct Scatter {
+    from: usize,
+    to: usize,
+    /// Where it goes in the transposed block.
+    transposed: usize,
 }
 
 /// One scalar entry c · block[i, j] of a pair of linear vectors.
@@ -62,10 +70,14 @@ enum Mixed {
     },
 }
 
+/// Groups by the supports of both vectors.
+type Groups = BTreeMap<(Vec<usize>, Vec<usize>), Articulated>;
+
 /// The plan of a pull-back: which blocks go where.
 #[derive(Clone, Debug, Default)]
 pub struct PullBack {
-    articulated: Vec<Articulated>,
+    articulated_full: Vec<Articulated>,
+    articulated_isotropic: Vec<Articulated>,
     full: Vec<Linear>,
     isotropic: Vec<Linear>,
     mixed: Vec<Mixed>,
@@ -90,7 +102,7 @@ impl PullBack {
     /// Plans the pull-back of a site; entries join the layout. Scalars of an instant are its multipliers.
     pub fn new(couplings: &Couplings, motion: &Motion, layout: &mut Layout, site: Site) -> Self {
         let mut plan = Self::default();
-        let mut groups: BTreeMap<(Vec<usize>, Vec<usize>), Articulated> = BTreeMap::new();
+        let (mut full, mut isotropic) = (Groups::new(), Groups::new());
         for (slot, &(a, b)) in couplings.full.iter().enumerate() {
             let transposed = couplings.transposed_full(slot);
             match (&motion.vectors[a], &motion.vectors[b]) {
@@ -100,8 +112,8 @@ impl PullBack {
                         transposed,
                         first: [a.first, b.first],
                     };
-                    Self::group(&mut groups, [a, b], layout, site)
-                        .full
+                    Self::group(&mut full, [a, b], layout, site)
+                        .pairs
                         .push(pair);
                 }
                 (Dependence::Linear { parts: s, .. }, Dependence::Linear { parts: t, .. }) => {
@@ -122,8 +134,8 @@ impl PullBack {
                         transposed,
                         first: [a.first, b.first],
                     };
-                    Self::group(&mut groups, [a, b], layout, site)
-                        .isotropic
+                    Self::group(&mut isotropic, [a, b], layout, site)
+                        .pairs
                         .push(pair);
                 }
                 (Dependence::Linear { parts: s, .. }, Dependence::Linear { parts: t, .. }) => {
@@ -135,16 +147,18 @@ impl PullBack {
                 _ => unreachable!("vectors of one scene are all articulated or all linear"),
             }
         }
-        plan.articulated = groups
-            .into_values()
-            .filter(|g| g.rows * g.cols > 0)
-            .collect();
-        plan.local = plan
-            .articulated
+        let lay = |groups: Groups| {
+            groups
+                .into_values()
+                .filter(|g| g.rows * g.stride[1] > 0)
+                .collect::<Vec<_>>()
+        };
+        (plan.articulated_full, plan.articulated_isotropic) = (lay(full), lay(isotropic));
+        let groups = plan
+            .articulated_full
             .iter()
-            .map(|g| 4 * g.rows * g.stride[1])
-            .max()
-            .unwrap_or(0);
+            .chain(&plan.articulated_isotropic);
+        plan.local = groups.map(|g| g.rows * g.stride[1]).max().unwrap_or(0);
         for (slot, &(a, s)) in couplings.mixed.iter().enumerate() {
             match &motion.vectors[a] {
                 Dependence::Articulated(packed) => {
@@ -188,7 +202,7 @@ impl PullBack {
     }
 
     fn group<'g>(
-        groups: &'g mut BTreeMap<(Vec<usize>, Vec<usize>), Articulated>,
+        groups: &'g mut Groups,
         [a, b]: [&Packed; 2],
         layout: &mut Layout,
         site: Site,
@@ -200,17 +214,20 @@ impl PullBack {
                     let mut list = Vec::new();
                     for (i, &row) in a.support.iter().enumerate() {
                         for (j, &col) in b.support.iter().enumerate() {
-                            list.push((i * b.stride + j, pattern.slot(row, col)));
+                            let from = i * b.stride + j;
+                            list.push(Scatter {
+                                from,
+                                to: pattern.slot(row, col),
+                                transposed: pattern.slot(col, row),
+                            });
                         }
                     }
                     list
                 };
                 Articulated {
                     rows: a.support.len(),
-                    cols: b.support.len(),
                     stride: [a.stride, b.stride],
-                    full: Vec::new(),
-                    isotropic: Vec::new(),
+                    pairs: Vec::new(),
                     same: places(&mut layout.same),
                     cross: if site == Site::Intervals {
                         places(&mut layout.cross)
@@ -266,19 +283,34 @@ impl PullBack {
         values: &mut [f64],
     ) {
         let columns = ends.map(|e| e.columns.as_slice());
-        for group in &self.articulated {
-            let size = group.rows * group.stride[1];
-            let local = &mut local[..4 * size];
-            local.fill(0.0);
+        for group in &self.articulated_full {
             for side in (0..4).filter(|&s| sides.blocks[s]) {
-                let out = &mut local[side * size..(side + 1) * size];
-                let ends = [columns[side / 2], columns[side % 2]];
-                group.blocks(|lanes, at| match lanes {
-                    Lanes::Eight => group.hessian::<8>(at, ends, side, part, out),
-                    Lanes::Four => group.hessian::<4>(at, ends, side, part, out),
-                });
+                let local = group.local(local);
+                group.add_full(
+                    [columns[side / 2], columns[side % 2]],
+                    side,
+                    &part.blocks.full,
+                    local,
+                );
+                group.scatter(side, target.blocks[side], local, values);
             }
-            group.scatter(sides, target, local, values);
+        }
+        // Isotropic blocks come from potentials: the block below the diagonal is the one above, transposed.
+        let mirrored = sides.blocks[1] && sides.blocks[2];
+        for group in &self.articulated_isotropic {
+            for side in (0..4).filter(|&s| sides.blocks[s] && !(mirrored && s == 2)) {
+                let local = group.local(local);
+                group.add_isotropic(
+                    [columns[side / 2], columns[side % 2]],
+                    side,
+                    &part.blocks.isotropic,
+                    local,
+                );
+                group.scatter(side, target.blocks[side], local, values);
+                if mirrored && side == 1 {
+                    group.scatter_transposed(side, target.blocks[2], local, values);
+                }
+            }
         }
         self.hessian_linear(
             &part.blocks.full,
@@ -356,21 +388,33 @@ impl PullBack {
         let lower = Sides {
             blocks: [sides.blocks[0], false, sides.blocks[2], sides.blocks[3]],
         };
-        for group in &self.articulated {
-            let size = group.rows * group.stride[1];
-            let local = &mut local[..4 * size];
-            local.fill(0.0);
+        for group in &self.articulated_full {
             for side in (0..4).filter(|&s| lower.blocks[s]) {
-                let out = &mut local[side * size..(side + 1) * size];
                 let (r, s) = (side / 2, side % 2);
+                let local = group.local(local);
                 let ends = [columns[r], columns[s], columns_l[r], columns_l[s]];
-                let parts = [plain, contracted];
-                group.blocks(|lanes, at| match lanes {
-                    Lanes::Eight => group.third::<8>(at, ends, side, parts, out),
-                    Lanes::Four => group.third::<4>(at, ends, side, parts, out),
-                });
+                group.add_full_along(
+                    ends,
+                    side,
+                    &plain.blocks.full,
+                    &contracted.blocks.full,
+                    local,
+                );
+                group.scatter(side, target.blocks[side], local, values);
             }
-            group.scatter(lower, target, local, values);
+        }
+        for group in &self.articulated_isotropic {
+            for side in (0..4).filter(|&s| lower.blocks[s]) {
+                let (r, s) = (side / 2, side % 2);
+                let local = group.local(local);
+                let ends = [columns[r], columns[s], columns_l[r], columns_l[s]];
+                let (h, hw) = (&plain.blocks.isotropic, &contracted.blocks.isotropic);
+                group.add_isotropic_along(ends, side, h, hw, local);
+                group.scatter(side, target.blocks[side], local, values);
+                if r == s {
+                    group.scatter_transposed(side, target.blocks[side], local, values);
+                }
+            }
         }
         self.hessian_linear(
             &contracted.blocks.full,
@@ -426,160 +470,202 @@ fn dot(columns: &[f64], column: usize, stride: usize, v: &Vector) -> f64 {
     columns[column] * v.x + columns[column + stride] * v.y + columns[column + 2 * stride] * v.z
 }
 
-/// How many columns are taken at once.
-#[derive(Clone, Copy, Debug)]
-enum Lanes {
-    Four,
-    Eight,
+/// Four neighbouring columns of a vector: its three rows.
+type Lanes = [f64x4; 3];
+
+/// The columns from `at` of a vector.
+#[inline]
+fn take(columns: &[f64], first: usize, stride: usize, at: usize) -> Lanes {
+    let row = |i: usize| load(columns, first + i * stride + at);
+    [row(0), row(1), row(2)]
 }
 
-/// `L` columns from `at` of a vector, row by row.
 #[inline]
-fn take<const L: usize>(columns: &[f64], first: usize, stride: usize, at: usize) -> [[f64; L]; 3] {
+fn load(values: &[f64], at: usize) -> f64x4 {
+    let lanes: [f64; LANES] = values[at..at + LANES]
+        .try_into()
+        .expect("rows are padded to whole lanes");
+    f64x4::from(lanes)
+}
+
+/// m b.
+#[inline]
+fn image(m: &Matrix, b: &Lanes) -> Lanes {
     let row = |i: usize| {
-        let start = first + i * stride + at;
-        let mut lanes = [0.0; L];
-        lanes.copy_from_slice(&columns[start..start + L]);
-        lanes
+        b[0] * f64x4::splat(m[(i, 0)])
+            + b[1] * f64x4::splat(m[(i, 1)])
+            + b[2] * f64x4::splat(m[(i, 2)])
     };
     [row(0), row(1), row(2)]
 }
 
-/// Adds m b to `t`.
+/// c b.
 #[inline]
-fn add_image<const L: usize>(
-    t: &mut [[f64; L]; 3],
-    m: impl Fn(usize, usize) -> f64,
-    b: &[[f64; L]; 3],
-) {
-    for (i, row) in t.iter_mut().enumerate() {
-        let (x, y, z) = (m(i, 0), m(i, 1), m(i, 2));
-        for l in 0..L {
-            row[l] += x * b[0][l] + y * b[1][l] + z * b[2][l];
-        }
-    }
+fn scaled(c: f64, b: &Lanes) -> Lanes {
+    let c = f64x4::splat(c);
+    [b[0] * c, b[1] * c, b[2] * c]
+}
+
+#[inline]
+fn sum(a: &Lanes, b: &Lanes) -> Lanes {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 impl Articulated {
-    /// Calls `work` for each block of columns.
+    /// Adds aᵀ t to the columns from `at`, for the vector whose columns start at `first`.
     #[inline]
-    fn blocks(&self, mut work: impl FnMut(Lanes, usize)) {
-        let mut at = 0;
-        while at + 4 < self.cols {
-            work(Lanes::Eight, at);
-            at += 8;
-        }
-        if at < self.cols {
-            work(Lanes::Four, at);
-        }
-    }
-
-    /// Adds aᵀ t for the rows of the vector whose columns start at `first`.
-    #[inline]
-    fn add_product<const L: usize>(
-        &self,
-        a: &[f64],
-        first: usize,
-        t: &[[f64; L]; 3],
-        at: usize,
-        out: &mut [f64],
-    ) {
+    fn add_product(&self, a: &[f64], first: usize, t: &Lanes, at: usize, out: &mut [f64]) {
         let stride = self.stride[0];
         let (x, rest) = a[first..first + 3 * stride].split_at(stride);
         let (y, z) = rest.split_at(stride);
         let rows = out
             .chunks_exact_mut(self.stride[1])
             .zip(x.iter().zip(y.iter().zip(z)));
-        for (row, (x, (y, z))) in rows {
-            let row: &mut [f64; L] = (&mut row[at..at + L])
-                .try_into()
-                .expect("lanes lie in the row");
-            for l in 0..L {
-                row[l] += x * t[0][l] + y * t[1][l] + z * t[2][l];
+        for (row, (&x, (&y, &z))) in rows {
+            let row = &mut row[at..at + LANES];
+            let sum = load(row, 0)
+                + t[0] * f64x4::splat(x)
+                + t[1] * f64x4::splat(y)
+                + t[2] * f64x4::splat(z);
+            row.copy_from_slice(&sum.to_array());
+        }
+    }
+
+    /// Adds aᵀ t + a′ᵀ t′, likewise.
+    #[inline]
+    fn add_products(
+        &self,
+        [a, al]: [&[f64]; 2],
+        first: usize,
+        [t, tl]: [&Lanes; 2],
+        at: usize,
+        out: &mut [f64],
+    ) {
+        let stride = self.stride[0];
+        let (x, rest) = a[first..first + 3 * stride].split_at(stride);
+        let (y, z) = rest.split_at(stride);
+        let (xl, rest) = al[first..first + 3 * stride].split_at(stride);
+        let (yl, zl) = rest.split_at(stride);
+        let rows = out
+            .chunks_exact_mut(self.stride[1])
+            .zip(x.iter().zip(y.iter().zip(z)));
+        for ((row, (&x, (&y, &z))), (&xl, (&yl, &zl))) in rows.zip(xl.iter().zip(yl.iter().zip(zl)))
+        {
+            let row = &mut row[at..at + LANES];
+            let plain = t[0] * f64x4::splat(x) + t[1] * f64x4::splat(y) + t[2] * f64x4::splat(z);
+            let along =
+                tl[0] * f64x4::splat(xl) + tl[1] * f64x4::splat(yl) + tl[2] * f64x4::splat(zl);
+            let sum = load(row, 0) + plain + along;
+            row.copy_from_slice(&sum.to_array());
+        }
+    }
+
+    /// The local matrix, cleared.
+    #[inline]
+    fn local<'l>(&self, local: &'l mut [f64]) -> &'l mut [f64] {
+        let local = &mut local[..self.rows * self.stride[1]];
+        local.fill(0.0);
+        local
+    }
+
+    fn add_full(&self, [a, b]: [&[f64]; 2], side: usize, blocks: &[[Matrix; 4]], out: &mut [f64]) {
+        for at in (0..self.stride[1]).step_by(LANES) {
+            for pair in &self.pairs {
+                let t = image(
+                    &blocks[pair.slot][side],
+                    &take(b, pair.first[1], self.stride[1], at),
+                );
+                self.add_product(a, pair.first[0], &t, at, out);
             }
         }
     }
 
-    #[inline]
-    fn hessian<const L: usize>(
+    fn add_isotropic(
         &self,
-        at: usize,
         [a, b]: [&[f64]; 2],
         side: usize,
-        part: &Part,
+        blocks: &[[f64; 4]],
         out: &mut [f64],
     ) {
-        for pair in &self.full {
-            let h = &part.blocks.full[pair.slot][side];
-            let mut t = [[0.0; L]; 3];
-            add_image(
-                &mut t,
-                |i, j| h[(i, j)],
-                &take(b, pair.first[1], self.stride[1], at),
-            );
-            self.add_product(a, pair.first[0], &t, at, out);
-        }
-        for pair in &self.isotropic {
-            let h = part.blocks.isotropic[pair.slot][side];
-            let t = take::<L>(b, pair.first[1], self.stride[1], at).map(|row| row.map(|x| h * x));
-            self.add_product(a, pair.first[0], &t, at, out);
+        for at in (0..self.stride[1]).step_by(LANES) {
+            for pair in &self.pairs {
+                let t = scaled(
+                    blocks[pair.slot][side],
+                    &take(b, pair.first[1], self.stride[1], at),
+                );
+                self.add_product(a, pair.first[0], &t, at, out);
+            }
         }
     }
 
-    #[inline]
-    fn third<const L: usize>(
+    fn add_full_along(
         &self,
-        at: usize,
         [a, b, al, bl]: [&[f64]; 4],
         side: usize,
-        [plain, contracted]: [&Part; 2],
+        plain: &[[Matrix; 4]],
+        contracted: &[[Matrix; 4]],
         out: &mut [f64],
     ) {
         let other = 2 * (side % 2) + side / 2;
-        for pair in &self.full {
-            let h = &plain.blocks.full[pair.slot][side];
-            let ht = &plain.blocks.full[pair.transposed][other];
-            let hw = &contracted.blocks.full[pair.slot][side];
-            let columns = take::<L>(b, pair.first[1], self.stride[1], at);
-            let columns_l = take::<L>(bl, pair.first[1], self.stride[1], at);
-            let (mut t, mut t_l) = ([[0.0; L]; 3], [[0.0; L]; 3]);
-            add_image(&mut t, |i, j| hw[(i, j)], &columns);
-            add_image(&mut t, |i, j| ht[(j, i)], &columns_l);
-            add_image(&mut t_l, |i, j| h[(i, j)], &columns);
-            self.add_product(a, pair.first[0], &t, at, out);
-            self.add_product(al, pair.first[0], &t_l, at, out);
-        }
-        for pair in &self.isotropic {
-            let h = plain.blocks.isotropic[pair.slot][side];
-            let hw = contracted.blocks.isotropic[pair.slot][side];
-            let columns = take::<L>(b, pair.first[1], self.stride[1], at);
-            let columns_l = take::<L>(bl, pair.first[1], self.stride[1], at);
-            let mut t = [[0.0; L]; 3];
-            let mut t_l = [[0.0; L]; 3];
-            for i in 0..3 {
-                for l in 0..L {
-                    t[i][l] = hw * columns[i][l] + h * columns_l[i][l];
-                    t_l[i][l] = h * columns[i][l];
-                }
+        for at in (0..self.stride[1]).step_by(LANES) {
+            for pair in &self.pairs {
+                let (h, hw) = (&plain[pair.slot][side], &contracted[pair.slot][side]);
+                let ht = plain[pair.transposed][other].transpose();
+                let columns = take(b, pair.first[1], self.stride[1], at);
+                let columns_l = take(bl, pair.first[1], self.stride[1], at);
+                let t = sum(&image(hw, &columns), &image(&ht, &columns_l));
+                self.add_products([a, al], pair.first[0], [&t, &image(h, &columns)], at, out);
             }
-            self.add_product(a, pair.first[0], &t, at, out);
-            self.add_product(al, pair.first[0], &t_l, at, out);
         }
     }
 
-    fn scatter(&self, sides: Sides, target: &Target, local: &[f64], values: &mut [f64]) {
-        let size = self.rows * self.stride[1];
-        for side in (0..4).filter(|&s| sides.blocks[s]) {
-            let places = if side == 1 || side == 2 {
-                &self.cross
-            } else {
-                &self.same
-            };
-            let local = &local[side * size..(side + 1) * size];
-            let values = &mut values[target.blocks[side]..];
-            for &(from, to) in places {
-                values[to] += local[from];
+    /// Within an instant half of the symmetric sum, `Jᵀ(½ h_w J + h J′)`; the transpose is the other half.
+    fn add_isotropic_along(
+        &self,
+        [a, b, al, bl]: [&[f64]; 4],
+        side: usize,
+        plain: &[[f64; 4]],
+        contracted: &[[f64; 4]],
+        out: &mut [f64],
+    ) {
+        let within = side == 0 || side == 3;
+        for at in (0..self.stride[1]).step_by(LANES) {
+            for pair in &self.pairs {
+                let (h, hw) = (plain[pair.slot][side], contracted[pair.slot][side]);
+                let columns = take(b, pair.first[1], self.stride[1], at);
+                let columns_l = take(bl, pair.first[1], self.stride[1], at);
+                if within {
+                    let t = sum(&scaled(0.5 * hw, &columns), &scaled(h, &columns_l));
+                    self.add_product(a, pair.first[0], &t, at, out);
+                } else {
+                    let t = sum(&scaled(hw, &columns), &scaled(h, &columns_l));
+                    self.add_products([a, al], pair.first[0], [&t, &scaled(h, &columns)], at, out);
+                }
             }
+        }
+    }
+
+    fn places(&self, side: usize) -> &[Scatter] {
+        if side == 1 || side == 2 {
+            &self.cross
+        } else {
+            &self.same
+        }
+    }
+
+    #[inline]
+    fn scatter(&self, side: usize, base: usize, local: &[f64], values: &mut [f64]) {
+        let values = &mut values[base..];
+        for place in self.places(side) {
+            values[place.to] += local[place.from];
+        }
+    }
+
+    #[inline]
+    fn scatter_transposed(&self, side: usize, base: usize, local: &[f64], values: &mut [f64]) {
+        let values = &mut values[base..];
+        for place in self.places(side) {
+            values[place.transposed] += local[place.from];
         }
     }
 }

@@ -60,10 +60,11 @@ struct Column {
 }
 
 /// A sum of terms of one vector that the same joints move.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Arm {
-    /// The terms.
-    terms: Vec<usize>,
+    /// The first term, and the number of terms: those that a joint moves are neighbours.
+    first: usize,
+    count: usize,
     /// Sum of their centre coefficients.
     centre: f64,
 }
@@ -188,9 +189,22 @@ impl Tree {
             let terms: Vec<usize> = (first_term..self.terms.len()).filter(is_moved).collect();
             let centre: f64 = terms.iter().map(|&t| self.terms[t].centre).sum();
             let still = joint.kind == TreeKind::Prismatic && centre == 0.0;
-            if !terms.is_empty() && !still {
-                moved.push((j, coordinate, Arm { terms, centre }));
-            }
+            let (Some(&first), Some(&last), false) = (terms.first(), terms.last(), still) else {
+                continue;
+            };
+            assert!(
+                last - first + 1 == terms.len(),
+                "terms that a joint moves are neighbours"
+            );
+            moved.push((
+                j,
+                coordinate,
+                Arm {
+                    first,
+                    count: terms.len(),
+                    centre,
+                },
+            ));
         }
         let (first, stride) = (self.size, moved.len().next_multiple_of(LANES));
         self.size += 3 * stride;
@@ -323,7 +337,7 @@ impl Tree {
     /// Columns of P.
     pub fn tangent(&self, state: &mut TreeState, columns: &mut [f64]) {
         for (arm, value) in self.arms.iter().zip(&mut state.arms) {
-            *value = arm.terms.iter().map(|&t| state.terms[t]).sum();
+            *value = sum(&state.terms[arm.first..arm.first + arm.count]);
         }
         for column in &self.columns {
             let axis = state.axes[column.joint];
@@ -368,7 +382,7 @@ impl Tree {
             w[term.vector] += *rate;
         }
         for (arm, rate) in self.arms.iter().zip(&mut tree.arms_l) {
-            *rate = arm.terms.iter().map(|&t| tree.terms_l[t]).sum();
+            *rate = sum(&tree.terms_l[arm.first..arm.first + arm.count]);
         }
         for column in &self.columns {
             let (j, arm) = (column.joint, column.arm);
@@ -480,6 +494,11 @@ impl Tree {
             }
         }
     }
+}
+
+#[inline]
+fn sum(vectors: &[Vector]) -> Vector {
+    vectors[1..].iter().fold(vectors[0], |sum, v| sum + v)
 }
 
 impl Column {
