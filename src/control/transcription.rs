@@ -84,6 +84,8 @@ pub struct Transcription<'m> {
     hessian: Vec<Kept>,
     hessian_entries: Entries,
     weights: [Vec<f64>; 2],
+    /// Slot of the second derivative of each voltage with itself.
+    voltage_slots: Vec<usize>,
     gradient: Vec<f64>,
 }
 
@@ -184,6 +186,9 @@ impl<'m> Transcription<'m> {
                 vec![0.0; model.action.intervals.measures.len()],
             ],
             gradient: vec![0.0; intervals * scalar_count],
+            voltage_slots: (0..scalar_count)
+                .map(|s| layout.scalars.find(s, s).expect("a voltage has a curvature of its own"))
+                .collect(),
             unknowns,
         };
         out.count(&boundary.limits.list)?;
@@ -1046,11 +1051,7 @@ impl Transcription<'_> {
         for k in 0..self.intervals {
             let curvature = sigma * self.cost.curvature(k, tau) / (KILOVOLT * KILOVOLT);
             for s in 0..scalar_count {
-                let slot = layout
-                    .scalars
-                    .find(s, s)
-                    .expect("a voltage has a curvature of its own");
-                self.values[layout.scalars_at(k) + slot] += curvature;
+                self.values[layout.scalars_at(k) + self.voltage_slots[s]] += curvature;
             }
         }
         if self.horizon == Horizon::Free {
