@@ -187,7 +187,12 @@ impl<'m> Transcription<'m> {
             ],
             gradient: vec![0.0; intervals * scalar_count],
             voltage_slots: (0..scalar_count)
-                .map(|s| layout.scalars.find(s, s).expect("a voltage has a curvature of its own"))
+                .map(|s| {
+                    layout
+                        .scalars
+                        .find(s, s)
+                        .expect("a voltage has a curvature of its own")
+                })
                 .collect(),
             unknowns,
         };
