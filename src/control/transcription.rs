@@ -398,10 +398,9 @@ impl<'m> Transcription<'m> {
             if let (Row::Equation { i, .. }, false) = (
                 self.unknowns.rows[row as usize],
                 is_multiplier(&self.unknowns.variables[col as usize]),
-            ) {
-                if self.unknowns.horizon() != Some(col as usize) {
-                    largest[i] = largest[i].max((value * scale(col)).abs());
-                }
+            ) && self.unknowns.horizon() != Some(col as usize)
+            {
+                largest[i] = largest[i].max((value * scale(col)).abs());
             }
         }
         let inverse = |v: f64| {
@@ -418,10 +417,10 @@ impl<'m> Transcription<'m> {
                 self.unknowns.rows[row as usize],
                 self.unknowns.variables[col as usize],
             );
-            if let (Row::Equation { i: r, .. }, Variable::Unknown { i, .. }) = (row, variable) {
-                if i >= n {
-                    columns[i] = columns[i].max((value * row_scales[r]).abs());
-                }
+            if let (Row::Equation { i: r, .. }, Variable::Unknown { i, .. }) = (row, variable)
+                && i >= n
+            {
+                columns[i] = columns[i].max((value * row_scales[r]).abs());
             }
         }
         for (scale, variable) in self
@@ -465,10 +464,10 @@ impl<'m> Transcription<'m> {
         let mut upper = vec![f64::INFINITY; n];
         if self.model.coordinates == Coordinates::Reduced {
             for limit in &control.limits {
-                if let Limit::JointAngle { joint, min, max } = *limit {
-                    if let Some(c) = self.model.gauges[joint].coordinate {
-                        (lower[c], upper[c]) = (lower[c].max(min), upper[c].min(max));
-                    }
+                if let Limit::JointAngle { joint, min, max } = *limit
+                    && let Some(c) = self.model.gauges[joint].coordinate
+                {
+                    (lower[c], upper[c]) = (lower[c].max(min), upper[c].min(max));
                 }
             }
         }

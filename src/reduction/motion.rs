@@ -33,7 +33,7 @@ pub struct Motion {
 }
 
 /// First coordinate of the four vectors φ, d₁, d₂, d₃ of a body in director coordinates.
-pub fn body_offset(body: usize) -> usize {
+pub(super) fn body_offset(body: usize) -> usize {
     12 * body
 }
 

@@ -202,11 +202,17 @@ impl Reduced {
             Level::Gradient => return,
             Level::Hessian => {
                 self.interval_plan
-                    .hessian([a, b], plain, sides, &target, local, values)
+                    .hessian([a, b], plain, sides, &target, local, values);
             }
             Level::Third => {
-                self.interval_plan
-                    .third([a, b], [plain, contracted], sides, &target, local, values)
+                self.interval_plan.third(
+                    [a, b],
+                    [plain, contracted],
+                    sides,
+                    &target,
+                    local,
+                    values,
+                );
             }
         }
         if horizon == Horizon::Free {

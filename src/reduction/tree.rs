@@ -100,7 +100,7 @@ impl Packed {
 }
 
 /// Rows of columns are padded to a multiple of this.
-pub const LANES: usize = 4;
+pub(super) const LANES: usize = 4;
 
 /// A kinematic tree and the vectors on it.
 #[derive(Clone, Debug)]

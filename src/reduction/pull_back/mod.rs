@@ -14,7 +14,7 @@ use mixed::Mixed;
 
 /// The plan of a pull-back: which blocks go where.
 #[derive(Clone, Debug, Default)]
-pub struct PullBack {
+pub(super) struct PullBack {
     full: Groups,
     isotropic: Groups,
     linear: Linear,
@@ -25,7 +25,7 @@ pub struct PullBack {
 
 /// Where the blocks of one interval go in the values: places of the four blocks, of both mixed blocks and of scalars.
 #[derive(Clone, Copy, Debug)]
-pub struct Target {
+pub(super) struct Target {
     /// (k, k), (k, k+1), (k+1, k), (k+1, k+1).
     pub blocks: [usize; 4],
     /// (z_k, s), (z_{k+1}, s).
@@ -36,7 +36,12 @@ pub struct Target {
 
 impl PullBack {
     /// Plans the pull-back of a site; entries join the layout. Scalars of an instant are its multipliers.
-    pub fn new(couplings: &Couplings, motion: &Motion, layout: &mut Layout, site: Site) -> Self {
+    pub(super) fn new(
+        couplings: &Couplings,
+        motion: &Motion,
+        layout: &mut Layout,
+        site: Site,
+    ) -> Self {
         let mut plan = Self::default();
         for (slot, &(a, b)) in couplings.full.iter().enumerate() {
             match (&motion.vectors[a], &motion.vectors[b]) {
@@ -84,12 +89,12 @@ impl PullBack {
     }
 
     /// Size of the local storage that an evaluation needs.
-    pub fn local(&self) -> usize {
+    pub(super) fn local(&self) -> usize {
         self.full.local().max(self.isotropic.local())
     }
 
     /// Adds Pᵀ H P.
-    pub fn hessian(
+    pub(super) fn hessian(
         &self,
         ends: [&Instant; 2],
         part: &Part,
@@ -113,7 +118,7 @@ impl PullBack {
     }
 
     /// Adds the lower blocks of `Pᵀ H_w P + P′_lᵀ H P + Pᵀ Hᵀ P′_l`.
-    pub fn third(
+    pub(super) fn third(
         &self,
         ends: [&Instant; 2],
         [plain, contracted]: [&Part; 2],
@@ -162,7 +167,7 @@ fn columns(ends: [&Instant; 2]) -> ([&[f64]; 2], [&[f64]; 2]) {
 
 /// Where a sum lives in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Site {
+pub(super) enum Site {
     /// Scalars are those of the interval.
     Intervals,
     /// Scalars are multipliers, unknowns of the instant itself.
