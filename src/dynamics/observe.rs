@@ -1,8 +1,8 @@
 //! What is observed along a motion: stretches, charges, energies, momenta and constraints, one row per instant.
 //!
 //! Charges, energies and momenta belong to intervals; the row of instant k holds those of the interval that ends
-//! there, row 0 those of the start, at q_0 with the rates of its momenta. The momenta are the momentum maps of
-//! p⁺ = D₂L_d + f⁺, which an invariant motion conserves exactly; reactions of the ground enter with the next interval.
+//! there, row 0 those of the start, at q₀ with the rates of its momenta. The momenta are the momentum maps of
+//! p⁺ = D₂L_d + f⁺, which an invariant motion conserves exactly; reactions of joints enter with the next interval.
 
 use crate::dynamics::History;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
@@ -152,14 +152,23 @@ impl<'m> Observer<'m> {
         };
         let mut energies = energies(model, &self.before, &self.here, scalars, h);
         let (charges, forces) = self.interval(scalars, h);
-        let momenta = match at_start {
+        let (momenta, impulses) = match at_start {
             Some(momentum) => {
                 let rates = rates(model, &mut self.here, &momentum);
-                energies.kinetic =
-                    0.5 * momentum.iter().zip(&rates).map(|(p, v)| p * v).sum::<f64>();
-                vector_momenta(model, &mut self.here, &rates)
+                let products = momentum.iter().zip(&rates).map(|(p, v)| p * v);
+                energies.kinetic = 0.5 * products.sum::<f64>();
+                let momenta = moving(model, &mut self.here, &rates);
+                let none = vec![Vector::zeros(); momenta.len()];
+                (momenta, none)
             }
-            None => forces,
+            None => {
+                let ends = || self.before.x.iter().zip(&self.here.x);
+                let middles: Vec<Vector> = ends().map(|(a, b)| (a + b) * 0.5).collect();
+                let rates: Vec<Vector> = ends().map(|(a, b)| (b - a) / h).collect();
+                let momenta = vector_momenta(model, &middles, &rates);
+                let impulses = forces.iter().zip(&momenta).map(|(f, p)| f - p).collect();
+                (momenta, impulses)
+            }
         };
         self.dissipated -= energies.work;
 
@@ -174,7 +183,7 @@ impl<'m> Observer<'m> {
             row.push(self.dissipated);
         }
         let poses = model.poses(&self.here);
-        for map in momentum_maps(&model.vectors, &poses, &momenta) {
+        for map in momentum_maps(&model.vectors, &poses, &momenta, &impulses) {
             row.extend(map.iter());
         }
         row.push(self.violation());
@@ -279,27 +288,40 @@ fn rates(model: &Model, instant: &mut Instant, momentum: &[f64]) -> Vec<f64> {
 }
 
 /// Momenta ∂T/∂ẋ of all vectors at a placed instant with these rates of the coordinates.
-fn vector_momenta(model: &Model, instant: &mut Instant, rates: &[f64]) -> Vec<Vector> {
+fn moving(model: &Model, instant: &mut Instant, rates: &[f64]) -> Vec<Vector> {
     instant.l.fill(0.0);
     instant.l[..rates.len()].copy_from_slice(rates);
     model.action.motion.along(instant);
-    let mut momenta = vec![Vector::zeros(); instant.x.len()];
+    vector_momenta(model, &instant.x, &instant.w)
+}
+
+/// Momenta ∂T/∂ẋ of vectors x with rates v.
+fn vector_momenta(model: &Model, x: &[Vector], v: &[Vector]) -> Vec<Vector> {
+    let mut momenta = vec![Vector::zeros(); x.len()];
     for effect in &model.action.intervals.effects {
-        effect.momentum(&instant.x, &instant.w, &mut momenta);
+        effect.momentum(x, v, &mut momenta);
     }
     momenta
 }
 
-/// Linear momentum Σ c π and angular momentum about the origin Σ x × π of momenta π of vectors: what a translation and
-/// a rotation of all bodies (not of the ground) pair with them.
-fn momentum_maps(vectors: &[MaterialVector], poses: &[Pose], momenta: &[Vector]) -> [Vector; 2] {
+/// Linear momentum Σ c π and angular momentum about the origin Σ x × π of a list of momenta π of vectors x, with c the part
+/// of a translation that x takes: 1 for a point, 0 for a direction or a span. Momenta of masses count with the whole of
+/// their vectors, impulses of forces with the part on bodies: what pulls at the ground does not move the system.
+fn momentum_maps(
+    vectors: &[MaterialVector],
+    poses: &[Pose],
+    momenta: &[Vector],
+    impulses: &[Vector],
+) -> [Vector; 2] {
     let (mut linear, mut angular) = (Vector::zeros(), Vector::zeros());
-    for (vector, momentum) in vectors.iter().zip(momenta) {
+    for ((vector, momentum), impulse) in vectors.iter().zip(momenta).zip(impulses) {
         for term in &vector.terms {
-            if let Some(body) = term.body {
-                linear += momentum * term.centre;
-                angular += term.at(&poses[body]).cross(momentum);
-            }
+            let (pose, total) = match term.body {
+                Some(body) => (poses[body], momentum + impulse),
+                None => (Pose::GROUND, *momentum),
+            };
+            linear += total * term.centre;
+            angular += term.at(&pose).cross(&total);
         }
     }
     [linear, angular]
