@@ -4,6 +4,7 @@ mod trunk;
 
 use std::fs;
 
+use nalgebra::Vector3;
 use proboscis::dynamics::trajectory::{Column, Observations, Trajectory};
 use proboscis::model::system::{JointKind, Shape, System};
 use proboscis::report::axes::{Axis, Extent};
@@ -86,11 +87,16 @@ fn coordinates_are_named_after_their_joints() {
     assert_eq!(trajectory.coordinates(&system).len(), 6);
     system.joints[1].kind = JointKind::Spherical;
     system.joints[2].kind = JointKind::Fixed;
-    trajectory.joints = vec![vec![0.0; 7]; 21];
+    system.joints[3].kind = JointKind::Prismatic { axis: Vector3::y() };
+    trajectory.joints = vec![vec![0.0; 4]; 21];
     let names = trajectory.coordinates(&system);
-    let names: Vec<_> = names.iter().map(|c| c.name.as_str()).collect();
+    let names: Vec<_> = names.iter().map(|c| (c.name.as_str(), c.unit)).collect();
+    // Spherical and fixed joints have no coordinate.
     let expected = [
-        "joint1", "joint2_1", "joint2_2", "joint2_3", "joint4", "joint5", "joint6",
+        ("joint1", "rad"),
+        ("joint4", "mm"),
+        ("joint5", "rad"),
+        ("joint6", "rad"),
     ];
     assert_eq!(names, expected);
 }
