@@ -66,6 +66,7 @@ pub fn svg(
         trajectory,
         view,
         voltages: last_voltages,
+        is_held: held.is_some(),
         scale,
     };
     canvas::svg(size, origin, |canvas| {
@@ -108,6 +109,8 @@ struct Drawing<'a> {
     view: View,
     /// Voltages in V that colour the muscles.
     voltages: Vec<f64>,
+    /// Whether these hold the last instant.
+    is_held: bool,
     /// Full scale of the colours in V.
     scale: f64,
 }
@@ -253,7 +256,8 @@ impl Drawing<'_> {
         if last > 0 {
             rows.push((format!("at {}", time(0)), style::GHOST));
         }
-        rows.push((format!("at {}", time(last)), style::BODY));
+        let held = if self.is_held { ", held" } else { "" };
+        rows.push((format!("at {}{held}", time(last)), style::BODY));
         for (i, (name, colour)) in rows.iter().enumerate() {
             let at = top + 16.0 * i as f64;
             swatch(at, *colour);

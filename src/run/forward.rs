@@ -15,7 +15,7 @@ use crate::run::motion::{observations, solved, trajectory};
 use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
 use crate::run::solution_file;
-use crate::run::solve::make_folder;
+use crate::run::solve::{counted, make_folder};
 use crate::run::summary::{self, Seconds, Summary};
 
 /// Simulates and writes the folder; a motion that ends early is kept as far as it went.
@@ -107,12 +107,12 @@ pub(super) fn simulation(
     Ok(Told {
         is_solved,
         result: format!(
-            "{}: {} steps, {} s of motion, {:.2} s, {}",
+            "{}: {}, {} s of motion, {:.2} s, {}",
             match is_solved {
                 true => "simulated".to_owned(),
                 false => format!("not simulated to the end ({})", status.replace('_', " ")),
             },
-            history.intervals(),
+            counted(history.intervals(), "step"),
             reached / 1e3,
             summary.seconds.total,
             folder.display()

@@ -135,7 +135,9 @@ fn describe(model: &Model, state: &Solved, found: &Equilibrium) -> Rest {
 fn text(model: &Model, rest: &Rest) -> String {
     let mut rows = Vec::new();
     for joint in model.system.joints.iter().filter(|j| has_coordinate(j)) {
+        // What rounds to zero has no sign.
         let value = rest.joints[&joint.name];
+        let value = if value.abs() < 5e-10 { 0.0 } else { value };
         let (value, unit) = match joint.kind {
             crate::model::system::JointKind::Prismatic { .. } => {
                 (format!("{:.6}", 1e3 * value), "mm".to_owned())

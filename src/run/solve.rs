@@ -29,7 +29,7 @@ const HOLDS: f64 = 1e-6;
 /// Length of the motion under constant voltages that is drawn beside the optimal one, in durations.
 const COMPARED: usize = 3;
 /// First barrier parameter from an earlier solution that was resampled.
-const RESAMPLED: Start = Start::Primal { mu_init: 1e-4 };
+const RESAMPLED: Start = Start::Primal { mu_init: 1e-2 };
 
 /// The program of a control problem with the point to start from and what that point is worth.
 pub(super) struct Prepared<'m> {
@@ -289,12 +289,18 @@ fn told(summary: &Summary, status: Status, violated: &[Violation], folder: &Path
     Told {
         is_solved,
         result: format!(
-            "{word}: objective {objective:.7}, {iterations} iterations, {:.2} s, {}",
+            "{word}: objective {objective:.7}, {}, {:.2} s, {}",
+            counted(iterations, "iteration"),
             summary.seconds.total,
             folder.display()
         ),
         notes,
     }
+}
+
+/// A number with its noun.
+pub(super) fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
 /// What a status means for the problem.
