@@ -163,11 +163,7 @@ fn answer(command: Command) -> Result<Told, RunError> {
             run::run(&problem.request())
         }
         Command::Equilibrium { problem, voltages } => {
-            let request = problem.request();
-            match voltages {
-                Some(voltages) => run::rest_of_file(&request, &voltages),
-                None => run::run(&request),
-            }
+            run::equilibrium_of_file(&problem.request(), voltages.as_deref())
         }
         Command::Inspect(problem) => run::inspect(&problem.request()),
         Command::Check(problem) => run::check(&problem.request()),

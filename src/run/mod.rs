@@ -30,7 +30,7 @@ pub use inspect::inspect;
 pub use motion::{solved, trajectory};
 pub use progress::Shown;
 pub use request::{Request, Told};
-pub use rest::rest_of_file;
+pub use rest::equilibrium_of_file;
 pub use starter::{expand, new_trunk, schema};
 pub use task::run;
 pub use violations::{Violation, violations};

@@ -5,27 +5,47 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::control::Solved;
+use crate::control::problem::Task;
 use crate::dynamics::{Equilibrium, History, equilibrium};
+use crate::model::system::{Joint, JointKind, Marker};
 use crate::model::{Coordinates, Model, System};
 use crate::report::atomic;
 use crate::report::{pose, table};
 use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
+use crate::run::inspect::key;
 use crate::run::motion::{has_coordinate, solved, trajectory};
 use crate::run::request::{Request, Told};
 use crate::run::solve::make_folder;
 use crate::run::summary::{Rest, Seconds, Summary};
-use crate::scene::{driven_voltages, read_system};
+use crate::scene::{driven_voltages, read_problem, read_system};
 
-/// The equilibrium of a scene, or of the scene of any problem, under voltages such as `muscle2=1.7kV`.
+/// The equilibrium that a problem asks for; under voltages such as `muscle2=1.7kV` that of a scene, or of the scene of any
+/// problem.
 ///
 /// # Errors
-/// The file or a voltage is wrong.
-pub fn rest_of_file(request: &Request, voltages: &[String]) -> Result<Told, RunError> {
+/// The file or a voltage is wrong, or the problem asks for something else and no voltages are given.
+pub fn equilibrium_of_file(
+    request: &Request,
+    voltages: Option<&[String]>,
+) -> Result<Told, RunError> {
     let began = Instant::now();
-    let system = read_system(&request.input, &request.set)?;
-    let voltages = driven_voltages(voltages, &system)?;
-    at(request, &system, &voltages, None, began)
+    if let Some(voltages) = voltages {
+        let system = read_system(&request.input, &request.set)?;
+        let voltages = driven_voltages(voltages, &system)?;
+        return at(request, &system, &voltages, None, began);
+    }
+    let loaded = read_problem(&request.input, &request.set)?;
+    match &loaded.task {
+        Task::Equilibrium(voltages, coordinates) => {
+            at(request, &loaded.system, voltages, *coordinates, began)
+        }
+        other => Err(RunError::Problem {
+            file: request.input.clone(),
+            place: key(other).to_owned(),
+            reason: "asks for no equilibrium; name the voltages with --voltages".to_owned(),
+        }),
+    }
 }
 
 /// Finds the equilibrium under voltages (V, one per muscle); writes files where a folder was asked for.
@@ -101,16 +121,11 @@ fn describe(model: &Model, state: &Solved, found: &Equilibrium) -> Rest {
     let system = &model.system;
     let joints = system.joints.iter().zip(&state.joints[0]);
     let motion = trajectory(model, state);
-    let place = |marker: &crate::model::system::Marker| {
+    let place = |marker: &Marker| {
         let place = motion.point(0, &marker.point, system) / 1e3;
         (marker.name.clone(), place.into())
     };
-    let prismatic = |joint: &crate::model::system::Joint| {
-        matches!(
-            joint.kind,
-            crate::model::system::JointKind::Prismatic { .. }
-        )
-    };
+    let prismatic = |joint: &Joint| matches!(joint.kind, JointKind::Prismatic { .. });
     let only_angles = !system.joints.iter().any(prismatic);
     Rest {
         joints: joints
@@ -139,9 +154,7 @@ fn text(model: &Model, rest: &Rest) -> String {
         let value = rest.joints[&joint.name];
         let value = if value.abs() < 5e-10 { 0.0 } else { value };
         let (value, unit) = match joint.kind {
-            crate::model::system::JointKind::Prismatic { .. } => {
-                (format!("{:.6}", 1e3 * value), "mm".to_owned())
-            }
+            JointKind::Prismatic { .. } => (format!("{:.6}", 1e3 * value), "mm".to_owned()),
             _ => (
                 format!("{value:.9}"),
                 format!("rad ({:.4}°)", value.to_degrees()),

@@ -224,7 +224,7 @@ fn write_files(
         },
         observations: &observations(model, &motion),
         comparison: compared.as_ref().map(|c| ("constant voltages", c)),
-        held: boundary.rest[1].as_deref(),
+        held: boundary.rest[1].as_deref().filter(|_| is_solved),
         origin: &request.origin(true),
         title: "Optimal control",
         summary: &rows,
