@@ -46,5 +46,6 @@ pub mod model;
 pub mod nlp;
 pub mod reduction;
 pub mod report;
+pub mod run;
 pub mod scene;
 pub mod sparse;

@@ -204,7 +204,7 @@ fn what_is_not_finite_is_not_drawn() {
     for svg in [
         voltages::svg(&system, &trajectory, &origin()),
         tip_path::svg(&system, &[("swing", &trajectory)], &origin()),
-        pose::svg(&system, &trajectory, &origin()),
+        pose::svg(&system, &trajectory, None, &origin()),
         plot.svg(&origin()),
     ] {
         assert_well_formed(&svg);
@@ -225,7 +225,7 @@ fn every_shape_is_drawn() {
     for (body, shape) in system.bodies.iter_mut().zip(shapes) {
         body.shape = shape;
     }
-    let svg = pose::svg(&system, &trajectory, &origin());
+    let svg = pose::svg(&system, &trajectory, None, &origin());
     assert_well_formed(&svg);
     assert!(svg.contains("voltage [kV]") && svg.contains("path of tip"));
 }
@@ -292,6 +292,7 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
         name: "swing",
         observations: &observations,
         comparison: Some(("again", &trajectory)),
+        held: None,
         origin: &origin(),
         title: "A <title>",
         summary: &[("status".to_owned(), "a < b".to_owned())],

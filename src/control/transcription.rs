@@ -238,6 +238,11 @@ impl<'m> Transcription<'m> {
         &self.unknowns
     }
 
+    /// Scale of a row: scaled row = scale · row.
+    pub fn row_scale(&self, row: usize) -> f64 {
+        self.row_scales[row]
+    }
+
     fn jacobian_of(&self) -> Vec<(usize, usize, usize)> {
         let layout = self.model.action.layout();
         let u = &self.unknowns;
