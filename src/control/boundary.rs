@@ -132,7 +132,7 @@ fn rest_at(
 ///
 /// # Errors
 /// There is no equilibrium, or joint coordinates do not fit the loops of the scene.
-pub(super) fn resolve_start(
+pub fn resolve_start(
     model: &Model,
     state: &State,
     place: &'static str,

@@ -5,13 +5,14 @@ use std::time::Instant;
 
 use crate::control::problem::{Simulation, Voltages};
 use crate::control::resolve_start;
+use crate::dynamics::observations;
 use crate::dynamics::simulate;
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::report::{Run, write_run};
 use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
-use crate::run::motion::{observations, solved, trajectory};
+use crate::run::motion::{solved, trajectory};
 use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
 use crate::run::solution_file;
@@ -95,7 +96,7 @@ pub(super) fn simulation(
         system,
         trajectory: &motion,
         name: "simulation",
-        observations: &observations(&model, &motion),
+        observations: &observations(&model, &history),
         comparison: None,
         held: None,
         origin: &request.origin(false),

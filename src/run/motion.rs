@@ -1,8 +1,8 @@
 //! From coordinates and multipliers to what people look at: poses, joint coordinates, voltages by muscle.
 
 use crate::control::{Costates, Solved};
-use crate::dynamics::History;
 use crate::dynamics::trajectory::{Observations, Trajectory};
+use crate::dynamics::{History, observations};
 use crate::model::Model;
 use crate::model::system::{Joint, JointKind};
 
@@ -61,7 +61,13 @@ pub fn trajectory(model: &Model, solved: &Solved) -> Trajectory {
     }
 }
 
-/// What is observed at the instants of a motion.
-pub(super) fn observations(model: &Model, trajectory: &Trajectory) -> Observations {
-    trajectory.observe(&model.system)
+/// What is observed at the instants of a motion that is kept.
+pub(super) fn observed(model: &Model, kept: &Solved) -> Observations {
+    let history = History {
+        times: kept.times.clone(),
+        z: kept.z.clone(),
+        scalars: kept.voltages.iter().map(|v| model.scalars(v)).collect(),
+        ..History::default()
+    };
+    observations(model, &history)
 }

@@ -14,7 +14,7 @@ use crate::report::atomic::WriteError;
 use crate::report::{Run, write_run};
 use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
-use crate::run::motion::{observations, solved, trajectory};
+use crate::run::motion::{observed, solved, trajectory};
 use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
 use crate::run::resimulate::{resimulate, under_constant_voltages};
@@ -222,7 +222,7 @@ fn write_files(
         } else {
             "last iterate"
         },
-        observations: &observations(model, &motion),
+        observations: &observed(model, kept),
         comparison: compared.as_ref().map(|c| ("constant voltages", c)),
         held: boundary.rest[1].as_deref().filter(|_| is_solved),
         origin: &request.origin(true),
