@@ -1,6 +1,9 @@
 //! Systems and reference solutions that several tests share.
 #![allow(dead_code, reason = "each test binary uses a part")]
 
+pub mod cases;
+pub mod random;
+
 use nalgebra::{Matrix3, Vector3};
 use proboscis::model::system::{
     Attachment, Body, Electric, Joint, JointKind, Marker, Material, Muscle, Shape, System,
