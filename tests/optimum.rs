@@ -318,7 +318,12 @@ fn optima_satisfy_the_conditions_of_first_order() {
                 "{name} {:?}: {:?}, multipliers {:?}",
                 control.coordinates, optimum.conditions, optimum.multipliers
             );
-            assert!(optimum.multipliers.iter().all(|m| *m > 1e-4));
+            // The shortest time drives voltages from bound to bound; the others keep off their bounds.
+            let [of_rows, of_bounds] = optimum.multipliers;
+            assert!(
+                of_rows > 1e-3 && (of_bounds > 1e-4) == (name == "pair_time"),
+                "{name}: {of_bounds}"
+            );
             // Ipopt's tolerance 1e-10 is relative to multipliers above 100, which ours are not.
             assert!(stationarity < 1e-8, "{name}: stationarity {stationarity:e}");
             assert!(rows < 1e-9, "{name}: rows {rows:e}");
@@ -337,34 +342,45 @@ fn warm_starts_are_short() {
     for name in REFERENCES {
         let (system, control) = problem(name);
         let first = cold(&system, &control);
+        let count = |o: &Optimum| {
+            assert!(
+                o.solution.status.is_solved(),
+                "{name}: {:?}",
+                o.solution.status
+            );
+            let (a, b) = (o.solution.objective, first.solution.objective);
+            assert!((a - b).abs() < 1e-6 * b, "{name}: {a} against {b}");
+            o.solution.iterations.len() - 1
+        };
         let from = Some((&first.history, first.h, Some(&first.costates)));
-        let again = solve(&system, &control, from, Start::PRIMAL_DUAL);
+        let again = count(&solve(&system, &control, from, Start::PRIMAL_DUAL));
         let (history, h) = reference_motion(name);
-        let primal = solve(&system, &control, Some((&history, h, None)), Start::PRIMAL);
-        let count = |o: &Optimum| o.solution.iterations.len() - 1;
+        let primal = count(&solve(
+            &system,
+            &control,
+            Some((&history, h, None)),
+            Start::PRIMAL,
+        ));
         println!(
-            "{name}: cold {}, own solution {}, nodes and voltages {}",
-            count(&first),
-            count(&again),
-            count(&primal)
+            "{name}: cold {}, own solution {again}, nodes and voltages {primal}",
+            count(&first)
         );
-        for mu_init in [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9] {
-            let p = solve(
-                &system,
-                &control,
-                Some((&history, h, None)),
-                Start::Primal { mu_init },
-            );
-            println!("   {mu_init:e}: {:?} {} ", p.solution.status, count(&p));
-        }
-        for (kind, o) in [("own", &again), ("primal", &primal)] {
-            println!(
-                "{name} {kind} {:?} {}",
-                o.solution.status,
-                o.solution.objective - first.solution.objective
-            );
-        }
+        assert!(count(&first) > 15, "{name}: there is something to save");
+        assert!(
+            again <= 8,
+            "{name}: {again} iterations from its own solution"
+        );
+        assert!(
+            primal <= 15,
+            "{name}: {primal} iterations from nodes and voltages"
+        );
     }
+    let (system, control) = problem("pair_time");
+    let [_, redundant] = reduced_and_redundant(&control);
+    let first = cold(&system, &redundant);
+    let from = Some((&first.history, first.h, Some(&first.costates)));
+    let again = solve(&system, &redundant, from, Start::PRIMAL_DUAL);
+    assert!(again.solution.status.is_solved() && again.solution.iterations.len() <= 9);
 }
 
 #[test]
@@ -403,7 +419,7 @@ fn a_free_final_time_is_the_best_of_a_scan() {
         (at - value).abs() < 1e-7 * value,
         "{at} at the same time against {value}"
     );
-    for factor in [0.7, 0.9, 0.97, 1.03, 1.1, 1.4] {
+    for factor in [0.8, 0.9, 0.97, 1.03, 1.1, 1.4] {
         let other = fixed(factor * t);
         println!("{factor}: {other}");
         assert!(
