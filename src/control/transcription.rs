@@ -77,6 +77,7 @@ pub struct Transcription<'m> {
     // Values and what is kept of them.
     scratch: Scratch,
     measured: Part,
+    /// Rows of the equations of all instants, then costates of the limits.
     rows: Vec<f64>,
     values: Vec<f64>,
     jacobian: Vec<Kept>,
@@ -152,6 +153,7 @@ impl<'m> Transcription<'m> {
             Variable::Horizon => initial.h,
         };
         let variable_scales = unknowns.variables.iter().map(scale).collect();
+        let limit_count = limit_at.len();
         let extra: usize = limit_at.iter().map(|&(l, _)| limits[l].entries.len()).sum();
         let mut out = Self {
             model,
@@ -175,7 +177,7 @@ impl<'m> Transcription<'m> {
                 scalar_count,
                 &crate::functional::Couplings::default(),
             ),
-            rows: vec![0.0; (intervals + 1) * unknown_count],
+            rows: vec![0.0; (intervals + 1) * unknown_count + limit_count],
             values: vec![0.0; layout.values(intervals) + extra],
             jacobian: Vec::new(),
             jacobian_entries: Entries::default(),
@@ -933,14 +935,12 @@ impl Nlp for Transcription<'_> {
     fn hessian(&mut self, x: &[f64], sigma: f64, costates: &[f64], values: &mut [f64]) {
         self.load(x);
         self.clear_forces();
-        let count = self.model.action.motion.unknowns();
         for instant in &mut self.instants {
             instant.l.fill(0.0);
         }
         self.rows.fill(0.0);
-        let total = self.rows.len();
+        let total = self.rows.len() - self.limit_rows.len();
         let first = self.unknowns.rows.len() - self.limit_rows.len();
-        self.rows.resize(total + self.limit_rows.len(), 0.0);
         for (r, (row, y)) in self.unknowns.rows.iter().zip(costates).enumerate() {
             let y = y * self.row_scales[r];
             match *row {
@@ -952,7 +952,6 @@ impl Nlp for Transcription<'_> {
             self.model.action.motion.along(instant);
         }
         self.sweep(Level::Third);
-        self.rows.truncate((self.intervals + 1) * count);
         self.objective_curvature(sigma);
         let tau = self.h * MILLISECOND;
         let (own, coupling) = values.split_at_mut(self.hessian.len());

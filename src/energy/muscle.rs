@@ -6,7 +6,7 @@ use crate::energy::Energy;
 use crate::math::{Jet, Vector};
 use nalgebra::SVector;
 
-/// Elastic energy `V₀ μ/2 (2/√I + I − 3)` of a muscle, arguments: span r. NaN for r = 0.
+/// Elastic energy `V₀ μ/2 (2/√I + I − 3)` of a muscle, arguments: span r. Not finite for r = 0.
 #[derive(Clone, Copy, Debug)]
 pub struct ElasticCell {
     /// Rest length L₀ in mm.
@@ -41,7 +41,7 @@ impl Energy<3> for ElasticCell {
     }
 }
 
-/// Electro-elastic energy of a muscle, arguments: span r and voltage V. NaN for r = 0.
+/// Electro-elastic energy of a muscle, arguments: span r and voltage V. Not finite for r = 0.
 ///
 /// `W = V₀ { μ/2 (2/√I + I − 3) + [c₁ + c₂ I − ε/(2I)] (V/t)² }`; the charge on the electrodes is −∂W/∂V.
 #[derive(Clone, Copy, Debug)]

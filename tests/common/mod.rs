@@ -1,5 +1,9 @@
 //! Systems and reference solutions that several tests share.
 #![allow(dead_code, reason = "each test binary uses a part")]
+#![allow(unreachable_pub, reason = "a module of several test binaries")]
+
+pub mod cases;
+pub mod random;
 
 use nalgebra::{Matrix3, SVector, Vector3};
 use proboscis::dynamics::trajectory::{Observations, Trajectory};
