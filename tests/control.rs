@@ -7,7 +7,7 @@ use proboscis::control::problem::{Control, Duration, Guess, Objective, Solver, S
 use proboscis::control::{Boundary, Transcription, guess};
 use proboscis::ipopt::{self, Options, Start};
 use proboscis::model::Coordinates;
-use proboscis::nlp::{Nlp, differences};
+use proboscis::nlp::differences;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
