@@ -226,7 +226,7 @@ fn numbers(system: &System, control: &Control) -> Vec<f64> {
         take(jacobian.rows.len(), &mut |v| program.jacobian(&x, v));
         let costates: Vec<f64> = (0..rows).map(|_| random.unit()).collect();
         take(hessian.rows.len(), &mut |v| {
-            program.hessian(&x, 0.7, &costates, v)
+            program.hessian(&x, 0.7, &costates, v);
         });
         assert!(out.iter().all(|v| v.is_finite()));
         out
@@ -266,10 +266,10 @@ fn absent_effects_change_no_bit() {
         };
         differs("gravity", &|s, _| s.gravity = Some(GRAVITY));
         differs("viscosity", &|s, _| {
-            s.muscles[0].material.viscosity = Some(1.0)
+            s.muscles[0].material.viscosity = Some(1.0);
         });
         differs("section inertia", &|s, _| {
-            s.muscles[0].section_inertia = true
+            s.muscles[0].section_inertia = true;
         });
         differs("mass", &|s, _| s.muscles[0].material.density = None);
         same(
@@ -279,10 +279,10 @@ fn absent_effects_change_no_bit() {
             },
         );
         same("the section of a muscle without mass", &|s, _| {
-            s.muscles[2].section_inertia = true
+            s.muscles[2].section_inertia = true;
         });
         same("the damper of a fixed joint", &|s, _| {
-            s.joints[3].damping = Some(5.0)
+            s.joints[3].damping = Some(5.0);
         });
         same("the field of a passive muscle", &|_, c| {
             c.limits = vec![Limit::ElectricField {
@@ -294,7 +294,7 @@ fn absent_effects_change_no_bit() {
         if coordinates == Coordinates::Reduced {
             // Where all pairs meet anyway, an effect of no size adds zeros to the same places.
             same("gravity of no size", &|s, _| {
-                s.gravity = Some(GRAVITY * 0.0)
+                s.gravity = Some(GRAVITY * 0.0);
             });
         }
     }

@@ -59,7 +59,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
 /// Rest at the voltages that the reference trunk is held with.
 pub fn hold(segments: usize) -> Vec<f64> {
     let pair = |i: usize| {
-        if i % 2 == 0 {
+        if i.is_multiple_of(2) {
             [0.0, 1700.0]
         } else {
             [1600.0, 0.0]
