@@ -39,6 +39,7 @@ pub fn solved(model: &Model, history: &History, costates: Option<Costates>) -> S
         joints,
         poses,
         z: history.z.clone(),
+        multiplier_time: model.multiplier_time,
         voltages: voltages.collect(),
         costates,
     }

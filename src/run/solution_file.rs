@@ -99,6 +99,7 @@ struct Body {
 #[derive(Debug, Serialize, Deserialize)]
 struct State {
     times_ms: Vec<f64>,
+    multiplier_time_ms: f64,
     z: Vec<Vec<f64>>,
 }
 
@@ -145,6 +146,7 @@ pub fn write(path: &Path, model: &Model, solved: &Solved) -> Result<(), WriteErr
         coordinates: Some(solved.coordinates.name().to_owned()),
         state: Some(State {
             times_ms: solved.times.clone(),
+            multiplier_time_ms: solved.multiplier_time,
             z: solved.z.clone(),
         }),
         costates: solved.costates.clone().map(|c| Multipliers {
@@ -231,16 +233,16 @@ fn parse(path: &Path, model: &Model) -> Result<Solved, Reason> {
             });
         }
     };
-    let (times, z) = match file.state {
+    let (times, multiplier_time, z) = match file.state {
         Some(state) => {
             same_length("state.times_ms", state.times_ms.len(), instants, "instants")?;
             same_length("state.z", state.z.len(), instants, "instants")?;
-            (state.times_ms, state.z)
+            (state.times_ms, state.multiplier_time_ms, state.z)
         }
         None => {
             let times = file.time.iter().map(|t| t * SECOND).collect();
             let z = joint_rows.iter().map(|row| model.coordinates_at(row));
-            (times, z.collect())
+            (times, model.multiplier_time, z.collect())
         }
     };
     Ok(Solved {
@@ -249,6 +251,7 @@ fn parse(path: &Path, model: &Model) -> Result<Solved, Reason> {
         joints: joint_rows,
         poses,
         z,
+        multiplier_time,
         voltages,
         costates: file.costates.map(|c| Costates {
             rows: c.rows,
