@@ -169,7 +169,7 @@ pub(super) fn control(
             jacobian: per_interval(seconds.jacobian, solution.evaluations.jacobian),
             hessian: per_interval(seconds.hessian, solution.evaluations.hessian),
         },
-        infeasibility: program.worst_violation(&solution.x).map_or(0.0, |w| w.0),
+        infeasibility: program.violation(&solution.x),
         violations: violated.clone(),
         resimulation,
     });
