@@ -7,7 +7,7 @@
 mod trunk;
 
 use proboscis::ipopt::{self, OptionValue, Options, Solution};
-use proboscis::model::Coordinates::{self, Redundant, Reduced};
+use proboscis::model::Coordinates::{self, Reduced, Redundant};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
@@ -130,11 +130,8 @@ fn step(coordinates: Coordinates) -> f64 {
 fn callbacks(coordinates: Coordinates, intervals: usize) -> [f64; 3] {
     with_program(intervals, coordinates, |program, start| {
         let mut callbacks = Callbacks::new(program, start);
-        let parts: [fn(&mut Callbacks<'_, '_>); 3] = [
-            Callbacks::constraint,
-            Callbacks::jacobian,
-            Callbacks::hessian,
-        ];
+        let parts: [fn(&mut Callbacks<'_, '_>); 3] =
+            [|c| c.constraint(), |c| c.jacobian(), |c| c.hessian()];
         parts.map(|part| {
             let run = |_| {
                 let clock = Instant::now();
@@ -235,7 +232,11 @@ fn one(arguments: &[String]) {
     let [form, intervals, options @ ..] = arguments else {
         panic!("--one reduced|redundant N [option=value]…");
     };
-    let coordinates = if form == "redundant" { Redundant } else { Reduced };
+    let coordinates = if form == "redundant" {
+        Redundant
+    } else {
+        Reduced
+    };
     let intervals = intervals.parse().expect("a number of intervals");
     let extra = options
         .iter()

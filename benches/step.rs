@@ -3,7 +3,7 @@
 mod trunk;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use proboscis::model::Coordinates::{Redundant, Reduced};
+use proboscis::model::Coordinates::{Reduced, Redundant};
 use std::time::Duration;
 use trunk::{at_rest, march};
 

@@ -3,7 +3,7 @@
 mod trunk;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use proboscis::model::Coordinates::{self, Redundant, Reduced};
+use proboscis::model::Coordinates::{self, Reduced, Redundant};
 use std::time::Duration;
 use trunk::{Callbacks, with_program};
 

@@ -5,8 +5,8 @@ use proboscis::control::problem::{Control, Duration, State, Task};
 use proboscis::control::{Boundary, Transcription, guess};
 use proboscis::dynamics::{Start, Stepper, StepperReport};
 use proboscis::ipopt::Point;
-use proboscis::model::{Coordinates, Model};
 use proboscis::model::system::System;
+use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::Nlp;
 use proboscis::scene::read_problem;
 use std::hint::black_box;
@@ -14,10 +14,7 @@ use std::path::Path;
 
 /// Reads scene and control problem.
 pub(crate) fn read(intervals: usize, coordinates: Coordinates) -> (System, Control) {
-    let path = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/problems/elephant_trunk.json"
-    );
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/problems/elephant_trunk.json");
     let loaded = read_problem(Path::new(path), &[]).expect("the trunk problem can be read");
     let Task::Control(mut control) = loaded.task else {
         panic!("the trunk problem is one of control");
@@ -96,12 +93,8 @@ impl<'a, 'm> Callbacks<'a, 'm> {
     /// Evaluates the Hessian of the Lagrangian.
     pub(crate) fn hessian(&mut self) {
         let turn = self.turn();
-        self.program.hessian(
-            &self.points[turn],
-            1.0,
-            &self.costates,
-            &mut self.hessian,
-        );
+        self.program
+            .hessian(&self.points[turn], 1.0, &self.costates, &mut self.hessian);
         black_box(&self.hessian);
     }
 }
