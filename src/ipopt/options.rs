@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Ordering of the linear solver's elimination unless `mumps_pivot_order` says otherwise: PORD.
+/// Ordering of the linear solver's elimination unless `mumps_pivot_order` says otherwise: approximate minimum fill.
 ///
-/// With a given duration it is the fastest one on the trunk: with multipliers AMF (2) takes 1.5 to 1.8 times as long,
-/// AMD (0) and SCOTCH (3) 1.1 to 1.3 times; in joint coordinates all lie within a fifth of each other. The border column
-/// of a free duration turns this round: there AMF is faster with multipliers by a third, AMD in joint coordinates.
-pub const MUMPS_ORDERING: i32 = 4;
+/// Measured on the trunk, as time inside Ipopt against this one. In joint coordinates AMD (0) takes 0.8 to 0.95. With
+/// multipliers AMD takes 0.65 for a given duration and 1.5 for a free one, whose column borders the system. PORD (4)
+/// takes 0.57 and 1.4 but ends the whole process on systems of a few unknowns, so it is nothing to begin with.
+pub const MUMPS_ORDERING: i32 = 2;
 
 /// Distance kept from bounds, and fraction of their gap, when a warm start is pushed inside them.
 const PUSH: f64 = 1e-9;
