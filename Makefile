@@ -1,0 +1,48 @@
+# make trunk: the elephant trunk from nothing to pictures.  make test: the laws.  make help: the rest.
+
+export PATH := $(PATH):$(or $(CARGO_HOME),$(HOME)/.cargo)/bin
+
+CARGO := cargo
+PROBOSCIS := target/release/proboscis
+TRUNKS := elephant_trunk elephant_trunk_smooth
+STUDIES := $(wildcard problems/studies/*.json)
+
+.PHONY: help trunk build test check bench studies install-deps clean
+
+help:
+	@echo 'make trunk         solve the elephant trunk and say where the pictures are'
+	@echo 'make test          run the tests'
+	@echo 'make check         formatting, lints, documentation'
+	@echo 'make bench         measure; rewrite the tables of benches/README.md'
+	@echo 'make studies       solve each problem of problems/studies, then measure'
+	@echo 'make install-deps  install what is missing (make trunk and make test do so by themselves)'
+	@echo 'make clean         remove what was built'
+
+trunk: build
+	@for problem in $(TRUNKS); do $(PROBOSCIS) solve problems/$$problem.json || exit; done
+	@echo; echo 'Pictures:'; for problem in $(TRUNKS); do ls results/$$problem/*.svg results/$$problem/report.html; done
+
+build: install-deps
+	@$(CARGO) build --release --locked --quiet
+
+test: install-deps
+	@$(CARGO) test --locked
+
+check: install-deps
+	@$(CARGO) fmt --check
+	@$(CARGO) clippy --quiet --locked --all-targets -- -D warnings
+	@RUSTDOCFLAGS='-D warnings' $(CARGO) doc --quiet --locked --no-deps
+
+bench: install-deps
+	@$(CARGO) bench --locked --bench transcription --bench step
+	@$(CARGO) bench --locked --bench solve -- --write
+
+studies: build
+	@for study in $(STUDIES); do $(PROBOSCIS) solve $$study || exit; done
+	@$(CARGO) bench --locked --bench solve
+
+install-deps:
+	@.ci/install
+
+clean:
+	@$(CARGO) clean
