@@ -245,7 +245,7 @@ impl<'m> Observer<'m> {
             .action
             .evaluate_instant(Level::Gradient, &mut a, &[], &mut self.scratch);
         let mut rows = vec![0.0; a.z.len()];
-        model.action.rows(&a, &self.scratch, &mut rows);
+        model.action.rows(&mut a, &self.scratch, &mut rows);
         rows[..n].iter().map(|row| -row).collect()
     }
 

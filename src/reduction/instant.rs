@@ -43,6 +43,8 @@ pub struct TreeState {
     pub twists: Vec<[Vector; 2]>,
     /// Moments N and forces f of the subtree behind each joint, and their derivatives along l.
     pub moments: Vec<Moments>,
+    /// Torque about the origin and force on the subtree behind each joint.
+    pub wrenches: Vec<[Vector; 2]>,
     /// Terms of all vectors.
     pub terms: Vec<Vector>,
     /// Their derivatives along l.

@@ -108,23 +108,31 @@ impl Motion {
         self.coordinates + self.multipliers
     }
 
-    /// x = F(u) and, for a tree, the columns of P.
+    /// x = F(u) and the columns of P.
     pub fn place(&self, instant: &mut Instant) {
+        self.vectors(instant);
+        self.tangent(instant);
+    }
+
+    /// x = F(u).
+    pub fn vectors(&self, instant: &mut Instant) {
         let Instant {
-            z,
-            x,
-            columns,
-            tree: state,
-            ..
+            z, x, tree: state, ..
         } = instant;
         if let Some(tree) = &self.tree {
             tree.place(z, state);
             tree.vectors(state, x);
-            tree.tangent(state, columns);
             return;
         }
         for (dependence, value) in self.vectors.iter().zip(x) {
             *value = Self::linear(dependence, z, true);
+        }
+    }
+
+    /// The columns of P, once the vectors are known; linear vectors need none.
+    pub fn tangent(&self, instant: &mut Instant) {
+        if let Some(tree) = &self.tree {
+            tree.tangent(&mut instant.tree, &mut instant.columns);
         }
     }
 
@@ -151,6 +159,14 @@ impl Motion {
         }
         for (dependence, value) in self.vectors.iter().zip(&mut instant.w) {
             *value = Self::linear(dependence, &instant.l, false);
+        }
+    }
+
+    /// Adds Pᵀ R of the forces on an instant to the rows of the coordinates; needs no columns.
+    pub fn rows(&self, instant: &mut Instant, rows: &mut [f64]) {
+        match &self.tree {
+            Some(tree) => tree.pull_back(&mut instant.tree, &instant.forces, rows),
+            None => self.pull_back(&[], &instant.forces, rows),
         }
     }
 

@@ -378,9 +378,8 @@ impl Reduced {
     /// Adds Pᵀ R to the first rows and the rows of the multipliers to the others.
     ///
     /// The instant has to be evaluated last.
-    pub fn rows(&self, instant: &Instant, scratch: &Scratch, rows: &mut [f64]) {
-        self.motion
-            .pull_back(&instant.columns, &instant.forces, rows);
+    pub fn rows(&self, instant: &mut Instant, scratch: &Scratch, rows: &mut [f64]) {
+        self.motion.rows(instant, rows);
         for (row, value) in rows[self.motion.coordinates..]
             .iter_mut()
             .zip(&scratch.instant.plain.rows)

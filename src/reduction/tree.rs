@@ -285,6 +285,7 @@ impl Tree {
             points_l: vec![Vector::zeros(); joints],
             twists: vec![[Vector::zeros(); 2]; self.carrier.len()],
             moments: vec![Moments::default(); joints],
+            wrenches: vec![[Vector::zeros(); 2]; joints],
             terms: vec![Vector::zeros(); self.terms.len()],
             terms_l: vec![Vector::zeros(); self.terms.len()],
             arms: vec![Vector::zeros(); self.arms.len()],
@@ -396,6 +397,33 @@ impl Tree {
                 _ => tree.axes_l[j] * centre,
             };
             column.store(&value, columns_l);
+        }
+    }
+
+    /// Adds Pᵀ R for the forces on all vectors, without columns: `a·τ` about each joint, gathered from the leaves to the
+    /// root (prismatic: `a·f`).
+    pub fn pull_back(&self, state: &mut TreeState, forces: &[Vector], rows: &mut [f64]) {
+        state.wrenches.fill([Vector::zeros(); 2]);
+        for (term, x) in self.terms.iter().zip(&state.terms) {
+            let force = &forces[term.vector];
+            let [torque, sum] = &mut state.wrenches[self.carrier[term.body]];
+            *torque += x.cross(force);
+            *sum += force * term.centre;
+        }
+        for (j, joint) in self.joints.iter().enumerate().rev() {
+            let [torque, force] = state.wrenches[j];
+            if let Some(before) = self.before[j] {
+                state.wrenches[before][0] += torque;
+                state.wrenches[before][1] += force;
+            }
+            let axis = state.axes[j];
+            match (joint.coordinate, joint.kind) {
+                (Some(c), TreeKind::Revolute) => {
+                    rows[c] += axis.dot(&(torque - state.points[j].cross(&force)))
+                }
+                (Some(c), _) => rows[c] += axis.dot(&force),
+                (None, _) => {}
+            }
         }
     }
 

@@ -38,6 +38,17 @@ struct Kept {
     place: usize,
     scale: f64,
 }
+/// What is known of the instants at the present point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Placed {
+    /// Coordinates only.
+    Nothing,
+    /// Vectors.
+    Vectors,
+    /// Vectors and columns of P.
+    Columns,
+}
+
 /// A control problem as a nonlinear program.
 #[derive(Debug)]
 pub struct Transcription<'m> {
@@ -54,6 +65,7 @@ pub struct Transcription<'m> {
     // The point.
     point: Vec<f64>,
     instants: Vec<Instant>,
+    placed: Placed,
     scalars: Vec<f64>,
     kilovolts: Vec<f64>,
     h: f64,
@@ -62,6 +74,8 @@ pub struct Transcription<'m> {
     row_scales: Vec<f64>,
     // Values and what is kept of them.
     scratch: Scratch,
+    /// ∂²/∂h² along the costates, summed over the intervals.
+    square: f64,
     measured: Part,
     /// Rows of the equations of all instants, then costates of the limits.
     rows: Vec<f64>,
@@ -146,12 +160,14 @@ impl<'m> Transcription<'m> {
             bounds: Bounds::default(),
             point: vec![f64::NAN; unknowns.variables.len()],
             instants,
+            placed: Placed::Nothing,
             scalars: vec![0.0; intervals * scalar_count],
             kilovolts: vec![0.0; intervals * scalar_count],
             h: initial.h,
             variable_scales,
             row_scales: vec![1.0; unknowns.rows.len()],
             scratch: model.action.scratch(),
+            square: 0.0,
             measured: Part::new(
                 motion.vectors.len(),
                 scalar_count,

@@ -2,7 +2,7 @@
 
 use crate::control::guess::Initial;
 use crate::control::solution::Costates;
-use crate::control::transcription::{KILOVOLT, Transcription};
+use crate::control::transcription::{KILOVOLT, Placed, Transcription};
 use crate::control::unknowns::Variable;
 use crate::dynamics::History;
 use crate::ipopt;
@@ -94,7 +94,7 @@ impl Transcription<'_> {
         }
     }
 
-    /// Reads a point; vectors and columns of all instants follow unless they stand there already.
+    /// Reads a point, unless it stands there already; a sweep places the instants.
     pub(super) fn load(&mut self, x: &[f64]) {
         if self.point == x {
             return;
@@ -118,8 +118,6 @@ impl Transcription<'_> {
                 Variable::Horizon => self.h = value,
             }
         }
-        for instant in &mut self.instants {
-            self.model.action.motion.place(instant);
-        }
+        self.placed = Placed::Nothing;
     }
 }

@@ -60,7 +60,6 @@ impl Nlp for Transcription<'_> {
 
     fn constraint(&mut self, x: &[f64], g: &mut [f64]) {
         self.load(x);
-        self.clear_forces();
         self.sweep(Level::Gradient);
         let count = self.model.action.motion.unknowns();
         for (value, (row, scale)) in g
@@ -84,7 +83,6 @@ impl Nlp for Transcription<'_> {
 
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) {
         self.load(x);
-        self.clear_forces();
         self.sweep(Level::Hessian);
         self.limit_gradients();
         for (value, kept) in values.iter_mut().zip(&self.jacobian) {
@@ -94,7 +92,6 @@ impl Nlp for Transcription<'_> {
 
     fn hessian(&mut self, x: &[f64], sigma: f64, costates: &[f64], values: &mut [f64]) {
         self.load(x);
-        self.clear_forces();
         for instant in &mut self.instants {
             instant.l.fill(0.0);
         }
@@ -107,9 +104,6 @@ impl Nlp for Transcription<'_> {
                 Row::Equation { k, i } => self.instants[k].l[i] = y,
                 Row::Limit { .. } => self.rows[total + r - first] = y,
             }
-        }
-        for instant in &mut self.instants {
-            self.model.action.motion.along(instant);
         }
         self.sweep(Level::Third);
         self.objective_curvature(sigma);

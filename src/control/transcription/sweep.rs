@@ -1,65 +1,32 @@
 //! One sweep over the horizon: forces, and second derivatives into the values.
 
 use crate::control::transcription::limit_rows::{LimitRow, Site, fill_weights};
-use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
+use crate::control::transcription::{KILOVOLT, MILLISECOND, Placed, Transcription};
 use crate::functional::{Frame, Horizon, Level, Measure, Sides};
 use crate::math::Vector;
 
-impl<'m> Transcription<'m> {
-    pub(super) fn clear_forces(&mut self) {
-        for instant in &mut self.instants {
-            instant.forces.fill(Vector::zeros());
-            instant.contracted.fill(Vector::zeros());
-        }
+/// What a level needs of an instant.
+fn needed(level: Level) -> Placed {
+    match level {
+        Level::Gradient => Placed::Vectors,
+        Level::Hessian | Level::Third => Placed::Columns,
     }
+}
 
-    /// Interval by interval, then instant by instant: forces, and second derivatives into the values.
+impl<'m> Transcription<'m> {
+    /// Instant by instant and interval by interval, each while it is in the cache: forces, and second derivatives into
+    /// the values. Contracted derivatives are taken along the costates in the instants.
     pub(super) fn sweep(&mut self, level: Level) {
-        let action = &self.model.action;
-        let scalar_count = self.model.voltages.len();
-        if level >= Level::Hessian {
-            self.values.fill(0.0);
-        }
-        let equations = self.rows.len() - self.limit_rows.len();
-        let mut square = 0.0;
+        let layout = self.model.action.layout();
+        self.square = 0.0;
         self.scratch.start();
+        self.prepare(level, 0);
         for k in 0..self.intervals {
-            let (left, right) = self.instants.split_at_mut(k + 1);
-            let (a, b) = (&mut left[k], &mut right[0]);
-            let scalars = &self.scalars[k * scalar_count..(k + 1) * scalar_count];
-            fill_weights(
-                &mut self.weights[1],
-                &self.limits,
-                Site::Intervals,
-                k,
-                &self.rows[equations..],
-            );
-            let weights = &self.weights[1];
-            let scratch = &mut self.scratch;
-            action.evaluate_interval(
-                level,
-                a,
-                b,
-                scalars,
-                self.h,
-                self.horizon,
-                Sides::ALL,
-                weights,
-                scratch,
-            );
-            scratch.carry(level);
-            action.pull_back_interval(
-                level,
-                a,
-                b,
-                self.horizon,
-                Sides::CARRIED,
-                k,
-                scratch,
-                &mut self.values,
-            );
-            square += scratch.interval.contracted.horizon;
+            self.prepare(level, k + 1);
+            self.interval(level, k);
+            self.instant(level, k);
         }
+        let action = &self.model.action;
         let last = &self.instants[self.intervals];
         action.pull_back_last(
             level,
@@ -68,26 +35,96 @@ impl<'m> Transcription<'m> {
             &mut self.scratch,
             &mut self.values,
         );
-        for (k, instant) in self.instants.iter_mut().enumerate() {
-            fill_weights(
-                &mut self.weights[0],
-                &self.limits,
-                Site::Instants,
-                k,
-                &self.rows[equations..],
-            );
-            let weights = &self.weights[0];
-            action.evaluate_instant(level, instant, weights, &mut self.scratch);
-            action.pull_back_instant(level, instant, k, &mut self.scratch, &mut self.values);
-            if level != Level::Third {
-                let count = action.motion.unknowns();
-                let rows = &mut self.rows[k * count..(k + 1) * count];
-                rows.fill(0.0);
-                action.rows(instant, &self.scratch, rows);
-            }
-        }
+        self.instant(level, self.intervals);
         if level == Level::Third && self.horizon == Horizon::Free {
-            self.values[action.layout().horizon_square_at(self.intervals)] += square;
+            self.values[layout.horizon_square_at(self.intervals)] = self.square;
+        }
+        self.placed = self.placed.max(needed(level));
+    }
+
+    /// Places instant k as far as a level needs it, and clears what the sweep adds to.
+    fn prepare(&mut self, level: Level, k: usize) {
+        if level >= Level::Hessian {
+            let layout = self.model.action.layout();
+            self.values[layout.same_at(k)..layout.same_at(k + 1)].fill(0.0);
+        }
+        let motion = &self.model.action.motion;
+        let instant = &mut self.instants[k];
+        if self.placed < Placed::Vectors {
+            motion.vectors(instant);
+        }
+        if self.placed < needed(level) && needed(level) == Placed::Columns {
+            motion.tangent(instant);
+        }
+        instant.forces.fill(Vector::zeros());
+        if level == Level::Third {
+            instant.contracted.fill(Vector::zeros());
+            motion.along(instant);
+        }
+    }
+
+    /// Interval k.
+    fn interval(&mut self, level: Level, k: usize) {
+        let action = &self.model.action;
+        let scalar_count = self.model.voltages.len();
+        let equations = self.rows.len() - self.limit_rows.len();
+        let (left, right) = self.instants.split_at_mut(k + 1);
+        let (a, b) = (&mut left[k], &mut right[0]);
+        let scalars = &self.scalars[k * scalar_count..(k + 1) * scalar_count];
+        let weights = &mut self.weights[1];
+        fill_weights(
+            weights,
+            &self.limits,
+            Site::Intervals,
+            k,
+            &self.rows[equations..],
+        );
+        let (scratch, horizon) = (&mut self.scratch, self.horizon);
+        action.evaluate_interval(
+            level,
+            a,
+            b,
+            scalars,
+            self.h,
+            horizon,
+            Sides::ALL,
+            weights,
+            scratch,
+        );
+        scratch.carry(level);
+        action.pull_back_interval(
+            level,
+            a,
+            b,
+            horizon,
+            Sides::CARRIED,
+            k,
+            scratch,
+            &mut self.values,
+        );
+        self.square += scratch.interval.contracted.horizon;
+    }
+
+    /// Instant k, whose forces are complete.
+    fn instant(&mut self, level: Level, k: usize) {
+        let action = &self.model.action;
+        let equations = self.rows.len() - self.limit_rows.len();
+        let instant = &mut self.instants[k];
+        let weights = &mut self.weights[0];
+        fill_weights(
+            weights,
+            &self.limits,
+            Site::Instants,
+            k,
+            &self.rows[equations..],
+        );
+        action.evaluate_instant(level, instant, weights, &mut self.scratch);
+        action.pull_back_instant(level, instant, k, &mut self.scratch, &mut self.values);
+        if level == Level::Gradient {
+            let count = action.motion.unknowns();
+            let rows = &mut self.rows[k * count..(k + 1) * count];
+            rows.fill(0.0);
+            action.rows(instant, &self.scratch, rows);
         }
     }
 
