@@ -1,7 +1,9 @@
-//! Finds Ipopt and translates the few declarations of its C header that `src/ipopt/ffi.rs` calls.
+//! Finds Ipopt, translates the few declarations of its C header that `src/ipopt/ffi.rs` calls, and notes the versions that
+//! results name.
 
 use std::env;
 use std::path::PathBuf;
+use std::process::Command;
 
 /// What is told when Ipopt or its header is missing.
 const INSTALL: &str = "proboscis needs Ipopt with its C header: \
@@ -30,6 +32,10 @@ fn main() {
         println!("cargo::rustc-link-search=native={}", path.display());
     }
     println!("cargo::rustc-link-lib=dylib=ipopt");
+    println!("cargo::rustc-env=PROBOSCIS_IPOPT={}", ipopt.version);
+    if env::var("PROFILE").as_deref() == Ok("release") {
+        note_commit();
+    }
 
     let bindings = bindgen::Builder::default()
         .header_contents("ipopt.h", "#include <IpStdCInterface.h>\n")
@@ -49,5 +55,20 @@ fn main() {
                 .expect("OUT_DIR can be written");
         }
         Err(error) => println!("cargo::error={INSTALL} ({error})"),
+    }
+}
+
+/// Tells release builds from a checkout their commit; a development build would be compiled anew after each commit.
+fn note_commit() {
+    let git = |arguments: &[&str]| {
+        let output = Command::new("git").args(arguments).output().ok()?;
+        let text = String::from_utf8(output.stdout).ok()?;
+        output.status.success().then(|| text.trim().to_owned())
+    };
+    if let Some(commit) = git(&["rev-parse", "--short=12", "HEAD"]) {
+        println!("cargo::rustc-env=PROBOSCIS_COMMIT={commit}");
+    }
+    if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]) {
+        println!("cargo::rerun-if-changed={log}");
     }
 }

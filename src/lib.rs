@@ -1,4 +1,39 @@
 //! Simulation and optimal control of systems driven by dielectric elastomer muscles.
+//!
+//! Everything a problem is made of is a scalar, and everything the solvers need is a derivative of a sum of scalars.
+//! The midpoint rule turns the action of a scene into a sum over intervals `[t_k, t_{k+1}]` and instants `t_k`,
+//!
+//! ```text
+//! Ŝ = Σ_k h [ T(v_k) − V(x̄_k, s_k) ] − h₀ Σ_k λ_k·g(x_k),     x̄ = (x_k + x_{k+1})/2,   v = (x_{k+1} − x_k)/h,
+//! δŜ + Σ_k h δx̄_k·f(x̄_k, v_k) = 0,
+//! ```
+//!
+//! of material vectors x (points, directors and spans of bodies), voltages s and multipliers λ. There is one assembly of
+//! it, and two readers:
+//!
+//! ```text
+//! forward simulation           Newton on the rows of instant k of ∇Ŝ, tangent: those rows of ∇²Ŝ
+//! constraints of the program   c = ∇Ŝ + virtual work          discrete Euler–Lagrange equations, g = 0
+//! their Jacobian               ∇c = ∇²Ŝ
+//! Hessian of the Lagrangian    ∇²(y·c) = ∇³Ŝ[y] + ∇²(objective)
+//! ```
+//!
+//! Coordinates are chosen on top: x = F(u) with joint coordinates u of a kinematic tree, or directors with multipliers.
+//!
+//! From the formulas upwards:
+//!
+//! | module | owns |
+//! |---|---|
+//! | [`math`], [`sparse`], [`nlp`] | jets; direct solution; what a nonlinear program is, and its check by differences |
+//! | [`energy`] | formulas: energies and virtual works with exact derivatives |
+//! | [`ipopt`] | the solver behind one safe function |
+//! | [`kinematics`] | material vectors, linear in the poses of bodies |
+//! | [`functional`] | sums of effects over intervals and instants |
+//! | [`reduction`] | the same sums as functions of coordinates |
+//! | [`model`] | from a system of bodies, joints and muscles to its action |
+//! | [`dynamics`] | simulation, equilibrium, observations |
+//! | [`control`] | the transcription of a control problem (DMOCC) |
+//! | [`scene`], [`report`] | files in and files out |
 
 pub mod control;
 pub mod dynamics;
@@ -11,5 +46,6 @@ pub mod model;
 pub mod nlp;
 pub mod reduction;
 pub mod report;
+pub mod run;
 pub mod scene;
 pub mod sparse;

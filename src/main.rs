@@ -1,1 +1,186 @@
-fn main() {}
+//! The command line: what is typed, passed on, and answered with a line and an exit status.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use proboscis::ipopt::interrupt;
+use proboscis::run::{self, Request, RunError, Shown, Told};
+use tracing_subscriber::EnvFilter;
+
+/// Simulation and optimal control of robots driven by dielectric elastomer muscles.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    after_help = "Exit status: 0 solved; 1 no solution, or stopped short; 2 wrong input."
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Solve a problem: find optimal voltages, or do what else its file asks.
+    Solve(Problem),
+    /// Simulate a problem forward in time, or do what else its file asks.
+    Simulate(Problem),
+    /// Find the static equilibrium of a problem, or of any scene under given voltages.
+    Equilibrium {
+        #[command(flatten)]
+        problem: Problem,
+        /// Voltages such as muscle2=1.7kV,muscle3=1.6kV; 0 where not named.
+        #[arg(long, value_name = "MUSCLE=VOLTAGE", value_delimiter = ',')]
+        voltages: Option<Vec<String>>,
+    },
+    /// Show what a problem consists of: effects, unknowns, equations, nonzeros.
+    Inspect(Problem),
+    /// Compare the derivatives of a problem with differences.
+    Check(Problem),
+    /// Print a scene without shorthand.
+    Expand {
+        /// The scene file.
+        scene: PathBuf,
+    },
+    /// Print the JSON Schema of a file.
+    Schema {
+        /// Which file.
+        #[arg(default_value = "problem")]
+        file: File,
+    },
+    /// Write a scene and a problem to start from.
+    New {
+        #[command(subcommand)]
+        what: New,
+    },
+}
+
+#[derive(Debug, Subcommand)]
+enum New {
+    /// A trunk of segments with two muscles at each joint, and its rest-to-rest problem.
+    Trunk {
+        /// Number of segments.
+        #[arg(long, default_value_t = 6)]
+        segments: usize,
+        /// Folder for scene.json and problem.json.
+        #[arg(default_value = ".")]
+        folder: PathBuf,
+    },
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum File {
+    /// What exists.
+    Scene,
+    /// What is asked.
+    Problem,
+}
+
+#[derive(Args, Debug)]
+struct Problem {
+    /// The problem file.
+    problem: PathBuf,
+    /// Folder for the results [default: results/<name of the problem>].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Override an entry, such as control.intervals=80 or scene.gravity=[0,-9.81,0]; may be repeated.
+    #[arg(long, value_name = "PATH=VALUE")]
+    set: Vec<String>,
+    /// Stop after so many seconds.
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    max_seconds: Option<f64>,
+    /// Stop after so many iterations of the solver.
+    #[arg(long, value_name = "N")]
+    max_iterations: Option<usize>,
+    /// Show no progress.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+impl Problem {
+    fn request(self) -> Request {
+        let typed = std::env::args_os().skip(1);
+        let typed = typed.map(|word| word.to_string_lossy().into_owned());
+        let command = ["proboscis".to_owned()].into_iter().chain(typed);
+        Request {
+            command: command.collect::<Vec<_>>().join(" "),
+            input: self.problem,
+            set: self.set,
+            output: self.output,
+            max_seconds: self.max_seconds,
+            max_iterations: self.max_iterations,
+            progress: if self.quiet {
+                Shown::Never
+            } else {
+                Shown::OnTerminal
+            },
+        }
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if value > 0.0 => Ok(value),
+        _ => Err("expected a positive number of seconds".to_owned()),
+    }
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    tracing_subscriber::fmt()
+        .with_writer(io::stderr)
+        .with_env_filter(EnvFilter::from_default_env())
+        .init();
+    match answer(arguments.command) {
+        Ok(told) => {
+            for note in &told.notes {
+                eprintln!("{note}");
+            }
+            // Whoever reads the answer may have gone, as `head` does.
+            writeln!(io::stdout(), "{}", told.result.trim_end()).ok();
+            ExitCode::from(if told.is_solved { 0 } else { 1 })
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            if let Some(excerpt) = error.excerpt() {
+                eprintln!("{}", excerpt.trim_end());
+            }
+            ExitCode::from(error.exit_status())
+        }
+    }
+}
+
+fn answer(command: Command) -> Result<Told, RunError> {
+    let text = |result: String| Told {
+        is_solved: true,
+        result,
+        notes: Vec::new(),
+    };
+    match command {
+        Command::Solve(problem) | Command::Simulate(problem) => {
+            interrupt::install();
+            run::run(&problem.request())
+        }
+        Command::Equilibrium { problem, voltages } => {
+            run::equilibrium_of_file(&problem.request(), voltages.as_deref())
+        }
+        Command::Inspect(problem) => run::inspect(&problem.request()),
+        Command::Check(problem) => run::check(&problem.request()),
+        Command::Expand { scene } => run::expand(&scene).map(text),
+        Command::Schema { file } => {
+            let (scene, problem) = run::schema();
+            Ok(text(match file {
+                File::Scene => scene,
+                File::Problem => problem,
+            }))
+        }
+        Command::New {
+            what: New::Trunk { segments, folder },
+        } => {
+            let files = run::new_trunk(segments, &folder)?;
+            let names = files.iter().map(|path| path.display().to_string());
+            Ok(text(names.collect::<Vec<_>>().join("\n")))
+        }
+    }
+}

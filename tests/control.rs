@@ -7,7 +7,7 @@ use proboscis::control::problem::{Control, Duration, Guess, Objective, Solver, S
 use proboscis::control::{Boundary, Transcription, guess};
 use proboscis::ipopt::{self, Options, Start};
 use proboscis::model::Coordinates;
-use proboscis::nlp::{Nlp, differences};
+use proboscis::nlp::differences;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
@@ -58,13 +58,16 @@ fn solve(name: &str, segments: usize, coordinates: Coordinates) {
     let initial = guess(&model, &boundary, &control, h, None);
     let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
     let start = program.start(&initial);
-    let report = differences::check(&mut program, &start.x, 7);
+    // Two evaluations a variable: large programs are left to tests/functional.rs, which checks small ones of each kind.
+    if start.x.len() < 2000 {
+        let report = differences::check(&mut program, &start.x, 7);
+        assert!(report.is_consistent(), "{report}");
+    }
     println!(
         "{name} {coordinates:?}: {} variables, {} rows",
         start.x.len(),
         program.unknowns().rows.len()
     );
-    assert!(report.is_consistent(), "{report}");
     let options = Options {
         tolerance: 1e-10,
         start: Start::Cold,

@@ -4,6 +4,7 @@ mod trunk;
 
 use std::fs;
 
+use nalgebra::Vector3;
 use proboscis::dynamics::trajectory::{Column, Observations, Trajectory};
 use proboscis::model::system::{JointKind, Shape, System};
 use proboscis::report::axes::{Axis, Extent};
@@ -86,11 +87,16 @@ fn coordinates_are_named_after_their_joints() {
     assert_eq!(trajectory.coordinates(&system).len(), 6);
     system.joints[1].kind = JointKind::Spherical;
     system.joints[2].kind = JointKind::Fixed;
-    trajectory.joints = vec![vec![0.0; 7]; 21];
+    system.joints[3].kind = JointKind::Prismatic { axis: Vector3::y() };
+    trajectory.joints = vec![vec![0.0; 4]; 21];
     let names = trajectory.coordinates(&system);
-    let names: Vec<_> = names.iter().map(|c| c.name.as_str()).collect();
+    let names: Vec<_> = names.iter().map(|c| (c.name.as_str(), c.unit)).collect();
+    // Spherical and fixed joints have no coordinate.
     let expected = [
-        "joint1", "joint2_1", "joint2_2", "joint2_3", "joint4", "joint5", "joint6",
+        ("joint1", "rad"),
+        ("joint4", "mm"),
+        ("joint5", "rad"),
+        ("joint6", "rad"),
     ];
     assert_eq!(names, expected);
 }
@@ -198,7 +204,7 @@ fn what_is_not_finite_is_not_drawn() {
     for svg in [
         voltages::svg(&system, &trajectory, &origin()),
         tip_path::svg(&system, &[("swing", &trajectory)], &origin()),
-        pose::svg(&system, &trajectory, &origin()),
+        pose::svg(&system, &trajectory, None, &origin()),
         plot.svg(&origin()),
     ] {
         assert_well_formed(&svg);
@@ -219,7 +225,7 @@ fn every_shape_is_drawn() {
     for (body, shape) in system.bodies.iter_mut().zip(shapes) {
         body.shape = shape;
     }
-    let svg = pose::svg(&system, &trajectory, &origin());
+    let svg = pose::svg(&system, &trajectory, None, &origin());
     assert_well_formed(&svg);
     assert!(svg.contains("voltage [kV]") && svg.contains("path of tip"));
 }
@@ -286,6 +292,7 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
         name: "swing",
         observations: &observations,
         comparison: Some(("again", &trajectory)),
+        held: None,
         origin: &origin(),
         title: "A <title>",
         summary: &[("status".to_owned(), "a < b".to_owned())],

@@ -133,10 +133,18 @@ fn from_solution(
     let exact = same_grid
         && solved.coordinates == model.coordinates
         && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
+    let n = model.coordinate_count();
+    let restated = |z: &Vec<f64>| {
+        let mut z = z.clone();
+        for multiplier in &mut z[n..] {
+            *multiplier *= solved.multiplier_time / model.multiplier_time;
+        }
+        z
+    };
     let z = (0..=intervals)
         .map(|k| {
             if exact {
-                solved.z[k].clone()
+                restated(&solved.z[k])
             } else {
                 resample(k)
             }

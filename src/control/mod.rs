@@ -10,9 +10,9 @@ mod solution;
 mod transcription;
 mod unknowns;
 
-pub use boundary::{Boundary, Goal};
+pub use boundary::{Boundary, Goal, resolve_start};
 pub use error::BoundaryError;
-pub use guess::guess;
+pub use guess::{Initial, guess};
 pub use limits::Limits;
 pub use objective::Cost;
 pub use solution::{Costates, Solved};

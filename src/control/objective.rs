@@ -82,24 +82,30 @@ impl Cost {
         for (g, x) in out.iter_mut().zip(v) {
             *g = 2.0 * w.effort * tau * x;
         }
-        if w.rate != 0.0 {
-            for k in 0..=self.intervals {
-                for s in 0..self.scalars {
-                    let Some(jump) = self.jump(v, k, s) else {
-                        continue;
-                    };
-                    let slope = 2.0 * w.rate / tau * jump;
-                    if k > 0 {
-                        out[(k - 1) * self.scalars + s] -= slope;
-                    }
-                    if k < self.intervals {
-                        out[k * self.scalars + s] += slope;
-                    }
+        self.add_rate_gradient(v, tau, out);
+        let (effort, rate) = self.squares(v);
+        w.effort * effort - w.rate * rate / (tau * tau) + w.duration * self.intervals as f64
+    }
+
+    /// Adds ∂/∂v of the rate term.
+    fn add_rate_gradient(&self, v: &[f64], tau: f64, out: &mut [f64]) {
+        if self.weights.rate == 0.0 {
+            return;
+        }
+        for k in 0..=self.intervals {
+            for s in 0..self.scalars {
+                let Some(jump) = self.jump(v, k, s) else {
+                    continue;
+                };
+                let slope = 2.0 * self.weights.rate / tau * jump;
+                if k > 0 {
+                    out[(k - 1) * self.scalars + s] -= slope;
+                }
+                if k < self.intervals {
+                    out[k * self.scalars + s] += slope;
                 }
             }
         }
-        let (effort, rate) = self.squares(v);
-        w.effort * effort - w.rate * rate / (tau * tau) + w.duration * self.intervals as f64
     }
 
     /// ∂²f/∂v² of one voltage of interval k with itself.
@@ -118,15 +124,8 @@ impl Cost {
     /// ∂²f/∂v∂τ into `out`; returns ∂²f/∂τ².
     pub fn horizon(&self, v: &[f64], tau: f64, out: &mut [f64]) -> f64 {
         let w = &self.weights;
-        let only_rate = Self {
-            weights: Objective {
-                effort: 0.0,
-                rate: w.rate,
-                duration: 0.0,
-            },
-            ..self.clone()
-        };
-        only_rate.gradient(v, tau, out);
+        out.fill(0.0);
+        self.add_rate_gradient(v, tau, out);
         for (g, x) in out.iter_mut().zip(v) {
             *g = 2.0 * w.effort * x - *g / tau;
         }

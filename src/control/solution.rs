@@ -16,6 +16,8 @@ pub struct Solved {
     pub poses: Vec<Vec<Pose>>,
     /// Coordinates and multipliers by instant.
     pub z: Vec<Vec<f64>>,
+    /// Time h₀ in ms that scales the multipliers in `z`.
+    pub multiplier_time: f64,
     /// Voltages by interval and muscle.
     pub voltages: Vec<Vec<f64>>,
     /// Multipliers of the optimisation.

@@ -19,7 +19,7 @@ pub enum StepError {
     },
     /// The tangent is singular.
     #[error(
-        "singular tangent at t = {time} ms with a step of {step} ms ({name} is not determined)"
+        "singular tangent at t = {time} ms with a step of {step} ms: {name} is not determined; constraints are redundant, or the configuration is singular"
     )]
     Singular {
         /// Start of the step in ms.

@@ -3,6 +3,7 @@
 mod equilibrium;
 mod error;
 mod history;
+mod observe;
 mod simulate;
 mod stepper;
 pub mod trajectory;
@@ -10,5 +11,6 @@ pub mod trajectory;
 pub use equilibrium::{Equilibrium, equilibrium};
 pub use error::{EquilibriumError, StepError};
 pub use history::History;
+pub use observe::{Energies, energies, observations};
 pub use simulate::{Start, simulate};
 pub use stepper::{Stepper, StepperReport};

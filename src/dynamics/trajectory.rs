@@ -2,7 +2,9 @@
 
 use nalgebra::Vector3;
 
+use crate::dynamics::History;
 use crate::kinematics::Pose;
+use crate::model::Model;
 use crate::model::system::{Attachment, Joint, JointKind, System};
 
 /// What changes over time: N + 1 instants and the N intervals between them.
@@ -19,6 +21,37 @@ pub struct Trajectory {
 }
 
 impl Trajectory {
+    /// The motion of a model: poses, joint coordinates without jumps, and a voltage for every muscle.
+    pub fn from_history(model: &Model, history: &History) -> Self {
+        let mut instant = model.action.motion.instant();
+        let mut near = vec![0.0; model.gauges.len()];
+        let mut trajectory = Self {
+            times: history.times.clone(),
+            ..Self::default()
+        };
+        for z in &history.z {
+            instant.z.copy_from_slice(z);
+            model.action.motion.place(&mut instant);
+            near = model.joints(&instant, &near);
+            let with_coordinate = near
+                .iter()
+                .zip(&model.gauges)
+                .filter(|(_, gauge)| gauge.coordinate.is_some());
+            trajectory
+                .joints
+                .push(with_coordinate.map(|(&value, _)| value).collect());
+            trajectory.poses.push(model.poses(&instant));
+        }
+        for scalars in &history.scalars {
+            let mut voltages = vec![0.0; model.system.muscles.len()];
+            for (&muscle, &voltage) in model.voltages.iter().zip(scalars) {
+                voltages[muscle] = voltage;
+            }
+            trajectory.voltages.push(voltages);
+        }
+        trajectory
+    }
+
     /// Place in mm of a material point at instant `k`: c + R R₀ᵀ (X − c₀); points of the ground stay.
     pub fn point(&self, k: usize, point: &Attachment, system: &System) -> Vector3<f64> {
         match point.body {

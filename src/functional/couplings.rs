@@ -90,6 +90,10 @@ pub struct Sides {
 impl Sides {
     /// All four blocks.
     pub const ALL: Self = Self { blocks: [true; 4] };
+    /// All but (k+1, k+1), which is carried on to the next interval.
+    pub const CARRIED: Self = Self {
+        blocks: [true, true, true, false],
+    };
     /// Only the rows of t_k against t_{k+1}: what one step forward needs.
     pub const FORWARD: Self = Self {
         blocks: [false, true, false, false],

@@ -21,6 +21,9 @@ pub use options::{MUMPS_ORDERING, OptionValue, Options, Start};
 pub use solution::{Costates, Evaluations, Iteration, Point, Seconds, Solution};
 pub use status::Status;
 
+/// Version of the Ipopt that the program was built with.
+pub const VERSION: &str = env!("PROBOSCIS_IPOPT");
+
 /// Why Ipopt could not be called.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum IpoptError {

@@ -53,7 +53,10 @@ pub enum Start {
 
 impl Start {
     /// [`Start::Primal`] for a problem that hardly changed.
-    pub const PRIMAL: Self = Self::Primal { mu_init: 1e-6 };
+    ///
+    /// From nodes and voltages of the five reference optima, iterations: 1e-6 takes 5 to 14, 1e-7 2 to 13, 1e-8 2 to 13;
+    /// with noise of 1e-3 on them 1e-8 takes up to 27 where 1e-7 takes 23.
+    pub const PRIMAL: Self = Self::Primal { mu_init: 1e-7 };
     /// [`Start::PrimalDual`] for a problem that hardly changed.
     pub const PRIMAL_DUAL: Self = Self::PrimalDual { mu_init: 1e-8 };
 }

@@ -5,7 +5,7 @@ use crate::math::Vector;
 use crate::model::system::{Joint, JointKind, System};
 
 /// Two unit vectors that complete a unit vector n to a right-handed triad (a, b, n).
-pub fn triad(n: &Vector) -> [Vector; 2] {
+pub(super) fn triad(n: &Vector) -> [Vector; 2] {
     let helper = if n.x.abs() < 0.6 {
         Vector::x()
     } else if n.y.abs() < 0.6 {

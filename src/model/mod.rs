@@ -47,6 +47,8 @@ pub struct Model {
     pub coordinates: Coordinates,
     /// The action as a function of coordinates and voltages.
     pub action: Reduced,
+    /// The vectors that effects read, in terms of poses.
+    pub vectors: Vec<MaterialVector>,
     /// Muscle of each voltage.
     pub voltages: Vec<usize>,
     /// Vector of the span of each muscle.
@@ -114,6 +116,7 @@ impl Model {
         Ok(Self {
             coordinates,
             action: Reduced::new(motion, intervals, instants),
+            vectors: list.to_vec(),
             voltages,
             spans,
             markers,

@@ -14,10 +14,10 @@ pub struct Instant {
     pub x: Vec<Vector>,
     /// w = P l.
     pub w: Vec<Vector>,
-    /// Columns ∂x/∂u of articulated vectors, vector by vector.
-    pub columns: Vec<Vector>,
+    /// Columns ∂x/∂u of articulated vectors, packed vector by vector.
+    pub columns: Vec<f64>,
     /// Their derivatives along l.
-    pub columns_l: Vec<Vector>,
+    pub columns_l: Vec<f64>,
     /// Forces R on the vectors, summed over neighbouring intervals.
     pub forces: Vec<Vector>,
     /// Contracted forces Hᵀ w, likewise.
@@ -43,6 +43,14 @@ pub struct TreeState {
     pub twists: Vec<[Vector; 2]>,
     /// Moments N and forces f of the subtree behind each joint, and their derivatives along l.
     pub moments: Vec<Moments>,
+    /// Terms of all vectors.
+    pub terms: Vec<Vector>,
+    /// Their derivatives along l.
+    pub terms_l: Vec<Vector>,
+    /// Parts of vectors that joints move.
+    pub arms: Vec<Vector>,
+    /// Their derivatives along l.
+    pub arms_l: Vec<Vector>,
 }
 
 /// Σ v Rᵀ and Σ R over the bodies behind a joint, and their rates along l.

@@ -3,7 +3,7 @@
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::{Matrix, Vector};
 use crate::reduction::instant::Instant;
-use crate::reduction::tree::Tree;
+use crate::reduction::tree::{Packed, Tree};
 
 /// How one vector depends on the coordinates.
 #[derive(Clone, Debug)]
@@ -15,13 +15,8 @@ pub enum Dependence {
         /// (first, c).
         parts: Vec<(usize, f64)>,
     },
-    /// Columns of a tree: `first` in the list of columns, one for each coordinate of the support.
-    Articulated {
-        /// First column.
-        first: usize,
-        /// Coordinates.
-        support: Vec<usize>,
-    },
+    /// Columns of a tree.
+    Articulated(Packed),
 }
 
 /// Coordinates of an instant and the vectors that follow from them.
@@ -38,23 +33,19 @@ pub struct Motion {
 }
 
 /// First coordinate of the four vectors φ, d₁, d₂, d₃ of a body in director coordinates.
-pub fn body_offset(body: usize) -> usize {
+pub(super) fn body_offset(body: usize) -> usize {
     12 * body
 }
 
 impl Motion {
     /// Joint coordinates of a tree.
     pub fn articulated(tree: Tree, multipliers: usize) -> Self {
-        let mut first = 0;
-        let mut dependence = |support: &Vec<usize>| {
-            let start = first;
-            first += support.len();
-            Dependence::Articulated {
-                first: start,
-                support: support.clone(),
-            }
-        };
-        let vectors = tree.supports().iter().map(&mut dependence).collect();
+        let vectors = tree
+            .packed()
+            .iter()
+            .cloned()
+            .map(Dependence::Articulated)
+            .collect();
         Self {
             coordinates: tree.coordinates(),
             multipliers,
@@ -98,7 +89,7 @@ impl Motion {
     /// Storage for an instant.
     pub fn instant(&self) -> Instant {
         let zeros = || vec![Vector::zeros(); self.vectors.len()];
-        let columns = vec![Vector::zeros(); self.tree.as_ref().map_or(0, Tree::columns)];
+        let columns = vec![0.0; self.tree.as_ref().map_or(0, Tree::size)];
         Instant {
             z: vec![0.0; self.unknowns()],
             l: vec![0.0; self.unknowns()],
@@ -164,24 +155,19 @@ impl Motion {
     }
 
     /// Adds Pᵀ R to the rows of the coordinates.
-    pub fn pull_back(&self, columns: &[Vector], forces: &[Vector], rows: &mut [f64]) {
+    pub fn pull_back(&self, columns: &[f64], forces: &[Vector], rows: &mut [f64]) {
         for (vector, force) in forces.iter().enumerate() {
             self.pull_back_one(vector, columns, force, rows);
         }
     }
 
     /// Adds Pᵀ f for a force on one vector.
-    pub fn pull_back_one(
-        &self,
-        vector: usize,
-        columns: &[Vector],
-        force: &Vector,
-        rows: &mut [f64],
-    ) {
+    pub fn pull_back_one(&self, vector: usize, columns: &[f64], force: &Vector, rows: &mut [f64]) {
         match &self.vectors[vector] {
-            Dependence::Articulated { first, support } => {
-                for (column, &row) in columns[*first..].iter().zip(support) {
-                    rows[row] += column.dot(force);
+            Dependence::Articulated(packed) => {
+                let [x, y, z] = packed.rows(columns);
+                for (i, &row) in packed.support.iter().enumerate() {
+                    rows[row] += x[i] * force.x + y[i] * force.y + z[i] * force.z;
                 }
             }
             Dependence::Linear { parts, .. } => {
@@ -197,7 +183,7 @@ impl Motion {
     /// Coordinates that move a vector.
     pub fn support(&self, vector: usize) -> Vec<usize> {
         match &self.vectors[vector] {
-            Dependence::Articulated { support, .. } => support.clone(),
+            Dependence::Articulated(packed) => packed.support.clone(),
             Dependence::Linear { parts, .. } => parts
                 .iter()
                 .flat_map(|&(first, _)| first..first + 3)

@@ -1,7 +1,7 @@
 //! A functional seen through coordinates.
 
-use crate::functional::{Frame, Horizon, Level, Output, Sides, Sum};
-use crate::math::Vector;
+use crate::functional::{Blocks, Frame, Horizon, Level, Output, Sides, Sum};
+use crate::math::{Matrix, Vector};
 use crate::reduction::instant::Instant;
 use crate::reduction::motion::Motion;
 use crate::reduction::pattern::Layout;
@@ -23,14 +23,64 @@ pub struct Reduced {
 }
 
 /// Storage that one evaluation needs, allocated once for each thread.
+///
+/// In a sweep over a horizon the blocks of an instant are summed over both neighbouring intervals before they are pulled
+/// back: [`Scratch::carry`] after each interval, and [`Reduced::pull_back_last`] at the end.
 #[derive(Clone, Debug)]
 pub struct Scratch {
     /// Derivatives of the last interval.
     pub interval: Output,
     /// Derivatives of the last instant.
     pub instant: Output,
+    carried: [Carried; 2],
     local: Vec<f64>,
     zeros: Vec<f64>,
+}
+
+/// Blocks (k+1, k+1) of the interval before.
+#[derive(Clone, Debug)]
+struct Carried {
+    full: Vec<Matrix>,
+    isotropic: Vec<f64>,
+}
+
+impl Carried {
+    fn new(blocks: &Blocks) -> Self {
+        Self {
+            full: vec![Matrix::zeros(); blocks.full.len()],
+            isotropic: vec![0.0; blocks.isotropic.len()],
+        }
+    }
+
+    /// Adds the carried blocks to those of the first instant, and takes those of the second.
+    fn exchange(&mut self, blocks: &mut Blocks) {
+        for (carried, block) in self.full.iter_mut().zip(&mut blocks.full) {
+            block[0] += std::mem::replace(carried, block[3]);
+        }
+        for (carried, block) in self.isotropic.iter_mut().zip(&mut blocks.isotropic) {
+            block[0] += std::mem::replace(carried, block[3]);
+        }
+    }
+}
+
+impl Scratch {
+    /// Forgets carried blocks, before a sweep.
+    pub fn start(&mut self) {
+        for carried in &mut self.carried {
+            carried.full.fill(Matrix::zeros());
+            carried.isotropic.fill(0.0);
+        }
+    }
+
+    /// Moves the blocks of the second instant of the interval evaluated last to the next interval.
+    pub fn carry(&mut self, level: Level) {
+        if level >= Level::Hessian {
+            self.carried[0].exchange(&mut self.interval.plain.blocks);
+        }
+        if level == Level::Third {
+            self.carried[1].exchange(&mut self.interval.contracted.blocks);
+        }
+    }
 }
 
 impl Reduced {
@@ -66,8 +116,11 @@ impl Reduced {
 
     /// Storage for evaluations.
     pub fn scratch(&self) -> Scratch {
+        let interval = self.intervals.output();
+        let carried = Carried::new(&interval.plain.blocks);
         Scratch {
-            interval: self.intervals.output(),
+            carried: [carried.clone(), carried],
+            interval,
             instant: self.instants.output(),
             local: vec![0.0; self.interval_plan.local().max(self.instant_plan.local())],
             zeros: vec![0.0; self.intervals.scalars],
@@ -149,11 +202,17 @@ impl Reduced {
             Level::Gradient => return,
             Level::Hessian => {
                 self.interval_plan
-                    .hessian([a, b], plain, sides, &target, local, values)
+                    .hessian([a, b], plain, sides, &target, local, values);
             }
             Level::Third => {
-                self.interval_plan
-                    .third([a, b], plain, contracted, sides, &target, local, values)
+                self.interval_plan.third(
+                    [a, b],
+                    [plain, contracted],
+                    sides,
+                    &target,
+                    local,
+                    values,
+                );
             }
         }
         if horizon == Horizon::Free {
@@ -179,6 +238,47 @@ impl Reduced {
             {
                 *value += row;
             }
+        }
+    }
+
+    /// Pulls back the blocks that the last interval of a sweep carried on to the final instant k.
+    pub fn pull_back_last(
+        &self,
+        level: Level,
+        last: &Instant,
+        k: usize,
+        scratch: &mut Scratch,
+        values: &mut [f64],
+    ) {
+        if level == Level::Gradient {
+            return;
+        }
+        scratch.interval.plain.clear();
+        scratch.interval.contracted.clear();
+        scratch.carry(level);
+        let same = self.layout.same_at(k);
+        let target = Target {
+            blocks: [same; 4],
+            mixed: [usize::MAX; 2],
+            scalars: self.layout.scalars_at(k),
+        };
+        let Scratch {
+            interval, local, ..
+        } = scratch;
+        let (plain, contracted) = (&interval.plain, &interval.contracted);
+        let ends = [last, last];
+        match level {
+            Level::Third => self.interval_plan.third(
+                ends,
+                [plain, contracted],
+                Sides::HERE,
+                &target,
+                local,
+                values,
+            ),
+            _ => self
+                .interval_plan
+                .hessian(ends, plain, Sides::HERE, &target, local, values),
         }
     }
 
@@ -245,8 +345,7 @@ impl Reduced {
             ),
             Level::Third => self.instant_plan.third(
                 [instant, instant],
-                plain,
-                contracted,
+                [plain, contracted],
                 Sides::HERE,
                 &target,
                 local,

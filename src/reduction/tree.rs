@@ -49,13 +49,58 @@ pub struct TreeJoint {
 }
 
 /// A column of an articulated vector: the joint, and the part of the vector that the joint moves.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Column {
     joint: usize,
-    terms: Vec<Term>,
-    /// Sum of the centre coefficients.
+    /// The moved part.
+    arm: usize,
+    /// Where its first component is stored; the others follow at the stride of the vector.
+    place: usize,
+    stride: usize,
+}
+
+/// A sum of terms of one vector that the same joints move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Arm {
+    /// The first term, and the number of terms: those that a joint moves are neighbours.
+    first: usize,
+    count: usize,
+    /// Sum of their centre coefficients.
     centre: f64,
 }
+
+/// One term of a vector, flattened.
+#[derive(Clone, Copy, Debug)]
+struct FlatTerm {
+    vector: usize,
+    body: usize,
+    centre: f64,
+    directors: Vector,
+}
+
+/// The columns of one vector: three rows of `stride` numbers from `first`, one number for each coordinate, then zeros.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Packed {
+    /// First number.
+    pub first: usize,
+    /// Numbers a row: the coordinates, rounded up to [`LANES`].
+    pub stride: usize,
+    /// Coordinates that move the vector.
+    pub support: Vec<usize>,
+}
+
+impl Packed {
+    /// The three rows of the vector's columns.
+    #[inline]
+    pub fn rows<'c>(&self, columns: &'c [f64]) -> [&'c [f64]; 3] {
+        let (x, rest) = columns[self.first..self.first + 3 * self.stride].split_at(self.stride);
+        let (y, z) = rest.split_at(self.stride);
+        [x, y, z]
+    }
+}
+
+/// Rows of columns are padded to a multiple of this.
+pub(super) const LANES: usize = 4;
 
 /// A kinematic tree and the vectors on it.
 #[derive(Clone, Debug)]
@@ -65,10 +110,13 @@ pub struct Tree {
     carrier: Vec<usize>,
     /// Joint before each joint on its way to the ground.
     before: Vec<Option<usize>>,
-    vectors: Vec<MaterialVector>,
+    /// Constant part of each vector.
+    constants: Vec<Vector>,
+    terms: Vec<FlatTerm>,
+    arms: Vec<Arm>,
     columns: Vec<Column>,
-    /// Coordinates that move each vector.
-    supports: Vec<Vec<usize>>,
+    packed: Vec<Packed>,
+    size: usize,
     /// Pairs of joints (i, k) on one path, i not behind k.
     paths: Vec<(usize, usize)>,
 }
@@ -92,12 +140,18 @@ impl Tree {
             joints,
             carrier,
             before,
-            vectors: vectors.to_vec(),
+            constants: Vec::new(),
+            terms: Vec::new(),
+            arms: Vec::new(),
             columns: Vec::new(),
-            supports: Vec::new(),
+            packed: Vec::new(),
+            size: 0,
             paths: Vec::new(),
         };
-        tree.lay_columns();
+        for (index, vector) in vectors.iter().enumerate() {
+            tree.lay_vector(index, vector);
+        }
+        tree.lay_paths();
         tree
     }
 
@@ -106,30 +160,76 @@ impl Tree {
         std::iter::successors(Some(self.carrier[body]), |&j| self.before[j])
     }
 
-    fn lay_columns(&mut self) {
-        let mut columns = Vec::new();
-        let mut supports = Vec::new();
-        for vector in &self.vectors {
-            let mut support = Vec::new();
-            for (j, joint) in self.joints.iter().enumerate() {
-                let Some(coordinate) = joint.coordinate else {
-                    continue;
-                };
-                let moved = |t: &&Term| t.body.is_some_and(|b| self.path(b).any(|i| i == j));
-                let terms: Vec<Term> = vector.terms.iter().filter(moved).copied().collect();
-                let centre: f64 = terms.iter().map(|t| t.centre).sum();
-                let still = joint.kind == TreeKind::Prismatic && centre == 0.0;
-                if !terms.is_empty() && !still {
-                    support.push(coordinate);
-                    columns.push(Column {
-                        joint: j,
-                        terms,
+    fn lay_vector(&mut self, index: usize, vector: &MaterialVector) {
+        let first_term = self.terms.len();
+        let mut constant = Vector::zeros();
+        for term in &vector.terms {
+            match term.body {
+                Some(body) => {
+                    let Term {
+                        centre, directors, ..
+                    } = *term;
+                    self.terms.push(FlatTerm {
+                        vector: index,
+                        body,
                         centre,
+                        directors,
                     });
                 }
+                None => constant += term.at(&Pose::GROUND),
             }
-            supports.push(support);
         }
+        self.constants.push(constant);
+        let mut moved = Vec::new();
+        for (j, joint) in self.joints.iter().enumerate() {
+            let Some(coordinate) = joint.coordinate else {
+                continue;
+            };
+            let is_moved = |&t: &usize| self.path(self.terms[t].body).any(|i| i == j);
+            let terms: Vec<usize> = (first_term..self.terms.len()).filter(is_moved).collect();
+            let centre: f64 = terms.iter().map(|&t| self.terms[t].centre).sum();
+            let still = joint.kind == TreeKind::Prismatic && centre == 0.0;
+            let (Some(&first), Some(&last), false) = (terms.first(), terms.last(), still) else {
+                continue;
+            };
+            assert!(
+                last - first + 1 == terms.len(),
+                "terms that a joint moves are neighbours"
+            );
+            moved.push((
+                j,
+                coordinate,
+                Arm {
+                    first,
+                    count: terms.len(),
+                    centre,
+                },
+            ));
+        }
+        let (first, stride) = (self.size, moved.len().next_multiple_of(LANES));
+        self.size += 3 * stride;
+        let support = moved.iter().map(|&(_, coordinate, _)| coordinate).collect();
+        self.packed.push(Packed {
+            first,
+            stride,
+            support,
+        });
+        for (place, (joint, _, arm)) in moved.into_iter().enumerate() {
+            let known = self.arms.iter().rposition(|a| *a == arm);
+            let arm = known.unwrap_or_else(|| {
+                self.arms.push(arm);
+                self.arms.len() - 1
+            });
+            self.columns.push(Column {
+                joint,
+                arm,
+                place: first + place,
+                stride,
+            });
+        }
+    }
+
+    fn lay_paths(&mut self) {
         let mut paths = Vec::new();
         for k in 0..self.joints.len() {
             for i in std::iter::successors(Some(k), |&j| self.before[j]) {
@@ -141,7 +241,7 @@ impl Tree {
                 }
             }
         }
-        (self.columns, self.supports, self.paths) = (columns, supports, paths);
+        self.paths = paths;
     }
 
     /// The joints.
@@ -157,9 +257,9 @@ impl Tree {
             .count()
     }
 
-    /// Coordinates that move each vector: the structure of P.
-    pub fn supports(&self) -> &[Vec<usize>] {
-        &self.supports
+    /// Columns of each vector: the structure of P.
+    pub fn packed(&self) -> &[Packed] {
+        &self.packed
     }
 
     /// Coordinates that the curvature couples; both orders are meant.
@@ -185,12 +285,16 @@ impl Tree {
             points_l: vec![Vector::zeros(); joints],
             twists: vec![[Vector::zeros(); 2]; self.carrier.len()],
             moments: vec![Moments::default(); joints],
+            terms: vec![Vector::zeros(); self.terms.len()],
+            terms_l: vec![Vector::zeros(); self.terms.len()],
+            arms: vec![Vector::zeros(); self.arms.len()],
+            arms_l: vec![Vector::zeros(); self.arms.len()],
         }
     }
 
-    /// Number of columns of all vectors.
-    pub fn columns(&self) -> usize {
-        self.columns.len()
+    /// Length of the storage of all columns.
+    pub fn size(&self) -> usize {
+        self.size
     }
 
     /// Poses of all bodies at joint coordinates u, from root to leaves.
@@ -221,28 +325,30 @@ impl Tree {
     }
 
     /// Values of all vectors at the poses.
-    pub fn vectors(&self, state: &TreeState, x: &mut [Vector]) {
-        for (vector, value) in self.vectors.iter().zip(x) {
-            *value = vector.at(&state.poses);
+    pub fn vectors(&self, state: &mut TreeState, x: &mut [Vector]) {
+        x.copy_from_slice(&self.constants);
+        for (term, value) in self.terms.iter().zip(&mut state.terms) {
+            let pose = &state.poses[term.body];
+            *value = pose.centre * term.centre + pose.directors * term.directors;
+            x[term.vector] += *value;
         }
     }
 
-    #[inline]
-    fn moved(column: &Column, state: &TreeState) -> Vector {
-        let at = |t: &Term| t.at(&state.poses[t.body.expect("joints move bodies")]);
-        column.terms.iter().map(at).sum()
-    }
-
     /// Columns of P.
-    pub fn tangent(&self, state: &TreeState, columns: &mut [Vector]) {
-        for (column, value) in self.columns.iter().zip(columns) {
+    pub fn tangent(&self, state: &mut TreeState, columns: &mut [f64]) {
+        for (arm, value) in self.arms.iter().zip(&mut state.arms) {
+            *value = sum(&state.terms[arm.first..arm.first + arm.count]);
+        }
+        for column in &self.columns {
             let axis = state.axes[column.joint];
-            *value = match self.joints[column.joint].kind {
-                TreeKind::Revolute => axis.cross(
-                    &(Self::moved(column, state) - state.points[column.joint] * column.centre),
-                ),
-                _ => axis * column.centre,
+            let centre = self.arms[column.arm].centre;
+            let value = match self.joints[column.joint].kind {
+                TreeKind::Revolute => {
+                    axis.cross(&(state.arms[column.arm] - state.points[column.joint] * centre))
+                }
+                _ => axis * centre,
             };
+            column.store(&value, columns);
         }
     }
 
@@ -269,30 +375,27 @@ impl Tree {
                 TreeKind::Fixed => [omega, origin],
             };
         }
-        let velocity = |t: &Term| {
-            let body = t.body.expect("the ground is at rest");
-            let [omega, origin] = tree.twists[body];
-            origin * t.centre + omega.cross(&t.at(&tree.poses[body]))
-        };
-        for (vector, rate) in self.vectors.iter().zip(w) {
-            *rate = vector
-                .terms
-                .iter()
-                .filter(|t| t.body.is_some())
-                .map(velocity)
-                .sum();
+        w.fill(Vector::zeros());
+        for ((term, value), rate) in self.terms.iter().zip(&tree.terms).zip(&mut tree.terms_l) {
+            let [omega, origin] = tree.twists[term.body];
+            *rate = origin * term.centre + omega.cross(value);
+            w[term.vector] += *rate;
         }
-        for (column, value) in self.columns.iter().zip(columns_l) {
-            let j = column.joint;
-            *value = match self.joints[j].kind {
+        for (arm, rate) in self.arms.iter().zip(&mut tree.arms_l) {
+            *rate = sum(&tree.terms_l[arm.first..arm.first + arm.count]);
+        }
+        for column in &self.columns {
+            let (j, arm) = (column.joint, column.arm);
+            let centre = self.arms[arm].centre;
+            let value = match self.joints[j].kind {
                 TreeKind::Revolute => {
-                    let arm = Self::moved(column, tree) - tree.points[j] * column.centre;
-                    let velocity: Vector = column.terms.iter().map(velocity).sum();
-                    let arm_l = velocity - tree.points_l[j] * column.centre;
-                    tree.axes_l[j].cross(&arm) + tree.axes[j].cross(&arm_l)
+                    let reach = tree.arms[arm] - tree.points[j] * centre;
+                    let reach_l = tree.arms_l[arm] - tree.points_l[j] * centre;
+                    tree.axes_l[j].cross(&reach) + tree.axes[j].cross(&reach_l)
                 }
-                _ => tree.axes_l[j] * column.centre,
+                _ => tree.axes_l[j] * centre,
             };
+            column.store(&value, columns_l);
         }
     }
 
@@ -306,19 +409,15 @@ impl Tree {
             ..
         } = instant;
         tree.moments.fill(Moments::default());
-        for (a, vector) in self.vectors.iter().enumerate() {
-            for term in &vector.terms {
-                let Some(body) = term.body else { continue };
-                let x = term.at(&tree.poses[body]);
-                let m = &mut tree.moments[self.carrier[body]];
-                m.moment += x * forces[a].transpose();
-                m.force += forces[a] * term.centre;
-                if rates {
-                    let [omega, origin] = tree.twists[body];
-                    let x_l = origin * term.centre + omega.cross(&x);
-                    m.moment_l += x_l * forces[a].transpose() + x * contracted[a].transpose();
-                    m.force_l += contracted[a] * term.centre;
-                }
+        for (t, term) in self.terms.iter().enumerate() {
+            let (x, force) = (&tree.terms[t], &forces[term.vector]);
+            let m = &mut tree.moments[self.carrier[term.body]];
+            m.moment += x * force.transpose();
+            m.force += force * term.centre;
+            if rates {
+                let rate = &contracted[term.vector];
+                m.moment_l += tree.terms_l[t] * force.transpose() + x * rate.transpose();
+                m.force_l += rate * term.centre;
             }
         }
         for j in (0..self.joints.len()).rev() {
@@ -394,5 +493,19 @@ impl Tree {
                 values[slot[1]] += value;
             }
         }
+    }
+}
+
+#[inline]
+fn sum(vectors: &[Vector]) -> Vector {
+    vectors[1..].iter().fold(vectors[0], |sum, v| sum + v)
+}
+
+impl Column {
+    #[inline]
+    fn store(&self, value: &Vector, columns: &mut [f64]) {
+        columns[self.place] = value.x;
+        columns[self.place + self.stride] = value.y;
+        columns[self.place + 2 * self.stride] = value.z;
     }
 }

@@ -37,6 +37,8 @@ pub struct Run<'a> {
     pub observations: &'a Observations,
     /// Another motion of the same system and its name, such as `constant voltages`.
     pub comparison: Option<(&'a str, &'a Trajectory)>,
+    /// Voltages in V, one per muscle, that hold the last instant, where they are known; they colour the configuration.
+    pub held: Option<&'a [f64]>,
     /// Where the results come from.
     pub origin: &'a Origin,
     /// Title of the page.
@@ -73,7 +75,10 @@ pub fn write_run(folder: &Path, run: &Run<'_>) -> Result<Vec<PathBuf>, WriteErro
             "controls.csv",
             table::controls_csv(trajectory, system, origin),
         ),
-        ("configuration.svg", pose::svg(system, trajectory, origin)),
+        (
+            "configuration.svg",
+            pose::svg(system, trajectory, run.held, origin),
+        ),
     ];
     if !system.muscles.is_empty() {
         files.push(("voltages.svg", voltages::svg(system, trajectory, origin)));

@@ -1,4 +1,4 @@
-//! The system in space: initial configuration in light grey, last instant coloured by voltage.
+//! The system in space: initial configuration in light grey, last instant coloured by the voltages that hold it.
 
 use nalgebra::Vector3;
 
@@ -24,8 +24,14 @@ const SIDE: f64 = 112.0;
 const LAYERS: usize = 12;
 
 /// `configuration.svg`: first and last instant in axonometric view with y upwards, muscles coloured by
-/// the voltage of the last interval, and the path of each marker.
-pub fn svg(system: &System, trajectory: &Trajectory, origin: &Origin) -> String {
+/// the voltages that hold the last instant (V, one per muscle) or else by those of the last interval, and the path of
+/// each marker.
+pub fn svg(
+    system: &System,
+    trajectory: &Trajectory,
+    held: Option<&[f64]>,
+    origin: &Origin,
+) -> String {
     let last = trajectory.times.len().saturating_sub(1);
     let view = View::axonometric(ANGLES[0], ANGLES[1]);
     let ground = ground_plate(system);
@@ -46,11 +52,21 @@ pub fn svg(system: &System, trajectory: &Trajectory, origin: &Origin) -> String 
         width.max(120.0) + 2.0 * MARGIN + SIDE,
         height.max(230.0) + 2.0 * MARGIN,
     ];
-    let scale = style::voltage_scale(&trajectory.voltages);
+    let zero = vec![0.0; system.muscles.len()];
+    let last_voltages = held.map_or_else(
+        || trajectory.voltages.last().cloned().unwrap_or(zero),
+        <[f64]>::to_vec,
+    );
+    let scale = match held {
+        Some(_) => style::voltage_scale([&last_voltages]),
+        None => style::voltage_scale(&trajectory.voltages),
+    };
     let drawing = Drawing {
         system,
         trajectory,
         view,
+        voltages: last_voltages,
+        is_held: held.is_some(),
         scale,
     };
     canvas::svg(size, origin, |canvas| {
@@ -91,6 +107,10 @@ struct Drawing<'a> {
     system: &'a System,
     trajectory: &'a Trajectory,
     view: View,
+    /// Voltages in V that colour the muscles.
+    voltages: Vec<f64>,
+    /// Whether these hold the last instant.
+    is_held: bool,
     /// Full scale of the colours in V.
     scale: f64,
 }
@@ -129,25 +149,22 @@ impl Drawing<'_> {
             .into_iter()
             .partition(|(_, prism)| view.depth(&prism.centre) < axis_depth(prism));
         for (i, prism) in &behind {
-            self.muscle(canvas, prism, self.colour(k, *i, tint));
+            self.muscle(canvas, prism, self.colour(*i, tint));
         }
         self.joints(canvas, k, tint);
         for (i, prism) in &before {
-            self.muscle(canvas, prism, self.colour(k, *i, tint));
+            self.muscle(canvas, prism, self.colour(*i, tint));
         }
         for (body, pose) in &bodies {
             draw_front(canvas, view, &body.shape, pose, tint);
         }
     }
 
-    /// Colour of a muscle: its voltage in the interval that ends at instant `k`.
-    fn colour(&self, k: usize, muscle: usize, tint: Tint) -> Colour {
+    /// Colour of a muscle by its voltage.
+    fn colour(&self, muscle: usize, tint: Tint) -> Colour {
         match tint {
             Tint::Ghost => style::GRID,
-            Tint::Coloured => {
-                let voltages = self.trajectory.voltages.get(k.saturating_sub(1));
-                style::voltage(voltages.map_or(0.0, |v| v[muscle].abs() / self.scale))
-            }
+            Tint::Coloured => style::voltage(self.voltages[muscle].abs() / self.scale),
         }
     }
 
@@ -239,7 +256,8 @@ impl Drawing<'_> {
         if last > 0 {
             rows.push((format!("at {}", time(0)), style::GHOST));
         }
-        rows.push((format!("at {}", time(last)), style::BODY));
+        let held = if self.is_held { ", held" } else { "" };
+        rows.push((format!("at {}{held}", time(last)), style::BODY));
         for (i, (name, colour)) in rows.iter().enumerate() {
             let at = top + 16.0 * i as f64;
             swatch(at, *colour);

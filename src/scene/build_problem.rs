@@ -275,7 +275,7 @@ fn guess(spec: &GuessSpec, system: &System, scope: &Scope<'_>) -> Result<Guess, 
 }
 
 fn solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<Solver, SceneError> {
-    let tolerance = spec.tolerance.unwrap_or(1e-8);
+    let tolerance = spec.tolerance.unwrap_or(1e-10);
     if tolerance <= 0.0 {
         let expected = "a positive tolerance";
         return Err(scope

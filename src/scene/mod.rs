@@ -26,11 +26,14 @@ pub mod spec_limits;
 pub mod spec_problem;
 pub mod spec_scene;
 mod start;
+mod typed;
 mod unit;
 mod wording;
 
 pub use error::SceneError;
+pub(crate) use layout::lay_out;
 pub use start::new_trunk;
+pub use typed::{driven_voltages, read_system};
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -41,7 +44,6 @@ use crate::scene::build_problem::build_problem;
 use crate::scene::build_scene::build_scene;
 use crate::scene::document::Document;
 use crate::scene::expand::expanded;
-use crate::scene::layout::lay_out;
 use crate::scene::scope::Scope;
 use crate::scene::set::Override;
 use crate::scene::spec_problem::{ProblemSpec, SceneSource};

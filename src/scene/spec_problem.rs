@@ -168,7 +168,7 @@ pub struct ObjectiveSpec {
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolverSpec {
-    /// Relative tolerance, 1e-8 where not written.
+    /// Relative tolerance, 1e-10 where not written.
     #[serde(default)]
     pub tolerance: Option<f64>,
     /// Limit of iterations, 500 where not written.

@@ -55,7 +55,7 @@ fn problem(segments: usize) -> String {
     "objective": {{ "effort": 1.0 }},
     "coordinates": "reduced",
     "guess": "interpolate",
-    "solver": {{ "tolerance": 1e-8, "max_iterations": 500 }}
+    "solver": {{ "max_iterations": 500 }}
   }}
 }}
 "#,

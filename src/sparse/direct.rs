@@ -14,6 +14,8 @@ use thiserror::Error;
 const DENSE: usize = 48;
 /// A pivot below this, relative to the largest entry of its row, counts as zero.
 const TINY: f64 = 1e-14;
+/// A known solution, with each unknown measured by its column, has to come back better than this.
+const LOST: f64 = 1e-6;
 
 /// The matrix is singular to working precision.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -143,29 +145,23 @@ impl Sparse {
         let factor = Lu::try_new_with_symbolic(self.symbolic.clone(), matrix.rb());
         self.factor = factor.ok();
         self.matrix = Some(matrix);
-        let Some(_) = &self.factor else {
-            return Err(Singular {
-                column: self.weakest(size),
-            });
-        };
-        // A singular factor shows in the solution for a known right-hand side.
-        let ones: Vec<f64> = (0..size).map(|i| 1.0 + i as f64 / size as f64).collect();
-        let mut image = self.times(&ones);
-        let scale = image.iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
-        let rhs = image.clone();
-        self.solve(&mut image);
-        let back = self.times(&image);
-        let error = back
-            .iter()
-            .zip(&rhs)
-            .fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
-        if error.is_finite() && error < 1e-6 * scale && image.iter().all(|v| v.is_finite()) {
-            Ok(())
-        } else {
-            Err(Singular {
-                column: self.weakest(size),
-            })
+        let largest = self.largest(size);
+        let weakest = (0..size).min_by(|&a, &b| largest[a].total_cmp(&largest[b]));
+        if self.factor.is_none() {
+            let column = weakest.unwrap_or(0);
+            return Err(Singular { column });
         }
+        // What a singular factor does to a known solution: residuals stay small, the solution does not come back.
+        let known = |col: usize| (1.0 + col as f64 / size as f64) / largest[col];
+        let mut x: Vec<f64> = (0..size).map(known).collect();
+        x = self.times(&x);
+        self.solve(&mut x);
+        let error = |col: usize| ((x[col] - known(col)) * largest[col]).abs();
+        let lost = |col: &usize| error(*col).is_nan() || error(*col) > LOST;
+        let worst = (0..size)
+            .filter(lost)
+            .max_by(|&a, &b| error(a).total_cmp(&error(b)));
+        worst.map_or(Ok(()), |column| Err(Singular { column }))
     }
 
     fn times(&self, x: &[f64]) -> Vec<f64> {
@@ -179,18 +175,14 @@ impl Sparse {
         y
     }
 
-    /// The column with the smallest largest entry: a hint at what is not determined.
-    fn weakest(&self, size: usize) -> usize {
+    /// The largest entry of each column.
+    fn largest(&self, size: usize) -> Vec<f64> {
         let matrix = self.matrix.as_ref().expect("a matrix has been set");
-        let largest = |col: usize| {
-            matrix
-                .val_of_col(col)
-                .iter()
-                .fold(0.0_f64, |m, v| m.max(v.abs()))
+        let of_column = |col: usize| {
+            let values = matrix.val_of_col(col).iter();
+            values.fold(0.0_f64, |m, v| m.max(v.abs()))
         };
-        (0..size)
-            .min_by(|&a, &b| largest(a).total_cmp(&largest(b)))
-            .unwrap_or(0)
+        (0..size).map(of_column).collect()
     }
 
     fn solve(&self, rhs: &mut [f64]) {

@@ -1,21 +1,31 @@
 //! Systems and reference solutions that several tests share.
 #![allow(dead_code, reason = "each test binary uses a part")]
+#![allow(unreachable_pub, reason = "a module of several test binaries")]
 
-use nalgebra::{Matrix3, Vector3};
+pub mod cases;
+pub mod random;
+
+use nalgebra::{Matrix3, SVector, Vector3};
+use proboscis::dynamics::trajectory::{Observations, Trajectory};
+use proboscis::dynamics::{History, Start, simulate};
+use proboscis::kinematics::Pose;
+use proboscis::model::Model;
 use proboscis::model::system::{
     Attachment, Body, Electric, Joint, JointKind, Marker, Material, Muscle, Shape, System,
     VACUUM_PERMITTIVITY,
 };
+use proboscis::reduction::Instant;
 use serde_json::Value;
+use std::ops::ControlFlow;
 
 /// A reference solution from `tests/reference`.
-pub fn reference(name: &str) -> Value {
+pub(crate) fn reference(name: &str) -> Value {
     let path = format!("{}/tests/reference/{name}.json", env!("CARGO_MANIFEST_DIR"));
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
 /// A list of numbers.
-pub fn numbers(value: &Value) -> Vec<f64> {
+pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     value
         .as_array()
         .unwrap()
@@ -25,7 +35,7 @@ pub fn numbers(value: &Value) -> Vec<f64> {
 }
 
 /// The elephant trunk of the reference solutions with any number of segments, written out by hand.
-pub fn trunk(segments: usize) -> System {
+pub(crate) fn trunk(segments: usize) -> System {
     let (length, radius, mass) = (50.0, 20.0, 30.0);
     let transverse = mass * (3.0 * radius * radius + length * length) / 12.0;
     let axial = mass * radius * radius / 2.0;
@@ -104,4 +114,151 @@ pub fn trunk(segments: usize) -> System {
         },
     });
     system
+}
+
+/// A body at a place with its principal axes along the columns of `directors`.
+pub(crate) fn body(
+    name: &str,
+    mass: f64,
+    inertia: [f64; 3],
+    centre: Vector3<f64>,
+    directors: Matrix3<f64>,
+) -> Body {
+    Body {
+        name: name.into(),
+        mass,
+        inertia,
+        centre,
+        directors,
+        shape: Shape::None,
+    }
+}
+
+/// A joint without damping.
+pub(crate) fn joint(
+    name: &str,
+    kind: JointKind,
+    parent: Option<usize>,
+    child: usize,
+    at: Vector3<f64>,
+) -> Joint {
+    Joint {
+        name: name.into(),
+        kind,
+        parent,
+        child,
+        at,
+        damping: None,
+    }
+}
+
+/// Bodies and joints without muscles; any coherent units do.
+pub(crate) fn bare(bodies: Vec<Body>, joints: Vec<Joint>, gravity: Option<Vector3<f64>>) -> System {
+    System {
+        name: "bare".into(),
+        bodies,
+        joints,
+        muscles: Vec::new(),
+        markers: Vec::new(),
+        gravity,
+    }
+}
+
+/// Coordinates of the reference configuration.
+pub(crate) fn at_reference(model: &Model) -> Vec<f64> {
+    model.coordinates_at(&vec![0.0; model.gauges.len()])
+}
+
+/// A placed instant.
+pub(crate) fn placed(model: &Model, z: &[f64]) -> Instant {
+    let mut instant = model.action.motion.instant();
+    instant.z.copy_from_slice(z);
+    model.action.motion.place(&mut instant);
+    instant
+}
+
+/// Rates of the directors of one body that moves with velocity v and angular velocity ω (both in space).
+pub(crate) fn spin(pose: &Pose, v: Vector3<f64>, omega: Vector3<f64>) -> Vec<f64> {
+    let mut rates: Vec<f64> = v.iter().copied().collect();
+    for i in 0..3 {
+        rates.extend(omega.cross(&pose.directors.column(i)).iter());
+    }
+    rates
+}
+
+/// A motion of all its steps under constant voltages.
+pub(crate) fn motion(
+    model: &Model,
+    start: &Start,
+    h: f64,
+    steps: usize,
+    scalars: &[f64],
+) -> History {
+    let (history, failure) = simulate(
+        model,
+        start,
+        h,
+        steps,
+        |_, _| scalars.to_vec(),
+        |_| ControlFlow::Continue(()),
+    );
+    assert_eq!(failure, None);
+    assert_eq!(history.report.halved, 0);
+    history
+}
+
+/// The limit of a sequence with steps h, h/2, h/4, … whose error is even in h.
+pub(crate) fn richardson(values: &[f64]) -> f64 {
+    let mut row = values.to_vec();
+    for order in 1..values.len() {
+        let factor = 4_f64.powi(order as i32);
+        row = row
+            .windows(2)
+            .map(|w| (factor * w[1] - w[0]) / (factor - 1.0))
+            .collect();
+    }
+    row[0]
+}
+
+/// One step of Runge and Kutta's fourth-order method for ẏ = f(y).
+pub(crate) fn runge_kutta<const N: usize>(
+    f: &impl Fn(&SVector<f64, N>) -> SVector<f64, N>,
+    y: &SVector<f64, N>,
+    h: f64,
+) -> SVector<f64, N> {
+    let a = f(y);
+    let b = f(&(y + a * (0.5 * h)));
+    let c = f(&(y + b * (0.5 * h)));
+    let d = f(&(y + c * h));
+    y + (a + (b + c) * 2.0 + d) * (h / 6.0)
+}
+
+/// Largest difference of all poses along two motions of one system: centres relative to `length`, directors.
+pub(crate) fn distance(a: &Trajectory, b: &Trajectory, length: f64) -> f64 {
+    assert_eq!(a.times.len(), b.times.len());
+    let pairs = a.poses.iter().flatten().zip(b.poses.iter().flatten());
+    pairs
+        .map(|(a, b)| {
+            let centres = (a.centre - b.centre).amax() / length;
+            let directors = (a.directors - b.directors).amax();
+            assert!(centres.is_finite() && directors.is_finite());
+            centres.max(directors)
+        })
+        .fold(0.0, f64::max)
+}
+
+/// Values of an observed column.
+pub(crate) fn column<'a>(observations: &'a Observations, name: &str) -> &'a [f64] {
+    let column = observations.columns.iter().find(|c| c.name == name);
+    &column.unwrap_or_else(|| panic!("no column {name}")).values
+}
+
+/// Three observed columns with the suffixes x, y, z.
+pub(crate) fn columns(observations: &Observations, name: &str) -> Vec<Vector3<f64>> {
+    let [x, y, z] = ["x", "y", "z"].map(|axis| column(observations, &format!("{name}_{axis}")));
+    x.iter()
+        .zip(y)
+        .zip(z)
+        .map(|((&x, &y), &z)| Vector3::new(x, y, z))
+        .collect()
 }

@@ -1,0 +1,240 @@
+//! The transcription: the discrete equations of motion over a horizon as a nonlinear program (DMOCC).
+//!
+//! Rows of instant k are `P(q_k)ᵀ [D₂L_d(q_{k−1}, q_k) + D₁L_d(q_k, q_{k+1}) + f⁺ + f⁻] (− h₀ Gᵀλ_k) = 0` with the
+//! momentum of the start in row 0 and rest at the goal in row N, constraints where coordinates leave any, then limits.
+//! The Jacobian is ∇²Ŝ, the Hessian of the Lagrangian ∇³Ŝ along the costates plus objective and limits, both exact.
+//!
+//! Rows and multipliers are scaled by magnitudes taken from the Jacobian at the guess, voltages are in kV, lengths in
+//! the length of the system, the interval length in its guess, so that one tolerance means the same everywhere.
+
+mod limit_rows;
+mod point;
+mod program;
+mod scaling;
+mod structure;
+mod sweep;
+
+use crate::control::BoundaryError;
+use crate::control::boundary::Boundary;
+use crate::control::guess::Initial;
+use crate::control::limits::{Bounded, Place};
+use crate::control::objective::Cost;
+use crate::control::problem::{Control, Duration};
+use crate::control::unknowns::{Row, Unknowns, Variable};
+use crate::functional::{Horizon, Part};
+use crate::model::Model;
+use crate::nlp::{Bounds, Entries, Nlp};
+use crate::reduction::{Instant, Scratch};
+use limit_rows::{LimitRow, limit_rows};
+
+/// V in a kV, the unit of voltages in the program and in objectives.
+const KILOVOLT: f64 = 1000.0;
+/// s in a ms.
+const MILLISECOND: f64 = 1e-3;
+
+/// An entry of a matrix of the program: where its value is found, and its scale.
+#[derive(Clone, Copy, Debug)]
+struct Kept {
+    place: usize,
+    scale: f64,
+}
+/// A control problem as a nonlinear program.
+#[derive(Debug)]
+pub struct Transcription<'m> {
+    model: &'m Model,
+    intervals: usize,
+    horizon: Horizon,
+    unknowns: Unknowns,
+    limits: Vec<LimitRow>,
+    /// First row, instant or interval, of each stretch of limit rows.
+    limit_rows: Vec<(usize, usize)>,
+    cost: Cost,
+    momentum: Vec<f64>,
+    bounds: Bounds,
+    // The point.
+    point: Vec<f64>,
+    instants: Vec<Instant>,
+    scalars: Vec<f64>,
+    kilovolts: Vec<f64>,
+    h: f64,
+    // Scales: value = scale · variable, scaled row = scale · row.
+    variable_scales: Vec<f64>,
+    row_scales: Vec<f64>,
+    // Values and what is kept of them.
+    scratch: Scratch,
+    measured: Part,
+    /// Rows of the equations of all instants, then costates of the limits.
+    rows: Vec<f64>,
+    values: Vec<f64>,
+    jacobian: Vec<Kept>,
+    jacobian_entries: Entries,
+    hessian: Vec<Kept>,
+    hessian_entries: Entries,
+    weights: [Vec<f64>; 2],
+    /// Slot of the second derivative of each voltage with itself.
+    voltage_slots: Vec<usize>,
+    gradient: Vec<f64>,
+}
+impl<'m> Transcription<'m> {
+    /// Transcribes a control problem; the guess sets the scales.
+    ///
+    /// # Errors
+    /// There are more equations than unknowns.
+    pub fn new(
+        model: &'m Model,
+        boundary: &Boundary,
+        control: &Control,
+        initial: &Initial,
+    ) -> Result<Self, BoundaryError> {
+        let motion = &model.action.motion;
+        let (n, unknown_count) = (motion.coordinates, motion.unknowns());
+        let scalar_count = model.voltages.len();
+        let intervals = control.intervals;
+        let horizon = match control.duration {
+            Duration::Given(_) => Horizon::Given,
+            Duration::Free { .. } => Horizon::Free,
+        };
+        let goal = &boundary.goal.coordinates;
+        let given = |k: usize, i: usize| k == 0 || (k == intervals && goal[i].is_some());
+        let free = horizon == Horizon::Free;
+        let mut unknowns = Unknowns::new(intervals, n, unknown_count, scalar_count, free, given);
+        let mut instants = vec![motion.instant(); intervals + 1];
+        instants[0].z.copy_from_slice(&boundary.start.z);
+        for (value, goal) in instants[intervals].z.iter_mut().zip(goal) {
+            *value = goal.unwrap_or(*value);
+        }
+        let final_is_given = goal.iter().all(Option::is_some);
+        let limits = limit_rows(model, &boundary.limits.list, intervals, final_is_given);
+        let mut limit_at = Vec::new();
+        for (index, limit) in limits.iter().enumerate() {
+            for k in limit.at.clone() {
+                unknowns.rows.push(Row::Limit { limit: index, k });
+                limit_at.push((index, k));
+            }
+        }
+        let kilo = |v: &Vec<f64>| {
+            model
+                .scalars(v)
+                .iter()
+                .map(|v| v / KILOVOLT)
+                .collect::<Vec<_>>()
+        };
+        let ends = [
+            boundary.rest[0].as_ref().map(kilo),
+            boundary.rest[1].as_ref().map(kilo),
+        ];
+        let cost = Cost::new(control.objective, scalar_count, intervals, ends);
+        let layout = model.action.layout();
+        let length = model.length();
+        let scale = |variable: &Variable| match *variable {
+            Variable::Unknown { i, .. } if i < n && model.is_length(i) => length,
+            Variable::Unknown { .. } => 1.0,
+            Variable::Scalar { .. } => KILOVOLT,
+            Variable::Horizon => initial.h,
+        };
+        let variable_scales = unknowns.variables.iter().map(scale).collect();
+        let limit_count = limit_at.len();
+        let extra: usize = limit_at.iter().map(|&(l, _)| limits[l].entries.len()).sum();
+        let mut out = Self {
+            model,
+            intervals,
+            horizon,
+            limits,
+            limit_rows: limit_at,
+            cost,
+            momentum: boundary.start.momentum.clone(),
+            bounds: Bounds::default(),
+            point: vec![f64::NAN; unknowns.variables.len()],
+            instants,
+            scalars: vec![0.0; intervals * scalar_count],
+            kilovolts: vec![0.0; intervals * scalar_count],
+            h: initial.h,
+            variable_scales,
+            row_scales: vec![1.0; unknowns.rows.len()],
+            scratch: model.action.scratch(),
+            measured: Part::new(
+                motion.vectors.len(),
+                scalar_count,
+                &crate::functional::Couplings::default(),
+            ),
+            rows: vec![0.0; (intervals + 1) * unknown_count + limit_count],
+            values: vec![0.0; layout.values(intervals) + extra],
+            jacobian: Vec::new(),
+            jacobian_entries: Entries::default(),
+            hessian: Vec::new(),
+            hessian_entries: Entries::default(),
+            weights: [
+                vec![0.0; model.action.instants.measures.len()],
+                vec![0.0; model.action.intervals.measures.len()],
+            ],
+            gradient: vec![0.0; intervals * scalar_count],
+            voltage_slots: (0..scalar_count)
+                .map(|s| {
+                    layout
+                        .scalars
+                        .find(s, s)
+                        .expect("a voltage has a curvature of its own")
+                })
+                .collect(),
+            unknowns,
+        };
+        out.count(&boundary.limits.list)?;
+        out.lay_jacobian();
+        out.lay_hessian();
+        out.set_scales(&initial.history, initial.h);
+        out.set_bounds(control);
+        Ok(out)
+    }
+
+    fn count(&self, limits: &[Bounded]) -> Result<(), BoundaryError> {
+        let goals = limits.iter().filter(|l| l.place == Place::Goal).count();
+        let given = self.instants.len().saturating_sub(1);
+        let equations = self
+            .unknowns
+            .rows
+            .iter()
+            .filter(|r| matches!(r, Row::Equation { .. }))
+            .count()
+            + goals;
+        let unknowns = self.unknowns.variables.len();
+        if equations > unknowns {
+            let fixed = (0..self.model.coordinate_count())
+                .filter(|&i| self.unknowns.unknown(given, i).is_none())
+                .count();
+            return Err(BoundaryError::Overdetermined {
+                equations,
+                goals: goals + fixed,
+                unknowns,
+            });
+        }
+        Ok(())
+    }
+
+    /// Number of intervals N.
+    pub fn intervals(&self) -> usize {
+        self.intervals
+    }
+
+    /// Variables and equations.
+    pub fn unknowns(&self) -> &Unknowns {
+        &self.unknowns
+    }
+
+    /// Scale of a row: scaled row = scale · row.
+    pub fn row_scale(&self, row: usize) -> f64 {
+        self.row_scales[row]
+    }
+
+    /// Largest violation of the scaled rows.
+    pub fn violation(&mut self, x: &[f64]) -> f64 {
+        let bounds = self.constraints();
+        let mut g = vec![0.0; self.unknowns.rows.len()];
+        self.constraint(x, &mut g);
+        let excess = |r: usize| {
+            (bounds.lower[r] - g[r])
+                .max(g[r] - bounds.upper[r])
+                .max(0.0)
+        };
+        (0..g.len()).map(excess).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,125 @@
+//! Between motions and points of the program.
+
+use crate::control::guess::Initial;
+use crate::control::solution::Costates;
+use crate::control::transcription::{KILOVOLT, Transcription};
+use crate::control::unknowns::Variable;
+use crate::dynamics::History;
+use crate::ipopt;
+
+impl Transcription<'_> {
+    /// The variables of a motion with interval length h (ms).
+    pub fn encode(&self, history: &History, h: f64) -> Vec<f64> {
+        let value = |variable: &Variable| match *variable {
+            Variable::Unknown { k, i } => history.z[k][i],
+            Variable::Scalar { k, s } => history.scalars[k][s],
+            Variable::Horizon => h,
+        };
+        self.unknowns
+            .variables
+            .iter()
+            .zip(&self.variable_scales)
+            .map(|(v, scale)| value(v) / scale)
+            .collect()
+    }
+
+    /// The motion of a point of the program.
+    pub fn decode(&mut self, x: &[f64]) -> History {
+        self.load(x);
+        let scalar_count = self.model.voltages.len();
+        History {
+            times: (0..=self.intervals).map(|k| k as f64 * self.h).collect(),
+            z: self
+                .instants
+                .iter()
+                .map(|instant| instant.z.clone())
+                .collect(),
+            scalars: (0..self.intervals)
+                .map(|k| self.scalars[k * scalar_count..(k + 1) * scalar_count].to_vec())
+                .collect(),
+            ..History::default()
+        }
+    }
+
+    /// A start of the solver from a guess.
+    pub fn start(&self, initial: &Initial) -> ipopt::Point {
+        let x = self.encode(&initial.history, initial.h);
+        let fits = |c: &&Costates| {
+            c.rows.len() == self.unknowns.rows.len()
+                && c.lower.len() == x.len()
+                && c.upper.len() == x.len()
+        };
+        let divide = |list: &[f64], scales: &[f64]| {
+            list.iter()
+                .zip(scales)
+                .map(|(v, s)| v / s)
+                .collect::<Vec<_>>()
+        };
+        let times = |list: &[f64], scales: &[f64]| {
+            list.iter()
+                .zip(scales)
+                .map(|(v, s)| v * s)
+                .collect::<Vec<_>>()
+        };
+        let costates = initial
+            .costates
+            .as_ref()
+            .filter(fits)
+            .map(|c| ipopt::Costates {
+                constraints: divide(&c.rows, &self.row_scales),
+                lower: times(&c.lower, &self.variable_scales),
+                upper: times(&c.upper, &self.variable_scales),
+            });
+        ipopt::Point { x, costates }
+    }
+
+    /// Unscaled costates of a solution.
+    pub fn costates(&self, costates: &ipopt::Costates) -> Costates {
+        let divide = |list: &[f64], scales: &[f64]| {
+            list.iter()
+                .zip(scales)
+                .map(|(v, s)| v / s)
+                .collect::<Vec<_>>()
+        };
+        let times = |list: &[f64], scales: &[f64]| {
+            list.iter()
+                .zip(scales)
+                .map(|(v, s)| v * s)
+                .collect::<Vec<_>>()
+        };
+        Costates {
+            rows: times(&costates.constraints, &self.row_scales),
+            lower: divide(&costates.lower, &self.variable_scales),
+            upper: divide(&costates.upper, &self.variable_scales),
+        }
+    }
+
+    /// Reads a point; vectors and columns of all instants follow unless they stand there already.
+    pub(super) fn load(&mut self, x: &[f64]) {
+        if self.point == x {
+            return;
+        }
+        self.point.copy_from_slice(x);
+        let scalar_count = self.model.voltages.len();
+        for ((variable, scale), value) in self
+            .unknowns
+            .variables
+            .iter()
+            .zip(&self.variable_scales)
+            .zip(x)
+        {
+            let value = scale * value;
+            match *variable {
+                Variable::Unknown { k, i } => self.instants[k].z[i] = value,
+                Variable::Scalar { k, s } => {
+                    self.scalars[k * scalar_count + s] = value;
+                    self.kilovolts[k * scalar_count + s] = value / KILOVOLT;
+                }
+                Variable::Horizon => self.h = value,
+            }
+        }
+        for instant in &mut self.instants {
+            self.model.action.motion.place(instant);
+        }
+    }
+}

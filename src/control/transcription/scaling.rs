@@ -1,0 +1,128 @@
+//! Scales of rows and variables, and bounds.
+
+use crate::control::problem::{Control, Duration, Limit};
+use crate::control::transcription::Transcription;
+use crate::control::unknowns::{Row, Variable};
+use crate::dynamics::History;
+use crate::model::Coordinates;
+use crate::nlp::{Bounds, Nlp};
+
+impl Transcription<'_> {
+    /// Scales rows and multipliers by the largest entries of the Jacobian at the guess, kind by kind.
+    pub(super) fn set_scales(&mut self, history: &History, h: f64) {
+        let n = self.model.coordinate_count();
+        let count = self.model.action.motion.unknowns();
+        let x = self.encode(history, h);
+        let mut values = vec![0.0; self.jacobian.len()];
+        self.jacobian(&x, &mut values);
+        let is_multiplier = |v: &Variable| matches!(v, Variable::Unknown { i, .. } if *i >= n);
+        let mut largest = vec![0.0_f64; count];
+        let entries = || {
+            self.jacobian_entries
+                .rows
+                .iter()
+                .zip(&self.jacobian_entries.cols)
+                .zip(&values)
+        };
+        let scale = |col: u32| self.variable_scales[col as usize];
+        for ((&row, &col), value) in entries() {
+            if let (Row::Equation { i, .. }, false) = (
+                self.unknowns.rows[row as usize],
+                is_multiplier(&self.unknowns.variables[col as usize]),
+            ) && self.unknowns.horizon() != Some(col as usize)
+            {
+                largest[i] = largest[i].max((value * scale(col)).abs());
+            }
+        }
+        let inverse = |v: f64| {
+            if v.is_finite() && v > 0.0 {
+                1.0 / v
+            } else {
+                1.0
+            }
+        };
+        let row_scales: Vec<f64> = largest.iter().map(|&v| inverse(v)).collect();
+        let mut columns = vec![0.0_f64; count];
+        for ((&row, &col), value) in entries() {
+            let (row, variable) = (
+                self.unknowns.rows[row as usize],
+                self.unknowns.variables[col as usize],
+            );
+            if let (Row::Equation { i: r, .. }, Variable::Unknown { i, .. }) = (row, variable)
+                && i >= n
+            {
+                columns[i] = columns[i].max((value * row_scales[r]).abs());
+            }
+        }
+        for (scale, variable) in self
+            .variable_scales
+            .iter_mut()
+            .zip(&self.unknowns.variables)
+        {
+            match *variable {
+                Variable::Unknown { i, .. } if i >= n => *scale = inverse(columns[i]),
+                _ => {}
+            }
+        }
+        for (scale, row) in self.row_scales.iter_mut().zip(&self.unknowns.rows) {
+            *scale = match *row {
+                Row::Equation { i, .. } => row_scales[i],
+                Row::Limit { limit, .. } => self.limits[limit].scale,
+            };
+        }
+        for ((kept, &row), &col) in self
+            .jacobian
+            .iter_mut()
+            .zip(&self.jacobian_entries.rows)
+            .zip(&self.jacobian_entries.cols)
+        {
+            kept.scale = self.row_scales[row as usize] * self.variable_scales[col as usize];
+        }
+        for ((kept, &row), &col) in self
+            .hessian
+            .iter_mut()
+            .zip(&self.hessian_entries.rows)
+            .zip(&self.hessian_entries.cols)
+        {
+            kept.scale = self.variable_scales[row as usize] * self.variable_scales[col as usize];
+        }
+        self.point.fill(f64::NAN);
+    }
+
+    pub(super) fn set_bounds(&mut self, control: &Control) {
+        let n = self.model.coordinate_count();
+        let mut lower = vec![f64::NEG_INFINITY; n];
+        let mut upper = vec![f64::INFINITY; n];
+        if self.model.coordinates == Coordinates::Reduced {
+            for limit in &control.limits {
+                if let Limit::JointAngle { joint, min, max } = *limit
+                    && let Some(c) = self.model.gauges[joint].coordinate
+                {
+                    (lower[c], upper[c]) = (lower[c].max(min), upper[c].min(max));
+                }
+            }
+        }
+        let bound = |(variable, &scale): (&Variable, &f64)| {
+            let [low, high] = match *variable {
+                Variable::Unknown { i, .. } if i < n => [lower[i], upper[i]],
+                Variable::Unknown { .. } => [f64::NEG_INFINITY, f64::INFINITY],
+                Variable::Scalar { .. } => control.voltage_bounds,
+                Variable::Horizon => match control.duration {
+                    Duration::Free { min, max, .. } => {
+                        [min, max].map(|t| t / self.intervals as f64)
+                    }
+                    Duration::Given(_) => [self.h; 2],
+                },
+            };
+            (low / scale, high / scale)
+        };
+        let (lower, upper) = self
+            .unknowns
+            .variables
+            .iter()
+            .zip(&self.variable_scales)
+            .map(bound)
+            .unzip();
+        self.bounds = Bounds { lower, upper };
+    }
+}

@@ -1,0 +1,146 @@
+//! Which entries of the periodic values the Jacobian and the Hessian keep.
+
+use crate::control::transcription::{Kept, Transcription};
+use crate::control::unknowns::Row;
+use crate::nlp::Entries;
+
+impl Transcription<'_> {
+    fn jacobian_of(&self) -> Vec<(usize, usize, usize)> {
+        let layout = self.model.action.layout();
+        let u = &self.unknowns;
+        let mut list = Vec::new();
+        for k in 0..=self.intervals {
+            for (slot, &(i, j)) in layout.same.entries().iter().enumerate() {
+                list.push((u.row(k, i), u.unknown(k, j), layout.same_at(k) + slot));
+            }
+            for i in 0..layout.unknowns {
+                list.push((u.row(k, i), u.horizon(), layout.horizon_at(k) + i));
+            }
+            if k == self.intervals {
+                break;
+            }
+            for (slot, &(i, j)) in layout.cross.entries().iter().enumerate() {
+                list.push((u.row(k + 1, i), u.unknown(k, j), layout.lower_at(k) + slot));
+                list.push((u.row(k, i), u.unknown(k + 1, j), layout.upper_at(k) + slot));
+            }
+            for side in 0..2 {
+                for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
+                    list.push((
+                        u.row(k + side, i),
+                        Some(u.scalar(k, s)),
+                        layout.mixed_at(k, side) + slot,
+                    ));
+                }
+            }
+        }
+        let mut place = layout.values(self.intervals);
+        let first = self.unknowns.rows.len() - self.limit_rows.len();
+        for (r, &(limit, k)) in self.limit_rows.iter().enumerate() {
+            for &(side, i) in &self.limits[limit].entries {
+                let col = if side == 2 {
+                    Some(u.scalar(k, i))
+                } else {
+                    u.unknown(k + side, i)
+                };
+                list.push((Some(first + r), col, place));
+                place += 1;
+            }
+        }
+        list.into_iter()
+            .filter_map(|(row, col, place)| Some((row?, col?, place)))
+            .collect()
+    }
+
+    pub(super) fn lay_jacobian(&mut self) {
+        // The horizon column has no entry in the rows of constraints, which are instantaneous.
+        let n = self.model.coordinate_count();
+        let horizon = self.unknowns.horizon();
+        let exists = |&(row, col, _): &(usize, usize, usize)| {
+            Some(col) != horizon
+                || matches!(self.unknowns.rows[row], Row::Equation { i, .. } if i < n)
+        };
+        let list: Vec<_> = self.jacobian_of().into_iter().filter(exists).collect();
+        for (row, col, place) in list {
+            self.jacobian_entries.rows.push(row as u32);
+            self.jacobian_entries.cols.push(col as u32);
+            self.jacobian.push(Kept { place, scale: 1.0 });
+        }
+    }
+
+    pub(super) fn lay_hessian(&mut self) {
+        let layout = self.model.action.layout();
+        let u = &self.unknowns;
+        let mut list: Vec<(Option<usize>, Option<usize>, usize)> = Vec::new();
+        for k in 0..=self.intervals {
+            for (slot, &(i, j)) in layout
+                .same
+                .entries()
+                .iter()
+                .enumerate()
+                .filter(|(_, (i, j))| i >= j)
+            {
+                list.push((u.unknown(k, i), u.unknown(k, j), layout.same_at(k) + slot));
+            }
+            for i in 0..self.model.coordinate_count() {
+                list.push((u.horizon(), u.unknown(k, i), layout.horizon_at(k) + i));
+            }
+            if k == self.intervals {
+                break;
+            }
+            for (slot, &(i, j)) in layout.cross.entries().iter().enumerate() {
+                list.push((
+                    u.unknown(k + 1, i),
+                    u.unknown(k, j),
+                    layout.lower_at(k) + slot,
+                ));
+            }
+            for side in 0..2 {
+                for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
+                    list.push((
+                        Some(u.scalar(k, s)),
+                        u.unknown(k + side, i),
+                        layout.mixed_at(k, side) + slot,
+                    ));
+                }
+            }
+            for (slot, &(s, t)) in layout.scalars.entries().iter().enumerate() {
+                list.push((
+                    Some(u.scalar(k, s)),
+                    Some(u.scalar(k, t)),
+                    layout.scalars_at(k) + slot,
+                ));
+            }
+            for s in 0..layout.interval_scalars {
+                list.push((
+                    u.horizon(),
+                    Some(u.scalar(k, s)),
+                    layout.horizon_scalars_at(k) + s,
+                ));
+            }
+        }
+        list.push((
+            u.horizon(),
+            u.horizon(),
+            layout.horizon_square_at(self.intervals),
+        ));
+        let mut entries = Entries::default();
+        for (row, col, place) in list {
+            let (Some(row), Some(col)) = (row, col) else {
+                continue;
+            };
+            entries.rows.push(row.max(col) as u32);
+            entries.cols.push(row.min(col) as u32);
+            let scale = self.variable_scales[row] * self.variable_scales[col];
+            self.hessian.push(Kept { place, scale });
+        }
+        if self.cost.couples_intervals() {
+            for k in 1..self.intervals {
+                for s in 0..layout.interval_scalars {
+                    entries.rows.push(u.scalar(k, s) as u32);
+                    entries.cols.push(u.scalar(k - 1, s) as u32);
+                }
+            }
+        }
+        self.hessian_entries = entries;
+    }
+}

@@ -1,0 +1,328 @@
+//! What is observed along a motion: stretches, charges, energies, momenta and constraints, one row per instant.
+//!
+//! Charges, energies and momenta belong to intervals; the row of instant k holds those of the interval that ends
+//! there, row 0 those of the start, at q₀ with the rates of its momenta. The momenta are the momentum maps of
+//! p⁺ = D₂L_d + f⁺, which an invariant motion conserves exactly; reactions of joints enter with the next interval.
+
+use crate::dynamics::History;
+use crate::dynamics::trajectory::{Column, Observations, Trajectory};
+use crate::functional::{Frame, Horizon, Kind, Level, Sides};
+use crate::kinematics::{MaterialVector, Pose};
+use crate::math::Vector;
+use crate::model::Model;
+use crate::reduction::{Instant, Scratch};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+/// Eigenvalues of the mass matrix below this fraction of the largest belong to coordinates without inertia.
+const MASSLESS: f64 = 1e-13;
+
+/// Energies of one interval at its midpoint, in mJ.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Energies {
+    /// Kinetic energy.
+    pub kinetic: f64,
+    /// Potential energy of each effect that has one, in the order of the effects.
+    pub potential: Vec<f64>,
+    /// Work that forces without a potential do over the interval.
+    pub work: f64,
+}
+
+impl Energies {
+    /// Kinetic plus potential energy.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.potential.iter().sum::<f64>()
+    }
+}
+
+/// Energies of the interval of `h` ms between two placed instants under voltages by scalar.
+pub fn energies(model: &Model, a: &Instant, b: &Instant, scalars: &[f64], h: f64) -> Energies {
+    let zeros = vec![0.0; scalars.len()];
+    let frame = Frame {
+        vectors: [&a.x, &b.x],
+        along: [&a.w, &b.w],
+        scalars,
+        scalars_along: &zeros,
+        h,
+        horizon: Horizon::Given,
+        sides: Sides::ALL,
+        weights: &[],
+    };
+    let mut energies = Energies::default();
+    for effect in &model.action.intervals.effects {
+        match effect.kind() {
+            Kind::Kinetic => energies.kinetic += effect.energy(&frame),
+            Kind::Potential => energies.potential.push(effect.energy(&frame)),
+            Kind::VirtualWork => energies.work += effect.energy(&frame),
+            Kind::Constraint => {}
+        }
+    }
+    energies
+}
+
+/// All that is observed along a motion, time, joint coordinates and markers first.
+pub fn observations(model: &Model, history: &History) -> Observations {
+    let mut observations = Trajectory::from_history(model, history).observe(&model.system);
+    let mut observer = Observer::new(model);
+    let mut columns = observer.columns();
+    for k in 0..history.z.len() {
+        let row = observer.row(history, k);
+        for (column, value) in columns.iter_mut().zip(row) {
+            column.values.push(value);
+        }
+    }
+    observations.columns.extend(columns);
+    observations
+}
+
+/// The storage to observe one instant after the other.
+struct Observer<'m> {
+    model: &'m Model,
+    before: Instant,
+    here: Instant,
+    scratch: Scratch,
+    dissipated: f64,
+}
+
+impl<'m> Observer<'m> {
+    fn new(model: &'m Model) -> Self {
+        Self {
+            model,
+            before: model.action.motion.instant(),
+            here: model.action.motion.instant(),
+            scratch: model.action.scratch(),
+            dissipated: 0.0,
+        }
+    }
+
+    fn has(&self, kind: Kind) -> bool {
+        let mut effects = self.model.action.intervals.effects.iter();
+        effects.any(|effect| effect.kind() == kind)
+    }
+
+    /// Names and units, in the order of [`Self::row`].
+    fn columns(&self) -> Vec<Column> {
+        let mut columns = Vec::new();
+        let mut add = |name: String, unit: &'static str| {
+            columns.push(Column {
+                name,
+                unit,
+                values: Vec::new(),
+            });
+        };
+        let system = &self.model.system;
+        for muscle in &system.muscles {
+            add(format!("{}_stretch", muscle.name), "");
+        }
+        for &muscle in &self.model.voltages {
+            add(format!("{}_charge", system.muscles[muscle].name), "mC");
+        }
+        add("kinetic_energy".to_owned(), "N mm");
+        for effect in &self.model.action.intervals.effects {
+            if effect.kind() == Kind::Potential {
+                add(
+                    format!("{}_energy", effect.name().replace(' ', "_")),
+                    "N mm",
+                );
+            }
+        }
+        add("total_energy".to_owned(), "N mm");
+        if self.has(Kind::VirtualWork) {
+            add("dissipated_energy".to_owned(), "N mm");
+        }
+        for (name, unit) in [("linear_momentum", "N ms"), ("angular_momentum", "N mm ms")] {
+            for axis in ["x", "y", "z"] {
+                add(format!("{name}_{axis}"), unit);
+            }
+        }
+        add("constraint_violation".to_owned(), "");
+        columns
+    }
+
+    fn row(&mut self, history: &History, k: usize) -> Vec<f64> {
+        let model = self.model;
+        let none = vec![0.0; model.voltages.len()];
+        let scalars = history.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
+        self.here.z.copy_from_slice(&history.z[k]);
+        model.action.motion.place(&mut self.here);
+        let (h, at_start) = if k == 0 {
+            self.before = self.here.clone();
+            (1.0, Some(self.start_momentum(history)))
+        } else {
+            (history.times[k] - history.times[k - 1], None)
+        };
+        let mut energies = energies(model, &self.before, &self.here, scalars, h);
+        let (charges, forces) = self.interval(scalars, h);
+        let (momenta, impulses) = match at_start {
+            Some(momentum) => {
+                let rates = rates(model, &mut self.here, &momentum);
+                let products = momentum.iter().zip(&rates).map(|(p, v)| p * v);
+                energies.kinetic = 0.5 * products.sum::<f64>();
+                let momenta = moving(model, &mut self.here, &rates);
+                let none = vec![Vector::zeros(); momenta.len()];
+                (momenta, none)
+            }
+            None => {
+                let ends = || self.before.x.iter().zip(&self.here.x);
+                let middles: Vec<Vector> = ends().map(|(a, b)| (a + b) * 0.5).collect();
+                let rates: Vec<Vector> = ends().map(|(a, b)| (b - a) / h).collect();
+                let momenta = vector_momenta(model, &middles, &rates);
+                let impulses = forces.iter().zip(&momenta).map(|(f, p)| f - p).collect();
+                (momenta, impulses)
+            }
+        };
+        self.dissipated -= energies.work;
+
+        let mut row = Vec::new();
+        let muscles = model.spans.iter().zip(&model.system.muscles);
+        row.extend(muscles.map(|(&span, m)| self.here.x[span].norm() / m.length()));
+        row.extend(charges);
+        row.push(energies.kinetic);
+        row.extend(&energies.potential);
+        row.push(energies.total());
+        if self.has(Kind::VirtualWork) {
+            row.push(self.dissipated);
+        }
+        let poses = model.poses(&self.here);
+        for map in momentum_maps(&model.vectors, &poses, &momenta, &impulses) {
+            row.extend(map.iter());
+        }
+        row.push(self.violation());
+        std::mem::swap(&mut self.before, &mut self.here);
+        row
+    }
+
+    /// Charges −∂W/∂V of the interval that ends here, and the momenta p⁺ of all vectors.
+    fn interval(&mut self, scalars: &[f64], h: f64) -> (Vec<f64>, Vec<Vector>) {
+        let Self {
+            before,
+            here,
+            scratch,
+            ..
+        } = self;
+        before.forces.fill(Vector::zeros());
+        here.forces.fill(Vector::zeros());
+        self.model.action.evaluate_interval(
+            Level::Gradient,
+            before,
+            here,
+            scalars,
+            h,
+            Horizon::Given,
+            Sides::ALL,
+            &[],
+            scratch,
+        );
+        let charges = scratch.interval.plain.rows.iter().map(|row| row / h);
+        (charges.collect(), here.forces.clone())
+    }
+
+    /// Momentum of each coordinate at the start: as recorded, or as the first interval asks for it.
+    fn start_momentum(&mut self, history: &History) -> Vec<f64> {
+        let model = self.model;
+        if let Some(momentum) = history.momenta.first() {
+            return momentum.clone();
+        }
+        let n = model.coordinate_count();
+        let Some(scalars) = history.scalars.first() else {
+            return vec![0.0; n];
+        };
+        let (mut a, mut b) = (self.here.clone(), self.here.clone());
+        b.z.copy_from_slice(&history.z[1]);
+        model.action.motion.place(&mut b);
+        a.forces.fill(Vector::zeros());
+        model.action.evaluate_interval(
+            Level::Gradient,
+            &mut a,
+            &mut b,
+            scalars,
+            history.times[1] - history.times[0],
+            Horizon::Given,
+            Sides::ALL,
+            &[],
+            &mut self.scratch,
+        );
+        model
+            .action
+            .evaluate_instant(Level::Gradient, &mut a, &[], &mut self.scratch);
+        let mut rows = vec![0.0; a.z.len()];
+        model.action.rows(&a, &self.scratch, &mut rows);
+        rows[..n].iter().map(|row| -row).collect()
+    }
+
+    /// max |g| over the constraints that the coordinates leave open.
+    fn violation(&mut self) -> f64 {
+        let model = self.model;
+        model
+            .action
+            .evaluate_instant(Level::Gradient, &mut self.here, &[], &mut self.scratch);
+        let rows = &self.scratch.instant.plain.rows;
+        rows.iter().fold(0.0_f64, |m, row| m.max(row.abs())) / model.multiplier_time
+    }
+}
+
+/// Rates of the coordinates with given momenta at a placed instant; coordinates without inertia rest.
+fn rates(model: &Model, instant: &mut Instant, momentum: &[f64]) -> Vec<f64> {
+    let n = momentum.len();
+    if momentum.iter().all(|&p| p == 0.0) {
+        return vec![0.0; n];
+    }
+    let mut mass = DMatrix::<f64>::zeros(n, n);
+    let mut unit = vec![0.0; n];
+    for i in 0..n {
+        unit[i] = 1.0;
+        let column = model.action.momentum(instant, &unit);
+        mass.column_mut(i).copy_from_slice(&column);
+        unit[i] = 0.0;
+    }
+    let p = DVector::from_column_slice(momentum);
+    let SymmetricEigen {
+        eigenvectors: q,
+        eigenvalues,
+    } = SymmetricEigen::new(mass);
+    let smallest = MASSLESS * eigenvalues.amax();
+    let mut modes = q.tr_mul(&p);
+    for (mode, &value) in modes.iter_mut().zip(&eigenvalues) {
+        *mode = if value > smallest { *mode / value } else { 0.0 };
+    }
+    (q * modes).iter().copied().collect()
+}
+
+/// Momenta ∂T/∂ẋ of all vectors at a placed instant with these rates of the coordinates.
+fn moving(model: &Model, instant: &mut Instant, rates: &[f64]) -> Vec<Vector> {
+    instant.l.fill(0.0);
+    instant.l[..rates.len()].copy_from_slice(rates);
+    model.action.motion.along(instant);
+    vector_momenta(model, &instant.x, &instant.w)
+}
+
+/// Momenta ∂T/∂ẋ of vectors x with rates v.
+fn vector_momenta(model: &Model, x: &[Vector], v: &[Vector]) -> Vec<Vector> {
+    let mut momenta = vec![Vector::zeros(); x.len()];
+    for effect in &model.action.intervals.effects {
+        effect.momentum(x, v, &mut momenta);
+    }
+    momenta
+}
+
+/// Linear momentum Σ c π and angular momentum about the origin Σ x × π of a list of momenta π of vectors x, with c the part
+/// of a translation that x takes: 1 for a point, 0 for a direction or a span. Momenta of masses count with the whole of
+/// their vectors, impulses of forces with the part on bodies: what pulls at the ground does not move the system.
+fn momentum_maps(
+    vectors: &[MaterialVector],
+    poses: &[Pose],
+    momenta: &[Vector],
+    impulses: &[Vector],
+) -> [Vector; 2] {
+    let (mut linear, mut angular) = (Vector::zeros(), Vector::zeros());
+    for ((vector, momentum), impulse) in vectors.iter().zip(momenta).zip(impulses) {
+        for term in &vector.terms {
+            let (pose, total) = match term.body {
+                Some(body) => (poses[body], momentum + impulse),
+                None => (Pose::GROUND, *momentum),
+            };
+            linear += total * term.centre;
+            angular += term.at(&pose).cross(&total);
+        }
+    }
+    [linear, angular]
+}

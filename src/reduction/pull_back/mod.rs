@@ -1,0 +1,192 @@
+//! Pᵀ H P and its derivative along a direction, block by block into prepared slots.
+
+mod articulated;
+mod linear;
+mod mixed;
+
+use crate::functional::{Couplings, Part, Sides};
+use crate::reduction::instant::Instant;
+use crate::reduction::motion::{Dependence, Motion};
+use crate::reduction::pattern::Layout;
+use articulated::{Ends, Groups, Pair};
+use linear::Linear;
+use mixed::Mixed;
+
+/// The plan of a pull-back: which blocks go where.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PullBack {
+    full: Groups,
+    isotropic: Groups,
+    linear: Linear,
+    mixed: Mixed,
+    /// (slot, place).
+    scalars: Vec<(usize, usize)>,
+}
+
+/// Where the blocks of one interval go in the values: places of the four blocks, of both mixed blocks and of scalars.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Target {
+    /// (k, k), (k, k+1), (k+1, k), (k+1, k+1).
+    pub blocks: [usize; 4],
+    /// (z_k, s), (z_{k+1}, s).
+    pub mixed: [usize; 2],
+    /// (s, s).
+    pub scalars: usize,
+}
+
+impl PullBack {
+    /// Plans the pull-back of a site; entries join the layout. Scalars of an instant are its multipliers.
+    pub(super) fn new(
+        couplings: &Couplings,
+        motion: &Motion,
+        layout: &mut Layout,
+        site: Site,
+    ) -> Self {
+        let mut plan = Self::default();
+        for (slot, &(a, b)) in couplings.full.iter().enumerate() {
+            match (&motion.vectors[a], &motion.vectors[b]) {
+                (Dependence::Articulated(a), Dependence::Articulated(b)) => {
+                    let transposed = couplings.transposed_full(slot);
+                    let pair = Pair {
+                        slot,
+                        transposed,
+                        first: [a.first, b.first],
+                    };
+                    plan.full.add(pair, [a, b], layout, site);
+                }
+                (Dependence::Linear { parts: s, .. }, Dependence::Linear { parts: t, .. }) => {
+                    plan.linear.add_full(slot, [s, t], layout, site);
+                }
+                _ => unreachable!("vectors of one scene are all articulated or all linear"),
+            }
+        }
+        for (slot, &(a, b)) in couplings.isotropic.iter().enumerate() {
+            match (&motion.vectors[a], &motion.vectors[b]) {
+                (Dependence::Articulated(a), Dependence::Articulated(b)) => {
+                    let transposed = couplings.transposed_isotropic(slot);
+                    let pair = Pair {
+                        slot,
+                        transposed,
+                        first: [a.first, b.first],
+                    };
+                    plan.isotropic.add(pair, [a, b], layout, site);
+                }
+                (Dependence::Linear { parts: s, .. }, Dependence::Linear { parts: t, .. }) => {
+                    plan.linear.add_isotropic(slot, [s, t], layout, site);
+                }
+                _ => unreachable!("vectors of one scene are all articulated or all linear"),
+            }
+        }
+        for (slot, &(a, s)) in couplings.mixed.iter().enumerate() {
+            plan.mixed.add(slot, a, s, motion, layout, site);
+        }
+        if site == Site::Intervals {
+            let place =
+                |(slot, &(s, t)): (usize, &(usize, usize))| (slot, layout.scalars.slot(s, t));
+            plan.scalars = couplings.scalars.iter().enumerate().map(place).collect();
+        }
+        plan
+    }
+
+    /// Size of the local storage that an evaluation needs.
+    pub(super) fn local(&self) -> usize {
+        self.full.local().max(self.isotropic.local())
+    }
+
+    /// Adds Pᵀ H P.
+    pub(super) fn hessian(
+        &self,
+        ends: [&Instant; 2],
+        part: &Part,
+        sides: Sides,
+        target: &Target,
+        local: &mut [f64],
+        values: &mut [f64],
+    ) {
+        let (columns, columns_l) = columns(ends);
+        let (ends, blocks) = (Ends { columns, columns_l }, &part.blocks);
+        self.full
+            .full(ends, &blocks.full, sides, target, local, values);
+        self.isotropic
+            .isotropic(ends, &blocks.isotropic, sides, target, local, values);
+        self.linear
+            .add(&blocks.full, &blocks.isotropic, sides, target, values);
+        self.mixed.plain(columns, part, target, values);
+        for &(slot, place) in &self.scalars {
+            values[target.scalars + place] += blocks.scalars[slot];
+        }
+    }
+
+    /// Adds the lower blocks of `Pᵀ H_w P + P′_lᵀ H P + Pᵀ Hᵀ P′_l`.
+    pub(super) fn third(
+        &self,
+        ends: [&Instant; 2],
+        [plain, contracted]: [&Part; 2],
+        sides: Sides,
+        target: &Target,
+        local: &mut [f64],
+        values: &mut [f64],
+    ) {
+        let (columns, columns_l) = columns(ends);
+        let lower = Sides {
+            blocks: [sides.blocks[0], false, sides.blocks[2], sides.blocks[3]],
+        };
+        let (ends, h, hw) = (
+            Ends { columns, columns_l },
+            &plain.blocks,
+            &contracted.blocks,
+        );
+        self.full
+            .full_along(ends, &h.full, &hw.full, lower, target, local, values);
+        self.isotropic.isotropic_along(
+            ends,
+            &h.isotropic,
+            &hw.isotropic,
+            lower,
+            target,
+            local,
+            values,
+        );
+        self.linear
+            .add(&hw.full, &hw.isotropic, lower, target, values);
+        self.mixed
+            .along(columns, columns_l, [plain, contracted], target, values);
+        for &(slot, place) in &self.scalars {
+            values[target.scalars + place] += hw.scalars[slot];
+        }
+    }
+}
+
+/// Columns of both instants, and their derivatives along l.
+fn columns(ends: [&Instant; 2]) -> ([&[f64]; 2], [&[f64]; 2]) {
+    (
+        ends.map(|e| e.columns.as_slice()),
+        ends.map(|e| e.columns_l.as_slice()),
+    )
+}
+
+/// Where a sum lives in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Site {
+    /// Scalars are those of the interval.
+    Intervals,
+    /// Scalars are multipliers, unknowns of the instant itself.
+    Instants,
+}
+
+impl Site {
+    /// Places of the coupling of coordinate `row` and scalar `s`: a block of its own for an interval, both triangles of
+    /// (z, z) for an instant.
+    fn mixed(self, layout: &mut Layout, motion: &Motion, row: usize, s: usize) -> Vec<usize> {
+        match self {
+            Self::Intervals => vec![layout.mixed.slot(row, s)],
+            Self::Instants => {
+                let multiplier = motion.coordinates + s;
+                vec![
+                    layout.same.slot(row, multiplier),
+                    layout.same.slot(multiplier, row),
+                ]
+            }
+        }
+    }
+}

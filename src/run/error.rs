@@ -1,0 +1,116 @@
+//! Why a command gives no answer: the input is wrong, or a file cannot be written.
+
+use std::path::{Path, PathBuf};
+
+use miette::{Diagnostic, GraphicalReportHandler, LabeledSpan, SourceCode};
+use thiserror::Error;
+
+use crate::control::BoundaryError;
+use crate::ipopt::IpoptError;
+use crate::report::atomic::WriteError;
+use crate::run::solution_file::SolutionError;
+use crate::scene::SceneError;
+
+/// A command ends without an answer.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// A scene, problem or override is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// An earlier solution cannot be used.
+    #[error(transparent)]
+    Solution(#[from] SolutionError),
+    /// What a problem asks for does not exist.
+    #[error("{}: {place}: {reason}", file.display())]
+    Problem {
+        /// The problem file as typed.
+        file: PathBuf,
+        /// Path in it.
+        place: String,
+        /// Why.
+        reason: String,
+    },
+    /// A value typed on the command line is wrong.
+    #[error("{option}: {reason}")]
+    Option {
+        /// The option.
+        option: &'static str,
+        /// Why.
+        reason: String,
+    },
+    /// A file stands where a new one was to be written.
+    #[error("{} exists already and is left as it is; choose another folder", .0.display())]
+    Exists(PathBuf),
+    /// A file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+impl RunError {
+    /// Exit status of the program: 2 where the input is wrong, 1 where the results could not be kept.
+    pub fn exit_status(&self) -> u8 {
+        match self {
+            Self::Write(_) => 1,
+            _ => 2,
+        }
+    }
+
+    /// The lines of the file around the mistake, marked, where there is such a place.
+    pub fn excerpt(&self) -> Option<String> {
+        let Self::Scene(mistake) = self else {
+            return None;
+        };
+        mistake.source_code()?;
+        let mut text = String::new();
+        let handler = GraphicalReportHandler::new();
+        handler.render_report(&mut text, &Excerpt(mistake)).ok()?;
+        Some(text)
+    }
+
+    /// Start or goal of a problem that does not exist; `task` is its key in the file.
+    pub(super) fn boundary(file: &Path, task: &str, error: &BoundaryError) -> Self {
+        let (key, reason) = match error {
+            BoundaryError::Model(source) => ("coordinates", source.to_string()),
+            BoundaryError::NoEquilibrium { place, source } => (*place, source.to_string()),
+            BoundaryError::Inconsistent { place, .. } => {
+                let text = error.to_string();
+                let reason = text.strip_prefix(&format!("{place}: ")).unwrap_or(&text);
+                (*place, reason.to_owned())
+            }
+            BoundaryError::Overdetermined { .. } => ("goal", error.to_string()),
+        };
+        Self::Problem {
+            file: file.to_owned(),
+            place: format!("{task}.{key}"),
+            reason,
+        }
+    }
+
+    /// An option or a problem that Ipopt does not take.
+    pub(super) fn ipopt(file: &Path, error: &IpoptError) -> Self {
+        let place = match error {
+            IpoptError::OptionRejected { .. } => "control.solver.ipopt",
+            IpoptError::ProblemNotCreated { .. } => "control",
+        };
+        Self::Problem {
+            file: file.to_owned(),
+            place: place.to_owned(),
+            reason: error.to_string(),
+        }
+    }
+}
+
+/// The marked text of a mistake; what is wrong is told in the line before.
+#[derive(Debug, Error)]
+#[error("{}", .0.path())]
+struct Excerpt<'a>(&'a SceneError);
+
+impl Diagnostic for Excerpt<'_> {
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.0.source_code()
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        self.0.labels()
+    }
+}

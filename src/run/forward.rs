@@ -1,0 +1,134 @@
+//! A simulation from file to folder.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use crate::control::problem::{Simulation, Voltages};
+use crate::control::resolve_start;
+use crate::dynamics::observations;
+use crate::dynamics::simulate;
+use crate::ipopt::interrupt;
+use crate::model::{Model, System};
+use crate::report::{Run, write_run};
+use crate::run::effects::effect_counts;
+use crate::run::error::RunError;
+use crate::run::motion::{solved, trajectory};
+use crate::run::progress::Progress;
+use crate::run::request::{Request, Told};
+use crate::run::solution_file;
+use crate::run::solve::{counted, make_folder};
+use crate::run::summary::{self, Seconds, Summary};
+
+/// Simulates and writes the folder; a motion that ends early is kept as far as it went.
+///
+/// The steps are equal: as long as asked for, or a little shorter where they do not fit the duration.
+pub(super) fn simulation(
+    request: &Request,
+    system: &System,
+    task: &Simulation,
+    began: Instant,
+) -> Result<Told, RunError> {
+    let steps = (task.duration / task.step - 1e-9).ceil().max(1.0) as usize;
+    let h = task.duration / steps as f64;
+    let wrong = |error| RunError::boundary(&request.input, "simulate", &error);
+    let model = Model::new(system.clone(), task.coordinates, h, &[])
+        .map_err(|error| wrong(error.into()))?;
+    let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;
+    let effects = effect_counts(&model).map_err(|error| wrong(error.into()))?;
+    let folder = request.folder();
+    make_folder(&folder)?;
+
+    let setup = began.elapsed().as_secs_f64();
+    let scalars = |from: f64, to: f64| model.scalars(row(&task.voltages, 0.5 * (from + to)));
+    let mut stopped = None;
+    let (history, failure) = {
+        let progress = Progress::of_steps(request.progress, steps);
+        simulate(&model, &start, h, steps, scalars, |step| {
+            progress.step(step);
+            let late = |limit: f64| began.elapsed().as_secs_f64() > limit;
+            stopped = match step < steps {
+                true if interrupt::requested() => Some("interrupted"),
+                true if request.max_seconds.is_some_and(late) => Some("time_limit"),
+                _ => return ControlFlow::Continue(()),
+            };
+            ControlFlow::Break(())
+        })
+    };
+    let spent = began.elapsed().as_secs_f64() - setup;
+    let reached = history.times[history.intervals()];
+    let status = match (&failure, stopped) {
+        (Some(_), _) => "step_failed",
+        (None, Some(word)) => word,
+        (None, None) => "simulated",
+    };
+
+    let kept = solved(&model, &history, None);
+    if kept.intervals() > 0 {
+        solution_file::write(&folder.join("solution.json"), &model, &kept)?;
+    }
+    let mut summary = Summary::new(request, status, model.coordinates.name());
+    summary.message = failure.as_ref().map(ToString::to_string);
+    summary.simulation = Some(summary::Simulation::new(
+        history.intervals(),
+        reached,
+        history.report,
+    ));
+    summary.effects = effects;
+    summary.seconds = Seconds {
+        total: began.elapsed().as_secs_f64(),
+        setup,
+        solver: spent,
+        ..Seconds::default()
+    };
+    summary.write(&folder)?;
+    let motion = trajectory(&model, &kept);
+    let rows = [
+        ("status".to_owned(), status.replace('_', " ")),
+        ("steps".to_owned(), history.intervals().to_string()),
+        ("duration".to_owned(), format!("{} s", reached / 1e3)),
+        (
+            "coordinates".to_owned(),
+            model.coordinates.name().to_owned(),
+        ),
+        ("time".to_owned(), format!("{:.3} s", summary.seconds.total)),
+    ];
+    let run = Run {
+        system,
+        trajectory: &motion,
+        name: "simulation",
+        observations: &observations(&model, &history),
+        comparison: None,
+        held: None,
+        origin: &request.origin(false),
+        title: "Simulation",
+        summary: &rows,
+    };
+    write_run(&folder, &run)?;
+    let is_solved = status == "simulated";
+    Ok(Told {
+        is_solved,
+        result: format!(
+            "{}: {}, {} s of motion, {:.2} s, {}",
+            match is_solved {
+                true => "simulated".to_owned(),
+                false => format!("not simulated to the end ({})", status.replace('_', " ")),
+            },
+            counted(history.intervals(), "step"),
+            reached / 1e3,
+            summary.seconds.total,
+            folder.display()
+        ),
+        notes: summary.message.into_iter().collect(),
+    })
+}
+
+/// Voltages at a time in ms.
+fn row(voltages: &Voltages, time: f64) -> &[f64] {
+    match voltages {
+        Voltages::Constant(row) => row,
+        Voltages::Sampled { ends, rows } => {
+            let k = ends.iter().position(|&end| time < end);
+            &rows[k.unwrap_or(rows.len() - 1)]
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! What the program does with a problem file: solve, simulate, rest, inspect, check, and the files it leaves.
+//!
+//! - `solve`, `forward`, `rest`: the three tasks; `task` chooses what a file asks for.
+//! - `motion`, `resimulate`, `violations`, `effects`: what is read from a result.
+//! - `solution_file`, `summary`: the two JSON files; figures, tables and page are written by [`report`](crate::report).
+//! - `inspect`, `spy`, `check`, `starter`: the other commands.
+
+mod check;
+mod effects;
+mod error;
+mod forward;
+mod inspect;
+mod motion;
+mod progress;
+mod request;
+mod resimulate;
+mod rest;
+pub mod solution_file;
+mod solve;
+mod spy;
+mod starter;
+mod summary;
+mod task;
+mod violations;
+
+pub use check::check;
+pub use effects::{EffectCounts, effect_counts};
+pub use error::RunError;
+pub use inspect::inspect;
+pub use motion::{solved, trajectory};
+pub use progress::Shown;
+pub use request::{Request, Told};
+pub use rest::equilibrium_of_file;
+pub use starter::{expand, new_trunk, schema};
+pub use task::run;
+pub use violations::{Violation, violations};

@@ -1,0 +1,73 @@
+//! Progress on standard error: the iterations of a solve, the steps of a simulation.
+
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::ipopt::Iteration;
+
+/// Whether progress is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// Where standard error is a terminal.
+    OnTerminal,
+    /// Never.
+    Never,
+}
+
+/// A line that changes while a run goes on.
+#[derive(Debug)]
+pub(super) struct Progress {
+    bar: ProgressBar,
+}
+
+impl Progress {
+    /// A solve with an open number of iterations.
+    pub(super) fn of_solve(shown: Shown) -> Self {
+        let bar = target(ProgressBar::no_length(), shown);
+        bar.set_style(style("{spinner} {elapsed_precise} {msg}"));
+        bar.enable_steady_tick(Duration::from_millis(120));
+        Self { bar }
+    }
+
+    /// A simulation of `steps` steps.
+    pub(super) fn of_steps(shown: Shown, steps: usize) -> Self {
+        let bar = target(ProgressBar::new(steps as u64), shown);
+        bar.set_style(style("{elapsed_precise} {wide_bar} step {pos} of {len}"));
+        Self { bar }
+    }
+
+    /// An iterate was accepted.
+    pub(super) fn iteration(&self, at: &Iteration) {
+        self.bar.set_message(format!(
+            "iteration {}  objective {:.6e}  infeasibility {:.1e}  optimality {:.1e}{}",
+            at.iteration,
+            at.objective,
+            at.primal_infeasibility,
+            at.dual_infeasibility,
+            if at.restoration { "  restoration" } else { "" }
+        ));
+    }
+
+    /// Step `step` is done.
+    pub(super) fn step(&self, step: usize) {
+        self.bar.set_position(step as u64);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+fn target(bar: ProgressBar, shown: Shown) -> ProgressBar {
+    if shown == Shown::Never {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    bar
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).expect("the template is well formed")
+}

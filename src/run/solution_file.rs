@@ -1,0 +1,328 @@
+//! `solution.json`: a motion in files' units with all that a later run needs to start from it exactly.
+//!
+//! People read `time` (s), `configuration` (m, rad) and `voltages` (V); `state` holds coordinates and multipliers of the
+//! instants as the program has them (g, mm, ms, N), and `costates` the multipliers of the optimisation, unscaled. A file made
+//! by hand needs `time`, `voltages` and the coordinates of the joints, in `joints` or in `configuration.joints`.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::control::{Costates, Solved};
+use crate::kinematics::Pose;
+use crate::math::Matrix;
+use crate::model::system::{Joint, JointKind, System};
+use crate::model::{Coordinates, Model};
+use crate::report::atomic::{self, WriteError};
+use crate::run::motion::has_coordinate;
+use crate::scene::lay_out;
+
+/// ms in a s.
+const SECOND: f64 = 1e3;
+/// mm in a m.
+const METRE: f64 = 1e3;
+
+/// An earlier solution cannot be used.
+#[derive(Debug, Error)]
+#[error("{}: {reason}", path.display())]
+pub struct SolutionError {
+    /// The file.
+    pub path: PathBuf,
+    /// Why.
+    pub reason: Reason,
+}
+
+/// Why a file is no solution of a scene.
+#[derive(Debug, Error)]
+pub enum Reason {
+    /// It cannot be read.
+    #[error("cannot be read: {0}")]
+    Unreadable(io::Error),
+    /// It is not JSON.
+    #[error("no JSON: {0}")]
+    NoJson(serde_json::Error),
+    /// It is JSON, but no solution.
+    #[error(
+        "{place}: {found}; a solution.json holds \"time\", \"voltages\", and joint coordinates in \"configuration\" or \"joints\""
+    )]
+    NoSolution {
+        /// Path in the file.
+        place: String,
+        /// What is wrong there.
+        found: String,
+    },
+    /// Its names are not those of the scene.
+    #[error("belongs to another scene: {0}")]
+    OtherScene(String),
+    /// Its parts do not fit together.
+    #[error("{0}")]
+    Contradiction(String),
+}
+
+/// The file.
+#[derive(Debug, Default, Serialize, Deserialize)]
+struct File {
+    #[serde(default)]
+    scene: String,
+    time: Vec<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    joints: Option<BTreeMap<String, Vec<f64>>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    configuration: Option<Configuration>,
+    voltages: BTreeMap<String, Vec<f64>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    coordinates: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    state: Option<State>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    costates: Option<Multipliers>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct Configuration {
+    #[serde(default)]
+    bodies: BTreeMap<String, Body>,
+    joints: BTreeMap<String, Vec<f64>>,
+}
+
+/// Centre (m) and directors d₁, d₂, d₃ of a body at each instant.
+#[derive(Debug, Serialize, Deserialize)]
+struct Body {
+    centre: Vec<[f64; 3]>,
+    directors: Vec<[[f64; 3]; 3]>,
+}
+
+/// Times in ms, coordinates and multipliers by instant.
+#[derive(Debug, Serialize, Deserialize)]
+struct State {
+    times_ms: Vec<f64>,
+    multiplier_time_ms: f64,
+    z: Vec<Vec<f64>>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct Multipliers {
+    rows: Vec<f64>,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+}
+
+/// Writes `solution.json`.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write(path: &Path, model: &Model, solved: &Solved) -> Result<(), WriteError> {
+    let system = &model.system;
+    let columns = |j: usize, unit: f64| solved.joints.iter().map(|row| row[j] / unit).collect();
+    let joints = system.joints.iter().enumerate();
+    let joints = joints
+        .filter(|(_, joint)| has_coordinate(joint))
+        .map(|(j, joint)| (joint.name.clone(), columns(j, unit(joint))));
+    let body = |b: usize| Body {
+        centre: solved
+            .poses
+            .iter()
+            .map(|p| (p[b].centre / METRE).into())
+            .collect(),
+        directors: solved.poses.iter().map(|p| p[b].directors.into()).collect(),
+    };
+    let bodies = system.bodies.iter().enumerate();
+    let voltage = |&m: &usize| {
+        let history = solved.voltages.iter().map(|row| row[m]).collect();
+        (system.muscles[m].name.clone(), history)
+    };
+    let file = File {
+        scene: system.name.clone(),
+        time: solved.times.iter().map(|t| t / SECOND).collect(),
+        joints: None,
+        configuration: Some(Configuration {
+            bodies: bodies.map(|(b, it)| (it.name.clone(), body(b))).collect(),
+            joints: joints.collect(),
+        }),
+        voltages: model.voltages.iter().map(voltage).collect(),
+        coordinates: Some(solved.coordinates.name().to_owned()),
+        state: Some(State {
+            times_ms: solved.times.clone(),
+            multiplier_time_ms: solved.multiplier_time,
+            z: solved.z.clone(),
+        }),
+        costates: solved.costates.clone().map(|c| Multipliers {
+            rows: c.rows,
+            lower: c.lower,
+            upper: c.upper,
+        }),
+    };
+    let text = serde_json::to_string(&file).expect("numbers and names are JSON");
+    atomic::write(path, lay_out(&text).as_bytes())
+}
+
+/// Reads a `solution.json` of the scene of a model.
+///
+/// # Errors
+/// The file is no solution, or one of another scene.
+pub fn read(path: &Path, model: &Model) -> Result<Solved, SolutionError> {
+    parse(path, model).map_err(|reason| SolutionError {
+        path: path.to_owned(),
+        reason,
+    })
+}
+
+fn parse(path: &Path, model: &Model) -> Result<Solved, Reason> {
+    let text = std::fs::read_to_string(path).map_err(Reason::Unreadable)?;
+    let value: serde_json::Value = serde_json::from_str(&text).map_err(Reason::NoJson)?;
+    let file: File =
+        serde_path_to_error::deserialize(&value).map_err(|error| Reason::NoSolution {
+            place: error.path().to_string(),
+            found: error.inner().to_string(),
+        })?;
+    let instants = file.time.len();
+    if instants < 2 || file.time.windows(2).any(|pair| pair[0] >= pair[1]) {
+        let reason = "\"time\" needs two instants or more, in increasing order";
+        return Err(Reason::Contradiction(reason.to_owned()));
+    }
+    let system = &model.system;
+    let by_joint = match (&file.configuration, &file.joints) {
+        (Some(configuration), _) => &configuration.joints,
+        (None, Some(joints)) => joints,
+        (None, None) => {
+            return Err(Reason::NoSolution {
+                place: "configuration".to_owned(),
+                found: "missing".to_owned(),
+            });
+        }
+    };
+    let named = |joint: &&Joint| has_coordinate(joint);
+    let joints = system.joints.iter().filter(named).map(|j| j.name.as_str());
+    same_names("joint", by_joint.keys().map(String::as_str), joints)?;
+    let muscles = model.voltages.iter();
+    let muscles = muscles.map(|&m| system.muscles[m].name.as_str());
+    same_names("muscle", file.voltages.keys().map(String::as_str), muscles)?;
+    let place_of = |name: &str, system: &System| {
+        let found = system.joints.iter().position(|joint| joint.name == name);
+        found.expect("the names were compared")
+    };
+    let mut joint_rows = vec![vec![0.0; system.joints.len()]; instants];
+    for (name, column) in by_joint {
+        same_length(name, column.len(), instants, "instants")?;
+        let j = place_of(name, system);
+        for (row, value) in joint_rows.iter_mut().zip(column) {
+            row[j] = value * unit(&system.joints[j]);
+        }
+    }
+    let mut voltages = vec![vec![0.0; system.muscles.len()]; instants - 1];
+    for &m in &model.voltages {
+        let name = &system.muscles[m].name;
+        let column = &file.voltages[name];
+        same_length(name, column.len(), instants - 1, "intervals")?;
+        for (row, &value) in voltages.iter_mut().zip(column) {
+            row[m] = value;
+        }
+    }
+    let poses = poses(file.configuration.as_ref(), system, instants)?;
+    let coordinates = match file.coordinates.as_deref() {
+        Some("reduced") => Coordinates::Reduced,
+        Some("redundant") => Coordinates::Redundant,
+        None => model.coordinates,
+        Some(other) => {
+            return Err(Reason::NoSolution {
+                place: "coordinates".to_owned(),
+                found: format!("{other:?}, expected \"reduced\" or \"redundant\""),
+            });
+        }
+    };
+    let (times, multiplier_time, z) = match file.state {
+        Some(state) => {
+            same_length("state.times_ms", state.times_ms.len(), instants, "instants")?;
+            same_length("state.z", state.z.len(), instants, "instants")?;
+            (state.times_ms, state.multiplier_time_ms, state.z)
+        }
+        None => {
+            let times = file.time.iter().map(|t| t * SECOND).collect();
+            let z = joint_rows.iter().map(|row| model.coordinates_at(row));
+            (times, model.multiplier_time, z.collect())
+        }
+    };
+    Ok(Solved {
+        coordinates,
+        times,
+        joints: joint_rows,
+        poses,
+        z,
+        multiplier_time,
+        voltages,
+        costates: file.costates.map(|c| Costates {
+            rows: c.rows,
+            lower: c.lower,
+            upper: c.upper,
+        }),
+    })
+}
+
+/// Poses by instant and body; none where the file gives none.
+fn poses(
+    configuration: Option<&Configuration>,
+    system: &System,
+    instants: usize,
+) -> Result<Vec<Vec<Pose>>, Reason> {
+    let Some(configuration) = configuration.filter(|c| !c.bodies.is_empty()) else {
+        return Ok(Vec::new());
+    };
+    let names = system.bodies.iter().map(|body| body.name.as_str());
+    same_names(
+        "body",
+        configuration.bodies.keys().map(String::as_str),
+        names,
+    )?;
+    let mut poses = vec![vec![Pose::GROUND; system.bodies.len()]; instants];
+    for (b, body) in system.bodies.iter().enumerate() {
+        let Body { centre, directors } = &configuration.bodies[&body.name];
+        same_length(&body.name, centre.len(), instants, "instants")?;
+        same_length(&body.name, directors.len(), instants, "instants")?;
+        for (row, (centre, directors)) in poses.iter_mut().zip(centre.iter().zip(directors)) {
+            row[b] = Pose {
+                centre: crate::math::Vector::from(*centre) * METRE,
+                directors: Matrix::from(*directors),
+            };
+        }
+    }
+    Ok(poses)
+}
+
+/// Length of a unit of the file in the units inside: rad for angles, m for displacements.
+fn unit(joint: &Joint) -> f64 {
+    match joint.kind {
+        JointKind::Prismatic { .. } => METRE,
+        _ => 1.0,
+    }
+}
+
+fn same_names<'a>(
+    what: &str,
+    file: impl Iterator<Item = &'a str>,
+    scene: impl Iterator<Item = &'a str>,
+) -> Result<(), Reason> {
+    let (file, scene): (Vec<_>, Vec<_>) = (file.collect(), scene.collect());
+    let unknown = file.iter().find(|name| !scene.contains(name));
+    let missing = scene.iter().find(|name| !file.contains(name));
+    match (unknown, missing) {
+        (None, None) => Ok(()),
+        (Some(name), _) => Err(Reason::OtherScene(format!(
+            "this one has no {what} {name:?}"
+        ))),
+        (None, Some(name)) => Err(Reason::OtherScene(format!(
+            "the {what} {name:?} of this one is missing there"
+        ))),
+    }
+}
+
+fn same_length(name: &str, found: usize, expected: usize, of: &str) -> Result<(), Reason> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(Reason::Contradiction(format!(
+        "{name} has {found} values for {expected} {of}"
+    )))
+}

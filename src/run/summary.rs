@@ -1,0 +1,165 @@
+//! `summary.json`: what was asked, how it ended, how large it was and how long it took.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::dynamics::StepperReport;
+use crate::report::atomic::{self, WriteError};
+use crate::run::effects::EffectCounts;
+use crate::run::request::Request;
+use crate::run::resimulate::Resimulation;
+use crate::run::violations::Violation;
+use crate::scene::lay_out;
+
+/// The file.
+#[derive(Debug, Serialize)]
+pub(super) struct Summary {
+    pub(super) command: String,
+    pub(super) input: String,
+    /// A word: `solved`, `simulated`, `infeasible`, `interrupted`, …
+    pub(super) status: String,
+    /// Why it ended early, in words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) message: Option<String>,
+    #[serde(flatten)]
+    pub(super) program: Option<Program>,
+    #[serde(flatten)]
+    pub(super) simulation: Option<Simulation>,
+    #[serde(flatten)]
+    pub(super) rest: Option<Rest>,
+    pub(super) coordinates: &'static str,
+    pub(super) seconds: Seconds,
+    pub(super) effects: Vec<EffectCounts>,
+    pub(super) versions: Versions,
+}
+
+/// The nonlinear program of a control problem and its solution.
+#[derive(Debug, Serialize)]
+pub(super) struct Program {
+    pub(super) objective: f64,
+    pub(super) iterations: usize,
+    pub(super) intervals: usize,
+    /// Final time in s.
+    pub(super) duration: f64,
+    pub(super) variables: usize,
+    pub(super) constraints: usize,
+    pub(super) jacobian_nonzeros: usize,
+    pub(super) hessian_nonzeros: usize,
+    /// Mean time of one evaluation per interval.
+    pub(super) interval_microseconds: PerInterval,
+    /// Greatest violation of an equation or limit, as the solver measures it.
+    pub(super) infeasibility: f64,
+    /// The worst rows that do not hold; none of a solution.
+    pub(super) violations: Vec<Violation>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) resimulation: Option<Resimulation>,
+}
+
+/// Mean time of one evaluation per interval, in µs; nothing where there was none.
+#[derive(Debug, Serialize)]
+pub(super) struct PerInterval {
+    pub(super) jacobian: Option<f64>,
+    pub(super) hessian: Option<f64>,
+}
+
+/// What a simulation did.
+#[derive(Debug, Serialize)]
+pub(super) struct Simulation {
+    /// Steps recorded.
+    pub(super) steps: usize,
+    /// Length of the motion in s.
+    pub(super) duration: f64,
+    /// Newton iterations.
+    pub(super) newton_iterations: usize,
+    /// Steps that had to be halved.
+    pub(super) halved_steps: usize,
+}
+
+impl Simulation {
+    /// Of a motion of `steps` recorded steps and `duration` ms.
+    pub(super) fn new(steps: usize, duration: f64, report: StepperReport) -> Self {
+        Self {
+            steps,
+            duration: duration / 1e3,
+            newton_iterations: report.iterations,
+            halved_steps: report.halved,
+        }
+    }
+}
+
+/// A static equilibrium.
+#[derive(Debug, Serialize)]
+pub(super) struct Rest {
+    /// Coordinate of each joint in rad or m.
+    pub(super) joints: std::collections::BTreeMap<String, f64>,
+    /// Place of each marker in m.
+    pub(super) markers: std::collections::BTreeMap<String, [f64; 3]>,
+    /// Eigenvalues of the stiffness in joint coordinates, N m/rad for angles, N/m for displacements.
+    pub(super) stiffness: Vec<f64>,
+    /// Whether all of them are positive; nothing where they are not known.
+    pub(super) is_stable: Option<bool>,
+    /// Newton iterations.
+    pub(super) newton_iterations: usize,
+}
+
+/// Wall time in s.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(super) struct Seconds {
+    /// From reading to writing.
+    pub(super) total: f64,
+    /// Before the solver or the first step.
+    pub(super) setup: f64,
+    /// In Ipopt without the callbacks, or in the steps of a simulation.
+    pub(super) solver: f64,
+    pub(super) objective: f64,
+    pub(super) gradient: f64,
+    pub(super) constraints: f64,
+    pub(super) jacobian: f64,
+    pub(super) hessian: f64,
+}
+
+/// Versions that the result depends on.
+#[derive(Debug, Serialize)]
+pub(super) struct Versions {
+    program: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    commit: Option<&'static str>,
+    ipopt: &'static str,
+}
+
+impl Versions {
+    /// Those of this program.
+    pub(super) fn new() -> Self {
+        Self {
+            program: env!("CARGO_PKG_VERSION"),
+            commit: option_env!("PROBOSCIS_COMMIT"),
+            ipopt: crate::ipopt::VERSION,
+        }
+    }
+}
+
+impl Summary {
+    /// A summary without a result.
+    pub(super) fn new(request: &Request, status: &str, coordinates: &'static str) -> Self {
+        Self {
+            command: request.command.clone(),
+            input: request.input.display().to_string(),
+            status: status.to_owned(),
+            message: None,
+            program: None,
+            simulation: None,
+            rest: None,
+            coordinates,
+            seconds: Seconds::default(),
+            effects: Vec::new(),
+            versions: Versions::new(),
+        }
+    }
+
+    /// Writes it as `summary.json` into a folder that exists.
+    pub(super) fn write(&self, folder: &Path) -> Result<(), WriteError> {
+        let text = serde_json::to_string(self).expect("numbers and names are JSON");
+        atomic::write(&folder.join("summary.json"), lay_out(&text).as_bytes())
+    }
+}

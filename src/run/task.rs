@@ -1,0 +1,27 @@
+//! What a problem file asks for, done.
+
+use std::time::Instant;
+
+use crate::control::problem::Task;
+use crate::run::error::RunError;
+use crate::run::request::{Request, Told};
+use crate::run::{forward, rest, solve};
+use crate::scene::read_problem;
+
+/// Reads a problem and does what it asks: optimal control, simulation or equilibrium.
+///
+/// # Errors
+/// The input is wrong, and nothing was written; or the results cannot be written.
+pub fn run(request: &Request) -> Result<Told, RunError> {
+    let began = Instant::now();
+    let loaded = read_problem(&request.input, &request.set)?;
+    match loaded.task {
+        Task::Control(control) => solve::control(request, &loaded.system, &control, began),
+        Task::Simulate(simulation) => {
+            forward::simulation(request, &loaded.system, &simulation, began)
+        }
+        Task::Equilibrium(voltages, coordinates) => {
+            rest::at(request, &loaded.system, &voltages, coordinates, began)
+        }
+    }
+}

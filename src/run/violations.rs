@@ -1,0 +1,44 @@
+//! Which equations and limits a point violates, by name.
+
+use serde::Serialize;
+
+use crate::control::Transcription;
+use crate::nlp::Nlp;
+
+/// A row that does not hold.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Violation {
+    /// What the row says.
+    pub row: String,
+    /// Distance to its bounds in the units of the row (g, mm, ms).
+    pub violation: f64,
+    /// The same as the solver measures it.
+    pub scaled: f64,
+}
+
+/// The worst `count` rows that are violated by more than `tolerance` in the measure of the solver.
+pub fn violations(
+    program: &mut Transcription<'_>,
+    x: &[f64],
+    tolerance: f64,
+    count: usize,
+) -> Vec<Violation> {
+    let bounds = program.constraints();
+    let mut g = vec![0.0; bounds.lower.len()];
+    program.constraint(x, &mut g);
+    let excess = |row: usize| match g[row] {
+        value if value.is_nan() => f64::INFINITY,
+        value => (bounds.lower[row] - value)
+            .max(value - bounds.upper[row])
+            .max(0.0),
+    };
+    let mut rows: Vec<usize> = (0..g.len()).filter(|&r| excess(r) > tolerance).collect();
+    rows.sort_by(|&a, &b| excess(b).total_cmp(&excess(a)));
+    rows.truncate(count);
+    let describe = |row: usize| Violation {
+        row: program.constraint_name(row),
+        violation: excess(row) / program.row_scale(row),
+        scaled: excess(row),
+    };
+    rows.into_iter().map(describe).collect()
+}

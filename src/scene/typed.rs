@@ -1,0 +1,70 @@
+//! What is read from the command line besides overrides: the scene of any file, and voltages by muscle.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::model::system::System;
+use crate::scene::build_scene::{build_scene, names};
+use crate::scene::document::Document;
+use crate::scene::error::{Mistake, SceneError, nearest};
+use crate::scene::quantity::{Quantity, Voltage};
+use crate::scene::scope::Scope;
+use crate::scene::set::Override;
+
+/// The system of a scene file, or of the scene of a problem file, with overrides as for the file itself.
+///
+/// # Errors
+/// The file, its scene or an override is wrong.
+pub fn read_system(path: &Path, overrides: &[String]) -> Result<System, SceneError> {
+    let mut document = Document::read(path)?;
+    if document.value.get("scene").is_some() {
+        return Ok(crate::scene::read_problem(path, overrides)?.system);
+    }
+    for written in overrides {
+        let change = Override::parse(written)?;
+        change.in_scene().unwrap_or(change).apply(&mut document)?;
+    }
+    build_scene(&document.parse()?, &Scope::of(&document))
+}
+
+/// One voltage per muscle in V from words such as `muscle2=1.7kV`, 0 where not named.
+///
+/// # Errors
+/// A muscle does not exist or takes no voltage, or a voltage is none.
+pub fn driven_voltages(words: &[String], system: &System) -> Result<Vec<f64>, SceneError> {
+    let mut voltages = vec![0.0; system.muscles.len()];
+    let mistake = |word: &str, expected: String, nearest: Option<String>| -> SceneError {
+        Mistake {
+            file: "command line".to_owned(),
+            path: "--voltages".to_owned(),
+            found: format!("{word:?}"),
+            expected,
+            nearest,
+            source: None,
+            overridden: false,
+        }
+        .into()
+    };
+    for word in words.iter().filter(|word| !word.trim().is_empty()) {
+        let expected = || "muscle=voltage, such as muscle2=1.7kV".to_owned();
+        let (name, value) = word
+            .split_once('=')
+            .ok_or_else(|| mistake(word, expected(), None))?;
+        let all = names(&system.muscles, |muscle| &muscle.name);
+        let name = name.trim();
+        let takes_one = |&index: &usize| system.muscles[index].material.electric.is_some();
+        let muscle = all.iter().position(|other| other == name).filter(takes_one);
+        let muscle = muscle.ok_or_else(|| {
+            let nearest = nearest(name, all.iter().map(String::as_str));
+            let expected = "the name of a muscle that takes a voltage".to_owned();
+            mistake(name, expected, nearest.filter(|other| other != name))
+        })?;
+        let value = value.trim();
+        let json = serde_json::from_str(value).unwrap_or_else(|_| Value::from(value));
+        let quantity: Quantity<Voltage> = serde_json::from_value(json)
+            .map_err(|_| mistake(word, Quantity::<Voltage>::expected(), None))?;
+        voltages[muscle] = quantity.value();
+    }
+    Ok(voltages)
+}

@@ -1,0 +1,125 @@
+//! Evaluating a program allocates nothing after the first time.
+#![expect(unsafe_code, reason = "a global allocator that counts")]
+
+mod common;
+
+use common::cases::{all_limits, branched, control, rest_to_rest};
+use common::trunk;
+use proboscis::control::problem::{Control, Duration, Objective};
+use proboscis::control::{Boundary, Transcription, guess};
+use proboscis::model::Coordinates;
+use proboscis::model::system::System;
+use proboscis::nlp::Nlp;
+use std::alloc::{GlobalAlloc, Layout, System as Heap};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Counts what it is asked for.
+struct Counting;
+
+static ASKED: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call goes to the allocator of the system with unchanged arguments.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ASKED.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: as asked of this function.
+        unsafe { Heap.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: as asked of this function; the memory came from `Heap`.
+        unsafe { Heap.dealloc(memory, layout) }
+    }
+
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        ASKED.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: as asked of this function; the memory came from `Heap`.
+        unsafe { Heap.realloc(memory, layout, size) }
+    }
+}
+
+#[global_allocator]
+static HEAP: Counting = Counting;
+
+/// Allocations of the five answers at a new point, objective to Hessian.
+fn allocations(system: &System, control: &Control) -> [usize; 5] {
+    let (Duration::Given(t) | Duration::Free { guess: t, .. }) = control.duration;
+    let h = t / control.intervals as f64;
+    let (model, boundary) = Boundary::resolve(system, control, h).unwrap();
+    let initial = guess(&model, &boundary, control, h, None);
+    let mut program = Transcription::new(&model, &boundary, control, &initial).unwrap();
+    let mut x = program.start(&initial).x;
+    let rows = program.constraints().lower.len();
+    let mut grad = vec![0.0; x.len()];
+    let mut g = vec![0.0; rows];
+    let costates = vec![0.5; rows];
+    let mut jacobian = vec![0.0; program.jacobian_structure().rows.len()];
+    let mut hessian = vec![0.0; program.hessian_structure().rows.len()];
+    let mut counts = [0; 5];
+    for _ in 0..2 {
+        x.iter_mut().for_each(|v| *v += 1e-3);
+        let mut last = ASKED.load(Ordering::Relaxed);
+        let mut since = || {
+            let now = ASKED.load(Ordering::Relaxed);
+            now - std::mem::replace(&mut last, now)
+        };
+        program.objective(&x);
+        counts[0] = since();
+        program.gradient(&x, &mut grad);
+        counts[1] = since();
+        program.constraint(&x, &mut g);
+        counts[2] = since();
+        program.jacobian(&x, &mut jacobian);
+        counts[3] = since();
+        program.hessian(&x, 1.0, &costates, &mut hessian);
+        counts[4] = since();
+    }
+    counts
+}
+
+/// The only test of its binary: the count belongs to the process.
+#[test]
+fn evaluations_allocate_nothing() {
+    let before = ASKED.load(Ordering::Relaxed);
+    drop(std::hint::black_box(vec![0_u8; 100]));
+    assert!(
+        ASKED.load(Ordering::Relaxed) > before,
+        "the allocator counts"
+    );
+    let free = Duration::Free {
+        min: 10.0,
+        max: 1e3,
+        guess: 100.0,
+    };
+    let every = Objective {
+        effort: 1.0,
+        rate: 0.1,
+        duration: 1.0,
+    };
+    for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
+        let mut plain = rest_to_rest(3, 10, 100.0);
+        plain.coordinates = Some(coordinates);
+        let timed = Control {
+            duration: free,
+            objective: every,
+            ..plain.clone()
+        };
+        let mut limited = control(&branched(), 6);
+        limited.coordinates = Some(coordinates);
+        limited.limits = all_limits();
+        let both = Control {
+            duration: free,
+            objective: every,
+            ..limited.clone()
+        };
+        for (name, system, control) in [
+            ("trunk", trunk(3), plain),
+            ("trunk, free time", trunk(3), timed),
+            ("branched, limits", branched(), limited),
+            ("branched, limits, free time", branched(), both),
+        ] {
+            let counts = allocations(&system, &control);
+            assert_eq!(counts, [0; 5], "{name} in {coordinates:?} coordinates");
+        }
+    }
+}

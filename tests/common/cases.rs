@@ -1,0 +1,383 @@
+//! A list of control problems that together call for every effect, joint, limit, goal and objective.
+
+use super::trunk;
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use proboscis::control::problem::{
+    Control, Duration, Guess, Limit, Objective, Side, Solver, State,
+};
+use proboscis::model::system::{
+    Attachment, Body, Electric, Joint, JointKind, Marker, Material, Muscle, Shape, System,
+    VACUUM_PERMITTIVITY,
+};
+use proboscis::model::{Coordinates, Region};
+use std::collections::BTreeMap;
+
+/// Gravity along −y in mm/ms².
+pub const GRAVITY: Vector3<f64> = Vector3::new(0.0, -9.81e-3, 0.0);
+
+/// A system and what is asked of it.
+pub struct Case {
+    /// For messages.
+    pub name: &'static str,
+    /// The system.
+    pub system: System,
+    /// The problem, in reduced coordinates.
+    pub control: Control,
+}
+
+/// The joint coordinates of a goal.
+pub fn joints(list: &[(usize, f64)]) -> State {
+    State::JointAngles {
+        angles: list.iter().copied().collect(),
+        rates: BTreeMap::new(),
+    }
+}
+
+/// Least effort from rest without voltages over `intervals` intervals of 10 ms; joint coordinates are free at the end.
+pub fn control(system: &System, intervals: usize) -> Control {
+    Control {
+        duration: Duration::Given(10.0 * intervals as f64),
+        intervals,
+        start: State::RestAtVoltages(vec![0.0; system.muscles.len()]),
+        goal: joints(&[]),
+        voltage_bounds: [0.0, 3000.0],
+        objective: Objective {
+            effort: 1.0,
+            ..Objective::default()
+        },
+        limits: Vec::new(),
+        coordinates: Some(Coordinates::Reduced),
+        guess: Guess::Interpolate,
+        solver: Solver {
+            tolerance: 1e-10,
+            max_iterations: 500,
+            ipopt: BTreeMap::new(),
+        },
+    }
+}
+
+/// Rest at the voltages that the reference trunk is held with.
+pub fn hold(segments: usize) -> Vec<f64> {
+    let pair = |i: usize| {
+        if i.is_multiple_of(2) {
+            [0.0, 1700.0]
+        } else {
+            [1600.0, 0.0]
+        }
+    };
+    (0..segments).flat_map(pair).collect()
+}
+
+/// From rest without voltages to rest at the hold voltages.
+pub fn rest_to_rest(segments: usize, intervals: usize, duration: f64) -> Control {
+    Control {
+        duration: Duration::Given(duration),
+        goal: State::RestAtVoltages(hold(segments)),
+        ..control(&trunk(segments), intervals)
+    }
+}
+
+/// A branched tree: a revolute joint about an oblique axis, on it a damped slider and a damped hinge written from child
+/// to parent, and a body fixed on the slider; four muscles, of which one is passive and one has no mass and no viscosity.
+pub fn branched() -> System {
+    let turned = |angle: f64| {
+        Rotation3::from_axis_angle(&Vector3::x_axis(), angle).into_inner()
+            * Matrix3::from_columns(&[Vector3::z(), Vector3::x(), Vector3::y()])
+    };
+    let body = |name: &str, centre: [f64; 3], angle: f64| Body {
+        name: name.into(),
+        mass: 20.0,
+        inertia: [4e3, 5e3, 3e3],
+        centre: Vector3::from(centre),
+        directors: turned(angle),
+        shape: Shape::Box {
+            size: [20.0, 20.0, 40.0],
+        },
+    };
+    let oblique = Vector3::new(0.2, 0.3, 1.0).normalize();
+    let along = Vector3::new(0.6, 0.8, 0.0);
+    let joint = |name: &str, kind, parent, child, at: [f64; 3], damping| Joint {
+        name: name.into(),
+        kind,
+        parent,
+        child,
+        at: Vector3::from(at),
+        damping,
+    };
+    let at = |body, at: [f64; 3]| Attachment {
+        body,
+        at: Vector3::from(at),
+    };
+    let silicone = Material {
+        density: Some(1e-3),
+        shear_modulus: 0.1,
+        lame_lambda: None,
+        electric: Some(Electric {
+            c1: -2.0 * VACUUM_PERMITTIVITY,
+            c2: VACUUM_PERMITTIVITY,
+            permittivity: VACUUM_PERMITTIVITY,
+        }),
+        viscosity: Some(1.0),
+    };
+    let ideal = Material {
+        electric: Some(Electric {
+            c1: 0.0,
+            c2: 0.0,
+            permittivity: 3.0 * VACUUM_PERMITTIVITY,
+        }),
+        ..silicone
+    };
+    let rubber = Material {
+        electric: None,
+        ..silicone
+    };
+    let light = Material {
+        density: None,
+        viscosity: None,
+        ..silicone
+    };
+    let muscle = |name: &str, from, to, material, section_inertia| Muscle {
+        name: name.into(),
+        from,
+        to,
+        cross_section: [10.0, 8.0],
+        layer_thickness: 0.05,
+        material,
+        section_inertia,
+    };
+    System {
+        name: "branched".into(),
+        bodies: vec![
+            body("stem", [0.0, 25.0, 0.0], 0.0),
+            body("slider", [15.0, 70.0, 5.0], 0.4),
+            body("branch", [-30.0, 60.0, 0.0], -0.7),
+            body("cap", [25.0, 110.0, 5.0], 0.2),
+        ],
+        joints: vec![
+            joint(
+                "root",
+                JointKind::Revolute { axis: oblique },
+                None,
+                0,
+                [0.0; 3],
+                Some(30.0),
+            ),
+            joint(
+                "slide",
+                JointKind::Prismatic { axis: along },
+                Some(0),
+                1,
+                [5.0, 50.0, 0.0],
+                Some(0.4),
+            ),
+            joint(
+                "hinge",
+                JointKind::Revolute { axis: Vector3::x() },
+                Some(2),
+                0,
+                [-10.0, 50.0, 0.0],
+                Some(20.0),
+            ),
+            joint(
+                "glue",
+                JointKind::Fixed,
+                Some(1),
+                3,
+                [20.0, 90.0, 5.0],
+                None,
+            ),
+        ],
+        muscles: vec![
+            muscle(
+                "ground to stem",
+                at(None, [20.0, 0.0, 5.0]),
+                at(Some(0), [15.0, 45.0, 5.0]),
+                silicone,
+                true,
+            ),
+            muscle(
+                "stem to slider",
+                at(Some(0), [0.0, 20.0, 5.0]),
+                at(Some(1), [10.0, 75.0, 0.0]),
+                ideal,
+                false,
+            ),
+            muscle(
+                "slider to branch",
+                at(Some(1), [10.0, 75.0, 12.0]),
+                at(Some(2), [-35.0, 70.0, 10.0]),
+                light,
+                false,
+            ),
+            muscle(
+                "ground to branch",
+                at(None, [-40.0, 0.0, 5.0]),
+                at(Some(2), [-35.0, 60.0, -10.0]),
+                rubber,
+                true,
+            ),
+        ],
+        markers: vec![
+            Marker {
+                name: "cap".into(),
+                point: at(Some(3), [30.0, 130.0, 10.0]),
+            },
+            Marker {
+                name: "tip".into(),
+                point: at(Some(2), [-40.0, 80.0, 3.0]),
+            },
+        ],
+        gravity: Some(GRAVITY),
+    }
+}
+
+/// The three muscles of the branched tree that take a voltage, at 900 V each; the fourth is passive.
+pub const BRANCHED_VOLTAGES: [f64; 4] = [900.0, 900.0, 900.0, 0.0];
+
+/// Every kind of limit on the branched tree.
+pub fn all_limits() -> Vec<Limit> {
+    let near = |centre: [f64; 3], half: f64| Region::Box {
+        min: Vector3::from(centre).add_scalar(-half),
+        max: Vector3::from(centre).add_scalar(half),
+    };
+    let ball = |centre: [f64; 3], radius: f64| Region::Sphere {
+        centre: Vector3::from(centre),
+        radius,
+    };
+    let marker = |marker: usize, region: Region, side: Side| Limit::Marker {
+        marker,
+        region,
+        side,
+    };
+    vec![
+        Limit::JointAngle {
+            joint: 0,
+            min: -0.6,
+            max: 0.7,
+        },
+        Limit::JointAngle {
+            joint: 1,
+            min: f64::NEG_INFINITY,
+            max: 9.0,
+        },
+        Limit::Stretch {
+            muscle: 0,
+            min: 0.7,
+            max: 1.2,
+        },
+        Limit::Stretch {
+            muscle: 3,
+            min: 0.0,
+            max: 1.5,
+        },
+        Limit::ElectricField {
+            muscle: 1,
+            max: 5e4,
+        },
+        Limit::ElectricField {
+            muscle: 3,
+            max: 5e4,
+        },
+        marker(0, near([20.0, 120.0, 5.0], 60.0), Side::Inside),
+        marker(0, ball([20.0, 120.0, 5.0], 70.0), Side::Inside),
+        marker(1, near([-60.0, 100.0, 20.0], 15.0), Side::Outside),
+        marker(1, ball([-60.0, 100.0, 20.0], 20.0), Side::Outside),
+    ]
+}
+
+/// The list.
+pub fn cases() -> Vec<Case> {
+    let case = |name, system: System, change: &dyn Fn(&mut Control)| {
+        let mut control = control(&system, 3);
+        change(&mut control);
+        Case {
+            name,
+            system,
+            control,
+        }
+    };
+    let with = |change: &dyn Fn(&mut System), mut system: System| {
+        change(&mut system);
+        system
+    };
+    let materials = |change: &dyn Fn(&mut Material), system: &mut System| {
+        for muscle in &mut system.muscles {
+            change(&mut muscle.material);
+        }
+    };
+    let free = Duration::Free {
+        min: 10.0,
+        max: 90.0,
+        guess: 30.0,
+    };
+    let every_objective = Objective {
+        effort: 0.7,
+        rate: 0.02,
+        duration: 0.3,
+    };
+    vec![
+        case("pair at rest", trunk(1), &|c| {
+            c.goal = State::RestAtVoltages(hold(1));
+        }),
+        case("two segments", trunk(2), &|_| {}),
+        case("three segments, smooth", trunk(3), &|c| {
+            c.goal = State::RestAtVoltages(hold(3));
+            c.objective = Objective {
+                rate: 0.3,
+                ..Objective::default()
+            };
+        }),
+        case(
+            "gravity and section inertia, free time",
+            with(
+                &|s| {
+                    s.gravity = Some(GRAVITY);
+                    s.muscles.iter_mut().for_each(|m| m.section_inertia = true);
+                },
+                trunk(2),
+            ),
+            &|c| {
+                c.duration = free;
+                c.objective = every_objective;
+            },
+        ),
+        case(
+            "ideal dielectric without mass and viscosity",
+            with(
+                &|s| {
+                    materials(
+                        &|m| {
+                            m.density = None;
+                            m.viscosity = None;
+                            m.electric = Some(Electric {
+                                c1: 0.0,
+                                c2: 0.0,
+                                permittivity: 5.0 * VACUUM_PERMITTIVITY,
+                            });
+                        },
+                        s,
+                    );
+                },
+                trunk(2),
+            ),
+            &|c| c.goal = joints(&[(1, 0.2)]),
+        ),
+        case("branched tree", branched(), &|_| {}),
+        case("branched tree, free time", branched(), &|c| {
+            c.duration = free;
+            c.objective = every_objective;
+        }),
+        case("branched tree, all limits", branched(), &|c| {
+            c.limits = all_limits();
+        }),
+        case("branched tree, all limits, free time", branched(), &|c| {
+            c.limits = all_limits();
+            c.duration = free;
+            c.objective = every_objective;
+            c.goal = joints(&[(1, 2.0)]);
+        }),
+        case("branched tree to a marker", branched(), &|c| {
+            c.goal = State::Markers(BTreeMap::from([(0, Vector3::new(25.0, 128.0, 12.0))]));
+        }),
+    ]
+}

@@ -1,0 +1,282 @@
+//! Joint coordinates and directors with multipliers tell the same motion.
+
+mod common;
+
+use common::{bare, body, distance, joint, motion, trunk};
+use nalgebra::{Rotation3, Vector3};
+use proboscis::dynamics::trajectory::Trajectory;
+use proboscis::dynamics::{Start, observations};
+use proboscis::model::system::{Attachment, Body, Joint, JointKind, Marker, Muscle, System};
+use proboscis::model::{Coordinates, Model};
+
+/// A motion from given joint coordinates and rates in some coordinates.
+fn run(
+    system: &System,
+    coordinates: Coordinates,
+    joints: &[f64],
+    rates: &[f64],
+    h: f64,
+    steps: usize,
+    voltages: &[f64],
+) -> (Model, proboscis::dynamics::History) {
+    let model = Model::new(system.clone(), Some(coordinates), h, &[]).unwrap();
+    let z = model.coordinates_at(joints);
+    let rates = match coordinates {
+        Coordinates::Reduced => model.coordinates_at(rates),
+        Coordinates::Redundant => model.redundant_rates(joints, rates),
+    };
+    let start = Start::with_rates(&model, z, &rates);
+    let history = motion(&model, &start, h, steps, &model.scalars(voltages));
+    (model, history)
+}
+
+/// Largest difference of the motions in both coordinates, and the motion.
+fn compare(
+    system: &System,
+    joints: &[f64],
+    rates: &[f64],
+    h: f64,
+    steps: usize,
+    voltages: &[f64],
+) -> (f64, Trajectory) {
+    let [reduced, redundant] = [Coordinates::Reduced, Coordinates::Redundant]
+        .map(|c| run(system, c, joints, rates, h, steps, voltages));
+    let [a, b] = [&reduced, &redundant].map(|(m, history)| Trajectory::from_history(m, history));
+    // What is observed agrees as well; momenta of reduced coordinates hold no reactions of the ground.
+    let [seen, other] = [&reduced, &redundant].map(|(m, history)| observations(m, history));
+    for (x, y) in seen.columns.iter().zip(&other.columns) {
+        assert_eq!(x.name, y.name);
+        if x.name == "constraint_violation" {
+            continue;
+        }
+        let size = x.values.iter().fold(1e-3_f64, |m, v| m.max(v.abs()));
+        for (k, (u, v)) in x.values.iter().zip(&y.values).enumerate() {
+            assert!(
+                (u - v).abs() < 1e-7 * size,
+                "{} at {k}: {u} against {v}",
+                x.name
+            );
+        }
+    }
+    (distance(&a, &b, reduced.0.length()), a)
+}
+
+#[test]
+fn of_the_trunk() {
+    let voltages: Vec<f64> = (0..12)
+        .map(|m| [2000.0, 0.0, 500.0, 1200.0][m % 4])
+        .collect();
+    let joints = [0.1, -0.05, 0.08, 0.0, -0.1, 0.2];
+    let rates = [1e-3, 2e-3, -1e-3, 0.0, 3e-3, -2e-3];
+    let (difference, trajectory) = compare(&trunk(6), &joints, &rates, 5.0, 200, &voltages);
+    println!("trunk: {difference:e}");
+    for (i, start) in joints.iter().enumerate() {
+        let swing = trajectory.joints.iter().map(|u| (u[i] - start).abs());
+        assert!(swing.fold(0.0, f64::max) > 0.02);
+    }
+    assert!(difference < 1e-9, "{difference:e}");
+}
+
+/// A tree that branches: revolute and prismatic joints with dampers, off-axis bodies, muscles of every kind, gravity.
+fn tree() -> System {
+    let turned = |a: f64, b: f64, c: f64| *Rotation3::from_euler_angles(a, b, c).matrix();
+    let at = Vector3::new;
+    let bodies: Vec<Body> = vec![
+        body(
+            "base",
+            40.0,
+            [9e3, 1.1e4, 7e3],
+            at(5.0, 30.0, 2.0),
+            turned(0.2, 0.4, -0.3),
+        ),
+        body(
+            "slide",
+            15.0,
+            [2e3, 1.5e3, 3e3],
+            at(20.0, 70.0, -5.0),
+            turned(-0.7, 0.1, 0.5),
+        ),
+        body(
+            "left",
+            12.0,
+            [1e3, 2e3, 1.2e3],
+            at(-25.0, 75.0, 10.0),
+            turned(1.0, -0.4, 0.2),
+        ),
+        body(
+            "hand",
+            6.0,
+            [4e2, 5e2, 3e2],
+            at(50.0, 95.0, 0.0),
+            turned(0.0, 0.9, 0.1),
+        ),
+        body(
+            "plate",
+            8.0,
+            [7e2, 7e2, 9e2],
+            at(-30.0, 110.0, 20.0),
+            turned(0.3, 0.3, 0.3),
+        ),
+    ];
+    let revolute = |x: f64, y: f64, z: f64| JointKind::Revolute {
+        axis: at(x, y, z).normalize(),
+    };
+    let prismatic = |x: f64, y: f64, z: f64| JointKind::Prismatic {
+        axis: at(x, y, z).normalize(),
+    };
+    let damped = |joint: Joint, damping: f64| Joint {
+        damping: Some(damping),
+        ..joint
+    };
+    let joints = vec![
+        damped(
+            joint("root", revolute(0.1, 0.2, 1.0), None, 0, at(0.0, 0.0, 0.0)),
+            400.0,
+        ),
+        damped(
+            joint(
+                "rail",
+                prismatic(1.0, 0.5, 0.2),
+                Some(0),
+                1,
+                at(10.0, 55.0, 0.0),
+            ),
+            0.5,
+        ),
+        joint(
+            "elbow",
+            revolute(1.0, 0.0, 0.3),
+            Some(0),
+            2,
+            at(-10.0, 55.0, 5.0),
+        ),
+        damped(
+            joint(
+                "wrist",
+                revolute(0.0, 1.0, 0.4),
+                Some(1),
+                3,
+                at(35.0, 85.0, -2.0),
+            ),
+            100.0,
+        ),
+        joint("weld", JointKind::Fixed, Some(2), 4, at(-28.0, 90.0, 15.0)),
+    ];
+    let material = trunk(1).muscles[0].material;
+    let muscle = |name: &str,
+                  from: (Option<usize>, Vector3<f64>),
+                  to: (Option<usize>, Vector3<f64>)| Muscle {
+        name: name.into(),
+        from: Attachment {
+            body: from.0,
+            at: from.1,
+        },
+        to: Attachment {
+            body: to.0,
+            at: to.1,
+        },
+        cross_section: [10.0, 12.0],
+        layer_thickness: 0.05,
+        material,
+        section_inertia: true,
+    };
+    let mut muscles = vec![
+        muscle(
+            "anchor",
+            (None, at(30.0, -5.0, 8.0)),
+            (Some(0), at(20.0, 40.0, 0.0)),
+        ),
+        muscle(
+            "stay",
+            (None, at(-30.0, 0.0, -8.0)),
+            (Some(0), at(-15.0, 40.0, 4.0)),
+        ),
+        muscle(
+            "rail",
+            (Some(0), at(0.0, 45.0, 3.0)),
+            (Some(1), at(30.0, 72.0, -3.0)),
+        ),
+        muscle(
+            "lift",
+            (Some(0), at(0.0, 40.0, -20.0)),
+            (Some(4), at(-25.0, 100.0, 12.0)),
+        ),
+        muscle(
+            "turn",
+            (Some(1), at(20.0, 75.0, 12.0)),
+            (Some(3), at(52.0, 96.0, 9.0)),
+        ),
+    ];
+    // One without voltage, one without mass and viscosity, one without inertia of its section.
+    muscles[1].material.electric = None;
+    muscles[2].material.density = None;
+    muscles[2].material.viscosity = None;
+    muscles[3].section_inertia = false;
+    let mut system = bare(bodies, joints, Some(at(0.0, -9.81e-3, 0.0)));
+    system.muscles = muscles;
+    system.markers = vec![Marker {
+        name: "tip".into(),
+        point: Attachment {
+            body: Some(3),
+            at: at(60.0, 100.0, 5.0),
+        },
+    }];
+    system
+}
+
+const JOINTS: [f64; 5] = [0.1, 2.0, -0.2, 0.3, 0.0];
+const RATES: [f64; 5] = [2e-3, 0.05, -3e-3, 6e-3, 0.0];
+const VOLTAGES: [f64; 5] = [1500.0, 0.0, 1000.0, 2000.0, 500.0];
+
+#[test]
+fn of_a_tree_with_everything() {
+    let (difference, trajectory) = compare(&tree(), &JOINTS, &RATES, 3.0, 200, &VOLTAGES);
+    println!("tree: {difference:e}");
+    for (i, start) in JOINTS.iter().enumerate().take(4) {
+        let swing = trajectory
+            .joints
+            .iter()
+            .map(|u| (u[i] - start).abs())
+            .fold(0.0, f64::max);
+        println!("  joint {i} moves by {swing}");
+        assert!(swing > 0.02);
+    }
+    assert!(difference < 1e-9, "{difference:e}");
+}
+
+#[test]
+fn in_any_order_of_the_joints_and_either_direction() {
+    let mut system = tree();
+    // The damper of a hinge reads two vectors of its parent and one of its child, so its midpoint rule is that of the
+    // other direction to O(h²) only, where the parent turns.
+    system.joints[3].damping = None;
+    let (_, expected) = compare(&system, &JOINTS, &RATES, 3.0, 50, &VOLTAGES);
+
+    // The joints from the leaves to the root.
+    let mut shuffled = system.clone();
+    let order = [3, 1, 4, 2, 0];
+    shuffled.joints = order.iter().map(|&j| system.joints[j].clone()).collect();
+    let [joints, rates] = [JOINTS, RATES].map(|list| order.map(|j| list[j]));
+    let (difference, trajectory) = compare(&shuffled, &joints, &rates, 3.0, 50, &VOLTAGES);
+    assert!(difference < 1e-9, "{difference:e}");
+    assert!(distance(&expected, &trajectory, 100.0) < 1e-9);
+
+    // Parent and child exchanged: a turn of one in the other is the opposite turn of the other in the one, and so is a
+    // displacement, whose axis then turns with the other body.
+    for reversed in [vec![2], vec![1], vec![3, 4]] {
+        let mut swapped = system.clone();
+        let (mut joints, mut rates) = (JOINTS, RATES);
+        for &j in &reversed {
+            let joint = &mut swapped.joints[j];
+            let parent = joint.parent.expect("joints to the ground stay");
+            (joint.parent, joint.child) = (Some(joint.child), parent);
+            joints[j] = -joints[j];
+            rates[j] = -rates[j];
+        }
+        let (difference, trajectory) = compare(&swapped, &joints, &rates, 3.0, 50, &VOLTAGES);
+        let other = distance(&expected, &trajectory, 100.0);
+        println!("reversed {reversed:?}: {difference:e}, {other:e}");
+        assert!(difference < 1e-9, "{difference:e}");
+        assert!(other < 1e-9, "{other:e}");
+    }
+}
