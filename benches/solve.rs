@@ -114,8 +114,8 @@ fn of_solution(solution: &Solution, intervals: usize) -> Cost {
     }
 }
 
-/// Microseconds of a forward step, the least over a few motions.
-fn step(coordinates: Coordinates) -> f64 {
+/// Microseconds of a forward step, the least over a few motions, and its Newton iterations.
+fn step(coordinates: Coordinates) -> (f64, f64) {
     let (model, start, scalars) = at_rest(coordinates);
     let (steps, runs) = MARCH;
     let run = |_| {
@@ -123,7 +123,9 @@ fn step(coordinates: Coordinates) -> f64 {
         march(&model, &start, &scalars, steps);
         1e6 * clock.elapsed().as_secs_f64() / steps as f64
     };
-    (0..runs).map(run).fold(f64::INFINITY, f64::min)
+    let least = (0..runs).map(run).fold(f64::INFINITY, f64::min);
+    let iterations = march(&model, &start, &scalars, steps).iterations;
+    (least, iterations as f64 / steps as f64)
 }
 
 /// Microseconds per interval of constraint, Jacobian and Hessian outside a solve.
@@ -174,7 +176,7 @@ fn tables() -> String {
     }
     let reduced = callbacks(Reduced, 40);
     let redundant = callbacks(Redundant, 40);
-    let steps = [step(Reduced), step(Redundant)];
+    let [(reduced_step, newton), (redundant_step, _)] = [step(Reduced), step(Redundant)];
     let ratio = costs[0].callbacks / costs[0].solver;
     out.push_str(
         "\nAgainst targets and rivals, as ratios; below 1 is faster.\n\n\
@@ -213,14 +215,19 @@ fn tables() -> String {
     );
     row(
         "forward step of 10 ms, µs",
-        steps,
+        [reduced_step, redundant_step],
         Some(STEP),
-        &format!("Exudyn {:.2}", steps[0] / EXUDYN_STEP),
+        &format!(
+            "Exudyn {:.2}/{:.2}",
+            reduced_step / EXUDYN_STEP,
+            redundant_step / EXUDYN_STEP
+        ),
     );
     writeln!(
         out,
-        "\nThe forward step takes {:.2} of CasADi's. Callbacks take {ratio:.2} of the time inside Ipopt, {:.2} of the target.",
-        steps[0] / CASADI_STEP,
+        "\nA forward step has {newton:.1} Newton iterations and takes {:.3} of CasADi's. Callbacks take {ratio:.2} of the time \
+         inside Ipopt, {:.2} of the target.",
+        reduced_step / CASADI_STEP,
         ratio / CALLBACKS
     )
     .expect("a text grows");
