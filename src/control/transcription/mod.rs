@@ -11,6 +11,7 @@ mod limit_rows;
 mod point;
 mod program;
 mod scaling;
+mod stretch;
 mod structure;
 mod sweep;
 
@@ -24,13 +25,17 @@ use crate::control::unknowns::{Row, Unknowns, Variable};
 use crate::functional::{Horizon, Part};
 use crate::model::Model;
 use crate::nlp::{Bounds, Entries, Nlp};
-use crate::reduction::{Instant, Scratch};
+use crate::reduction::Instant;
 use limit_rows::{LimitRow, limit_rows};
+use stretch::Bench;
 
 /// V in a kV, the unit of voltages in the program and in objectives.
 const KILOVOLT: f64 = 1000.0;
 /// s in a ms.
 const MILLISECOND: f64 = 1e-3;
+
+/// A horizon of at least so many intervals is evaluated in two stretches.
+const TWO_STRETCHES: usize = 32;
 
 /// An entry of a matrix of the program: where its value is found, and its scale.
 #[derive(Clone, Copy, Debug)]
@@ -73,9 +78,10 @@ pub struct Transcription<'m> {
     variable_scales: Vec<f64>,
     row_scales: Vec<f64>,
     // Values and what is kept of them.
-    scratch: Scratch,
-    /// ∂²/∂h² along the costates, summed over the intervals.
-    square: f64,
+    benches: [Bench; 2],
+    /// Where a long horizon is cut in two, and a copy of that instant.
+    middle: Option<usize>,
+    ghost: Instant,
     measured: Part,
     /// Rows of the equations of all instants, then costates of the limits.
     rows: Vec<f64>,
@@ -84,7 +90,6 @@ pub struct Transcription<'m> {
     jacobian_entries: Entries,
     hessian: Vec<Kept>,
     hessian_entries: Entries,
-    weights: [Vec<f64>; 2],
     /// Slot of the second derivative of each voltage with itself.
     voltage_slots: Vec<usize>,
     gradient: Vec<f64>,
@@ -166,8 +171,10 @@ impl<'m> Transcription<'m> {
             h: initial.h,
             variable_scales,
             row_scales: vec![1.0; unknowns.rows.len()],
-            scratch: model.action.scratch(),
-            square: 0.0,
+            benches: [Bench::new(&model.action), Bench::new(&model.action)],
+            middle: (horizon == Horizon::Given && intervals >= TWO_STRETCHES)
+                .then_some(intervals / 2),
+            ghost: motion.instant(),
             measured: Part::new(
                 motion.vectors.len(),
                 scalar_count,
@@ -179,10 +186,6 @@ impl<'m> Transcription<'m> {
             jacobian_entries: Entries::default(),
             hessian: Vec::new(),
             hessian_entries: Entries::default(),
-            weights: [
-                vec![0.0; model.action.instants.measures.len()],
-                vec![0.0; model.action.intervals.measures.len()],
-            ],
             gradient: vec![0.0; intervals * scalar_count],
             voltage_slots: (0..scalar_count)
                 .map(|s| {

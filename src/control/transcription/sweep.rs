@@ -1,131 +1,109 @@
 //! One sweep over the horizon: forces, and second derivatives into the values.
 
-use crate::control::transcription::limit_rows::{LimitRow, Site, fill_weights};
-use crate::control::transcription::{KILOVOLT, MILLISECOND, Placed, Transcription};
+use crate::control::transcription::limit_rows::{LimitRow, Site};
+use crate::control::transcription::stretch::{Shared, Stretch, instant_of, join, needed};
+use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
 use crate::functional::{Frame, Horizon, Level, Measure, Sides};
 use crate::math::Vector;
-
-/// What a level needs of an instant.
-fn needed(level: Level) -> Placed {
-    match level {
-        Level::Gradient => Placed::Vectors,
-        Level::Hessian | Level::Third => Placed::Columns,
-    }
-}
 
 impl<'m> Transcription<'m> {
     /// Instant by instant and interval by interval, each while it is in the cache: forces, and second derivatives into
     /// the values. Contracted derivatives are taken along the costates in the instants.
     pub(super) fn sweep(&mut self, level: Level) {
-        let layout = self.model.action.layout();
-        self.square = 0.0;
-        self.scratch.start();
-        self.prepare(level, 0);
-        for k in 0..self.intervals {
-            self.prepare(level, k + 1);
-            self.interval(level, k);
-            self.instant(level, k);
+        let (action, last) = (&self.model.action, self.intervals);
+        let layout = action.layout();
+        let (rows, costates) = self.rows.split_at_mut((last + 1) * layout.unknowns);
+        let shared = Shared {
+            action,
+            limits: &self.limits,
+            costates,
+            scalars: &self.scalars,
+            h: self.h,
+            horizon: self.horizon,
+            placed: self.placed,
+            level,
+        };
+        let [bench, second] = &mut self.benches;
+        let values = &mut self.values;
+        let mut square = 0.0;
+        if let Some(middle) = self.middle {
+            let ghost = &mut self.ghost;
+            ghost.z.copy_from_slice(&self.instants[middle].z);
+            ghost.l.copy_from_slice(&self.instants[middle].l);
+            let (left, right) = self.instants.split_at_mut(middle);
+            let (end, right) = right.split_last_mut().expect("a stretch has an end");
+            let (values_left, values_right) = values.split_at_mut(layout.same_at(middle));
+            let (rows_left, rows_right) = rows.split_at_mut(middle * layout.unknowns);
+            let left = Stretch {
+                shared,
+                first: 0,
+                instants: left,
+                end: ghost,
+                bench,
+                values: values_left,
+                rows: rows_left,
+            };
+            let right = Stretch {
+                shared,
+                first: middle,
+                instants: right,
+                end,
+                bench: second,
+                values: values_right,
+                rows: rows_right,
+            };
+            join(|| left.run(), || right.run());
+            let instant = &mut self.instants[middle];
+            let both = |sum: &mut [Vector], list: &[Vector]| {
+                sum.iter_mut().zip(list).for_each(|(s, v)| *s += v)
+            };
+            both(&mut instant.forces, &self.ghost.forces);
+            both(&mut instant.contracted, &self.ghost.contracted);
+            action.pull_back_last(level, instant, middle, &mut self.benches[0].scratch, values);
+            instant_of(
+                shared,
+                instant,
+                [middle; 2],
+                &mut self.benches[0],
+                values,
+                rows,
+            );
+        } else {
+            let (end, instants) = self
+                .instants
+                .split_last_mut()
+                .expect("a horizon has instants");
+            square = Stretch {
+                shared,
+                first: 0,
+                instants,
+                end,
+                bench,
+                values,
+                rows,
+            }
+            .run();
         }
-        let action = &self.model.action;
-        let last = &self.instants[self.intervals];
+        let bench = &mut self.benches[usize::from(self.middle.is_some())];
         action.pull_back_last(
             level,
+            &self.instants[last],
             last,
-            self.intervals,
-            &mut self.scratch,
-            &mut self.values,
+            &mut bench.scratch,
+            values,
         );
-        self.instant(level, self.intervals);
+        instant_of(
+            shared,
+            &mut self.instants[last],
+            [last; 2],
+            bench,
+            values,
+            rows,
+        );
         if level == Level::Third && self.horizon == Horizon::Free {
-            self.values[layout.horizon_square_at(self.intervals)] = self.square;
+            values[layout.horizon_square_at(last)] = square;
         }
         self.placed = self.placed.max(needed(level));
-    }
-
-    /// Places instant k as far as a level needs it, and clears what the sweep adds to.
-    fn prepare(&mut self, level: Level, k: usize) {
-        if level >= Level::Hessian {
-            let layout = self.model.action.layout();
-            self.values[layout.same_at(k)..layout.same_at(k + 1)].fill(0.0);
-        }
-        let motion = &self.model.action.motion;
-        let instant = &mut self.instants[k];
-        if self.placed < Placed::Vectors {
-            motion.vectors(instant);
-        }
-        if self.placed < needed(level) && needed(level) == Placed::Columns {
-            motion.tangent(instant);
-        }
-        instant.forces.fill(Vector::zeros());
-        if level == Level::Third {
-            instant.contracted.fill(Vector::zeros());
-            motion.along(instant);
-        }
-    }
-
-    /// Interval k.
-    fn interval(&mut self, level: Level, k: usize) {
-        let action = &self.model.action;
-        let scalar_count = self.model.voltages.len();
-        let equations = self.rows.len() - self.limit_rows.len();
-        let (left, right) = self.instants.split_at_mut(k + 1);
-        let (a, b) = (&mut left[k], &mut right[0]);
-        let scalars = &self.scalars[k * scalar_count..(k + 1) * scalar_count];
-        let weights = &mut self.weights[1];
-        fill_weights(
-            weights,
-            &self.limits,
-            Site::Intervals,
-            k,
-            &self.rows[equations..],
-        );
-        let (scratch, horizon) = (&mut self.scratch, self.horizon);
-        action.evaluate_interval(
-            level,
-            a,
-            b,
-            scalars,
-            self.h,
-            horizon,
-            Sides::ALL,
-            weights,
-            scratch,
-        );
-        scratch.carry(level);
-        action.pull_back_interval(
-            level,
-            a,
-            b,
-            horizon,
-            Sides::CARRIED,
-            k,
-            scratch,
-            &mut self.values,
-        );
-        self.square += scratch.interval.contracted.horizon;
-    }
-
-    /// Instant k, whose forces are complete.
-    fn instant(&mut self, level: Level, k: usize) {
-        let action = &self.model.action;
-        let equations = self.rows.len() - self.limit_rows.len();
-        let instant = &mut self.instants[k];
-        let weights = &mut self.weights[0];
-        fill_weights(
-            weights,
-            &self.limits,
-            Site::Instants,
-            k,
-            &self.rows[equations..],
-        );
-        action.evaluate_instant(level, instant, weights, &mut self.scratch);
-        action.pull_back_instant(level, instant, k, &mut self.scratch, &mut self.values);
-        if level == Level::Gradient {
-            let count = action.motion.unknowns();
-            let rows = &mut self.rows[k * count..(k + 1) * count];
-            rows.fill(0.0);
-            action.rows(instant, &self.scratch, rows);
-        }
     }
 
     /// The frame in which a measure is read at instant or interval k.

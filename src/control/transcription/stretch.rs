@@ -1,0 +1,224 @@
+//! A stretch of the horizon: neighbouring intervals that one thread evaluates.
+//!
+//! A stretch owns its instants up to the last, which begins the next stretch; of that it has a copy, whose forces and
+//! carried blocks are added when both are done. Where stretches meet depends on the number of intervals only, so results
+//! are the same for any number of threads.
+
+use crate::control::transcription::Placed;
+use crate::control::transcription::limit_rows::{LimitRow, Site, fill_weights};
+use crate::functional::{Horizon, Level, Sides};
+use crate::math::Vector;
+use crate::reduction::{Instant, Reduced, Scratch};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::cell::OnceCell;
+use std::thread::available_parallelism;
+
+/// What all stretches read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shared<'a> {
+    pub(super) action: &'a Reduced,
+    pub(super) limits: &'a [LimitRow],
+    /// Costates of the limits.
+    pub(super) costates: &'a [f64],
+    /// Scalars of all intervals.
+    pub(super) scalars: &'a [f64],
+    pub(super) h: f64,
+    pub(super) horizon: Horizon,
+    pub(super) placed: Placed,
+    pub(super) level: Level,
+}
+
+/// Storage of one thread.
+#[derive(Clone, Debug)]
+pub(super) struct Bench {
+    pub(super) scratch: Scratch,
+    /// Weights of the measures of instants and intervals.
+    weights: [Vec<f64>; 2],
+}
+
+/// The intervals from `first` on, one for each of the instants.
+#[derive(Debug)]
+pub(super) struct Stretch<'a> {
+    pub(super) shared: Shared<'a>,
+    pub(super) first: usize,
+    pub(super) instants: &'a mut [Instant],
+    /// The instant after the last interval.
+    pub(super) end: &'a mut Instant,
+    pub(super) bench: &'a mut Bench,
+    /// Values of the steps from `first` on.
+    pub(super) values: &'a mut [f64],
+    /// Rows of the equations of the instants from `first` on.
+    pub(super) rows: &'a mut [f64],
+}
+
+/// What a level needs of an instant.
+pub(super) fn needed(level: Level) -> Placed {
+    match level {
+        Level::Gradient => Placed::Vectors,
+        Level::Hessian | Level::Third => Placed::Columns,
+    }
+}
+
+impl Bench {
+    pub(super) fn new(action: &Reduced) -> Self {
+        let weights = |measures: usize| vec![0.0; measures];
+        Self {
+            scratch: action.scratch(),
+            weights: [
+                weights(action.instants.measures.len()),
+                weights(action.intervals.measures.len()),
+            ],
+        }
+    }
+}
+
+impl Stretch<'_> {
+    /// Forces of the intervals, and second derivatives into the values; instants too, but the first where another
+    /// stretch comes before. Returns ∂²/∂h² along the costates.
+    pub(super) fn run(mut self) -> f64 {
+        self.bench.scratch.start();
+        self.prepare(0);
+        let mut square = 0.0;
+        for j in 0..self.instants.len() {
+            self.prepare(j + 1);
+            square += self.interval(j);
+            if self.first + j > 0 && j == 0 {
+                continue;
+            }
+            let (instant, k) = (&mut self.instants[j], self.first + j);
+            instant_of(
+                self.shared,
+                instant,
+                [k, j],
+                self.bench,
+                self.values,
+                self.rows,
+            );
+        }
+        square
+    }
+
+    /// Places an instant as far as the level needs it, and clears what is added to.
+    fn prepare(&mut self, j: usize) {
+        let Shared {
+            action,
+            level,
+            placed,
+            ..
+        } = self.shared;
+        let segment = action.layout().same_at(j)..action.layout().same_at(j + 1);
+        if level >= Level::Hessian && segment.end <= self.values.len() {
+            self.values[segment].fill(0.0);
+        }
+        let motion = &action.motion;
+        let instant = self.instants.get_mut(j).unwrap_or(self.end);
+        if placed < Placed::Vectors {
+            motion.vectors(instant);
+        }
+        if placed < needed(level) && needed(level) == Placed::Columns {
+            motion.tangent(instant);
+        }
+        instant.forces.fill(Vector::zeros());
+        if level == Level::Third {
+            instant.contracted.fill(Vector::zeros());
+            motion.along(instant);
+        }
+    }
+
+    fn interval(&mut self, j: usize) -> f64 {
+        let Shared {
+            action,
+            level,
+            horizon,
+            h,
+            ..
+        } = self.shared;
+        let (left, right) = self.instants.split_at_mut(j + 1);
+        let (a, b) = (&mut left[j], right.first_mut().unwrap_or(self.end));
+        let k = self.first + j;
+        let count = action.intervals.scalars;
+        let scalars = &self.shared.scalars[k * count..(k + 1) * count];
+        let Bench {
+            scratch,
+            weights: [_, weights],
+        } = &mut *self.bench;
+        fill_weights(
+            weights,
+            self.shared.limits,
+            Site::Intervals,
+            k,
+            self.shared.costates,
+        );
+        action.evaluate_interval(
+            level,
+            a,
+            b,
+            scalars,
+            h,
+            horizon,
+            Sides::ALL,
+            weights,
+            scratch,
+        );
+        scratch.carry(level);
+        action.pull_back_interval(
+            level,
+            a,
+            b,
+            horizon,
+            Sides::CARRIED,
+            j,
+            scratch,
+            self.values,
+        );
+        scratch.interval.contracted.horizon
+    }
+}
+
+/// Instant k, whose forces are complete; its values and rows are those of step j.
+pub(super) fn instant_of(
+    shared: Shared<'_>,
+    instant: &mut Instant,
+    [k, j]: [usize; 2],
+    bench: &mut Bench,
+    values: &mut [f64],
+    rows: &mut [f64],
+) {
+    let Shared { action, level, .. } = shared;
+    let Bench {
+        scratch,
+        weights: [weights, _],
+    } = bench;
+    fill_weights(weights, shared.limits, Site::Instants, k, shared.costates);
+    action.evaluate_instant(level, instant, weights, scratch);
+    action.pull_back_instant(level, instant, j, scratch, values);
+    if level == Level::Gradient {
+        let count = action.motion.unknowns();
+        let rows = &mut rows[j * count..(j + 1) * count];
+        rows.fill(0.0);
+        action.rows(instant, scratch, rows);
+    }
+}
+
+thread_local! {
+    /// This thread and one helper, where the machine has two cores.
+    static PAIR: OnceCell<Option<ThreadPool>> = const { OnceCell::new() };
+}
+
+/// Runs both, at once where there is a second core.
+pub(super) fn join<A: Send, B: Send>(
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    PAIR.with(|pair| {
+        let pool = pair.get_or_init(|| {
+            let several = available_parallelism().is_ok_and(|n| n.get() > 1);
+            let builder = ThreadPoolBuilder::new().num_threads(2).use_current_thread();
+            several.then(|| builder.build().ok()).flatten()
+        });
+        match pool {
+            Some(pool) => pool.join(a, b),
+            None => (a(), b()),
+        }
+    })
+}
