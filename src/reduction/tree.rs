@@ -419,7 +419,7 @@ impl Tree {
             let axis = state.axes[j];
             match (joint.coordinate, joint.kind) {
                 (Some(c), TreeKind::Revolute) => {
-                    rows[c] += axis.dot(&(torque - state.points[j].cross(&force)))
+                    rows[c] += axis.dot(&(torque - state.points[j].cross(&force)));
                 }
                 (Some(c), _) => rows[c] += axis.dot(&force),
                 (None, _) => {}

@@ -55,7 +55,7 @@ impl<'m> Transcription<'m> {
             join(|| left.run(), || right.run());
             let instant = &mut self.instants[middle];
             let both = |sum: &mut [Vector], list: &[Vector]| {
-                sum.iter_mut().zip(list).for_each(|(s, v)| *s += v)
+                sum.iter_mut().zip(list).for_each(|(s, v)| *s += v);
             };
             both(&mut instant.forces, &self.ghost.forces);
             both(&mut instant.contracted, &self.ghost.contracted);
