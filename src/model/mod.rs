@@ -1,5 +1,6 @@
 //! Where physics meets indices: from a checked system to sums of effects over its coordinates.
 
+mod constraints;
 mod effects;
 mod error;
 mod graph;

@@ -1,0 +1,125 @@
+//! Where bodies and vectors are at joint coordinates, and how they move with them.
+
+use crate::kinematics::Pose;
+use crate::math::Vector;
+use crate::reduction::instant::{Instant, TreeState};
+use crate::reduction::tree::{Column, Tree, TreeKind};
+use nalgebra::{Rotation3, Unit};
+
+impl Tree {
+    /// Poses of all bodies at joint coordinates u, from root to leaves.
+    pub fn place(&self, u: &[f64], state: &mut TreeState) {
+        for (j, joint) in self.joints.iter().enumerate() {
+            let parent = joint.parent.map_or(Pose::GROUND, |b| state.poses[b]);
+            let axis = parent.directors * joint.axis;
+            let point = parent.point(&joint.point);
+            let value = joint.coordinate.map_or(0.0, |c| u[c]);
+            let mut pose = Pose {
+                centre: point + parent.directors * joint.centre,
+                directors: parent.directors * joint.directors,
+            };
+            match joint.kind {
+                TreeKind::Revolute => {
+                    let turn = Rotation3::from_axis_angle(&Unit::new_unchecked(joint.axis), value);
+                    let turned = parent.directors * turn.matrix();
+                    pose.centre = point + turned * joint.centre;
+                    pose.directors = turned * joint.directors;
+                }
+                TreeKind::Prismatic => pose.centre += axis * value,
+                TreeKind::Fixed => {}
+            }
+            state.axes[j] = axis;
+            state.points[j] = point;
+            state.poses[joint.child] = pose;
+        }
+    }
+
+    /// Values of all vectors at the poses.
+    pub fn vectors(&self, state: &mut TreeState, x: &mut [Vector]) {
+        x.copy_from_slice(&self.constants);
+        for (term, value) in self.terms.iter().zip(&mut state.terms) {
+            let pose = &state.poses[term.body];
+            *value = pose.centre * term.centre + pose.directors * term.directors;
+            x[term.vector] += *value;
+        }
+    }
+
+    /// Columns of P.
+    pub fn tangent(&self, state: &mut TreeState, columns: &mut [f64]) {
+        for (arm, value) in self.arms.iter().zip(&mut state.arms) {
+            *value = sum(&state.terms[arm.first..arm.first + arm.count]);
+        }
+        for column in &self.columns {
+            let axis = state.axes[column.joint];
+            let centre = self.arms[column.arm].centre;
+            let value = match self.joints[column.joint].kind {
+                TreeKind::Revolute => {
+                    axis.cross(&(state.arms[column.arm] - state.points[column.joint] * centre))
+                }
+                _ => axis * centre,
+            };
+            column.store(&value, columns);
+        }
+    }
+
+    /// Twists along l, derivatives of axes, points and columns along l, and w = P l.
+    pub fn along(&self, instant: &mut Instant) {
+        let Instant {
+            l,
+            w,
+            columns_l,
+            tree,
+            ..
+        } = instant;
+        for (j, joint) in self.joints.iter().enumerate() {
+            let [omega, origin] = joint
+                .parent
+                .map_or([Vector::zeros(); 2], |b| tree.twists[b]);
+            let (axis, point) = (tree.axes[j], tree.points[j]);
+            tree.axes_l[j] = omega.cross(&axis);
+            tree.points_l[j] = origin + omega.cross(&point);
+            let rate = joint.coordinate.map_or(0.0, |c| l[c]);
+            tree.twists[joint.child] = match joint.kind {
+                TreeKind::Revolute => [omega + axis * rate, origin + point.cross(&axis) * rate],
+                TreeKind::Prismatic => [omega, origin + axis * rate],
+                TreeKind::Fixed => [omega, origin],
+            };
+        }
+        w.fill(Vector::zeros());
+        for ((term, value), rate) in self.terms.iter().zip(&tree.terms).zip(&mut tree.terms_l) {
+            let [omega, origin] = tree.twists[term.body];
+            *rate = origin * term.centre + omega.cross(value);
+            w[term.vector] += *rate;
+        }
+        for (arm, rate) in self.arms.iter().zip(&mut tree.arms_l) {
+            *rate = sum(&tree.terms_l[arm.first..arm.first + arm.count]);
+        }
+        for column in &self.columns {
+            let (j, arm) = (column.joint, column.arm);
+            let centre = self.arms[arm].centre;
+            let value = match self.joints[j].kind {
+                TreeKind::Revolute => {
+                    let reach = tree.arms[arm] - tree.points[j] * centre;
+                    let reach_l = tree.arms_l[arm] - tree.points_l[j] * centre;
+                    tree.axes_l[j].cross(&reach) + tree.axes[j].cross(&reach_l)
+                }
+                _ => tree.axes_l[j] * centre,
+            };
+            column.store(&value, columns_l);
+        }
+    }
+}
+
+#[inline]
+fn sum(vectors: &[Vector]) -> Vector {
+    vectors[1..].iter().fold(vectors[0], |sum, v| sum + v)
+}
+
+impl Column {
+    #[inline]
+    fn store(&self, value: &Vector, columns: &mut [f64]) {
+        columns[self.place] = value.x;
+        columns[self.place + self.stride] = value.y;
+        columns[self.place + 2 * self.stride] = value.z;
+    }
+}
