@@ -49,18 +49,6 @@ impl Transcription<'_> {
                 && c.lower.len() == x.len()
                 && c.upper.len() == x.len()
         };
-        let divide = |list: &[f64], scales: &[f64]| {
-            list.iter()
-                .zip(scales)
-                .map(|(v, s)| v / s)
-                .collect::<Vec<_>>()
-        };
-        let times = |list: &[f64], scales: &[f64]| {
-            list.iter()
-                .zip(scales)
-                .map(|(v, s)| v * s)
-                .collect::<Vec<_>>()
-        };
         let costates = initial
             .costates
             .as_ref()
@@ -75,18 +63,6 @@ impl Transcription<'_> {
 
     /// Unscaled costates of a solution.
     pub fn costates(&self, costates: &ipopt::Costates) -> Costates {
-        let divide = |list: &[f64], scales: &[f64]| {
-            list.iter()
-                .zip(scales)
-                .map(|(v, s)| v / s)
-                .collect::<Vec<_>>()
-        };
-        let times = |list: &[f64], scales: &[f64]| {
-            list.iter()
-                .zip(scales)
-                .map(|(v, s)| v * s)
-                .collect::<Vec<_>>()
-        };
         Costates {
             rows: times(&costates.constraints, &self.row_scales),
             lower: divide(&costates.lower, &self.variable_scales),
@@ -120,4 +96,14 @@ impl Transcription<'_> {
         }
         self.placed = Placed::Nothing;
     }
+}
+
+/// Entry by entry list / scales.
+fn divide(list: &[f64], scales: &[f64]) -> Vec<f64> {
+    list.iter().zip(scales).map(|(v, s)| v / s).collect()
+}
+
+/// Entry by entry list · scales.
+fn times(list: &[f64], scales: &[f64]) -> Vec<f64> {
+    list.iter().zip(scales).map(|(v, s)| v * s).collect()
 }
