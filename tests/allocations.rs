@@ -41,7 +41,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static HEAP: Counting = Counting;
 
-/// Allocations of the five answers at a new point, objective to Hessian.
+/// Most allocations of the five answers at a new point, objective to Hessian, after the first round.
 fn allocations(system: &System, control: &Control) -> [usize; 5] {
     let (Duration::Given(t) | Duration::Free { guess: t, .. }) = control.duration;
     let h = t / control.intervals as f64;
@@ -55,8 +55,9 @@ fn allocations(system: &System, control: &Control) -> [usize; 5] {
     let costates = vec![0.5; rows];
     let mut jacobian = vec![0.0; program.jacobian_structure().rows.len()];
     let mut hessian = vec![0.0; program.hessian_structure().rows.len()];
-    let mut counts = [0; 5];
-    for _ in 0..2 {
+    let mut most = [0; 5];
+    for round in 0..20 {
+        let mut counts = [0; 5];
         x.iter_mut().for_each(|v| *v += 1e-3);
         let mut last = ASKED.load(Ordering::Relaxed);
         let mut since = || {
@@ -73,8 +74,11 @@ fn allocations(system: &System, control: &Control) -> [usize; 5] {
         counts[3] = since();
         program.hessian(&x, 1.0, &costates, &mut hessian);
         counts[4] = since();
+        if round > 0 {
+            most = std::array::from_fn(|i| most[i].max(counts[i]));
+        }
     }
-    counts
+    most
 }
 
 /// The only test of its binary: the count belongs to the process.
@@ -99,6 +103,8 @@ fn evaluations_allocate_nothing() {
     for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
         let mut plain = rest_to_rest(3, 10, 100.0);
         plain.coordinates = Some(coordinates);
+        let mut long = rest_to_rest(3, 64, 600.0);
+        long.coordinates = Some(coordinates);
         let timed = Control {
             duration: free,
             objective: every,
@@ -114,6 +120,7 @@ fn evaluations_allocate_nothing() {
         };
         for (name, system, control) in [
             ("trunk", trunk(3), plain),
+            ("trunk, long horizon", trunk(3), long),
             ("trunk, free time", trunk(3), timed),
             ("branched, limits", branched(), limited),
             ("branched, limits, free time", branched(), both),
