@@ -197,7 +197,7 @@ impl<'m> Statics<'m> {
 /// The static equilibrium under constant voltages (by scalar of an interval), on the path from `start`.
 ///
 /// # Errors
-/// The path ends before the voltages are reached, nothing holds the system, or constraints cannot be met.
+/// The path ends before the voltages are reached, or nothing holds the system.
 pub fn equilibrium(
     model: &Model,
     start: &[f64],

@@ -51,12 +51,4 @@ pub enum EquilibriumError {
         /// The unknown whose pivot vanished.
         name: String,
     },
-    /// Constraints cannot be met.
-    #[error("the scene does not fit together: {name} is violated by {value:.3e}")]
-    Assembly {
-        /// The worst constraint.
-        name: String,
-        /// Its value.
-        value: f64,
-    },
 }

@@ -8,8 +8,3 @@ pub use jet::Jet;
 pub type Vector = nalgebra::Vector3<f64>;
 /// A linear map of space.
 pub type Matrix = nalgebra::Matrix3<f64>;
-
-/// The matrix â with â b = a × b.
-pub fn skew(a: &Vector) -> Matrix {
-    a.cross_matrix()
-}

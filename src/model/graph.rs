@@ -73,11 +73,6 @@ impl Graph {
         }
     }
 
-    /// Joints that close loops.
-    pub fn loops(&self) -> &[usize] {
-        &self.loops
-    }
-
     /// Why reduced coordinates do not exist, if they do not.
     pub fn obstacle(&self, system: &System) -> Option<ModelError> {
         let spherical = self

@@ -224,14 +224,6 @@ impl Model {
         z
     }
 
-    /// Coordinates of an instant at poses that satisfy all joints; joint angles are taken near `near`.
-    pub fn coordinates_from_poses(&self, poses: &[Pose], near: &[f64]) -> Vec<f64> {
-        match self.coordinates {
-            Coordinates::Reduced => self.coordinates_at(&self.read_joints(poses, near)),
-            Coordinates::Redundant => self.coordinates_of(poses),
-        }
-    }
-
     /// Joint coordinates (rad or mm, zero where a joint has none) at poses, angles in the branch nearest to `near`.
     pub fn read_joints(&self, poses: &[Pose], near: &[f64]) -> Vec<f64> {
         self.gauges
@@ -261,12 +253,6 @@ impl Model {
     /// Voltages in the order of the scalars of an interval from one voltage a muscle.
     pub fn scalars(&self, voltages: &[f64]) -> Vec<f64> {
         self.voltages.iter().map(|&m| voltages[m]).collect()
-    }
-
-    /// Degrees of freedom of a regular configuration: coordinates minus constraints.
-    pub fn degrees_of_freedom(&self) -> usize {
-        self.coordinate_count()
-            .saturating_sub(self.multiplier_names.len())
     }
 
     /// A length in mm that is typical of the system.

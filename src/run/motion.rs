@@ -3,8 +3,8 @@
 use crate::control::{Costates, Solved};
 use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{History, observations};
-use crate::model::Model;
 use crate::model::system::{Joint, JointKind};
+use crate::model::{JointGauge, Model};
 
 /// Whether a joint has one coordinate.
 pub(super) fn has_coordinate(joint: &Joint) -> bool {
@@ -16,31 +16,26 @@ pub(super) fn has_coordinate(joint: &Joint) -> bool {
 
 /// What is kept of a motion.
 pub fn solved(model: &Model, history: &History, costates: Option<Costates>) -> Solved {
-    let mut instant = model.action.motion.instant();
-    let mut near = vec![0.0; model.gauges.len()];
-    let (mut joints, mut poses) = (Vec::new(), Vec::new());
-    for z in &history.z {
-        instant.z.copy_from_slice(z);
-        model.action.motion.place(&mut instant);
-        near = model.joints(&instant, &near);
-        joints.push(near.clone());
-        poses.push(model.poses(&instant));
-    }
-    let voltages = history.scalars.iter().map(|scalars| {
-        let mut row = vec![0.0; model.system.muscles.len()];
-        for (&muscle, &voltage) in model.voltages.iter().zip(scalars) {
-            row[muscle] = voltage;
-        }
-        row
-    });
+    let motion = Trajectory::from_history(model, history);
+    // One value a joint, zero where a joint has no coordinate.
+    let by_joint = |row: Vec<f64>| {
+        let mut values = row.into_iter();
+        let value = |gauge: &JointGauge| gauge.coordinate.and_then(|_| values.next());
+        model
+            .gauges
+            .iter()
+            .map(value)
+            .map(Option::unwrap_or_default)
+            .collect()
+    };
     Solved {
         coordinates: model.coordinates,
-        times: history.times.clone(),
-        joints,
-        poses,
+        times: motion.times,
+        joints: motion.joints.into_iter().map(by_joint).collect(),
+        poses: motion.poses,
         z: history.z.clone(),
         multiplier_time: model.multiplier_time,
-        voltages: voltages.collect(),
+        voltages: motion.voltages,
         costates,
     }
 }

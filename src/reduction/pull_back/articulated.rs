@@ -55,6 +55,15 @@ pub(super) struct Ends<'a> {
     pub(super) columns_l: [&'a [f64]; 2],
 }
 
+/// Where blocks go, and the storage on the way.
+#[derive(Debug)]
+pub(super) struct Place<'a> {
+    pub(super) target: &'a Target,
+    /// Local matrix of one group.
+    pub(super) local: &'a mut [f64],
+    pub(super) values: &'a mut [f64],
+}
+
 impl Groups {
     /// Adds a pair of vectors with these columns.
     pub(super) fn add(
@@ -90,17 +99,12 @@ impl Groups {
         ends: Ends<'_>,
         blocks: &[[Matrix; 4]],
         sides: Sides,
-        target: &Target,
-        local: &mut [f64],
-        values: &mut [f64],
+        place: Place<'_>,
     ) {
-        for group in self.list.values() {
-            for side in (0..4).filter(|&s| sides.blocks[s]) {
-                let local = group.local(local);
-                group.add_full(ends.of(side), side, blocks, local);
-                group.scatter(side, target.blocks[side], local, values);
-            }
-        }
+        let add = |group: &Articulated, side, out: &mut [f64]| {
+            group.add_full(ends.of(side), side, blocks, out);
+        };
+        self.each(sides, place, add, |_| None);
     }
 
     /// Adds Pᵀ H P for isotropic blocks. They come from potentials: of neighbouring instants the block below the
@@ -110,63 +114,72 @@ impl Groups {
         ends: Ends<'_>,
         blocks: &[[f64; 4]],
         sides: Sides,
-        target: &Target,
-        local: &mut [f64],
-        values: &mut [f64],
+        place: Place<'_>,
     ) {
         let mirrored = sides.blocks[1] && sides.blocks[2];
-        for group in self.list.values() {
-            for side in (0..4).filter(|&s| sides.blocks[s] && !(mirrored && s == 2)) {
-                let local = group.local(local);
-                group.add_isotropic(ends.of(side), side, blocks, local);
-                group.scatter(side, target.blocks[side], local, values);
-                if mirrored && side == 1 {
-                    group.scatter_transposed(side, target.blocks[2], local, values);
-                }
-            }
-        }
+        let [same, above, below, next] = sides.blocks;
+        let upper = Sides {
+            blocks: [same, above, below && !mirrored, next],
+        };
+        let add = |group: &Articulated, side, out: &mut [f64]| {
+            group.add_isotropic(ends.of(side), side, blocks, out);
+        };
+        self.each(upper, place, add, |side| {
+            (mirrored && side == 1).then_some(2)
+        });
     }
 
-    /// Adds `Pᵀ H_w P + P′_lᵀ H P + Pᵀ Hᵀ P′_l` for full blocks.
-    #[expect(clippy::too_many_arguments, reason = "plain and contracted blocks")]
+    /// Adds `Pᵀ H_w P + P′_lᵀ H P + Pᵀ Hᵀ P′_l` for full blocks, plain and contracted.
     pub(super) fn full_along(
         &self,
         ends: Ends<'_>,
-        plain: &[[Matrix; 4]],
-        contracted: &[[Matrix; 4]],
+        blocks: [&[[Matrix; 4]]; 2],
         sides: Sides,
-        target: &Target,
-        local: &mut [f64],
-        values: &mut [f64],
+        place: Place<'_>,
     ) {
-        for group in self.list.values() {
-            for side in (0..4).filter(|&s| sides.blocks[s]) {
-                let local = group.local(local);
-                group.add_full_along(ends.along(side), side, plain, contracted, local);
-                group.scatter(side, target.blocks[side], local, values);
-            }
-        }
+        let add = |group: &Articulated, side, out: &mut [f64]| {
+            group.add_full_along(ends.along(side), side, blocks[0], blocks[1], out);
+        };
+        self.each(sides, place, add, |_| None);
     }
 
     /// The same for isotropic blocks; within an instant the sum is symmetric.
-    #[expect(clippy::too_many_arguments, reason = "plain and contracted blocks")]
     pub(super) fn isotropic_along(
         &self,
         ends: Ends<'_>,
-        plain: &[[f64; 4]],
-        contracted: &[[f64; 4]],
+        blocks: [&[[f64; 4]]; 2],
         sides: Sides,
-        target: &Target,
-        local: &mut [f64],
-        values: &mut [f64],
+        place: Place<'_>,
     ) {
+        let add = |group: &Articulated, side, out: &mut [f64]| {
+            group.add_isotropic_along(ends.along(side), side, blocks[0], blocks[1], out);
+        };
+        self.each(sides, place, add, |side| {
+            (side == 0 || side == 3).then_some(side)
+        });
+    }
+
+    /// Scatters what `add` makes of each group and side, and its transpose into the side that `twin` names.
+    #[inline]
+    fn each(
+        &self,
+        sides: Sides,
+        place: Place<'_>,
+        add: impl Fn(&Articulated, usize, &mut [f64]),
+        twin: impl Fn(usize) -> Option<usize>,
+    ) {
+        let Place {
+            target,
+            local,
+            values,
+        } = place;
         for group in self.list.values() {
             for side in (0..4).filter(|&s| sides.blocks[s]) {
                 let local = group.local(local);
-                group.add_isotropic_along(ends.along(side), side, plain, contracted, local);
+                add(group, side, local);
                 group.scatter(side, target.blocks[side], local, values);
-                if side == 0 || side == 3 {
-                    group.scatter_transposed(side, target.blocks[side], local, values);
+                if let Some(twin) = twin(side) {
+                    group.scatter_transposed(side, target.blocks[twin], local, values);
                 }
             }
         }

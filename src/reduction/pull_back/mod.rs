@@ -8,7 +8,7 @@ use crate::functional::{Couplings, Part, Sides};
 use crate::reduction::instant::Instant;
 use crate::reduction::motion::{Dependence, Motion};
 use crate::reduction::pattern::Layout;
-use articulated::{Ends, Groups, Pair};
+use articulated::{Ends, Groups, Pair, Place};
 use linear::Linear;
 use mixed::Mixed;
 
@@ -105,10 +105,26 @@ impl PullBack {
     ) {
         let (columns, columns_l) = columns(ends);
         let (ends, blocks) = (Ends { columns, columns_l }, &part.blocks);
-        self.full
-            .full(ends, &blocks.full, sides, target, local, values);
-        self.isotropic
-            .isotropic(ends, &blocks.isotropic, sides, target, local, values);
+        self.full.full(
+            ends,
+            &blocks.full,
+            sides,
+            Place {
+                target,
+                local,
+                values,
+            },
+        );
+        self.isotropic.isotropic(
+            ends,
+            &blocks.isotropic,
+            sides,
+            Place {
+                target,
+                local,
+                values,
+            },
+        );
         self.linear
             .add(&blocks.full, &blocks.isotropic, sides, target, values);
         self.mixed.plain(columns, part, target, values);
@@ -136,16 +152,25 @@ impl PullBack {
             &plain.blocks,
             &contracted.blocks,
         );
-        self.full
-            .full_along(ends, &h.full, &hw.full, lower, target, local, values);
+        self.full.full_along(
+            ends,
+            [&h.full, &hw.full],
+            lower,
+            Place {
+                target,
+                local,
+                values,
+            },
+        );
         self.isotropic.isotropic_along(
             ends,
-            &h.isotropic,
-            &hw.isotropic,
+            [&h.isotropic, &hw.isotropic],
             lower,
-            target,
-            local,
-            values,
+            Place {
+                target,
+                local,
+                values,
+            },
         );
         self.linear
             .add(&hw.full, &hw.isotropic, lower, target, values);

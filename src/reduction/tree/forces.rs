@@ -1,6 +1,6 @@
 //! Forces on vectors, pulled back to joint coordinates: rows, curvature, and its derivative along a direction.
 
-use crate::math::{Vector, skew};
+use crate::math::Vector;
 use crate::reduction::instant::{Instant, Moments, TreeState};
 use crate::reduction::tree::{Tree, TreeKind};
 
@@ -114,10 +114,7 @@ impl Tree {
                             n_l * a + n * a_l - a_l * n.trace() - a * n_l.trace(),
                         )
                     }
-                    _ => (
-                        skew(&a) * m.force,
-                        a_l.cross(&m.force) + a.cross(&m.force_l),
-                    ),
+                    _ => (a.cross(&m.force), a_l.cross(&m.force) + a.cross(&m.force_l)),
                 };
             }
             let value = tree.axes_l[i].dot(&y) + tree.axes[i].dot(&y_l);

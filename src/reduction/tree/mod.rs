@@ -246,11 +246,6 @@ impl Tree {
         self.paths = paths;
     }
 
-    /// The joints.
-    pub fn joints(&self) -> &[TreeJoint] {
-        &self.joints
-    }
-
     /// Number of joint coordinates.
     pub fn coordinates(&self) -> usize {
         self.joints
