@@ -25,6 +25,7 @@
 //! | module | owns |
 //! |---|---|
 //! | [`math`], [`sparse`], [`nlp`] | jets; direct solution; what a nonlinear program is, and its check by differences |
+//! | [`mesh`] | hexahedral meshes: nodes, elements, named sets |
 //! | [`energy`] | formulas: energies and virtual works with exact derivatives |
 //! | [`ipopt`] | the solver behind one safe function |
 //! | [`kinematics`] | material vectors, linear in the poses of bodies |
@@ -42,6 +43,7 @@ pub mod functional;
 pub mod ipopt;
 pub mod kinematics;
 pub mod math;
+pub mod mesh;
 pub mod model;
 pub mod nlp;
 pub mod reduction;

@@ -1,0 +1,20 @@
+//! Hexahedral meshes: nodes, elements, named node sets. Geometry only: no material, no unknown.
+
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+
+/// Trilinear hexahedra over shared nodes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Places of the nodes in mm.
+    pub nodes: Vec<Vector3<f64>>,
+    /// Nodes of each hexahedron: the lower face counter-clockwise seen from above, then the upper face above it, which is
+    /// the order of VTK and Gmsh.
+    pub hexahedra: Vec<[usize; 8]>,
+    /// Region (a part with one material) of each hexahedron, an index into `region_names`.
+    pub regions: Vec<usize>,
+    /// Names of the regions.
+    pub region_names: Vec<String>,
+    /// Nodes by the name of a face or set, ascending.
+    pub sets: BTreeMap<String, Vec<usize>>,
+}
