@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 /// From the ground up; folders of one line do not know each other.
 const FLOORS: [&[&str]; 11] = [
-    &["math", "sparse", "nlp"],
+    &["math", "mesh", "sparse", "nlp"],
     &["energy", "ipopt"],
-    &["kinematics"],
+    &["kinematics", "element"],
     &["functional"],
     &["reduction"],
     &["model"],
