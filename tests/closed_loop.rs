@@ -392,6 +392,7 @@ fn a_slider_falls_on_a_parabola_without_error() {
             body: Some(0),
             at: Vector3::new(3.0, 1.0, 0.0),
         },
+        solid: None,
     });
     let h = 3.0;
     for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {

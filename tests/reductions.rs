@@ -179,6 +179,7 @@ fn tree() -> System {
         layer_thickness: 0.05,
         material,
         section_inertia: true,
+        fidelity: Default::default(),
     };
     let mut muscles = vec![
         muscle(
@@ -220,6 +221,7 @@ fn tree() -> System {
             body: Some(3),
             at: at(60.0, 100.0, 5.0),
         },
+        solid: None,
     }];
     system
 }

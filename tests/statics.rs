@@ -51,7 +51,9 @@ fn single(shear_modulus: f64, electric: Electric) -> System {
                 viscosity: Some(1.0),
             },
             section_inertia: false,
+            fidelity: Default::default(),
         }],
+        solids: Vec::new(),
         markers: Vec::new(),
         gravity: None,
     }

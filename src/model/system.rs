@@ -1,6 +1,7 @@
 //! What a scene means: bodies, joints, muscles and markers in g, mm, ms, N, V, names resolved.
 
 use crate::kinematics::Pose;
+use crate::mesh::Mesh;
 use nalgebra::{Matrix3, Vector3};
 
 /// A mechanical system; `None` for a body index is the ground.
@@ -12,12 +13,48 @@ pub struct System {
     pub bodies: Vec<Body>,
     /// Joints between bodies or to the ground.
     pub joints: Vec<Joint>,
-    /// Lumped muscles.
+    /// Muscles.
     pub muscles: Vec<Muscle>,
+    /// Elastic blocks.
+    pub solids: Vec<Solid>,
     /// Points whose motion is reported.
     pub markers: Vec<Marker>,
     /// Acceleration of gravity in mm/ms², where there is gravity.
     pub gravity: Option<Vector3<f64>>,
+}
+
+/// What a voltage drives, and the name of the voltage.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Source {
+    /// Name in files.
+    pub name: String,
+    /// Whether the voltage does anything: a muscle without electric constants takes none.
+    pub takes_voltage: bool,
+}
+
+impl System {
+    /// All that voltages are named for, one voltage each: the muscles, then the driven electrodes of blocks by
+    /// `block.electrode`, in the order of the scene. Electrodes of one name in a block share one voltage.
+    pub fn sources(&self) -> Vec<Source> {
+        let muscle = |m: &Muscle| Source {
+            name: m.name.clone(),
+            takes_voltage: m.material.electric.is_some(),
+        };
+        let mut sources: Vec<Source> = self.muscles.iter().map(muscle).collect();
+        for solid in &self.solids {
+            for electrode in &solid.electrodes {
+                if let Potential::Driven { source, .. } = electrode.potential
+                    && source == sources.len()
+                {
+                    sources.push(Source {
+                        name: format!("{}.{}", solid.name, electrode.name),
+                        takes_voltage: true,
+                    });
+                }
+            }
+        }
+        sources
+    }
 }
 
 /// A rigid body in the reference configuration.
@@ -106,7 +143,7 @@ pub struct Attachment {
     pub at: Vector3<f64>,
 }
 
-/// A stacked dielectric elastomer between two material points, with one stretch.
+/// A stacked dielectric elastomer between two material points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Muscle {
     /// Unique name.
@@ -123,6 +160,106 @@ pub struct Muscle {
     pub material: Material,
     /// Whether the inertia of the changing cross-section is called for.
     pub section_inertia: bool,
+    /// How it is modelled.
+    pub fidelity: Fidelity,
+}
+
+/// How a muscle is modelled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Fidelity {
+    /// One stretch at constant volume.
+    #[default]
+    Lumped,
+    /// Finite elements, glued to both bodies with its end faces.
+    FiniteElements(Discretisation),
+}
+
+/// The finite elements of a muscle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Discretisation {
+    /// Elements along both sides of the cross-section and along the span.
+    pub elements: [usize; 3],
+    /// Layers of the model along the span, a divisor of the elements there; each stands for many layers of the muscle
+    /// under the same field.
+    pub layers: usize,
+    /// Which hexahedron.
+    pub element: ElementKind,
+}
+
+/// An elastic block of hexahedra.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solid {
+    /// Unique name.
+    pub name: String,
+    /// Nodes and elements in the reference configuration, in the ground frame.
+    pub mesh: Mesh,
+    /// Material of each region of the mesh.
+    pub materials: Vec<Material>,
+    /// Which hexahedron.
+    pub element: ElementKind,
+    /// Electrodes; without any the block has no potential.
+    pub electrodes: Vec<Electrode>,
+    /// Nodes that are held in some directions.
+    pub supports: Vec<Support>,
+    /// Nodes that are glued to bodies.
+    pub glued: Vec<Glue>,
+    /// Velocity of each node at the start in mm/ms; empty at rest.
+    pub velocities: Vec<Vector3<f64>>,
+}
+
+/// Which hexahedron: how it treats volume.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ElementKind {
+    /// Trilinear with 2 × 2 × 2 Gauss points.
+    #[default]
+    Hex8,
+    /// The same with one dilatation an element (Q1P0), against volumetric locking.
+    Hex8Q1P0,
+}
+
+/// Nodes of one potential.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Electrode {
+    /// Name, unique in the block.
+    pub name: String,
+    /// The nodes.
+    pub nodes: Vec<usize>,
+    /// Its potential.
+    pub potential: Potential,
+}
+
+/// The potential of an electrode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Potential {
+    /// A constant in V; 0 is grounded.
+    Given(f64),
+    /// `factor` times the voltage of a source (see [`System::sources`]).
+    Driven {
+        /// The source.
+        source: usize,
+        /// Its factor.
+        factor: f64,
+    },
+    /// Whatever makes the charge of the electrode vanish.
+    Floating,
+}
+
+/// Nodes held at their reference places in some directions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Support {
+    /// The nodes.
+    pub nodes: Vec<usize>,
+    /// Whether x, y, z are held.
+    pub held: [bool; 3],
+}
+
+/// Nodes that move with a body; `None` is the ground.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Glue {
+    /// The nodes.
+    pub nodes: Vec<usize>,
+    /// The body.
+    pub body: Option<usize>,
 }
 
 /// A dielectric elastomer. What is `None` leaves no trace.
@@ -132,7 +269,7 @@ pub struct Material {
     pub density: Option<f64>,
     /// Shear modulus μ in MPa.
     pub shear_modulus: f64,
-    /// First Lamé constant λ in MPa; lumped muscles keep their volume and do not read it.
+    /// First Lamé constant λ in MPa; finite elements need it, lumped muscles keep their volume and do not read it.
     pub lame_lambda: Option<f64>,
     /// Electric constants.
     pub electric: Option<Electric>,
@@ -158,6 +295,8 @@ pub struct Marker {
     pub name: String,
     /// The point.
     pub point: Attachment,
+    /// The block whose node nearest to the point is meant, where it is on a block rather than on a body.
+    pub solid: Option<usize>,
 }
 
 /// Permittivity of vacuum in N/V² (F/m), CODATA value in the decimals of the reference solutions.

@@ -2,7 +2,9 @@
 
 use nalgebra::Vector3;
 
-use crate::model::system::{Attachment, Joint, JointKind, Marker, Material, Muscle, System};
+use crate::model::system::{
+    Attachment, Fidelity, Joint, JointKind, Marker, Material, Muscle, System,
+};
 use crate::scene::build_body::{body, unit_axis};
 use crate::scene::build_material::materials;
 use crate::scene::error::SceneError;
@@ -44,10 +46,15 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
         muscles: muscles.build(&scene.muscles, |spec, scope| {
             muscle(spec, &body_names, &materials, scope)
         })?,
+        solids: Vec::new(),
         markers: markers.build(&scene.markers, |spec, scope| {
             let point = attachment(&spec.body, &spec.at, &body_names, scope)?;
             let name = spec.name.clone();
-            Ok(Marker { name, point })
+            Ok(Marker {
+                name,
+                point,
+                solid: None,
+            })
         })?,
         gravity: scene
             .gravity
@@ -265,6 +272,7 @@ fn muscle(
             .positive(&spec.layer_thickness)?,
         material,
         section_inertia: spec.section_inertia,
+        fidelity: Fidelity::Lumped,
     })
 }
 

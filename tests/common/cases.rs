@@ -144,6 +144,7 @@ pub fn branched() -> System {
         layer_thickness: 0.05,
         material,
         section_inertia,
+        fidelity: Default::default(),
     };
     System {
         name: "branched".into(),
@@ -217,14 +218,17 @@ pub fn branched() -> System {
                 true,
             ),
         ],
+        solids: Vec::new(),
         markers: vec![
             Marker {
                 name: "cap".into(),
                 point: at(Some(3), [30.0, 130.0, 10.0]),
+                solid: None,
             },
             Marker {
                 name: "tip".into(),
                 point: at(Some(2), [-40.0, 80.0, 3.0]),
+                solid: None,
             },
         ],
         gravity: Some(GRAVITY),

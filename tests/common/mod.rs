@@ -55,6 +55,7 @@ pub(crate) fn trunk(segments: usize) -> System {
         bodies: Vec::new(),
         joints: Vec::new(),
         muscles: Vec::new(),
+        solids: Vec::new(),
         markers: Vec::new(),
         gravity: None,
     };
@@ -102,6 +103,7 @@ pub(crate) fn trunk(segments: usize) -> System {
                 layer_thickness: 0.05,
                 material: silicone,
                 section_inertia: false,
+                fidelity: Default::default(),
             });
         }
     }
@@ -112,6 +114,7 @@ pub(crate) fn trunk(segments: usize) -> System {
             body: Some(segments - 1),
             at: tip,
         },
+        solid: None,
     });
     system
 }
@@ -159,6 +162,7 @@ pub(crate) fn bare(bodies: Vec<Body>, joints: Vec<Joint>, gravity: Option<Vector
         bodies,
         joints,
         muscles: Vec::new(),
+        solids: Vec::new(),
         markers: Vec::new(),
         gravity,
     }

@@ -45,6 +45,7 @@ pub(crate) fn system(count: usize) -> System {
             layer_thickness: 0.05,
             material,
             section_inertia: false,
+            fidelity: Default::default(),
         }
     };
     System {
@@ -73,12 +74,14 @@ pub(crate) fn system(count: usize) -> System {
             })
             .collect(),
         muscles: (0..2 * count).map(muscle).collect(),
+        solids: Vec::new(),
         markers: vec![Marker {
             name: "tip".to_owned(),
             point: Attachment {
                 body: Some(count - 1),
                 at: Vector3::y() * (LENGTH * count as f64),
             },
+            solid: None,
         }],
         gravity: None,
     }
