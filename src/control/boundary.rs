@@ -167,7 +167,7 @@ pub fn resolve_start(
 /// Checks the constraints that the coordinates leave open.
 fn check_constraints(model: &Model, z: &[f64], place: &'static str) -> Result<(), BoundaryError> {
     let mut instant = model.action.motion.instant();
-    let mut scratch = model.action.scratch();
+    let mut scratch = model.action.scratch(Level::Gradient);
     instant.z.copy_from_slice(z);
     model.action.motion.place(&mut instant);
     model

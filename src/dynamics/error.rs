@@ -1,5 +1,6 @@
 //! Why a step or an equilibrium was not found.
 
+use crate::dynamics::{Equilibrium, Instability};
 use thiserror::Error;
 
 /// A step forward in time failed and was not accepted.
@@ -36,12 +37,29 @@ pub enum StepError {
 pub enum EquilibriumError {
     /// The path of equilibria under growing voltages ends.
     #[error(
-        "no equilibrium under these voltages: the path of equilibria under growing voltages ends at {:.2} % of them (pull-in or a limit point)",
-        100.0 * fraction
+        "no equilibrium under these voltages: the path of equilibria under growing voltages ends at {:.6} % of them ({})",
+        100.0 * fraction, why(*kind)
     )]
     LimitPoint {
         /// Largest fraction of the voltages for which there was an equilibrium.
         fraction: f64,
+        /// How it is lost, where that was found.
+        kind: Option<Instability>,
+        /// The state there.
+        last: Box<Equilibrium>,
+    },
+    /// There is no equilibrium to start from.
+    #[error(
+        "no equilibrium even without voltages: gravity or the start are more than the system bears"
+    )]
+    NoStart,
+    /// A part of a block can move freely.
+    #[error("{name} is not held: {motion} costs nothing; fix or glue one of its faces")]
+    Floating {
+        /// The part.
+        name: String,
+        /// The motion that nothing resists.
+        motion: String,
     },
     /// Nothing holds the system.
     #[error(
@@ -51,4 +69,12 @@ pub enum EquilibriumError {
         /// The unknown whose pivot vanished.
         name: String,
     },
+}
+
+fn why(kind: Option<Instability>) -> &'static str {
+    match kind {
+        Some(Instability::PullIn) => "pull-in: a limit point",
+        Some(Instability::Buckling) => "buckling: another path branches off",
+        None => "pull-in or a limit point",
+    }
 }

@@ -1,13 +1,19 @@
 //! Motion in time and rest: two readers of the discrete action.
 
+mod continuation;
 mod equilibrium;
 mod error;
 mod history;
 mod observe;
 mod simulate;
+mod statics;
 mod stepper;
+mod tangent;
 pub mod trajectory;
 
+use continuation::{LimitPoint, limit_point};
+
+pub use continuation::{Continuation, Instability, continuation};
 pub use equilibrium::{Equilibrium, equilibrium};
 pub use error::{EquilibriumError, StepError};
 pub use history::History;

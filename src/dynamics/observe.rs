@@ -6,11 +6,11 @@
 
 use crate::dynamics::History;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
-use crate::functional::{Frame, Horizon, Kind, Level, Sides};
-use crate::kinematics::{MaterialVector, Pose};
+use crate::functional::{Kind, Level};
+use crate::kinematics::{Carrier, MaterialVector, Pose};
 use crate::math::Vector;
 use crate::model::Model;
-use crate::reduction::{Instant, Scratch};
+use crate::reduction::{Instant, Interval, Scratch};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Eigenvalues of the mass matrix below this fraction of the largest belong to coordinates without inertia.
@@ -36,17 +36,8 @@ impl Energies {
 
 /// Energies of the interval of `h` ms between two placed instants under voltages by scalar.
 pub fn energies(model: &Model, a: &Instant, b: &Instant, scalars: &[f64], h: f64) -> Energies {
-    let zeros = vec![0.0; scalars.len()];
-    let frame = Frame {
-        vectors: [&a.x, &b.x],
-        along: [&a.w, &b.w],
-        scalars,
-        scalars_along: &zeros,
-        h,
-        horizon: Horizon::Given,
-        sides: Sides::ALL,
-        weights: &[],
-    };
+    let interval = Interval::given(scalars, h);
+    let frame = interval.frame([a, b]);
     let mut energies = Energies::default();
     for effect in &model.action.intervals.effects {
         match effect.kind() {
@@ -89,7 +80,7 @@ impl<'m> Observer<'m> {
             model,
             before: model.action.motion.instant(),
             here: model.action.motion.instant(),
-            scratch: model.action.scratch(),
+            scratch: model.action.scratch(Level::Gradient),
             dissipated: 0.0,
         }
     }
@@ -203,13 +194,8 @@ impl<'m> Observer<'m> {
         here.forces.fill(Vector::zeros());
         self.model.action.evaluate_interval(
             Level::Gradient,
-            before,
-            here,
-            scalars,
-            h,
-            Horizon::Given,
-            Sides::ALL,
-            &[],
+            [before, here],
+            &Interval::given(scalars, h),
             scratch,
         );
         let charges = scratch.interval.plain.rows.iter().map(|row| row / h);
@@ -232,13 +218,8 @@ impl<'m> Observer<'m> {
         a.forces.fill(Vector::zeros());
         model.action.evaluate_interval(
             Level::Gradient,
-            &mut a,
-            &mut b,
-            scalars,
-            history.times[1] - history.times[0],
-            Horizon::Given,
-            Sides::ALL,
-            &[],
+            [&mut a, &mut b],
+            &Interval::given(scalars, history.times[1] - history.times[0]),
             &mut self.scratch,
         );
         model
@@ -316,9 +297,9 @@ fn momentum_maps(
     let (mut linear, mut angular) = (Vector::zeros(), Vector::zeros());
     for ((vector, momentum), impulse) in vectors.iter().zip(momenta).zip(impulses) {
         for term in &vector.terms {
-            let (pose, total) = match term.body {
-                Some(body) => (poses[body], momentum + impulse),
-                None => (Pose::GROUND, *momentum),
+            let (pose, total) = match term.carrier {
+                Carrier::Body(body) => (poses[body], momentum + impulse),
+                Carrier::Ground | Carrier::Node(_) => (Pose::GROUND, *momentum),
             };
             linear += total * term.centre;
             angular += term.at(&pose).cross(&total);

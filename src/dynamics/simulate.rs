@@ -32,7 +32,7 @@ impl Start {
     }
 }
 
-/// Integrates `steps` steps of `h` ms; `scalars` gives the voltages of the interval between two times, by scalar.
+/// Integrates `steps` steps of `h` ms; `voltages` gives those of the interval between two times, by scalar.
 ///
 /// After each step `observer` sees its number and may end the motion.
 ///
@@ -42,7 +42,7 @@ pub fn simulate(
     start: &Start,
     h: f64,
     steps: usize,
-    scalars: impl Fn(f64, f64) -> Vec<f64>,
+    voltages: impl Fn(f64, f64) -> Vec<f64>,
     mut observer: impl FnMut(usize) -> ControlFlow<()>,
 ) -> (History, Option<StepError>) {
     let n = model.coordinate_count();
@@ -56,14 +56,13 @@ pub fn simulate(
     let mut failure = None;
     for k in 0..steps {
         let (from, to) = (k as f64 * h, (k + 1) as f64 * h);
-        let voltages = scalars(from, to);
-        match stepper.step(h, &voltages) {
+        match stepper.step(h, &voltages(from, to)) {
             Ok(multipliers) => {
                 history.z[k][n..].copy_from_slice(&multipliers);
                 history.times.push(to);
                 history.z.push(stepper.coordinates().to_vec());
                 history.momenta.push(stepper.momentum().to_vec());
-                history.scalars.push(voltages);
+                history.scalars.push(stepper.scalars().to_vec());
             }
             Err(error) => {
                 failure = Some(error);

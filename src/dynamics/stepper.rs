@@ -3,14 +3,17 @@
 //! With the momentum p_k = P_kᵀ (D₂L_d(q_{k−1}, q_k) + f⁺) known, the unknowns u_{k+1} and λ_k solve
 //!
 //! ```text
-//! p_k + P_kᵀ [ D₁L_d(q_k, q_{k+1}) + f⁻ − h₀ G(q_k)ᵀ λ_k ] = 0,     g(q_{k+1}) = 0.
+//! p_k + P_kᵀ [ D₁L_d(q_k, q_{k+1}) + f⁻ − h₀ G(q_k)ᵀ λ_k ] = 0,     g(q_{k+1}) = 0,     ∂V/∂φ (q_{k+½}, φ_{k+½}) = 0
 //! ```
+//!
+//! with the potentials φ of the interval, which have no inertia, by Gauss's law.
 
 use crate::dynamics::StepError;
-use crate::functional::{Horizon, Level, Sides};
+use crate::dynamics::tangent::{Entries, Tangent};
+use crate::functional::{Level, Sides};
+use crate::math::Vector;
 use crate::model::Model;
-use crate::reduction::{Instant, Scratch};
-use crate::sparse::Direct;
+use crate::reduction::{Instant, Interval, Scratch};
 
 /// Limit of Newton iterations in one step.
 const ITERATIONS: usize = 16;
@@ -43,10 +46,9 @@ pub struct Stepper<'m> {
     time: f64,
     scratch: Scratch,
     values: Vec<f64>,
-    /// (value, entry of the matrix).
-    gather: Vec<(usize, usize)>,
-    matrix: Vec<f64>,
-    solver: Direct,
+    tangent: Tangent,
+    /// Voltages and potentials of the interval.
+    scalars: Vec<f64>,
     residual: Vec<f64>,
     scales: Vec<f64>,
     report: StepperReport,
@@ -57,28 +59,30 @@ impl<'m> Stepper<'m> {
     pub fn new(model: &'m Model, z: &[f64], momentum: &[f64]) -> Self {
         let motion = &model.action.motion;
         let (n, layout) = (motion.coordinates, model.action.layout());
-        let mut entries = Vec::new();
-        let mut gather = Vec::new();
-        let mut take = |value: usize, entry: (usize, usize)| {
-            gather.push((value, entries.len()));
-            entries.push(entry);
-        };
+        let mut entries = Entries::default();
         for (slot, &entry) in layout.cross.entries().iter().enumerate() {
-            take(layout.upper_at(0) + slot, entry);
+            entries.add(layout.upper_at(0) + slot, entry);
         }
         for (slot, &(row, col)) in layout.same.entries().iter().enumerate() {
             if row < n && col >= n {
-                take(layout.same_at(0) + slot, (row, col));
+                entries.add(layout.same_at(0) + slot, (row, col));
             }
             if row >= n && col < n {
-                take(layout.same_at(1) + slot, (row, col));
+                entries.add(layout.same_at(1) + slot, (row, col));
             }
         }
+        entries.add_potentials(model, &[[0, 1]]);
+        let size = motion.unknowns() + model.potentials;
         let (mut here, next) = (motion.instant(), motion.instant());
         here.z.copy_from_slice(z);
         motion.place(&mut here);
         let length = model.length();
-        let scale = |i: usize| if model.is_length(i) { length } else { 1.0 };
+        // Potentials are lengths too; what multipliers do says nothing about convergence.
+        let scale = |i: usize| match i {
+            i if i < n && !model.is_length(i) => 1.0,
+            i if i >= n && i < motion.unknowns() => f64::INFINITY,
+            _ => length,
+        };
         Self {
             model,
             here,
@@ -86,13 +90,12 @@ impl<'m> Stepper<'m> {
             momentum: momentum.to_vec(),
             rates: vec![0.0; n],
             time: 0.0,
-            scratch: model.action.scratch(),
+            scratch: model.action.scratch(Level::Hessian),
             values: vec![0.0; layout.values(1)],
-            matrix: vec![0.0; entries.len()],
-            solver: Direct::new(motion.unknowns(), &entries),
-            gather,
-            residual: vec![0.0; motion.unknowns()],
-            scales: (0..n).map(scale).collect(),
+            tangent: entries.tangent(size, model.step_symmetry()),
+            scalars: vec![0.0; layout.interval_scalars],
+            residual: vec![0.0; size],
+            scales: (0..size).map(scale).collect(),
             report: StepperReport::default(),
         }
     }
@@ -112,6 +115,11 @@ impl<'m> Stepper<'m> {
         &self.here
     }
 
+    /// Voltages and potentials of the last interval.
+    pub fn scalars(&self) -> &[f64] {
+        &self.scalars
+    }
+
     /// Momentum of each coordinate.
     pub fn momentum(&self) -> &[f64] {
         &self.momentum
@@ -122,18 +130,19 @@ impl<'m> Stepper<'m> {
         self.report
     }
 
-    /// Goes on by `h` ms under constant voltages (by scalar of an interval); returns the multipliers at the start.
+    /// Goes on by `h` ms under constant voltages; returns the multipliers at the start.
     ///
     /// # Errors
     /// The step and its halves fail; the state is then that of the last accepted step.
-    pub fn step(&mut self, h: f64, scalars: &[f64]) -> Result<Vec<f64>, StepError> {
+    pub fn step(&mut self, h: f64, voltages: &[f64]) -> Result<Vec<f64>, StepError> {
         let n = self.model.action.motion.coordinates;
         let (mut done, mut part) = (0.0, h);
         let mut multipliers = None;
         let mut halvings = 0;
+        self.scalars[..voltages.len()].copy_from_slice(voltages);
         while done < h * (1.0 - 1e-12) {
             part = part.min(h - done);
-            match self.attempt(part, scalars) {
+            match self.attempt(part) {
                 Ok(()) => {
                     done += part;
                     multipliers.get_or_insert_with(|| self.next.z[n..].to_vec());
@@ -149,35 +158,40 @@ impl<'m> Stepper<'m> {
         Ok(multipliers.unwrap_or_default())
     }
 
-    fn evaluate(&mut self, level: Level, h: f64, scalars: &[f64]) {
+    fn evaluate(&mut self, level: Level, h: f64) {
         let action = &self.model.action;
-        let n = action.motion.coordinates;
-        let constrained = action.motion.multipliers > 0;
+        let (n, m) = (action.motion.coordinates, action.motion.unknowns());
         let Self {
             here,
             next,
             scratch,
             values,
             residual,
+            scalars,
             ..
         } = self;
         action.motion.place(next);
         for instant in [&mut *here, &mut *next] {
-            instant.forces.fill(crate::math::Vector::zeros());
+            instant.forces.fill(Vector::zeros());
         }
         if level >= Level::Hessian {
             values.fill(0.0);
         }
         residual[..n].copy_from_slice(&self.momentum);
         residual[n..].fill(0.0);
-        let (given, forward) = (Horizon::Given, Sides::FORWARD);
-        action.evaluate_interval(level, here, next, scalars, h, given, forward, &[], scratch);
-        action.pull_back_interval(level, here, next, given, forward, 0, scratch, values);
-        if constrained {
+        let interval = Interval {
+            sides: Sides::FORWARD,
+            ..Interval::given(scalars, h)
+        };
+        action.evaluate_interval(level, [here, next], &interval, scratch);
+        action.pull_back_interval(level, [here, next], &interval, 0, scratch, values);
+        let gauss = &scratch.interval.plain.rows[self.model.voltages.len()..];
+        residual[m..].copy_from_slice(gauss);
+        if m > n {
             // Multipliers of the step act at its start, constraints hold at its end.
             action.evaluate_instant(level, next, &[], scratch);
             action.pull_back_instant(level, next, 1, scratch, values);
-            residual[n..].copy_from_slice(&scratch.instant.plain.rows);
+            residual[n..m].copy_from_slice(&scratch.instant.plain.rows);
             here.z[n..].copy_from_slice(&next.z[n..]);
             action.evaluate_instant(level, here, &[], scratch);
             action.pull_back_instant(level, here, 0, scratch, values);
@@ -188,7 +202,7 @@ impl<'m> Stepper<'m> {
     }
 
     /// One Newton solution; accepted only when it converged.
-    fn attempt(&mut self, h: f64, scalars: &[f64]) -> Result<(), StepError> {
+    fn attempt(&mut self, h: f64) -> Result<(), StepError> {
         let n = self.model.action.motion.coordinates;
         let m = self.model.action.motion.unknowns();
         for i in 0..n {
@@ -196,21 +210,20 @@ impl<'m> Stepper<'m> {
         }
         let saved: Vec<f64> = self.here.z[n..].to_vec();
         self.next.z[n..].copy_from_slice(&saved);
+        let driven = self.model.voltages.len();
+        let potentials = self.scalars[driven..].to_vec();
         let mut residuals = Vec::with_capacity(ITERATIONS);
         for _ in 0..ITERATIONS {
             self.report.iterations += 1;
-            self.evaluate(Level::Hessian, h, scalars);
+            self.evaluate(Level::Hessian, h);
             let norm = self.residual.iter().map(|r| r * r).sum::<f64>().sqrt();
             residuals.push(norm);
             if !norm.is_finite() {
                 break;
             }
-            self.matrix.fill(0.0);
-            for &(value, entry) in &self.gather {
-                self.matrix[entry] += self.values[value];
-            }
-            if let Err(singular) = self.solver.factor(&self.matrix) {
+            if let Err(singular) = self.tangent.factor(&self.values) {
                 self.here.z[n..].copy_from_slice(&saved);
+                self.scalars[driven..].copy_from_slice(&potentials);
                 let name = self.model.unknown_name(singular.column);
                 return Err(StepError::Singular {
                     time: self.time,
@@ -218,20 +231,24 @@ impl<'m> Stepper<'m> {
                     name,
                 });
             }
-            self.solver.solve(&mut self.residual);
+            self.tangent.solve(&mut self.residual);
             let mut size: f64 = 0.0;
-            for i in 0..m {
-                self.next.z[i] -= self.residual[i];
-                if i < n {
-                    size = size.max((self.residual[i] / self.scales[i]).abs());
-                }
+            for (z, update) in self.next.z.iter_mut().zip(&self.residual) {
+                *z -= update;
+            }
+            for (potential, update) in self.scalars[driven..].iter_mut().zip(&self.residual[m..]) {
+                *potential -= update;
+            }
+            for (update, scale) in self.residual.iter().zip(&self.scales) {
+                size = size.max((update / scale).abs());
             }
             if size < UPDATE {
-                self.accept(h, scalars);
+                self.accept(h);
                 return Ok(());
             }
         }
         self.here.z[n..].copy_from_slice(&saved);
+        self.scalars[driven..].copy_from_slice(&potentials);
         let first = residuals.first().copied().unwrap_or(f64::NAN);
         let residuals = residuals
             .iter()
@@ -247,8 +264,8 @@ impl<'m> Stepper<'m> {
         })
     }
 
-    fn accept(&mut self, h: f64, scalars: &[f64]) {
-        self.evaluate(Level::Gradient, h, scalars);
+    fn accept(&mut self, h: f64) {
+        self.evaluate(Level::Gradient, h);
         let motion = &self.model.action.motion;
         self.momentum.fill(0.0);
         motion.pull_back(

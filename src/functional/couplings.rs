@@ -122,30 +122,34 @@ pub struct Part {
 }
 
 impl Part {
-    /// Zeros for the couplings of a site.
-    pub fn new(vectors: usize, scalars: usize, couplings: &Couplings) -> Self {
+    /// Zeros for first derivatives, and for second ones at these couplings.
+    pub fn new(vectors: usize, scalars: usize, couplings: Option<&Couplings>) -> Self {
         let zeros = || vec![Vector::zeros(); vectors];
+        let blocks = |c: &Couplings| Blocks {
+            full: vec![[Matrix::zeros(); 4]; c.full.len()],
+            isotropic: vec![[0.0; 4]; c.isotropic.len()],
+            mixed: vec![[Vector::zeros(); 2]; c.mixed.len()],
+            scalars: vec![0.0; c.scalars.len()],
+        };
         Self {
             forces: [zeros(), zeros()],
             rows: vec![0.0; scalars],
-            blocks: Blocks {
-                full: vec![[Matrix::zeros(); 4]; couplings.full.len()],
-                isotropic: vec![[0.0; 4]; couplings.isotropic.len()],
-                mixed: vec![[Vector::zeros(); 2]; couplings.mixed.len()],
-                scalars: vec![0.0; couplings.scalars.len()],
-            },
+            blocks: couplings.map(blocks).unwrap_or_default(),
             horizon_forces: [zeros(), zeros()],
             horizon_rows: vec![0.0; scalars],
             horizon: 0.0,
         }
     }
 
-    /// Back to zero.
-    pub fn clear(&mut self) {
+    /// Back to zero, first derivatives alone or second ones too.
+    pub fn clear(&mut self, second: bool) {
         for side in &mut self.forces {
             side.fill(Vector::zeros());
         }
         self.rows.fill(0.0);
+        if !second {
+            return;
+        }
         self.blocks.full.fill([Matrix::zeros(); 4]);
         self.blocks.isotropic.fill([0.0; 4]);
         self.blocks.mixed.fill([Vector::zeros(); 2]);

@@ -22,7 +22,7 @@ pub struct Frame<'a> {
     pub vectors: [&'a [Vector]; 2],
     /// Rates of the vectors along the direction.
     pub along: [&'a [Vector]; 2],
-    /// Scalars of the site: voltages of the interval, multipliers of the instant.
+    /// Scalars of the site: voltages and potentials of the interval, multipliers of the instant.
     pub scalars: &'a [f64],
     /// Rates of the scalars along the direction.
     pub scalars_along: &'a [f64],
@@ -151,20 +151,27 @@ impl Sum {
         }
     }
 
-    /// Storage for the derivatives.
-    pub fn output(&self) -> Output {
-        let part = Part::new(self.vectors, self.scalars, &self.couplings);
+    /// Storage for the derivatives up to a level.
+    pub fn output(&self, level: Level) -> Output {
+        let part = |least: Level| {
+            let couplings = (level >= least).then_some(&self.couplings);
+            Part::new(self.vectors, self.scalars, couplings)
+        };
         Output {
-            plain: part.clone(),
-            contracted: part,
+            plain: part(Level::Hessian),
+            contracted: if level == Level::Third {
+                part(Level::Third)
+            } else {
+                Part::default()
+            },
         }
     }
 
     /// The derivatives on one interval, in place of what `out` held.
     pub fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output) {
-        out.plain.clear();
+        out.plain.clear(level >= Level::Hessian);
         if level == Level::Third {
-            out.contracted.clear();
+            out.contracted.clear(true);
         }
         for effect in &self.effects {
             effect.evaluate(level, frame, out);

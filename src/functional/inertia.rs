@@ -1,31 +1,46 @@
-//! Kinetic energy of point masses: the one effect whose second derivative never changes.
+//! Kinetic energy of constant masses: the one effect whose second derivative never changes.
 
 use crate::functional::{Couplings, Effect, Frame, Horizon, Kind, Level, Output};
 use crate::math::Vector;
 
-/// A mass on a material vector.
+/// A mass m on a material vector, ½ m |ẋ|², or between two, m ẋ·ẏ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PointMass {
-    /// Index of the vector.
-    pub vector: usize,
+pub struct Mass {
+    /// Indices of the vectors; the same twice for a point mass.
+    pub vectors: [usize; 2],
     /// Mass in g; for a director the Euler inertia in g mm².
     pub mass: f64,
 }
 
-/// `Σ h ½ m |(x_{k+1} − x_k)/h|²`.
+impl Mass {
+    /// A mass on one vector.
+    pub fn point(vector: usize, mass: f64) -> Self {
+        Self {
+            vectors: [vector; 2],
+            mass,
+        }
+    }
+
+    fn is_point(&self) -> bool {
+        self.vectors[0] == self.vectors[1]
+    }
+}
+
+/// `h ½ Σ m_ij v_i·v_j`, v = (x_{k+1} − x_k)/h.
 ///
 /// Every inertia of the scene is of this form: a body is its centre and three directors with E_i = ½(J_j + J_k − J_i),
-/// a rod of mass m is its midpoint with m and its span with m/12.
+/// a rod of mass m is its midpoint with m and its span with m/12, an elastic block has the consistent mass matrix of its
+/// nodes.
 #[derive(Clone, Debug)]
 pub struct Inertia {
     name: String,
-    masses: Vec<PointMass>,
-    slots: Vec<usize>,
+    masses: Vec<Mass>,
+    slots: Vec<[usize; 2]>,
 }
 
 impl Inertia {
-    /// Point masses under one name.
-    pub fn new(name: &str, masses: Vec<PointMass>) -> Self {
+    /// Masses under one name.
+    pub fn new(name: &str, masses: Vec<Mass>) -> Self {
         Self {
             name: name.to_owned(),
             masses,
@@ -44,11 +59,11 @@ impl Effect for Inertia {
     }
 
     fn couple(&mut self, couplings: &mut Couplings) {
-        self.slots = self
-            .masses
-            .iter()
-            .map(|m| couplings.add_isotropic(m.vector, m.vector))
-            .collect();
+        let slot = |m: &Mass| {
+            let slot = couplings.add_isotropic(m.vectors[0], m.vectors[1]);
+            [slot, couplings.transposed_isotropic(slot)]
+        };
+        self.slots = self.masses.iter().map(slot).collect();
     }
 
     fn kind(&self) -> Kind {
@@ -57,48 +72,72 @@ impl Effect for Inertia {
 
     fn energy(&self, frame: &Frame<'_>) -> f64 {
         let [x, y] = frame.vectors;
-        let square = |m: &PointMass| m.mass * (y[m.vector] - x[m.vector]).norm_squared();
-        self.masses.iter().map(square).sum::<f64>() * 0.5 / (frame.h * frame.h)
+        let product = |m: &Mass| {
+            let [a, b] = m.vectors;
+            let once = m.mass * (y[a] - x[a]).dot(&(y[b] - x[b]));
+            if m.is_point() { once } else { 2.0 * once }
+        };
+        self.masses.iter().map(product).sum::<f64>() * 0.5 / (frame.h * frame.h)
     }
 
     fn momentum(&self, _x: &[Vector], v: &[Vector], out: &mut [Vector]) {
         for m in &self.masses {
-            out[m.vector] += v[m.vector] * m.mass;
+            let [a, b] = m.vectors;
+            out[a] += v[b] * m.mass;
+            if !m.is_point() {
+                out[b] += v[a] * m.mass;
+            }
         }
     }
 
     fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output) {
-        let ([x, y], [wx, wy]) = (frame.vectors, frame.along);
-        let r = 1.0 / frame.h;
-        for (m, &slot) in self.masses.iter().zip(&self.slots) {
-            let a = m.vector;
-            let step = y[a] - x[a];
-            let momentum = step * (m.mass * r);
-            out.plain.forces[0][a] -= momentum;
-            out.plain.forces[1][a] += momentum;
-            if level >= Level::Hessian {
-                let block = &mut out.plain.blocks.isotropic[slot];
-                let c = m.mass * r;
-                block[0] += c;
-                block[1] -= c;
-                block[2] -= c;
-                block[3] += c;
-                if frame.horizon == Horizon::Free {
-                    out.plain.horizon_forces[0][a] += momentum * r;
-                    out.plain.horizon_forces[1][a] -= momentum * r;
-                }
+        for (m, slots) in self.masses.iter().zip(&self.slots) {
+            let [a, b] = m.vectors;
+            add(level, frame, m.mass, [a, b], slots[0], out);
+            if !m.is_point() {
+                add(level, frame, m.mass, [b, a], slots[1], out);
             }
-            if level == Level::Third {
-                let step_w = wy[a] - wx[a];
-                let momentum_w = step_w * (m.mass * r);
-                out.contracted.forces[0][a] -= momentum_w;
-                out.contracted.forces[1][a] += momentum_w;
-                if frame.horizon == Horizon::Free {
-                    out.contracted.horizon_forces[0][a] += momentum_w * r;
-                    out.contracted.horizon_forces[1][a] -= momentum_w * r;
-                    out.contracted.horizon += 2.0 * m.mass * step.dot(&step_w) * r * r * r;
-                }
-            }
+        }
+    }
+}
+
+/// The rows of vector `a` against the rate of vector `b`.
+#[inline]
+fn add(
+    level: Level,
+    frame: &Frame<'_>,
+    mass: f64,
+    [a, b]: [usize; 2],
+    slot: usize,
+    out: &mut Output,
+) {
+    let ([x, y], [wx, wy]) = (frame.vectors, frame.along);
+    let r = 1.0 / frame.h;
+    let step = y[b] - x[b];
+    let momentum = step * (mass * r);
+    out.plain.forces[0][a] -= momentum;
+    out.plain.forces[1][a] += momentum;
+    if level >= Level::Hessian {
+        let block = &mut out.plain.blocks.isotropic[slot];
+        let c = mass * r;
+        block[0] += c;
+        block[1] -= c;
+        block[2] -= c;
+        block[3] += c;
+        if frame.horizon == Horizon::Free {
+            out.plain.horizon_forces[0][a] += momentum * r;
+            out.plain.horizon_forces[1][a] -= momentum * r;
+        }
+    }
+    if level == Level::Third {
+        let momentum_w = (wy[b] - wx[b]) * (mass * r);
+        out.contracted.forces[0][a] -= momentum_w;
+        out.contracted.forces[1][a] += momentum_w;
+        if frame.horizon == Horizon::Free {
+            out.contracted.horizon_forces[0][a] += momentum_w * r;
+            out.contracted.horizon_forces[1][a] -= momentum_w * r;
+            let step_w = wy[a] - wx[a];
+            out.contracted.horizon += 2.0 * mass * step.dot(&step_w) * r * r * r;
         }
     }
 }

@@ -19,5 +19,5 @@ mod stencil;
 pub use couplings::{Blocks, Couplings, Part, Sides};
 pub use effect::{Effect, Frame, Horizon, Kind, Level, Measure, Output, Sum};
 pub use group::{Element, Group};
-pub use inertia::{Inertia, PointMass};
+pub use inertia::{Inertia, Mass};
 pub use stencil::{Stencil, VectorArg};

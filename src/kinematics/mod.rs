@@ -1,5 +1,5 @@
-//! Linear kinematics: vectors of space that are linear in the poses of bodies.
+//! Linear kinematics: vectors of space that are linear in the poses of bodies and the places of nodes.
 
 mod vector;
 
-pub use vector::{MaterialVector, Pose, Term, Vectors};
+pub use vector::{Carrier, MaterialVector, Pose, Term, Vectors};

@@ -1,7 +1,8 @@
 //! Material vectors: points, directors and spans, the only thing effects ever read of a configuration.
 //!
 //! On director coordinates q = [φ; d₁; d₂; d₃] of a body every point φ + ρᵢ dᵢ, every director dᵢ and every difference
-//! of points of two bodies is linear: x = Σ (c φ + ρᵢ dᵢ) over a few terms. Energies are functions of such vectors.
+//! of points of two bodies is linear: x = Σ (c φ + ρᵢ dᵢ) over a few terms. So is the place of a node of an elastic
+//! block. Energies are functions of such vectors.
 
 use crate::math::{Matrix, Vector};
 
@@ -32,11 +33,29 @@ impl Pose {
     }
 }
 
-/// c φ + ρᵢ dᵢ on one body; `None` is the ground, whose part is constant.
+/// What carries a part of a vector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carrier {
+    /// The ground: the part is constant.
+    Ground,
+    /// A rigid body.
+    Body(usize),
+    /// A node with coordinates of its own, numbered over all blocks; it has a place and no directors.
+    Node(usize),
+}
+
+impl Carrier {
+    /// A body, or the ground.
+    pub fn of(body: Option<usize>) -> Self {
+        body.map_or(Self::Ground, Self::Body)
+    }
+}
+
+/// c φ + ρᵢ dᵢ on one carrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Term {
-    /// The body.
-    pub body: Option<usize>,
+    /// The carrier.
+    pub carrier: Carrier,
     /// Coefficient c of the centre.
     pub centre: f64,
     /// Coefficients ρ of the directors.
@@ -64,7 +83,7 @@ impl MaterialVector {
         let pose = body.map_or(Pose::GROUND, |b| reference[b]);
         Self {
             terms: vec![Term {
-                body,
+                carrier: Carrier::of(body),
                 centre: 1.0,
                 directors: pose.local(place),
             }],
@@ -76,7 +95,7 @@ impl MaterialVector {
         let pose = body.map_or(Pose::GROUND, |b| reference[b]);
         Self {
             terms: vec![Term {
-                body,
+                carrier: Carrier::of(body),
                 centre: 0.0,
                 directors: pose.directors.tr_mul(direction),
             }],
@@ -88,14 +107,14 @@ impl MaterialVector {
         let mut terms: Vec<Term> = Vec::new();
         let scaled = |factor: f64, v: &Self| {
             let scale = move |t: &Term| Term {
-                body: t.body,
+                carrier: t.carrier,
                 centre: factor * t.centre,
                 directors: t.directors * factor,
             };
             v.terms.iter().map(scale).collect::<Vec<_>>()
         };
         for term in scaled(a, x).into_iter().chain(scaled(b, y)) {
-            match terms.iter_mut().find(|t| t.body == term.body) {
+            match terms.iter_mut().find(|t| t.carrier == term.carrier) {
                 Some(same) => {
                     same.centre += term.centre;
                     same.directors += term.directors;
@@ -111,10 +130,32 @@ impl MaterialVector {
         Self::combine(-1.0, x, 1.0, y)
     }
 
-    /// The value at given poses.
-    pub fn at(&self, poses: &[Pose]) -> Vector {
-        let pose = |t: &Term| t.body.map_or(Pose::GROUND, |b| poses[b]);
-        self.terms.iter().map(|t| t.at(&pose(t))).sum()
+    /// The place of a node.
+    pub fn node(node: usize) -> Self {
+        Self {
+            terms: vec![Term {
+                carrier: Carrier::Node(node),
+                centre: 1.0,
+                directors: Vector::zeros(),
+            }],
+        }
+    }
+
+    /// Whether a node carries a part of it.
+    pub fn is_of_nodes(&self) -> bool {
+        self.terms
+            .iter()
+            .any(|t| matches!(t.carrier, Carrier::Node(_)))
+    }
+
+    /// The value at given poses of the bodies and places of the nodes.
+    pub fn at(&self, poses: &[Pose], nodes: &[Vector]) -> Vector {
+        let part = |t: &Term| match t.carrier {
+            Carrier::Ground => t.at(&Pose::GROUND),
+            Carrier::Body(body) => t.at(&poses[body]),
+            Carrier::Node(node) => nodes[node] * t.centre,
+        };
+        self.terms.iter().map(part).sum()
     }
 }
 
@@ -134,6 +175,12 @@ impl Vectors {
                 self.list.push(vector);
                 self.list.len() - 1
             })
+    }
+
+    /// Index of a vector that is known to be new.
+    pub fn push(&mut self, vector: MaterialVector) -> usize {
+        self.list.push(vector);
+        self.list.len() - 1
     }
 
     /// All vectors.

@@ -39,11 +39,19 @@ impl Builder<'_> {
         for joint in &self.system.joints {
             self.joint(joint, &mut joints);
         }
+        let mut ties = Constraints {
+            names: joints.names,
+            ..Constraints::default()
+        };
+        for (span, name) in &self.continua.ties {
+            ties.point(self.vectors, name, span.clone());
+        }
         let mut effects = Effects::new();
         group!(effects, instants, 7, "rigid bodies", -h0, rigid.dots);
         group!(effects, instants, 7, "joint directions", -h0, joints.dots);
         group!(effects, instants, 6, "joint points", -h0, joints.points);
-        (effects, joints.names)
+        group!(effects, instants, 6, "glue", -h0, ties.points);
+        (effects, ties.names)
     }
 
     fn joint(&mut self, joint: &Joint, out: &mut Constraints) {

@@ -3,11 +3,12 @@
 use crate::energy::{
     AngularDamper, DielectricCell, ElasticCell, Gravity, LinearDamper, SectionInertia, ViscousCell,
 };
-use crate::functional::{Effect, Element, Group, Inertia, PointMass, Stencil, VectorArg};
+use crate::functional::{Effect, Element, Group, Inertia, Mass, Stencil, VectorArg};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
+use crate::model::continuum::Continua;
 use crate::model::joints::{JointGauge, Measure};
-use crate::model::system::{Attachment, Muscle, System};
+use crate::model::system::{Attachment, Fidelity, Muscle, System};
 
 /// A list of effects on its way to a sum.
 pub(super) type Effects = Vec<Box<dyn Effect>>;
@@ -18,8 +19,10 @@ pub(super) struct Builder<'a> {
     pub(super) system: &'a System,
     pub(super) reference: &'a [Pose],
     pub(super) vectors: &'a mut Vectors,
-    /// Muscle of each voltage.
-    pub(super) voltages: Vec<usize>,
+    /// Source of each voltage.
+    pub(super) voltages: &'a [usize],
+    /// Elastic blocks.
+    pub(super) continua: &'a Continua,
     /// Vector of the span of each muscle.
     pub(super) spans: Vec<usize>,
 }
@@ -52,24 +55,34 @@ macro_rules! group {
 pub(super) use group;
 
 impl<'a> Builder<'a> {
-    pub(super) fn new(system: &'a System, reference: &'a [Pose], vectors: &'a mut Vectors) -> Self {
+    pub(super) fn new(
+        system: &'a System,
+        reference: &'a [Pose],
+        voltages: &'a [usize],
+        continua: &'a Continua,
+        vectors: &'a mut Vectors,
+    ) -> Self {
         let mut builder = Self {
             system,
             reference,
             vectors,
-            voltages: Vec::new(),
+            voltages,
+            continua,
             spans: Vec::new(),
         };
-        for (m, muscle) in system.muscles.iter().enumerate() {
+        for muscle in &system.muscles {
             let span =
                 MaterialVector::span(&builder.point(&muscle.from), &builder.point(&muscle.to));
             let span = builder.vectors.index(span);
             builder.spans.push(span);
-            if muscle.material.electric.is_some() {
-                builder.voltages.push(m);
-            }
         }
         builder
+    }
+
+    /// Lumped muscles with their vector of the span.
+    fn lumped(&self) -> impl Iterator<Item = (&Muscle, usize)> + '_ {
+        let muscles = self.system.muscles.iter().zip(self.spans.iter().copied());
+        muscles.filter(|(muscle, _)| muscle.fidelity == Fidelity::Lumped)
     }
 
     fn point(&self, a: &Attachment) -> MaterialVector {
@@ -79,13 +92,14 @@ impl<'a> Builder<'a> {
     /// Effects of the intervals.
     pub(super) fn intervals(&mut self) -> Effects {
         let mut effects = Effects::new();
-        let inertia = |name: &str, masses: Vec<PointMass>, effects: &mut Effects| {
+        let inertia = |name: &str, masses: Vec<Mass>, effects: &mut Effects| {
             if !masses.is_empty() {
                 effects.push(Box::new(Inertia::new(name, masses)));
             }
         };
         inertia("body inertia", self.body_masses(), &mut effects);
         inertia("muscle inertia", self.muscle_masses(), &mut effects);
+        inertia("block inertia", self.continua.masses(), &mut effects);
         group!(
             effects,
             intervals,
@@ -95,6 +109,7 @@ impl<'a> Builder<'a> {
             self.section_inertia()
         );
         group!(effects, intervals, 3, "gravity", -1.0, self.gravity());
+        self.continua.add_elements(&mut effects);
         group!(
             effects,
             intervals,
@@ -189,14 +204,11 @@ impl<'a> Builder<'a> {
         elements
     }
 
-    fn body_masses(&mut self) -> Vec<PointMass> {
+    fn body_masses(&mut self) -> Vec<Mass> {
         let mut masses = Vec::new();
         for (b, body) in self.system.bodies.iter().enumerate() {
             let centre = MaterialVector::point(Some(b), &body.centre, self.reference);
-            masses.push(PointMass {
-                vector: self.vectors.index(centre),
-                mass: body.mass,
-            });
+            masses.push(Mass::point(self.vectors.index(centre), body.mass));
             let [j1, j2, j3] = body.inertia;
             for (i, euler) in [j2 + j3 - j1, j3 + j1 - j2, j1 + j2 - j3]
                 .into_iter()
@@ -205,10 +217,7 @@ impl<'a> Builder<'a> {
                 if euler != 0.0 {
                     let axis: Vector = body.directors.column(i).into();
                     let director = MaterialVector::direction(Some(b), &axis, self.reference);
-                    masses.push(PointMass {
-                        vector: self.vectors.index(director),
-                        mass: 0.5 * euler,
-                    });
+                    masses.push(Mass::point(self.vectors.index(director), 0.5 * euler));
                 }
             }
         }
@@ -223,25 +232,19 @@ impl<'a> Builder<'a> {
     }
 
     /// A uniform rod: m/6 (|va|² + va·vb + |vb|²) = m/2 |v_mid|² + m/24 |ṙ|².
-    fn muscle_masses(&mut self) -> Vec<PointMass> {
+    fn muscle_masses(&mut self) -> Vec<Mass> {
         let mut masses = Vec::new();
         for (m, muscle) in self.system.muscles.iter().enumerate() {
-            if let Some(mass) = muscle.mass() {
-                masses.push(PointMass {
-                    vector: self.middle(muscle),
-                    mass,
-                });
-                masses.push(PointMass {
-                    vector: self.spans[m],
-                    mass: mass / 12.0,
-                });
+            if let (Some(mass), Fidelity::Lumped) = (muscle.mass(), muscle.fidelity) {
+                masses.push(Mass::point(self.middle(muscle), mass));
+                masses.push(Mass::point(self.spans[m], mass / 12.0));
             }
         }
         masses
     }
 
     fn section_inertia(&self) -> Vec<Element<SectionInertia, 2, 0>> {
-        let element = |(muscle, &span): (&Muscle, &usize)| {
+        let element = |(muscle, span): (&Muscle, usize)| {
             let mass = muscle.section_inertia.then(|| muscle.mass()).flatten()?;
             let [x, y] = muscle.cross_section;
             let energy = SectionInertia {
@@ -254,10 +257,7 @@ impl<'a> Builder<'a> {
                 scalars: [],
             })
         };
-        self.system
-            .muscles
-            .iter()
-            .zip(&self.spans)
+        self.lumped()
             .filter_map(element)
             .collect()
     }
@@ -279,9 +279,12 @@ impl<'a> Builder<'a> {
             add(self.vectors.index(centre), body.mass);
         }
         for muscle in &self.system.muscles {
-            if let Some(mass) = muscle.mass() {
+            if let (Some(mass), Fidelity::Lumped) = (muscle.mass(), muscle.fidelity) {
                 add(self.middle(muscle), mass);
             }
+        }
+        for (vector, mass) in self.continua.loads() {
+            add(vector, mass);
         }
         elements
     }
@@ -295,16 +298,13 @@ impl<'a> Builder<'a> {
     }
 
     fn elastic(&self) -> Vec<Element<ElasticCell, 1, 0>> {
-        let passive = |(muscle, _): &(&Muscle, &usize)| muscle.material.electric.is_none();
-        let element = |(muscle, &span): (&Muscle, &usize)| Element {
+        let passive = |(muscle, _): &(&Muscle, usize)| muscle.material.electric.is_none();
+        let element = |(muscle, span): (&Muscle, usize)| Element {
             energy: Self::elastic_cell(muscle),
             vectors: [mid(span)],
             scalars: [],
         };
-        self.system
-            .muscles
-            .iter()
-            .zip(&self.spans)
+        self.lumped()
             .filter(passive)
             .map(element)
             .collect()
@@ -312,11 +312,11 @@ impl<'a> Builder<'a> {
 
     fn dielectric(&self) -> Vec<Element<DielectricCell, 1, 1>> {
         let element = |(v, &m): (usize, &usize)| {
-            let muscle = &self.system.muscles[m];
-            let electric = muscle
-                .material
-                .electric
-                .expect("a voltage belongs to a dielectric muscle");
+            let muscle = self.system.muscles.get(m)?;
+            if muscle.fidelity != Fidelity::Lumped {
+                return None;
+            }
+            let electric = muscle.material.electric?;
             let energy = DielectricCell {
                 elastic: Self::elastic_cell(muscle),
                 c1: electric.c1,
@@ -324,17 +324,21 @@ impl<'a> Builder<'a> {
                 permittivity: electric.permittivity,
                 layer: muscle.layer_thickness,
             };
-            Element {
+            Some(Element {
                 energy,
                 vectors: [mid(self.spans[m])],
                 scalars: [v],
-            }
+            })
         };
-        self.voltages.iter().enumerate().map(element).collect()
+        self.voltages
+            .iter()
+            .enumerate()
+            .filter_map(element)
+            .collect()
     }
 
     fn viscous(&self) -> Vec<Element<ViscousCell, 3, 0>> {
-        let element = |(muscle, &span): (&Muscle, &usize)| {
+        let element = |(muscle, span): (&Muscle, usize)| {
             let energy = ViscousCell {
                 coefficient: 1.5 * muscle.material.viscosity? * muscle.volume(),
             };
@@ -344,10 +348,7 @@ impl<'a> Builder<'a> {
                 scalars: [],
             })
         };
-        self.system
-            .muscles
-            .iter()
-            .zip(&self.spans)
+        self.lumped()
             .filter_map(element)
             .collect()
     }

@@ -13,4 +13,12 @@ pub enum ModelError {
         /// What stands in the way.
         reason: String,
     },
+    /// An element has no volume, or is turned inside out.
+    #[error("element {element} of block \"{solid}\" is inverted or degenerate")]
+    Inverted {
+        /// The block.
+        solid: String,
+        /// The element.
+        element: usize,
+    },
 }

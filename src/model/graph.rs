@@ -1,6 +1,6 @@
 //! The joint graph: a spanning tree from the ground, and the joints that close loops.
 
-use crate::kinematics::{MaterialVector, Pose, Term};
+use crate::kinematics::{Carrier, MaterialVector, Pose, Term};
 use crate::math::Vector;
 use crate::model::ModelError;
 use crate::model::system::{JointKind, System};
@@ -167,7 +167,7 @@ impl Graph {
         rates: &[f64],
     ) -> Vec<f64> {
         let term = |body: usize, i: usize| Term {
-            body: Some(body),
+            carrier: Carrier::Body(body),
             centre: if i == 0 { 1.0 } else { 0.0 },
             directors: if i == 0 {
                 Vector::zeros()
@@ -181,7 +181,7 @@ impl Graph {
                 terms: vec![term(b, i)],
             })
             .collect();
-        let motion = Motion::articulated(self.tree(system, reference, &vectors), 0);
+        let motion = Motion::articulated(self.tree(system, reference, &vectors), &vectors, &[], 0);
         let mut instant = motion.instant();
         let (u, l) = (
             Self::coordinates(system, joints),

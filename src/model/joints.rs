@@ -93,11 +93,11 @@ impl JointGauge {
     pub fn read(&self, poses: &[Pose], near: f64) -> f64 {
         match &self.measure {
             Measure::Angle { vectors } => {
-                let [a, b, c] = vectors.each_ref().map(|v| v.at(poses));
+                let [a, b, c] = vectors.each_ref().map(|v| v.at(poses, &[]));
                 let angle = b.dot(&c).atan2(a.dot(&c));
                 angle + ((near - angle) / std::f64::consts::TAU).round() * std::f64::consts::TAU
             }
-            Measure::Displacement { axis, span } => axis.at(poses).dot(&span.at(poses)),
+            Measure::Displacement { axis, span } => axis.at(poses, &[]).dot(&span.at(poses, &[])),
             Measure::None => 0.0,
         }
     }

@@ -1,24 +1,30 @@
 //! Where physics meets indices: from a checked system to sums of effects over its coordinates.
 
+mod blocks;
 mod constraints;
+mod continuum;
 mod effects;
 mod error;
 mod graph;
 mod joints;
 mod quantity;
+mod solid_effects;
 pub mod system;
 
+pub use continuum::{Continuum, Floating};
 pub use error::ModelError;
 pub use graph::Graph;
 pub use joints::JointGauge;
 pub use quantity::{Quantity, Region};
 pub use system::{System, VACUUM_PERMITTIVITY};
 
-use crate::functional::Sum;
+use crate::functional::{Kind, Sum};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
-use crate::reduction::{Instant, Motion, Reduced};
-use system::Attachment;
+use crate::reduction::{Instant, Motion, NodePlace, Reduced};
+use crate::sparse::Symmetry;
+use continuum::Continua;
+use system::{Attachment, Marker, Source};
 
 /// Coordinates in which a problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,8 +56,18 @@ pub struct Model {
     pub action: Reduced,
     /// The vectors that effects read, in terms of poses.
     pub vectors: Vec<MaterialVector>,
-    /// Muscle of each voltage.
+    /// Source of each voltage: the first scalars of an interval (see [`System::sources`]).
     pub voltages: Vec<usize>,
+    /// Number of potentials: the other scalars of an interval, in units of `potential_unit`.
+    pub potentials: usize,
+    /// Unit of the potentials in V: √(μ/ε) times a millimetre.
+    pub potential_unit: f64,
+    /// What each potential is.
+    pub potential_names: Vec<String>,
+    /// All that voltages are named for.
+    pub sources: Vec<Source>,
+    /// Elastic blocks, those of muscles last.
+    pub continua: Vec<Continuum>,
     /// Vector of the span of each muscle.
     pub spans: Vec<usize>,
     /// Vector of each marker.
@@ -64,6 +80,9 @@ pub struct Model {
     pub multiplier_time: f64,
     graph: Graph,
     reference: Vec<Pose>,
+    nodes: Vec<NodePlace>,
+    /// Block and node of the mesh of each node with coordinates.
+    node_names: Vec<(usize, usize)>,
 }
 
 impl Model {
@@ -83,29 +102,51 @@ impl Model {
         let graph = Graph::new(&system);
         let reference: Vec<Pose> = system.bodies.iter().map(system::Body::pose).collect();
         let mut vectors = Vectors::default();
-        let mut parts = effects::Builder::new(&system, &reference, &mut vectors);
+        let solids = blocks::blocks(&system);
+        let voltages = continuum::voltages(&system, &solids);
+        let ties = coordinates == Coordinates::Redundant;
+        let continua = Continua::new(solids, &reference, &voltages, ties, &mut vectors)?;
+        let mut parts =
+            effects::Builder::new(&system, &reference, &voltages, &continua, &mut vectors);
         let intervals = parts.intervals();
         let (instants, multiplier_names) = match coordinates {
             Coordinates::Reduced => (Vec::new(), Vec::new()),
             Coordinates::Redundant => parts.constraints(h0),
         };
-        let (voltages, spans) = (parts.voltages, parts.spans);
+        let spans = parts.spans;
         let point = |a: &Attachment| MaterialVector::point(a.body, &a.at, &reference);
         let markers = system
             .markers
             .iter()
-            .map(|m| vectors.index(point(&m.point)))
-            .collect();
-        let measures = quantity::measures(quantities, &system, &reference, &voltages, &mut vectors);
+            .map(|m| match m.solid {
+                Some(solid) => continua.list[solid].nearest(&m.point.at),
+                None => vectors.index(point(&m.point)),
+            })
+            .collect::<Vec<_>>();
+        let measures = {
+            let known = quantity::Known {
+                system: &system,
+                reference: &reference,
+                voltages: &voltages,
+                markers: &markers,
+            };
+            quantity::measures(quantities, &known, &mut vectors)
+        };
         let list = vectors.list();
         let multipliers = multiplier_names.len();
         let motion = match coordinates {
             Coordinates::Reduced => {
-                Motion::articulated(graph.tree(&system, &reference, list), multipliers)
+                let tree = graph.tree(&system, &reference, list);
+                Motion::articulated(tree, list, &continua.nodes, multipliers)
             }
-            Coordinates::Redundant => Motion::redundant(system.bodies.len(), list, multipliers),
+            Coordinates::Redundant => {
+                Motion::redundant(system.bodies.len(), list, &continua.nodes, multipliers)
+            }
         };
-        let intervals = Sum::new(intervals, measures.intervals, list.len(), voltages.len());
+        let intervals = {
+            let scalars = voltages.len() + continua.potentials.len();
+            Sum::new(intervals, measures.intervals, list.len(), scalars)
+        };
         let instants = Sum::new(instants, measures.instants, list.len(), multipliers);
         let gauge = |(joint, coordinate)| JointGauge::new(joint, coordinate, &reference);
         let gauges = system
@@ -119,6 +160,13 @@ impl Model {
             action: Reduced::new(motion, intervals, instants),
             vectors: list.to_vec(),
             voltages,
+            potentials: continua.potentials.len(),
+            potential_unit: continua.unit,
+            potential_names: continua.potentials,
+            sources: system.sources(),
+            continua: continua.list,
+            nodes: continua.nodes,
+            node_names: continua.names,
             spans,
             markers,
             gauges,
@@ -162,11 +210,21 @@ impl Model {
         self.action.motion.coordinates
     }
 
-    /// What coordinate or multiplier `i` of an instant is.
+    /// What coordinate or multiplier `i` of an instant is, or what potential of an interval after these.
     pub fn unknown_name(&self, i: usize) -> String {
         let n = self.coordinate_count();
         match self.coordinates {
+            _ if i >= n + self.multiplier_names.len() => {
+                let potential = i - n - self.multiplier_names.len();
+                format!("potential of {}", self.potential_names[potential])
+            }
             _ if i >= n => format!("multiplier of {}", self.multiplier_names[i - n]),
+            _ if i >= self.action.motion.of_bodies => {
+                let (node, axis) = self.action.motion.of_nodes[i - self.action.motion.of_bodies];
+                let (block, node) = self.node_names[node];
+                let name = &self.continua[block].solid.name;
+                format!("{} of node {node} of {name}", ["x", "y", "z"][axis])
+            }
             Coordinates::Reduced => {
                 let joint = self.gauges.iter().position(|g| g.coordinate == Some(i));
                 format!(
@@ -185,6 +243,7 @@ impl Model {
     /// Whether coordinate `i` is a length, rather than an angle or a component of a director.
     pub fn is_length(&self, i: usize) -> bool {
         match self.coordinates {
+            _ if i >= self.action.motion.of_bodies => true,
             Coordinates::Redundant => i % 12 < 3,
             Coordinates::Reduced => {
                 let prismatic =
@@ -205,6 +264,7 @@ impl Model {
                         z[c] = value;
                     }
                 }
+                self.place_nodes(&mut z);
                 z
             }
             Coordinates::Redundant => {
@@ -221,7 +281,47 @@ impl Model {
             q[..3].copy_from_slice(pose.centre.as_slice());
             q[3..].copy_from_slice(pose.directors.as_slice());
         }
+        self.place_nodes(&mut z);
         z
+    }
+
+    /// Puts the nodes at their reference places.
+    fn place_nodes(&self, z: &mut [f64]) {
+        let motion = &self.action.motion;
+        for (value, &(node, axis)) in z[motion.of_bodies..].iter_mut().zip(&motion.of_nodes) {
+            *value = self.nodes[node].reference[axis];
+        }
+    }
+
+    /// Rates of the coordinates of the nodes at the start, after zeros for those of the bodies; `None` at rest.
+    pub fn node_rates(&self) -> Option<Vec<f64>> {
+        let motion = &self.action.motion;
+        let mut rates = vec![0.0; motion.coordinates];
+        let mut moves = false;
+        for (rate, &(node, axis)) in rates[motion.of_bodies..].iter_mut().zip(&motion.of_nodes) {
+            let (block, node) = self.node_names[node];
+            if let Some(velocity) = self.continua[block].solid.velocities.get(node) {
+                *rate = velocity[axis];
+                moves |= *rate != 0.0;
+            }
+        }
+        moves.then_some(rates)
+    }
+
+    /// Whether the tangent of a step is symmetric: all coordinates are nodes', and every force has a potential.
+    pub fn step_symmetry(&self) -> Symmetry {
+        let motion = &self.action.motion;
+        let effects = &self.action.intervals.effects;
+        let has_potential = effects.iter().all(|e| e.kind() != Kind::VirtualWork);
+        match motion.of_bodies == 0 && motion.multipliers == 0 && has_potential {
+            true => Symmetry::Symmetric,
+            false => Symmetry::Unsymmetric,
+        }
+    }
+
+    /// The part of a block that nothing holds, if there is one.
+    pub fn floating(&self) -> Option<Floating> {
+        continuum::floating(&self.continua, &self.vectors, &self.nodes)
     }
 
     /// Joint coordinates (rad or mm, zero where a joint has none) at poses, angles in the branch nearest to `near`.
@@ -250,7 +350,7 @@ impl Model {
         self.action.motion.poses(instant, self.system.bodies.len())
     }
 
-    /// Voltages in the order of the scalars of an interval from one voltage a muscle.
+    /// Voltages in the order of the scalars of an interval from one voltage a source.
     pub fn scalars(&self, voltages: &[f64]) -> Vec<f64> {
         self.voltages.iter().map(|&m| voltages[m]).collect()
     }
@@ -258,7 +358,8 @@ impl Model {
     /// A length in mm that is typical of the system.
     pub fn length(&self) -> f64 {
         let far = |length: f64, x: &Vector| length.max(x.amax());
-        let places = self.reference.iter().map(|p| &p.centre);
+        let nodes = self.nodes.iter().map(|n| &n.reference);
+        let places = self.reference.iter().map(|p| &p.centre).chain(nodes);
         let length = places
             .chain(self.system.joints.iter().map(|j| &j.at))
             .fold(0.0, far);

@@ -101,19 +101,29 @@ fn instant<E: Energy<M> + 'static, const M: usize, const NV: usize>(
     ))
 }
 
+/// What quantities are measured on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Known<'a> {
+    pub(super) system: &'a System,
+    pub(super) reference: &'a [Pose],
+    /// Source of each voltage.
+    pub(super) voltages: &'a [usize],
+    /// Vector of each marker.
+    pub(super) markers: &'a [usize],
+}
+
 /// The measures of a list of quantities.
 pub(super) fn measures(
     quantities: &[Quantity],
-    system: &System,
-    reference: &[Pose],
-    voltages: &[usize],
+    &Known {
+        system,
+        reference,
+        voltages,
+        markers,
+    }: &Known<'_>,
     vectors: &mut Vectors,
 ) -> Measures {
     let mut out = Measures::default();
-    let marker = |index: usize, vectors: &mut Vectors| {
-        let point = &system.markers[index].point;
-        vectors.index(MaterialVector::point(point.body, &point.at, reference))
-    };
     let span = |index: usize, vectors: &mut Vectors| {
         let muscle = &system.muscles[index];
         let [from, to] =
@@ -151,7 +161,7 @@ pub(super) fn measures(
                         origin: Vector::zeros(),
                         normal,
                     },
-                    [marker(m, vectors)],
+                    [markers[m]],
                 )
             }
             Quantity::MarkerRegion { marker: m, region } => match region {
@@ -160,14 +170,14 @@ pub(super) fn measures(
                         centre,
                         scale: radius,
                     },
-                    [marker(m, vectors)],
+                    [markers[m]],
                 ),
                 Region::Box { min, max } => {
                     let energy = OutsideBox {
                         centre: (min + max) * 0.5,
                         half: (max - min) * 0.5,
                     };
-                    instant(energy, [marker(m, vectors)])
+                    instant(energy, [markers[m]])
                 }
             },
             Quantity::SquaredField { muscle, limit } => {

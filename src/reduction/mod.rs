@@ -22,7 +22,7 @@ mod reduced;
 mod tree;
 
 pub use instant::Instant;
-pub use motion::Motion;
+pub use motion::{Motion, NodePlace};
 pub use pattern::{Layout, Pattern};
-pub use reduced::{Reduced, Scratch};
+pub use reduced::{Interval, Reduced, Scratch};
 pub use tree::{Tree, TreeJoint, TreeKind};

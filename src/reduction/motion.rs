@@ -1,6 +1,6 @@
-//! How vectors follow from the coordinates of an instant: on a kinematic tree, or linearly from directors.
+//! How vectors follow from the coordinates of an instant: on a kinematic tree, or linearly from directors and nodes.
 
-use crate::kinematics::{MaterialVector, Pose};
+use crate::kinematics::{Carrier, MaterialVector, Pose};
 use crate::math::{Matrix, Vector};
 use crate::reduction::instant::Instant;
 use crate::reduction::tree::{Packed, Tree};
@@ -8,18 +8,40 @@ use crate::reduction::tree::{Packed, Tree};
 /// How one vector depends on the coordinates.
 #[derive(Clone, Debug)]
 pub enum Dependence {
-    /// A constant plus Σ c · (three coordinates from `first`).
+    /// A constant plus Σ c u e over the parts.
     Linear {
         /// The constant.
         constant: Vector,
-        /// (first, c).
-        parts: Vec<(usize, f64)>,
+        /// The parts.
+        parts: Vec<LinearPart>,
     },
     /// Columns of a tree.
     Articulated(Packed),
 }
 
+/// Factor c times one coordinate along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearPart {
+    /// The coordinate.
+    pub coordinate: usize,
+    /// The axis: 0, 1 or 2.
+    pub axis: usize,
+    /// The factor.
+    pub factor: f64,
+}
+
+/// A node: where it is, and in which directions it has a coordinate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodePlace {
+    /// Reference place in mm, kept in the directions without a coordinate.
+    pub reference: Vector,
+    /// Whether x, y, z are coordinates.
+    pub free: [bool; 3],
+}
+
 /// Coordinates of an instant and the vectors that follow from them.
+///
+/// Coordinates of the bodies (of a tree, or directors) come first, then those of the nodes.
 #[derive(Clone, Debug)]
 pub struct Motion {
     /// Number of coordinates u.
@@ -30,6 +52,12 @@ pub struct Motion {
     pub vectors: Vec<Dependence>,
     /// The tree, for joint coordinates.
     pub tree: Option<Tree>,
+    /// Number of coordinates of the bodies.
+    pub of_bodies: usize,
+    /// Node and axis of each coordinate of the nodes.
+    pub of_nodes: Vec<(usize, usize)>,
+    /// Vectors with linear dependence.
+    linear: Vec<usize>,
 }
 
 /// First coordinate of the four vectors φ, d₁, d₂, d₃ of a body in director coordinates.
@@ -38,51 +66,61 @@ pub(super) fn body_offset(body: usize) -> usize {
 }
 
 impl Motion {
-    /// Joint coordinates of a tree.
-    pub fn articulated(tree: Tree, multipliers: usize) -> Self {
-        let vectors = tree
-            .packed()
-            .iter()
-            .cloned()
-            .map(Dependence::Articulated)
-            .collect();
-        Self {
-            coordinates: tree.coordinates(),
-            multipliers,
-            vectors,
-            tree: Some(tree),
-        }
+    /// Joint coordinates of a tree, and coordinates of nodes.
+    pub fn articulated(
+        tree: Tree,
+        vectors: &[MaterialVector],
+        nodes: &[NodePlace],
+        multipliers: usize,
+    ) -> Self {
+        let parts = parts_of_nodes(tree.coordinates(), nodes);
+        let dependence = |(vector, packed): (&MaterialVector, &Packed)| {
+            if vector.is_of_nodes() {
+                linear(vector, nodes, &parts)
+            } else {
+                Dependence::Articulated(packed.clone())
+            }
+        };
+        let of_bodies = tree.coordinates();
+        let vectors = vectors.iter().zip(tree.packed()).map(dependence).collect();
+        Self::new(vectors, Some(tree), of_bodies, nodes, multipliers)
     }
 
-    /// Director coordinates of `bodies` bodies.
-    pub fn redundant(bodies: usize, vectors: &[MaterialVector], multipliers: usize) -> Self {
-        let dependence = |vector: &MaterialVector| {
-            let mut constant = Vector::zeros();
-            let mut parts = Vec::new();
-            for term in &vector.terms {
-                let Some(body) = term.body else {
-                    constant += term.at(&Pose::GROUND);
-                    continue;
-                };
-                let coefficients = [
-                    term.centre,
-                    term.directors.x,
-                    term.directors.y,
-                    term.directors.z,
-                ];
-                for (i, c) in coefficients.into_iter().enumerate() {
-                    if c != 0.0 {
-                        parts.push((body_offset(body) + 3 * i, c));
-                    }
-                }
-            }
-            Dependence::Linear { constant, parts }
+    /// Director coordinates of `bodies` bodies, and coordinates of nodes.
+    pub fn redundant(
+        bodies: usize,
+        vectors: &[MaterialVector],
+        nodes: &[NodePlace],
+        multipliers: usize,
+    ) -> Self {
+        let parts = parts_of_nodes(12 * bodies, nodes);
+        let vectors = vectors.iter().map(|v| linear(v, nodes, &parts)).collect();
+        Self::new(vectors, None, 12 * bodies, nodes, multipliers)
+    }
+
+    fn new(
+        vectors: Vec<Dependence>,
+        tree: Option<Tree>,
+        of_bodies: usize,
+        nodes: &[NodePlace],
+        multipliers: usize,
+    ) -> Self {
+        let axes = |(node, place): (usize, &NodePlace)| {
+            let free = place.free;
+            (0..3)
+                .filter(move |&axis| free[axis])
+                .map(move |axis| (node, axis))
         };
+        let of_nodes: Vec<_> = nodes.iter().enumerate().flat_map(axes).collect();
+        let is_linear = |&v: &usize| matches!(vectors[v], Dependence::Linear { .. });
         Self {
-            coordinates: 12 * bodies,
+            coordinates: of_bodies + of_nodes.len(),
             multipliers,
-            vectors: vectors.iter().map(dependence).collect(),
-            tree: None,
+            linear: (0..vectors.len()).filter(is_linear).collect(),
+            vectors,
+            tree,
+            of_bodies,
+            of_nodes,
         }
     }
 
@@ -122,10 +160,9 @@ impl Motion {
         if let Some(tree) = &self.tree {
             tree.place(z, state);
             tree.vectors(state, x);
-            return;
         }
-        for (dependence, value) in self.vectors.iter().zip(x) {
-            *value = Self::linear(dependence, z, true);
+        for &v in &self.linear {
+            x[v] = self.sum_of_parts(v, z, true);
         }
     }
 
@@ -136,17 +173,17 @@ impl Motion {
         }
     }
 
-    fn linear(dependence: &Dependence, z: &[f64], constant: bool) -> Vector {
+    fn sum_of_parts(&self, vector: usize, z: &[f64], constant: bool) -> Vector {
         let Dependence::Linear {
             constant: offset,
             parts,
-        } = dependence
+        } = &self.vectors[vector]
         else {
-            unreachable!("without a tree every vector is linear")
+            unreachable!("the list holds linear vectors")
         };
         let mut sum = if constant { *offset } else { Vector::zeros() };
-        for &(first, c) in parts {
-            sum += Vector::new(z[first], z[first + 1], z[first + 2]) * c;
+        for part in parts {
+            sum[part.axis] += z[part.coordinate] * part.factor;
         }
         sum
     }
@@ -155,18 +192,19 @@ impl Motion {
     pub fn along(&self, instant: &mut Instant) {
         if let Some(tree) = &self.tree {
             tree.along(instant);
-            return;
         }
-        for (dependence, value) in self.vectors.iter().zip(&mut instant.w) {
-            *value = Self::linear(dependence, &instant.l, false);
+        for &v in &self.linear {
+            instant.w[v] = self.sum_of_parts(v, &instant.l, false);
         }
     }
 
     /// Adds Pᵀ R of the forces on an instant to the rows of the coordinates; needs no columns.
     pub fn rows(&self, instant: &mut Instant, rows: &mut [f64]) {
-        match &self.tree {
-            Some(tree) => tree.pull_back(&mut instant.tree, &instant.forces, rows),
-            None => self.pull_back(&[], &instant.forces, rows),
+        if let Some(tree) = &self.tree {
+            tree.pull_back(&mut instant.tree, &instant.forces, rows);
+        }
+        for &v in &self.linear {
+            self.pull_back_one(v, &[], &instant.forces[v], rows);
         }
     }
 
@@ -174,6 +212,15 @@ impl Motion {
     pub fn pull_back(&self, columns: &[f64], forces: &[Vector], rows: &mut [f64]) {
         for (vector, force) in forces.iter().enumerate() {
             self.pull_back_one(vector, columns, force, rows);
+        }
+    }
+
+    /// Adds the derivative P′_lᵀ R, which only vectors on a tree have.
+    pub fn pull_back_along(&self, columns_l: &[f64], forces: &[Vector], rows: &mut [f64]) {
+        for (vector, force) in forces.iter().enumerate() {
+            if let Dependence::Articulated(_) = self.vectors[vector] {
+                self.pull_back_one(vector, columns_l, force, rows);
+            }
         }
     }
 
@@ -187,10 +234,8 @@ impl Motion {
                 }
             }
             Dependence::Linear { parts, .. } => {
-                for &(first, c) in parts {
-                    for i in 0..3 {
-                        rows[first + i] += c * force[i];
-                    }
+                for part in parts {
+                    rows[part.coordinate] += part.factor * force[part.axis];
                 }
             }
         }
@@ -200,10 +245,7 @@ impl Motion {
     pub fn support(&self, vector: usize) -> Vec<usize> {
         match &self.vectors[vector] {
             Dependence::Articulated(packed) => packed.support.clone(),
-            Dependence::Linear { parts, .. } => parts
-                .iter()
-                .flat_map(|&(first, _)| first..first + 3)
-                .collect(),
+            Dependence::Linear { parts, .. } => parts.iter().map(|p| p.coordinate).collect(),
         }
     }
 
@@ -222,4 +264,55 @@ impl Motion {
         };
         (0..bodies).map(pose).collect()
     }
+}
+
+/// Parts of each node; its coordinates follow those of the nodes before.
+fn parts_of_nodes(first: usize, nodes: &[NodePlace]) -> Vec<Vec<LinearPart>> {
+    let mut next = first;
+    let parts = |node: &NodePlace| {
+        let free = (0..3).filter(|&axis| node.free[axis]);
+        let part = |(i, axis)| LinearPart {
+            coordinate: next + i,
+            axis,
+            factor: 1.0,
+        };
+        let parts: Vec<LinearPart> = free.enumerate().map(part).collect();
+        next += parts.len();
+        parts
+    };
+    nodes.iter().map(parts).collect()
+}
+
+/// The linear dependence of a vector on directors and nodes.
+fn linear(vector: &MaterialVector, nodes: &[NodePlace], of_node: &[Vec<LinearPart>]) -> Dependence {
+    let mut constant = Vector::zeros();
+    let mut parts = Vec::new();
+    for term in &vector.terms {
+        match term.carrier {
+            Carrier::Ground => constant += term.at(&Pose::GROUND),
+            Carrier::Body(body) => {
+                let d = &term.directors;
+                for (i, factor) in [term.centre, d.x, d.y, d.z].into_iter().enumerate() {
+                    if factor != 0.0 {
+                        parts.extend((0..3).map(|axis| LinearPart {
+                            coordinate: body_offset(body) + 3 * i + axis,
+                            axis,
+                            factor,
+                        }));
+                    }
+                }
+            }
+            Carrier::Node(node) => {
+                let NodePlace { reference, free } = nodes[node];
+                for axis in (0..3).filter(|&axis| !free[axis]) {
+                    constant[axis] += term.centre * reference[axis];
+                }
+                parts.extend(of_node[node].iter().map(|part| LinearPart {
+                    factor: part.factor * term.centre,
+                    ..*part
+                }));
+            }
+        }
+    }
+    Dependence::Linear { constant, parts }
 }

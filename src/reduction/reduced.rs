@@ -22,6 +22,51 @@ pub struct Reduced {
     layout: Layout,
 }
 
+/// What an interval is asked with, besides its two instants.
+#[derive(Clone, Copy, Debug)]
+pub struct Interval<'a> {
+    /// Scalars: voltages, then potentials.
+    pub scalars: &'a [f64],
+    /// Their rates along the direction; read at level `Third` only.
+    pub along: &'a [f64],
+    /// Length in ms.
+    pub h: f64,
+    /// Whether the length is an argument.
+    pub horizon: Horizon,
+    /// Which blocks are asked for.
+    pub sides: Sides,
+    /// Weights of the measures of the site.
+    pub weights: &'a [f64],
+}
+
+impl<'a> Interval<'a> {
+    /// A given interval, all blocks.
+    pub fn given(scalars: &'a [f64], h: f64) -> Self {
+        Self {
+            scalars,
+            along: &[],
+            h,
+            horizon: Horizon::Given,
+            sides: Sides::ALL,
+            weights: &[],
+        }
+    }
+
+    /// What effects read of it.
+    pub fn frame(&self, [a, b]: [&'a Instant; 2]) -> Frame<'a> {
+        Frame {
+            vectors: [&a.x, &b.x],
+            along: [&a.w, &b.w],
+            scalars: self.scalars,
+            scalars_along: self.along,
+            h: self.h,
+            horizon: self.horizon,
+            sides: self.sides,
+            weights: self.weights,
+        }
+    }
+}
+
 /// Storage that one evaluation needs, allocated once for each thread.
 ///
 /// In a sweep over a horizon the blocks of an instant are summed over both neighbouring intervals before they are pulled
@@ -34,7 +79,6 @@ pub struct Scratch {
     pub instant: Output,
     carried: [Carried; 2],
     local: Vec<f64>,
-    zeros: Vec<f64>,
 }
 
 /// Blocks (k+1, k+1) of the interval before.
@@ -114,47 +158,32 @@ impl Reduced {
         &self.layout
     }
 
-    /// Storage for evaluations.
-    pub fn scratch(&self) -> Scratch {
-        let interval = self.intervals.output();
-        let carried = Carried::new(&interval.plain.blocks);
+    /// Storage for evaluations up to a level; sweeps, which carry blocks on, need `Third`.
+    pub fn scratch(&self, level: Level) -> Scratch {
+        let interval = self.intervals.output(level);
+        let carried = if level == Level::Third {
+            Carried::new(&interval.plain.blocks)
+        } else {
+            Carried::new(&Blocks::default())
+        };
         Scratch {
             carried: [carried.clone(), carried],
             interval,
-            instant: self.instants.output(),
+            instant: self.instants.output(level),
             local: vec![0.0; self.interval_plan.local().max(self.instant_plan.local())],
-            zeros: vec![0.0; self.intervals.scalars],
         }
     }
 
     /// Evaluates the interval between two instants and adds its forces to theirs; at level `Third` along their
     /// directions, with contracted forces and the measures of the site by their weights.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "an interval has two ends, scalars and a length"
-    )]
     pub fn evaluate_interval(
         &self,
         level: Level,
-        a: &mut Instant,
-        b: &mut Instant,
-        scalars: &[f64],
-        h: f64,
-        horizon: Horizon,
-        sides: Sides,
-        weights: &[f64],
+        [a, b]: [&mut Instant; 2],
+        interval: &Interval<'_>,
         scratch: &mut Scratch,
     ) {
-        let frame = Frame {
-            vectors: [&a.x, &b.x],
-            along: [&a.w, &b.w],
-            scalars,
-            scalars_along: &scratch.zeros,
-            h,
-            horizon,
-            sides,
-            weights,
-        };
+        let frame = interval.frame([&*a, &*b]);
         self.intervals
             .evaluate(level, &frame, &mut scratch.interval);
         let out = &scratch.interval;
@@ -168,17 +197,11 @@ impl Reduced {
 
     /// Adds the second derivatives of the interval evaluated last to the values of step k: ∇² at level `Hessian`, the
     /// lower triangle of ∇³ along the directions at level `Third`.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "an interval has two ends, scalars and a length"
-    )]
     pub fn pull_back_interval(
         &self,
         level: Level,
-        a: &Instant,
-        b: &Instant,
-        horizon: Horizon,
-        sides: Sides,
+        [a, b]: [&Instant; 2],
+        &Interval { horizon, sides, .. }: &Interval<'_>,
         k: usize,
         scratch: &mut Scratch,
         values: &mut [f64],
@@ -226,9 +249,10 @@ impl Reduced {
                 let rows = &mut values[at..at + layout.unknowns];
                 self.motion
                     .pull_back(&instant.columns, &part.horizon_forces[side], rows);
-                if level == Level::Third && self.motion.tree.is_some() {
+                if level == Level::Third {
+                    let forces = &plain.horizon_forces[side];
                     self.motion
-                        .pull_back(&instant.columns_l, &plain.horizon_forces[side], rows);
+                        .pull_back_along(&instant.columns_l, forces, rows);
                 }
             }
             let at = layout.horizon_scalars_at(k);
@@ -253,8 +277,8 @@ impl Reduced {
         if level == Level::Gradient {
             return;
         }
-        scratch.interval.plain.clear();
-        scratch.interval.contracted.clear();
+        scratch.interval.plain.clear(true);
+        scratch.interval.contracted.clear(true);
         scratch.carry(level);
         let same = self.layout.same_at(k);
         let target = Target {

@@ -63,7 +63,7 @@ impl Bench {
     pub(super) fn new(action: &Reduced) -> Self {
         let weights = |measures: usize| vec![0.0; measures];
         Self {
-            scratch: action.scratch(),
+            scratch: action.scratch(Level::Third),
             weights: [
                 weights(action.instants.measures.len()),
                 weights(action.intervals.measures.len()),

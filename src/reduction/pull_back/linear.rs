@@ -2,17 +2,18 @@
 
 use crate::functional::Sides;
 use crate::math::Matrix;
+use crate::reduction::motion::LinearPart;
 use crate::reduction::pattern::Layout;
 use crate::reduction::pull_back::{Site, Target};
 
-/// One scalar entry c · block[i, j] of a pair of linear vectors.
+/// One scalar entry c · block[i, j] of a pair of linear vectors; compact, since a mesh has millions.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    slot: usize,
     factor: f64,
-    entry: (usize, usize),
-    same: usize,
-    cross: usize,
+    slot: u32,
+    same: u32,
+    cross: u32,
+    entry: (u8, u8),
 }
 
 /// Entries of all pairs of linear vectors.
@@ -23,31 +24,28 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// Adds a pair with a full block; parts are (first coordinate, coefficient).
+    /// Adds a pair with a full block.
     pub(super) fn add_full(
         &mut self,
         slot: usize,
-        parts: [&[(usize, f64)]; 2],
+        parts: [&[LinearPart]; 2],
         layout: &mut Layout,
         site: Site,
     ) {
-        for entry in (0..9).map(|e| (e / 3, e % 3)) {
-            self.full.extend(entries(slot, parts, entry, layout, site));
-        }
+        add(&mut self.full, slot, parts, layout, site, |_, _| true);
     }
 
     /// Adds a pair with an isotropic block.
     pub(super) fn add_isotropic(
         &mut self,
         slot: usize,
-        parts: [&[(usize, f64)]; 2],
+        parts: [&[LinearPart]; 2],
         layout: &mut Layout,
         site: Site,
     ) {
-        for i in 0..3 {
-            self.isotropic
-                .extend(entries(slot, parts, (i, i), layout, site));
-        }
+        add(&mut self.isotropic, slot, parts, layout, site, |i, j| {
+            i == j
+        });
     }
 
     /// Adds the blocks to the values.
@@ -61,47 +59,41 @@ impl Linear {
     ) {
         for side in (0..4).filter(|&s| sides.blocks[s]) {
             let base = target.blocks[side];
-            let place = |e: &Entry| {
-                base + if side == 1 || side == 2 {
-                    e.cross
-                } else {
-                    e.same
-                }
-            };
+            let crosses = side == 1 || side == 2;
+            let place = |e: &Entry| base + if crosses { e.cross } else { e.same } as usize;
             for e in &self.full {
-                values[place(e)] += e.factor * full[e.slot][side][e.entry];
+                let (i, j) = (e.entry.0 as usize, e.entry.1 as usize);
+                values[place(e)] += e.factor * full[e.slot as usize][side][(i, j)];
             }
             for e in &self.isotropic {
-                values[place(e)] += e.factor * isotropic[e.slot][side];
+                values[place(e)] += e.factor * isotropic[e.slot as usize][side];
             }
         }
     }
 }
 
-fn entries(
+fn add(
+    list: &mut Vec<Entry>,
     slot: usize,
-    [s, t]: [&[(usize, f64)]; 2],
-    entry: (usize, usize),
+    [s, t]: [&[LinearPart]; 2],
     layout: &mut Layout,
     site: Site,
-) -> Vec<Entry> {
-    let mut list = Vec::new();
-    for &(f, c) in s {
-        for &(g, d) in t {
-            let (row, col) = (f + entry.0, g + entry.1);
-            let same = layout.same.slot(row, col);
+    couples: impl Fn(usize, usize) -> bool,
+) {
+    for p in s {
+        for q in t.iter().filter(|q| couples(p.axis, q.axis)) {
+            let (row, col) = (p.coordinate, q.coordinate);
             let cross = match site {
-                Site::Intervals => layout.cross.slot(row, col),
-                Site::Instants => usize::MAX,
+                Site::Intervals => layout.cross.slot(row, col) as u32,
+                Site::Instants => u32::MAX,
             };
             list.push(Entry {
-                slot,
-                factor: c * d,
-                entry,
-                same,
+                factor: p.factor * q.factor,
+                slot: slot as u32,
+                same: layout.same.slot(row, col) as u32,
                 cross,
+                entry: (p.axis as u8, q.axis as u8),
             });
         }
     }
-    list
 }

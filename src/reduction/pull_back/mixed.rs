@@ -55,16 +55,14 @@ impl Mixed {
                 }
             }
             Dependence::Linear { parts, .. } => {
-                for &(first, factor) in parts {
-                    for component in 0..3 {
-                        for place in site.mixed(layout, motion, first + component, s) {
-                            self.list.push(Entry::Linear {
-                                slot,
-                                factor,
-                                component,
-                                place,
-                            });
-                        }
+                for part in parts {
+                    for place in site.mixed(layout, motion, part.coordinate, s) {
+                        self.list.push(Entry::Linear {
+                            slot,
+                            factor: part.factor,
+                            component: part.axis,
+                            place,
+                        });
                     }
                 }
             }

@@ -1,6 +1,7 @@
 //! Pᵀ H P and its derivative along a direction, block by block into prepared slots.
 
 mod articulated;
+mod joined;
 mod linear;
 mod mixed;
 
@@ -9,6 +10,7 @@ use crate::reduction::instant::Instant;
 use crate::reduction::motion::{Dependence, Motion};
 use crate::reduction::pattern::Layout;
 use articulated::{Ends, Groups, Pair, Place};
+use joined::{Block, Joined};
 use linear::Linear;
 use mixed::Mixed;
 
@@ -18,6 +20,7 @@ pub(super) struct PullBack {
     full: Groups,
     isotropic: Groups,
     linear: Linear,
+    joined: Joined,
     mixed: Mixed,
     /// (slot, place).
     scalars: Vec<(usize, usize)>,
@@ -43,39 +46,13 @@ impl PullBack {
         site: Site,
     ) -> Self {
         let mut plan = Self::default();
-        for (slot, &(a, b)) in couplings.full.iter().enumerate() {
-            match (&motion.vectors[a], &motion.vectors[b]) {
-                (Dependence::Articulated(a), Dependence::Articulated(b)) => {
-                    let transposed = couplings.transposed_full(slot);
-                    let pair = Pair {
-                        slot,
-                        transposed,
-                        first: [a.first, b.first],
-                    };
-                    plan.full.add(pair, [a, b], layout, site);
-                }
-                (Dependence::Linear { parts: s, .. }, Dependence::Linear { parts: t, .. }) => {
-                    plan.linear.add_full(slot, [s, t], layout, site);
-                }
-                _ => unreachable!("vectors of one scene are all articulated or all linear"),
-            }
+        for (slot, &pair) in couplings.full.iter().enumerate() {
+            let slots = [slot, couplings.transposed_full(slot)];
+            plan.pair(Block::Full, slots, pair, motion, layout, site);
         }
-        for (slot, &(a, b)) in couplings.isotropic.iter().enumerate() {
-            match (&motion.vectors[a], &motion.vectors[b]) {
-                (Dependence::Articulated(a), Dependence::Articulated(b)) => {
-                    let transposed = couplings.transposed_isotropic(slot);
-                    let pair = Pair {
-                        slot,
-                        transposed,
-                        first: [a.first, b.first],
-                    };
-                    plan.isotropic.add(pair, [a, b], layout, site);
-                }
-                (Dependence::Linear { parts: s, .. }, Dependence::Linear { parts: t, .. }) => {
-                    plan.linear.add_isotropic(slot, [s, t], layout, site);
-                }
-                _ => unreachable!("vectors of one scene are all articulated or all linear"),
-            }
+        for (slot, &pair) in couplings.isotropic.iter().enumerate() {
+            let slots = [slot, couplings.transposed_isotropic(slot)];
+            plan.pair(Block::Isotropic, slots, pair, motion, layout, site);
         }
         for (slot, &(a, s)) in couplings.mixed.iter().enumerate() {
             plan.mixed.add(slot, a, s, motion, layout, site);
@@ -86,6 +63,46 @@ impl PullBack {
             plan.scalars = couplings.scalars.iter().enumerate().map(place).collect();
         }
         plan
+    }
+
+    /// Plans the block of one pair of vectors.
+    fn pair(
+        &mut self,
+        block: Block,
+        slots: [usize; 2],
+        (a, b): (usize, usize),
+        motion: &Motion,
+        layout: &mut Layout,
+        site: Site,
+    ) {
+        use Dependence::{Articulated, Linear};
+        let [slot, transposed] = slots;
+        match (&motion.vectors[a], &motion.vectors[b]) {
+            (Articulated(a), Articulated(b)) => {
+                let pair = Pair {
+                    slot,
+                    transposed,
+                    first: [a.first, b.first],
+                };
+                let groups = match block {
+                    Block::Full => &mut self.full,
+                    Block::Isotropic => &mut self.isotropic,
+                };
+                groups.add(pair, [a, b], layout, site);
+            }
+            (Linear { parts: s, .. }, Linear { parts: t, .. }) => match block {
+                Block::Full => self.linear.add_full(slot, [s, t], layout, site),
+                Block::Isotropic => self.linear.add_isotropic(slot, [s, t], layout, site),
+            },
+            (Articulated(a), Linear { parts, .. }) => {
+                self.joined
+                    .add(block, slots, a, parts, true, layout, site);
+            }
+            (Linear { parts, .. }, Articulated(b)) => {
+                self.joined
+                    .add(block, slots, b, parts, false, layout, site);
+            }
+        }
     }
 
     /// Size of the local storage that an evaluation needs.
@@ -127,6 +144,14 @@ impl PullBack {
         );
         self.linear
             .add(&blocks.full, &blocks.isotropic, sides, target, values);
+        self.joined.plain(
+            ends,
+            &blocks.full,
+            &blocks.isotropic,
+            sides,
+            target,
+            values,
+        );
         self.mixed.plain(columns, part, target, values);
         for &(slot, place) in &self.scalars {
             values[target.scalars + place] += blocks.scalars[slot];
@@ -174,6 +199,14 @@ impl PullBack {
         );
         self.linear
             .add(&hw.full, &hw.isotropic, lower, target, values);
+        self.joined.along(
+            ends,
+            [&h.full, &hw.full],
+            [&h.isotropic, &hw.isotropic],
+            lower,
+            target,
+            values,
+        );
         self.mixed
             .along(columns, columns_l, [plain, contracted], target, values);
         for &(slot, place) in &self.scalars {

@@ -14,7 +14,7 @@
 mod forces;
 mod motion;
 
-use crate::kinematics::{MaterialVector, Pose, Term};
+use crate::kinematics::{Carrier, MaterialVector, Pose, Term};
 use crate::math::{Matrix, Vector};
 use crate::reduction::instant::{Moments, TreeState};
 
@@ -151,7 +151,12 @@ impl Tree {
             paths: Vec::new(),
         };
         for (index, vector) in vectors.iter().enumerate() {
-            tree.lay_vector(index, vector);
+            if vector.is_of_nodes() {
+                tree.constants.push(Vector::zeros());
+                tree.packed.push(Packed::default());
+            } else {
+                tree.lay_vector(index, vector);
+            }
         }
         tree.lay_paths();
         tree
@@ -166,8 +171,8 @@ impl Tree {
         let first_term = self.terms.len();
         let mut constant = Vector::zeros();
         for term in &vector.terms {
-            match term.body {
-                Some(body) => {
+            match term.carrier {
+                Carrier::Body(body) => {
                     let Term {
                         centre, directors, ..
                     } = *term;
@@ -178,7 +183,8 @@ impl Tree {
                         directors,
                     });
                 }
-                None => constant += term.at(&Pose::GROUND),
+                Carrier::Ground => constant += term.at(&Pose::GROUND),
+                Carrier::Node(_) => unreachable!("vectors of nodes are not on the tree"),
             }
         }
         self.constants.push(constant);

@@ -1,0 +1,274 @@
+//! Equilibria along the path of growing voltages by arc length, past limit points, where voltages fall again.
+//!
+//! With the rows R(y, f) of a state y under the fraction f of the voltages, K = ∂R/∂y and b = ∂R/∂f, the tangent of the
+//! path is K ẏ = −ḟ b. A step follows it by Δs and comes back to the path in the plane normal to it. The path has a
+//! limit point (pull-in) where ḟ = 0; where a pivot of K changes its sign elsewhere, it meets another path (buckling).
+
+use crate::dynamics::EquilibriumError;
+use crate::dynamics::equilibrium::Equilibrium;
+use crate::dynamics::statics::{State, Statics};
+use crate::model::Model;
+
+/// Limit of corrections in one step.
+const CORRECTIONS: usize = 12;
+/// Convergence of a correction, relative to angles of one radian and the length of the system.
+const UPDATE: f64 = 1e-11;
+/// First step along the path, in units of the fraction and of strains.
+const FIRST: f64 = 0.02;
+/// Largest step.
+const LARGEST: f64 = 0.1;
+/// Steps below this end the path.
+const SMALLEST: f64 = 1e-7;
+/// Limit of steps in the search of a limit point.
+const STEPS: usize = 200;
+/// Slope ḟ that counts as zero; the fraction is then exact to its square.
+const FLAT: f64 = 1e-6;
+
+/// How an equilibrium under growing voltages is lost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Instability {
+    /// The path turns back: beyond this voltage there is no equilibrium nearby (pull-in).
+    PullIn,
+    /// The path goes on, but another one branches off and is preferred (buckling).
+    Buckling,
+}
+
+/// Where an equilibrium is lost.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LimitPoint {
+    pub(super) fraction: f64,
+    pub(super) kind: Instability,
+    pub(super) state: State,
+}
+
+/// A point of the path.
+#[derive(Clone, Debug)]
+struct Point {
+    state: State,
+    fraction: f64,
+    /// Unit tangent: state, then fraction.
+    tangent: (Vec<f64>, f64),
+    unstable: Option<usize>,
+}
+
+/// The path from a state of equilibrium on.
+struct Path<'s, 'm> {
+    statics: &'s mut Statics<'m>,
+    voltages: &'s [f64],
+    weights: Vec<f64>,
+}
+
+impl Path<'_, '_> {
+    fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
+        let products = a.iter().zip(b).zip(&self.weights);
+        products.map(|((a, b), w)| a * b * w).sum()
+    }
+
+    /// Evaluates and factorises at a state; returns −K⁻¹ b.
+    fn linearise(&mut self, state: &[f64], fraction: f64) -> Option<Vec<f64>> {
+        let loaded: Vec<f64> = self.voltages.iter().map(|v| v * fraction).collect();
+        self.statics.evaluate(state, &loaded);
+        if self.statics.residual.iter().any(|r| !r.is_finite()) {
+            return None;
+        }
+        self.statics.factor().ok()?;
+        let mut load = vec![0.0; state.len()];
+        self.statics.add_load(self.voltages, &mut load);
+        self.statics.solve(&mut load);
+        load.iter_mut().for_each(|v| *v = -*v);
+        Some(load)
+    }
+
+    /// The point at a state of equilibrium; its tangent goes on along `before`, or towards larger fractions.
+    fn point(
+        &mut self,
+        state: State,
+        fraction: f64,
+        before: Option<&(Vec<f64>, f64)>,
+    ) -> Option<Point> {
+        let slope = self.linearise(&state, fraction)?;
+        let norm = (1.0 + self.dot(&slope, &slope)).sqrt();
+        let along = before.map_or(1.0, |(y, f)| self.dot(&slope, y) + f);
+        let ahead = along.signum() / norm;
+        let unstable = self.statics.unstable();
+        Some(Point {
+            tangent: (slope.iter().map(|v| v * ahead).collect(), ahead),
+            state,
+            fraction,
+            unstable,
+        })
+    }
+
+    /// The point at the arc length `step` from another; `None` where the corrections do not converge.
+    fn advance(&mut self, from: &Point, step: f64) -> Option<Point> {
+        let (direction, ahead) = &from.tangent;
+        let predicted = from.state.iter().zip(direction);
+        let mut state: State = predicted.map(|(y, t)| y + step * t).collect();
+        let mut fraction = from.fraction + step * ahead;
+        for _ in 0..CORRECTIONS {
+            self.statics.iterations += 1;
+            let slope = self.linearise(&state, fraction)?;
+            let mut update = self.statics.residual.clone();
+            self.statics.solve(&mut update);
+            update.iter_mut().for_each(|v| *v = -*v);
+            let change = -self.dot(direction, &update) / (self.dot(direction, &slope) + ahead);
+            for (u, s) in update.iter_mut().zip(&slope) {
+                *u += change * s;
+            }
+            let size = self.statics.size(&update).max(change.abs());
+            if size.is_nan() || size > 1.0 {
+                return None;
+            }
+            for (y, u) in state.iter_mut().zip(&update) {
+                *y += u;
+            }
+            fraction += change;
+            if size < UPDATE {
+                return self.point(state, fraction, Some(&from.tangent));
+            }
+        }
+        None
+    }
+
+    /// The zero of ḟ between a point and the one a step later.
+    fn turn(&mut self, before: &Point, step: f64, after: &Point) -> Point {
+        let (mut low, mut high) = (0.0, step);
+        let (mut at_low, mut at_high) = (before.tangent.1, after.tangent.1);
+        let mut best = if at_low.abs() < at_high.abs() {
+            before.clone()
+        } else {
+            after.clone()
+        };
+        for k in 0..60 {
+            let secant = low + (high - low) * at_low / (at_low - at_high);
+            let middle = 0.5 * (low + high);
+            let trial = if k % 4 == 3 { middle } else { secant };
+            let Some(point) = self.advance(before, trial) else {
+                break;
+            };
+            let slope = point.tangent.1;
+            if slope > 0.0 {
+                (low, at_low) = (trial, slope);
+            } else {
+                (high, at_high) = (trial, slope);
+            }
+            if slope.abs() < best.tangent.1.abs() {
+                best = point;
+            }
+            if best.tangent.1.abs() < FLAT {
+                break;
+            }
+        }
+        best
+    }
+}
+
+fn path<'s, 'm>(statics: &'s mut Statics<'m>, voltages: &'s [f64]) -> Path<'s, 'm> {
+    let weights = statics.weights();
+    Path {
+        statics,
+        voltages,
+        weights,
+    }
+}
+
+/// The limit point that the path from a state of equilibrium runs into, if there is one near.
+pub(super) fn limit_point(
+    statics: &mut Statics<'_>,
+    state: &[f64],
+    voltages: &[f64],
+    fraction: f64,
+) -> Option<LimitPoint> {
+    let mut path = path(statics, voltages);
+    let mut here = path.point(state.to_vec(), fraction, None)?;
+    let mut step = FIRST;
+    for _ in 0..STEPS {
+        let Some(next) = path.advance(&here, step) else {
+            step *= 0.5;
+            if step < SMALLEST {
+                return None;
+            }
+            continue;
+        };
+        if next.tangent.1 <= 0.0 {
+            let found = path.turn(&here, step, &next);
+            return Some(LimitPoint {
+                fraction: found.fraction,
+                kind: Instability::PullIn,
+                state: found.state,
+            });
+        }
+        if let (Some(0), Some(1..)) = (here.unstable, next.unstable) {
+            return Some(LimitPoint {
+                fraction: next.fraction,
+                kind: Instability::Buckling,
+                state: next.state,
+            });
+        }
+        here = next;
+        step = (1.5 * step).min(LARGEST);
+    }
+    None
+}
+
+/// Equilibria along a path.
+#[derive(Clone, Debug)]
+pub struct Continuation {
+    /// Fraction of the voltages at each point.
+    pub fractions: Vec<f64>,
+    /// The equilibria.
+    pub points: Vec<Equilibrium>,
+    /// Index of the last point before each loss of stability, the exact fraction there, and its kind.
+    pub lost: Vec<(usize, f64, Instability)>,
+}
+
+/// Follows the path of equilibria from zero voltage by arc length for `steps` points, past limit points.
+///
+/// # Errors
+/// There is no equilibrium without voltages, or nothing holds the system.
+pub fn continuation(
+    model: &Model,
+    start: &[f64],
+    voltages: &[f64],
+    steps: usize,
+) -> Result<Continuation, EquilibriumError> {
+    // At zero voltage nothing depends on the fraction to first order: the path starts a little further.
+    let beginning: Vec<f64> = voltages.iter().map(|v| v * FIRST).collect();
+    let first = crate::dynamics::equilibrium(model, start, &beginning)?;
+    let mut state = first.z.clone();
+    state.extend_from_slice(&first.scalars[voltages.len()..]);
+    let mut statics = Statics::new(model);
+    let mut path = path(&mut statics, voltages);
+    let mut out = Continuation {
+        fractions: vec![FIRST],
+        points: vec![first],
+        lost: Vec::new(),
+    };
+    let Some(mut here) = path.point(state, FIRST, None) else {
+        return Ok(out);
+    };
+    let mut step = FIRST;
+    while out.points.len() < steps {
+        let Some(next) = path.advance(&here, step) else {
+            step *= 0.5;
+            if step < SMALLEST {
+                break;
+            }
+            continue;
+        };
+        let index = out.points.len() - 1;
+        if here.tangent.1 > 0.0 && next.tangent.1 <= 0.0 {
+            let turn = path.turn(&here, step, &next);
+            out.lost.push((index, turn.fraction, Instability::PullIn));
+        } else if let (Some(0), Some(1..)) = (here.unstable, next.unstable) {
+            out.lost.push((index, next.fraction, Instability::Buckling));
+        }
+        let loaded: Vec<f64> = voltages.iter().map(|v| v * next.fraction).collect();
+        out.fractions.push(next.fraction);
+        out.points
+            .push(Equilibrium::new(path.statics, &next.state, &loaded));
+        here = next;
+        step = (1.5 * step).min(LARGEST);
+    }
+    Ok(out)
+}

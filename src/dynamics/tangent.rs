@@ -1,0 +1,105 @@
+//! The square system of one Newton iteration: which derivatives of the action it holds, and its factorisation.
+//!
+//! Unknowns are the coordinates and multipliers of an instant, then the potentials of an interval.
+
+use crate::model::Model;
+use crate::reduction::Layout;
+use crate::sparse::{Direct, Singular, Symmetry};
+
+/// Places in the values of the action, summed into the entries of a matrix.
+#[derive(Debug)]
+pub(super) struct Tangent {
+    /// (place in the values, entry of the matrix).
+    gather: Vec<(usize, usize)>,
+    entries: Vec<(usize, usize)>,
+    matrix: Vec<f64>,
+    solver: Direct,
+}
+
+/// Lists entries before the factorisation is prepared.
+#[derive(Debug, Default)]
+pub(super) struct Entries {
+    entries: Vec<(usize, usize)>,
+    gather: Vec<(usize, usize)>,
+}
+
+impl Entries {
+    /// A new entry of the matrix that takes the value at a place.
+    pub(super) fn add(&mut self, place: usize, entry: (usize, usize)) {
+        self.gather.push((place, self.entries.len()));
+        self.entries.push(entry);
+    }
+
+    /// Adds the value at a place to an entry that exists.
+    pub(super) fn add_to(&mut self, place: usize, entry: usize) {
+        self.gather.push((place, entry));
+    }
+
+    /// Gauss's law: potentials against the coordinates of the rows (instant `sides[0]`) and of the columns
+    /// (instant `sides[1]`) of the interval 0, and against each other.
+    pub(super) fn add_potentials(&mut self, model: &Model, sides: &[[usize; 2]]) {
+        let layout: &Layout = model.action.layout();
+        let (first, driven) = (model.action.motion.unknowns(), model.voltages.len());
+        for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
+            let Some(s) = s.checked_sub(driven) else {
+                continue;
+            };
+            for &[row, col] in sides {
+                self.add(layout.mixed_at(0, row) + slot, (i, first + s));
+                self.add(layout.mixed_at(0, col) + slot, (first + s, i));
+            }
+        }
+        for (slot, &(s, t)) in layout.scalars.entries().iter().enumerate() {
+            if let (Some(s), Some(t)) = (s.checked_sub(driven), t.checked_sub(driven)) {
+                self.add(layout.scalars_at(0) + slot, (first + s, first + t));
+                if s != t {
+                    self.add(layout.scalars_at(0) + slot, (first + t, first + s));
+                }
+            }
+        }
+    }
+
+    /// Prepares the factorisation of the unknowns from `first` on.
+    pub(super) fn tangent_from(mut self, first: usize, size: usize, symmetry: Symmetry) -> Tangent {
+        for (row, col) in &mut self.entries {
+            (*row, *col) = (*row - first, *col - first);
+        }
+        Tangent {
+            matrix: vec![0.0; self.entries.len()],
+            solver: Direct::with(size, &self.entries, symmetry, None),
+            gather: self.gather,
+            entries: self.entries,
+        }
+    }
+
+    /// Prepares the factorisation.
+    pub(super) fn tangent(self, size: usize, symmetry: Symmetry) -> Tangent {
+        self.tangent_from(0, size, symmetry)
+    }
+}
+
+impl Tangent {
+    /// Factorises the matrix of these values.
+    pub(super) fn factor(&mut self, values: &[f64]) -> Result<(), Singular> {
+        self.matrix.fill(0.0);
+        for &(place, entry) in &self.gather {
+            self.matrix[entry] += values[place];
+        }
+        self.solver.factor(&self.matrix)
+    }
+
+    /// Number of negative pivots of the last factorisation, where it tells.
+    pub(super) fn negative_pivots(&self) -> Option<usize> {
+        self.solver.negative_pivots()
+    }
+
+    /// Entries of the matrix factorised last.
+    pub(super) fn entries(&self) -> impl Iterator<Item = ((usize, usize), f64)> + '_ {
+        self.entries.iter().copied().zip(self.matrix.iter().copied())
+    }
+
+    /// Solves with the last factorisation, in place.
+    pub(super) fn solve(&mut self, rhs: &mut [f64]) {
+        self.solver.solve(rhs);
+    }
+}

@@ -1,0 +1,363 @@
+//! Elastic and dielectric hexahedra: energies of finite elements as terms of the sum.
+//!
+//! Nodes are read at the midpoint of an interval, potentials are scalars of the interval: `−h W(x̄, φ)`. A large mesh is
+//! evaluated on all cores, stretch by stretch, and added up element by element, so that the sum is the same for any
+//! number of threads.
+
+use crate::element::{Dielectric, Elastomer, Field, Local, Passive, Shape};
+use crate::functional::{Couplings, Effect, Frame, Horizon, Kind, Level, Output, Part};
+use crate::math::Vector;
+use rayon::prelude::*;
+use std::fmt;
+use std::sync::Mutex;
+
+/// From so many elements on, a mesh is evaluated on all cores.
+const PARALLEL: usize = 256;
+/// Elements of a stretch.
+const STRETCH: usize = 512;
+/// No slot.
+const NONE: u32 = u32::MAX;
+
+/// One hexahedron: its geometry, its law, and what it reads.
+#[derive(Clone, Debug)]
+pub struct Hexahedron<F: Wired> {
+    /// Gradients of the shape functions.
+    pub shape: Shape,
+    /// The law.
+    pub law: Elastomer<F>,
+    /// Vectors of the nodes.
+    pub nodes: [usize; 8],
+    /// Where the potentials of the nodes come from; nothing for a passive element.
+    pub terminals: F::Terminals,
+}
+
+/// Where the potential of a node comes from: a constant plus a factor times a scalar of the interval.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Terminal {
+    /// The constant in V.
+    pub constant: f64,
+    /// Scalar and factor.
+    pub scalar: Option<(usize, f64)>,
+}
+
+/// How the potentials of an element are wired to the scalars of an interval.
+pub trait Wired: Field {
+    /// One terminal a node, or nothing.
+    type Terminals: Clone + fmt::Debug + Send + Sync;
+
+    /// The terminals; none for a passive element.
+    fn wires(terminals: &Self::Terminals) -> &[Terminal];
+
+    /// Potentials of the nodes.
+    fn potentials(potential: impl Fn(usize) -> f64) -> Self::Potentials;
+
+    /// The law without the field.
+    fn passive(law: &Elastomer<Self>) -> Elastomer<Passive> {
+        Elastomer {
+            shear_modulus: law.shear_modulus,
+            lame_lambda: law.lame_lambda,
+            volume: law.volume,
+            field: Passive,
+        }
+    }
+}
+
+impl Wired for Passive {
+    type Terminals = ();
+
+    fn wires((): &()) -> &[Terminal] {
+        &[]
+    }
+
+    fn potentials(_: impl Fn(usize) -> f64) {}
+}
+
+impl Wired for Dielectric {
+    type Terminals = [Terminal; 8];
+
+    fn wires(terminals: &[Terminal; 8]) -> &[Terminal] {
+        terminals
+    }
+
+    fn potentials(potential: impl Fn(usize) -> f64) -> [f64; 8] {
+        std::array::from_fn(potential)
+    }
+}
+
+/// Where the blocks of an element lie.
+#[derive(Clone, Debug)]
+struct Slots {
+    vectors: [[u32; 8]; 8],
+    /// Empty for a passive element.
+    electric: Vec<ElectricSlots>,
+}
+
+#[derive(Clone, Debug)]
+struct ElectricSlots {
+    mixed: [[u32; 8]; 8],
+    scalars: [[u32; 8]; 8],
+}
+
+/// Hexahedra of one kind.
+pub struct Hexahedra<F: Wired> {
+    name: String,
+    elements: Vec<Hexahedron<F>>,
+    slots: Vec<Slots>,
+    /// Derivatives of the elements of a stretch.
+    locals: Mutex<Vec<Local<F>>>,
+}
+
+impl<F: Wired> fmt::Debug for Hexahedra<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({} elements)", self.name, self.elements.len())
+    }
+}
+
+/// Half the sum of both instants.
+fn middle(vectors: [&[Vector]; 2], nodes: &[usize; 8]) -> [Vector; 8] {
+    nodes.map(|v| (vectors[0][v] + vectors[1][v]) * 0.5)
+}
+
+impl<F: Wired> Hexahedra<F> {
+    /// Hexahedra under one name.
+    pub fn new(name: &str, elements: Vec<Hexahedron<F>>) -> Self {
+        Self {
+            name: name.to_owned(),
+            elements,
+            slots: Vec::new(),
+            locals: Mutex::default(),
+        }
+    }
+
+    fn potentials(element: &Hexahedron<F>, scalars: &[f64]) -> F::Potentials {
+        let wires = F::wires(&element.terminals);
+        F::potentials(|i| {
+            let Terminal { constant, scalar } = wires[i];
+            constant + scalar.map_or(0.0, |(s, factor)| factor * scalars[s])
+        })
+    }
+
+    fn rates(element: &Hexahedron<F>, along: &[f64]) -> F::Potentials {
+        let wires = F::wires(&element.terminals);
+        F::potentials(|i| wires[i].scalar.map_or(0.0, |(s, f)| f * along[s]))
+    }
+
+    /// Derivatives of one element, up to `Hessian`.
+    fn local(element: &Hexahedron<F>, level: Level, frame: &Frame<'_>, local: &mut Local<F>) {
+        let x = middle(frame.vectors, &element.nodes);
+        let potentials = Self::potentials(element, frame.scalars);
+        match level {
+            Level::Gradient => element.law.gradient(&element.shape, &x, &potentials, local),
+            _ => element.law.tangent(&element.shape, &x, &potentials, local),
+        }
+    }
+
+    /// Adds `−h` times first derivatives, and by the length of the interval.
+    fn add_first(element: &Hexahedron<F>, local: &mut Local<F>, frame: &Frame<'_>, part: &mut Part) {
+        let c = -0.5 * frame.h;
+        for (&v, force) in element.nodes.iter().zip(&local.forces) {
+            part.forces[0][v] += force * c;
+            part.forces[1][v] += force * c;
+        }
+        let free = frame.horizon == Horizon::Free;
+        if free {
+            for (&v, force) in element.nodes.iter().zip(&local.forces) {
+                part.horizon_forces[0][v] -= force * 0.5;
+                part.horizon_forces[1][v] -= force * 0.5;
+            }
+        }
+        if let Some(electric) = F::electric(&mut local.electric) {
+            let wires = F::wires(&element.terminals).iter();
+            for (wire, charge) in wires.zip(&electric.charges) {
+                if let Some((s, factor)) = wire.scalar {
+                    part.rows[s] -= frame.h * factor * charge;
+                    if free {
+                        part.horizon_rows[s] -= factor * charge;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds `−h` times second derivatives.
+    fn add_second(
+        (element, slots): (&Hexahedron<F>, &Slots),
+        local: &mut Local<F>,
+        frame: &Frame<'_>,
+        part: &mut Part,
+    ) {
+        let c = -0.25 * frame.h;
+        let sides = || (0..4).filter(|&side| frame.sides.blocks[side]);
+        for (row, stiffness) in slots.vectors.iter().zip(&local.stiffness) {
+            for (&slot, k) in row.iter().zip(stiffness) {
+                let block = &mut part.blocks.full[slot as usize];
+                for side in sides() {
+                    block[side] += k * c;
+                }
+            }
+        }
+        let (Some(electric), [at]) = (F::electric(&mut local.electric), &slots.electric[..]) else {
+            return;
+        };
+        let wires = F::wires(&element.terminals);
+        for (j, wire) in wires.iter().enumerate() {
+            let Some((s, factor)) = wire.scalar else {
+                continue;
+            };
+            for i in 0..8 {
+                let column = electric.coupling[i][j] * (-0.5 * frame.h * factor);
+                let block = &mut part.blocks.mixed[at.mixed[i][j] as usize];
+                block[0] += column;
+                block[1] += column;
+            }
+            for (i, other) in wires.iter().enumerate() {
+                // Pairs of different scalars are met twice, once in each order, and kept once.
+                if let Some((t, other)) = other.scalar
+                    && t <= s
+                {
+                    part.blocks.scalars[at.scalars[j][i] as usize] -=
+                        frame.h * factor * other * electric.permittivity[i][j];
+                }
+            }
+        }
+    }
+
+    fn add(&self, index: usize, local: &mut Local<F>, level: Level, frame: &Frame<'_>, part: &mut Part) {
+        let element = &self.elements[index];
+        Self::add_first(element, local, frame, part);
+        if level >= Level::Hessian {
+            Self::add_second((element, &self.slots[index]), local, frame, part);
+        }
+    }
+
+    /// Evaluates on all cores, adds on one.
+    fn evaluate_stretches(
+        &self,
+        level: Level,
+        frame: &Frame<'_>,
+        locals: &mut Vec<Local<F>>,
+        part: &mut Part,
+    ) {
+        let count = STRETCH.min(self.elements.len());
+        locals.resize_with(count, Local::default);
+        for (k, stretch) in self.elements.chunks(STRETCH).enumerate() {
+            let work = stretch.par_iter().with_min_len(32).zip(locals.par_iter_mut());
+            work.for_each(|(element, local)| Self::local(element, level, frame, local));
+            for (i, local) in locals[..stretch.len()].iter_mut().enumerate() {
+                self.add(k * STRETCH + i, local, level, frame, part);
+            }
+        }
+    }
+
+    fn energy_of(&self, frame: &Frame<'_>, energy: impl Fn(&Hexahedron<F>, &[Vector; 8]) -> f64 + Sync) -> f64 {
+        let of = |element: &Hexahedron<F>| energy(element, &middle(frame.vectors, &element.nodes));
+        self.elements.iter().map(of).sum()
+    }
+}
+
+impl<F: Wired> Effect for Hexahedra<F> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn elements(&self) -> usize {
+        self.elements.len()
+    }
+
+    fn couple(&mut self, couplings: &mut Couplings) {
+        let slots = |element: &Hexahedron<F>| {
+            let wires = F::wires(&element.terminals);
+            let scalar = |i: usize| wires[i].scalar.map(|(s, _)| s);
+            let vectors = element
+                .nodes
+                .map(|a| element.nodes.map(|b| couplings.add_full(a, b) as u32));
+            let mut electric = Vec::new();
+            if !wires.is_empty() {
+                let mut slots = ElectricSlots {
+                    mixed: [[NONE; 8]; 8],
+                    scalars: [[NONE; 8]; 8],
+                };
+                for j in 0..8 {
+                    let Some(s) = scalar(j) else { continue };
+                    for (i, &node) in element.nodes.iter().enumerate() {
+                        slots.mixed[i][j] = couplings.add_mixed(node, s) as u32;
+                        if let Some(t) = scalar(i).filter(|&t| t <= s) {
+                            slots.scalars[j][i] = couplings.add_scalars(s, t) as u32;
+                        }
+                    }
+                }
+                electric.push(slots);
+            }
+            Slots { vectors, electric }
+        };
+        self.slots = self.elements.iter().map(slots).collect();
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Potential
+    }
+
+    fn energy(&self, frame: &Frame<'_>) -> f64 {
+        self.energy_of(frame, |element, x| {
+            let potentials = Self::potentials(element, frame.scalars);
+            element.law.energy(&element.shape, x, &potentials)
+        })
+    }
+
+    fn energy_parts(&self) -> Vec<String> {
+        let is_dielectric = self
+            .elements
+            .iter()
+            .any(|element| !F::wires(&element.terminals).is_empty());
+        match is_dielectric {
+            true => ["elastic", "electric"]
+                .map(|part| format!("{} {part}", self.name))
+                .to_vec(),
+            false => vec![self.name.clone()],
+        }
+    }
+
+    fn energies(&self, frame: &Frame<'_>, out: &mut Vec<f64>) {
+        let total = self.energy(frame);
+        if self.energy_parts().len() == 1 {
+            out.push(total);
+            return;
+        }
+        let elastic = self.energy_of(frame, |element, x| {
+            F::passive(&element.law).energy(&element.shape, x, &())
+        });
+        out.extend([elastic, total - elastic]);
+    }
+
+    fn momentum(&self, _x: &[Vector], _v: &[Vector], _out: &mut [Vector]) {}
+
+    fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output) {
+        if level < Level::Third {
+            if self.elements.len() >= PARALLEL
+                && let Ok(mut locals) = self.locals.try_lock()
+            {
+                self.evaluate_stretches(level, frame, &mut locals, &mut out.plain);
+                return;
+            }
+            let mut local = Local::default();
+            for (index, element) in self.elements.iter().enumerate() {
+                Self::local(element, level, frame, &mut local);
+                self.add(index, &mut local, level, frame, &mut out.plain);
+            }
+            return;
+        }
+        let (mut plain, mut along) = (Local::default(), Local::default());
+        for (index, element) in self.elements.iter().enumerate() {
+            let x = middle(frame.vectors, &element.nodes);
+            let w = middle(frame.along, &element.nodes);
+            let potentials = Self::potentials(element, frame.scalars);
+            let rates = Self::rates(element, frame.scalars_along);
+            let shape = &element.shape;
+            element
+                .law
+                .third(shape, (&x, &potentials), (&w, &rates), &mut plain, &mut along);
+            self.add(index, &mut plain, level, frame, &mut out.plain);
+            self.add(index, &mut along, level, frame, &mut out.contracted);
+        }
+    }
+}
