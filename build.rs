@@ -1,8 +1,8 @@
-//! Finds Ipopt, translates the few declarations of its C header that `src/ipopt/ffi.rs` calls, and notes the versions that
-//! results name.
+//! Finds Ipopt and the MUMPS it was linked with, translates the few declarations of their C headers that `src/ipopt/ffi.rs`
+//! and `src/sparse/mumps/ffi.rs` call, and notes the versions that results name.
 
 use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What is told when Ipopt or its header is missing.
@@ -10,11 +10,23 @@ const INSTALL: &str = "proboscis needs Ipopt with its C header: \
     install coinor-libipopt-dev (Debian, Ubuntu), coin-or-Ipopt-devel (Fedora) or ipopt (Homebrew), \
     and see that `pkg-config --cflags --libs ipopt` answers";
 
+/// What is told when MUMPS or its header is missing.
+const INSTALL_MUMPS: &str = "proboscis needs the sequential MUMPS with its C header `dmumps_c.h`, the one that Ipopt uses: \
+    install libmumps-seq-dev and libmumps-headers-dev (Debian, Ubuntu) or MUMPS-devel (Fedora)";
+/// Name of the library where pkg-config does not tell what Ipopt was linked with.
+const MUMPS: &str = "dmumps_seq";
+/// Folders of `dmumps_c.h` besides those that the compiler knows.
+const MUMPS_HEADERS: [&str; 3] = [
+    "/usr/include/MUMPS",
+    "/usr/include/mumps-seq",
+    "/usr/local/include/mumps",
+];
+
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=PKG_CONFIG_PATH");
 
-    // Only the shared library is linked: what it needs itself (LAPACK, MUMPS, Fortran) is its own affair,
+    // Only the shared libraries are linked: what they need themselves (LAPACK, Fortran) is their own affair,
     // so the rest of the list that pkg-config gives is left out.
     let Ok(ipopt) = pkg_config::Config::new()
         .cargo_metadata(false)
@@ -23,38 +35,81 @@ fn main() {
         println!("cargo::error={INSTALL}");
         return;
     };
-    let holds_ipopt = |path: &&PathBuf| {
-        ["so", "dylib"]
-            .iter()
-            .any(|end| path.join(format!("libipopt.{end}")).exists())
-    };
-    for path in ipopt.link_paths.iter().filter(holds_ipopt) {
-        println!("cargo::rustc-link-search=native={}", path.display());
+    let mumps = ipopt.libs.iter().find(|name| name.contains("dmumps"));
+    let mumps = mumps.map_or(MUMPS, String::as_str);
+    for name in ["ipopt", mumps] {
+        let holds = |path: &&PathBuf| shared(name).any(|file| path.join(file).exists());
+        let folders: Vec<&PathBuf> = ipopt.link_paths.iter().filter(holds).collect();
+        if name == mumps && folders.is_empty() && !linker_finds(name) {
+            println!("cargo::error={INSTALL_MUMPS} (no library {name})");
+            return;
+        }
+        for path in folders {
+            println!("cargo::rustc-link-search=native={}", path.display());
+        }
+        println!("cargo::rustc-link-lib=dylib={name}");
     }
-    println!("cargo::rustc-link-lib=dylib=ipopt");
     println!("cargo::rustc-env=PROBOSCIS_IPOPT={}", ipopt.version);
     if env::var("PROFILE").as_deref() == Ok("release") {
         note_commit();
     }
 
-    let bindings = bindgen::Builder::default()
-        .header_contents("ipopt.h", "#include <IpStdCInterface.h>\n")
-        .clang_args(ipopt.include_paths.iter().map(|path| format!("-I{}", path.display())))
-        .allowlist_function("(Create|Free)IpoptProblem|AddIpopt(Str|Num|Int)Option|SetIntermediateCallback|IpoptSolve")
-        // Up to 3.13 `Bool` is `int`, since 3.14 it is `bool`: the callbacks are written in terms of the name.
-        .allowlist_type("Bool")
+    let ipopt_functions =
+        "(Create|Free)IpoptProblem|AddIpopt(Str|Num|Int)Option|SetIntermediateCallback|IpoptSolve";
+    let mut folders = ipopt.include_paths;
+    // Up to 3.13 `Bool` is `int`, since 3.14 it is `bool`: the callbacks are written in terms of the name.
+    let ipopt = bindings("IpStdCInterface.h", &folders, ipopt_functions).allowlist_type("Bool");
+    write(ipopt, "ipopt.rs", INSTALL);
+    folders.extend(MUMPS_HEADERS.map(PathBuf::from));
+    write(
+        bindings("dmumps_c.h", &folders, "dmumps_c"),
+        "mumps.rs",
+        INSTALL_MUMPS,
+    );
+}
+
+/// Names of the files of a shared library.
+fn shared(name: &str) -> impl Iterator<Item = String> {
+    ["so", "dylib"]
+        .map(|end| format!("lib{name}.{end}"))
+        .into_iter()
+}
+
+/// Whether the linker finds a shared library by itself: `cc` then tells its place instead of repeating its name.
+fn linker_finds(name: &str) -> bool {
+    let is_told = |file: String| {
+        let output = Command::new("cc")
+            .arg(format!("-print-file-name={file}"))
+            .output();
+        output.is_ok_and(|output| {
+            let path = String::from_utf8_lossy(&output.stdout);
+            Path::new(path.trim()).is_absolute()
+        })
+    };
+    shared(name).any(is_told)
+}
+
+/// Translates the functions of a header.
+fn bindings(header: &str, folders: &[PathBuf], functions: &str) -> bindgen::Builder {
+    bindgen::Builder::default()
+        .header_contents("bindings.h", &format!("#include <{header}>\n"))
+        .clang_args(folders.iter().map(|path| format!("-I{}", path.display())))
+        .allowlist_function(functions)
         .rust_edition(bindgen::RustEdition::Edition2024)
         .layout_tests(false)
         .generate_comments(false)
-        .generate();
-    match bindings {
+}
+
+/// Writes bindings to where the sources include them from.
+fn write(bindings: bindgen::Builder, file: &str, install: &str) {
+    match bindings.generate() {
         Ok(bindings) => {
             let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
             bindings
-                .write_to_file(out.join("ipopt.rs"))
+                .write_to_file(out.join(file))
                 .expect("OUT_DIR can be written");
         }
-        Err(error) => println!("cargo::error={INSTALL} ({error})"),
+        Err(error) => println!("cargo::error={install} ({error})"),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Imports go downwards, or stay in their own folder; serde is a matter of files, unsafe code of one file.
+//! Imports go downwards, or stay in their own folder; serde is a matter of files, unsafe code of the bindings of C.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -95,7 +95,8 @@ fn words_stay_in_their_place() {
                 .split(|c: char| !c.is_alphanumeric() && c != '_')
                 .any(|word| word == "unsafe")
             {
-                assert_eq!(name, "ipopt/ffi.rs", "{line}");
+                let bindings = ["ipopt/ffi.rs", "sparse/mumps/ffi.rs"];
+                assert!(bindings.contains(&name.as_str()), "{name}: {line}");
                 seen[1] += 1;
             }
         }

@@ -1,4 +1,4 @@
-//! The C interface of Ipopt: bindings, the callbacks over one guard against panics, and one lock around a solve.
+//! The C interface of Ipopt: bindings, and the callbacks over one guard against panics.
 //!
 //! The header differs between versions: up to 3.13 `Bool` is `int`, `Number` is `double` and `Index` is `int`; since
 //! 3.14 `Bool` is `bool`, and the other two are old names of `ipnumber` and `ipindex`, which are `double` and `int`
@@ -9,17 +9,16 @@
 
 use std::any::Any;
 use std::ffi::{CString, c_int, c_void};
-use std::mem;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::ptr::{self, NonNull};
 use std::slice;
-use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 
 use crate::ipopt::evaluation::Evaluator;
 use crate::ipopt::options::OptionValue;
 use crate::ipopt::solution::{Costates, Iteration};
 use crate::nlp::{Bounds, Entries};
+use crate::sparse::mumps::{self, Exclusive};
 
 use bindings::Bool;
 
@@ -39,15 +38,12 @@ mod bindings {
     include!(concat!(env!("OUT_DIR"), "/ipopt.rs"));
 }
 
-/// Ipopt with MUMPS keeps state of its own for the whole process: one problem exists at a time.
-static LOCK: Mutex<()> = Mutex::new(());
-
-/// A problem known to Ipopt; while it exists, no other thread has one.
+/// A problem known to Ipopt; while it exists, no other thread has one or calls MUMPS.
 pub(super) struct Problem {
     handle: NonNull<bindings::IpoptProblemInfo>,
     variables: usize,
     constraints: usize,
-    _lock: MutexGuard<'static, ()>,
+    _lock: Exclusive,
 }
 
 /// An evaluator, and the panic that ended its work, if any.
@@ -64,9 +60,7 @@ impl Problem {
         jacobian: usize,
         hessian: usize,
     ) -> Option<Self> {
-        // The lock protects no data, so a panic elsewhere leaves nothing in disorder.
-        let lock = LOCK.lock().unwrap_or_else(PoisonError::into_inner);
-        use_one_blas_thread();
+        let lock = mumps::exclusive();
         let count = |number: usize| c_int::try_from(number).ok();
         let (n, m) = (variables.lower.len(), constraints.lower.len());
         assert!(
@@ -384,24 +378,4 @@ unsafe extern "C" fn iteration(
             evaluator.iteration(&told) == ControlFlow::Continue(())
         })
     }
-}
-
-/// Makes OpenBLAS, if Ipopt was linked with it, work in one thread: two are slower on these systems and change the iterates.
-///
-/// OpenBLAS reads its environment variables while it is loaded, before `main`, so that setting them here would come too late.
-fn use_one_blas_thread() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        // SAFETY: the name ends in NUL; `dlsym` looks it up among the libraries already loaded and returns null if there is none.
-        let symbol =
-            unsafe { libc::dlsym(libc::RTLD_DEFAULT, c"openblas_set_num_threads".as_ptr()) };
-        if !symbol.is_null() {
-            // SAFETY: OpenBLAS declares `void openblas_set_num_threads(int)`, and the lock keeps its other users of this
-            // crate out.
-            let set_num_threads =
-                unsafe { mem::transmute::<*mut c_void, unsafe extern "C" fn(c_int)>(symbol) };
-            // SAFETY: as above.
-            unsafe { set_num_threads(1) };
-        }
-    });
 }

@@ -1,87 +1,124 @@
-//! LU factorisation of a square matrix whose pattern is laid down once.
+//! Solution of square systems whose pattern is laid down once.
 //!
-//! Rows are scaled by their largest entry before the factorisation, so that equations in different units meet one
-//! criterion of singularity.
+//! The matrix is scaled before the factorisation, so that equations in different units meet one criterion of singularity:
+//! rows of an unsymmetric matrix by their largest entry, and a symmetric one to D A D with largest entries near 1.
+//!
+//! A sparse factor is tried on a known solution before it is trusted: residuals of a singular or unstable factor may be small,
+//! but the solution does not come back. Later solutions are refined once where their residual is poor.
 
-use faer::linalg::solvers::Solve;
-use faer::prelude::Reborrow;
-use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
-use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
-use nalgebra::{DMatrix, DVector, Dyn};
-use thiserror::Error;
+use crate::sparse::dense::Dense;
+use crate::sparse::faer::{FaerLdlt, FaerLu};
+use crate::sparse::mumps::Mumps;
+use crate::sparse::pattern::Pattern;
+use crate::sparse::{Factorisation, Singular};
 
 /// Up to this size a dense factorisation is faster.
 const DENSE: usize = 48;
-/// A pivot below this, relative to the largest entry of its row, counts as zero.
-const TINY: f64 = 1e-14;
 /// A known solution, with each unknown measured by its column, has to come back better than this.
 const LOST: f64 = 1e-6;
+/// A residual above this, relative to the largest term of the equations, is refined.
+const POOR: f64 = 1e-13;
+/// Symmetric scaling ends when the largest entry of each row is between this and its inverse, or after so many rounds.
+const BALANCED: (f64, usize) = (4.0, 12);
 
-/// The matrix is singular to working precision.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-#[error("the matrix is singular: nothing determines unknown {column}")]
-pub struct Singular {
-    /// The column without a pivot.
-    pub column: usize,
+/// Whether a matrix equals its transpose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Symmetry {
+    /// A = Aᵀ; the method may be one for quasi-definite or indefinite matrices.
+    Symmetric,
+    /// Nothing is known.
+    Unsymmetric,
+}
+
+/// Who factorises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Backend {
+    /// LU of nalgebra, for small matrices.
+    Dense,
+    /// LU of faer, or its LDLᵀ without exchanges where the matrix is symmetric; MUMPS takes over where that breaks down.
+    Faer,
+    /// LU or LDLᵀ of MUMPS; one thread at a time, also with Ipopt.
+    Mumps,
+}
+
+impl Backend {
+    /// What is fastest.
+    fn of_size(size: usize, symmetry: Symmetry) -> Self {
+        match symmetry {
+            _ if size <= DENSE => Self::Dense,
+            Symmetry::Symmetric => Self::Mumps,
+            Symmetry::Unsymmetric => Self::Faer,
+        }
+    }
+
+    fn factorisation(self, pattern: &Pattern) -> Box<dyn Factorisation> {
+        match (self, pattern.symmetry) {
+            // Nothing is left for the others to analyse.
+            _ if pattern.rows.is_empty() => Box::new(Dense::new(pattern)),
+            (Self::Dense, _) => Box::new(Dense::new(pattern)),
+            (Self::Faer, Symmetry::Symmetric) => Box::new(FaerLdlt::new(pattern)),
+            (Self::Faer, Symmetry::Unsymmetric) => Box::new(FaerLu::new(pattern)),
+            (Self::Mumps, _) => Box::new(Mumps::new(pattern)),
+        }
+    }
 }
 
 /// A direct solver for one pattern.
 #[derive(Debug)]
 pub struct Direct {
-    size: usize,
-    entries: Vec<(usize, usize)>,
-    rows: Vec<f64>,
-    scaled: Vec<f64>,
-    kind: Kind,
-}
-
-#[derive(Debug)]
-enum Kind {
-    Dense(Option<nalgebra::LU<f64, Dyn, Dyn>>),
-    Sparse(Box<Sparse>),
-}
-
-#[derive(Debug)]
-struct Sparse {
-    pattern: SymbolicSparseColMat<usize>,
-    order: Argsort<usize>,
-    symbolic: SymbolicLu<usize>,
-    matrix: Option<SparseColMat<usize, f64>>,
-    factor: Option<Lu<usize, f64>>,
+    pattern: Pattern,
+    backend: Backend,
+    factorisation: Box<dyn Factorisation>,
+    /// The scaled matrix, by slot.
+    values: Vec<f64>,
+    /// Factors of rows, and of columns.
+    scales: [Vec<f64>; 2],
+    /// Largest entry of each column of the scaled matrix.
+    largest: Vec<f64>,
+    rhs: Vec<f64>,
+    residual: Vec<f64>,
+    factored: bool,
 }
 
 impl Direct {
-    /// A solver for matrices of `size` rows with these entries; entries listed twice add up.
+    /// A solver for unsymmetric matrices of `size` rows with these entries; entries listed twice add up.
     ///
     /// # Panics
     /// An entry lies outside the matrix.
     pub fn new(size: usize, entries: &[(usize, usize)]) -> Self {
-        let kind = if size <= DENSE {
-            Kind::Dense(None)
-        } else {
-            let pairs: Vec<Pair<usize, usize>> = entries
-                .iter()
-                .map(|&(row, col)| Pair { row, col })
-                .collect();
-            let (pattern, order) = SymbolicSparseColMat::try_new_from_indices(size, size, &pairs)
-                .expect("entries lie inside the matrix");
-            let symbolic =
-                SymbolicLu::try_new(pattern.rb()).expect("memory for the symbolic factorisation");
-            Kind::Sparse(Box::new(Sparse {
-                pattern,
-                order,
-                symbolic,
-                matrix: None,
-                factor: None,
-            }))
-        };
+        Self::with(size, entries, Symmetry::Unsymmetric, None)
+    }
+
+    /// A solver by `backend`, or by the one that is fastest as a rule.
+    ///
+    /// A symmetric matrix lists the entries of both triangles too; those above the diagonal are not read.
+    ///
+    /// # Panics
+    /// An entry lies outside the matrix.
+    pub fn with(
+        size: usize,
+        entries: &[(usize, usize)],
+        symmetry: Symmetry,
+        backend: Option<Backend>,
+    ) -> Self {
+        let pattern = Pattern::new(size, entries, symmetry);
+        let backend = backend.unwrap_or_else(|| Backend::of_size(size, symmetry));
         Self {
-            size,
-            entries: entries.to_vec(),
-            rows: vec![1.0; size],
-            scaled: vec![0.0; entries.len()],
-            kind,
+            backend,
+            factorisation: backend.factorisation(&pattern),
+            values: vec![0.0; pattern.rows.len()],
+            scales: [vec![1.0; size], vec![1.0; size]],
+            largest: vec![0.0; size],
+            rhs: vec![0.0; size],
+            residual: vec![0.0; size],
+            factored: false,
+            pattern,
         }
+    }
+
+    /// The method, as a table names it.
+    pub fn name(&self) -> &'static str {
+        self.factorisation.name()
     }
 
     /// Factorises the matrix with these values, one for each entry.
@@ -89,74 +126,134 @@ impl Direct {
     /// # Errors
     /// The matrix is singular to working precision, or not finite.
     pub fn factor(&mut self, values: &[f64]) -> Result<(), Singular> {
-        self.rows.fill(0.0);
-        for (&(row, _), value) in self.entries.iter().zip(values) {
-            self.rows[row] = self.rows[row].max(value.abs());
+        self.factored = false;
+        self.pattern.gather(values, &mut self.values);
+        self.measure();
+        let lost = |peak: &f64| *peak == 0.0 || !peak.is_finite();
+        if let Some(column) = self.largest.iter().position(lost) {
+            return Err(Singular { column });
         }
-        for scale in &mut self.rows {
-            *scale = if *scale > 0.0 { 1.0 / *scale } else { 1.0 };
+        match self.pattern.symmetry {
+            Symmetry::Unsymmetric => self.balance_rows(),
+            Symmetry::Symmetric => self.balance(),
         }
-        for ((scaled, value), &(row, _)) in self.scaled.iter_mut().zip(values).zip(&self.entries) {
-            *scaled = value * self.rows[row];
-        }
-        match &mut self.kind {
-            Kind::Dense(factor) => {
-                let mut matrix = DMatrix::<f64>::zeros(self.size, self.size);
-                for (&(row, col), value) in self.entries.iter().zip(&self.scaled) {
-                    matrix[(row, col)] += value;
-                }
-                let lu = nalgebra::LU::new(matrix);
-                let pivots = lu.lu_internal();
-                let singular = (0..self.size)
-                    .find(|&i| pivots[(i, i)].is_nan() || pivots[(i, i)].abs() < TINY);
-                *factor = Some(lu);
-                singular.map_or(Ok(()), |column| Err(Singular { column }))
+        self.measure();
+        let mut outcome = self.attempt();
+        let unpivoted =
+            self.backend == Backend::Faer && self.pattern.symmetry == Symmetry::Symmetric;
+        if outcome.is_err() && unpivoted {
+            // The matrix is singular, or merely not quasi-definite.
+            let pivoted = Backend::Mumps.factorisation(&self.pattern);
+            let unpivoted = std::mem::replace(&mut self.factorisation, pivoted);
+            outcome = self.attempt();
+            match outcome {
+                Ok(()) => self.backend = Backend::Mumps,
+                Err(_) => self.factorisation = unpivoted,
             }
-            Kind::Sparse(sparse) => sparse.factor(&self.scaled, self.size),
         }
+        self.factored = outcome.is_ok();
+        outcome
     }
 
     /// Solves with the last factorisation, in place.
     ///
     /// # Panics
-    /// No matrix has been factorised.
-    pub fn solve(&self, rhs: &mut [f64]) {
-        for (value, scale) in rhs.iter_mut().zip(&self.rows) {
+    /// No matrix has been factorised, or the last one was singular.
+    pub fn solve(&mut self, rhs: &mut [f64]) {
+        assert!(self.factored, "factor before solving");
+        for (value, scale) in rhs.iter_mut().zip(&self.scales[0]) {
             *value *= scale;
         }
-        match &self.kind {
-            Kind::Dense(factor) => {
-                let mut x = DVector::from_column_slice(rhs);
-                factor
-                    .as_ref()
-                    .expect("factor before solving")
-                    .solve_mut(&mut x);
-                rhs.copy_from_slice(x.as_slice());
+        self.rhs.copy_from_slice(rhs);
+        self.factorisation.solve(rhs);
+        if self.backend != Backend::Dense && self.leaves(rhs) > POOR {
+            self.factorisation.solve(&mut self.residual);
+            for (value, correction) in rhs.iter_mut().zip(&self.residual) {
+                *value += correction;
             }
-            Kind::Sparse(sparse) => sparse.solve(rhs),
+        }
+        for (value, scale) in rhs.iter_mut().zip(&self.scales[1]) {
+            *value *= scale;
         }
     }
-}
 
-impl Sparse {
-    fn factor(&mut self, values: &[f64], size: usize) -> Result<(), Singular> {
-        let matrix = SparseColMat::new_from_argsort(self.pattern.clone(), &self.order, values)
-            .expect("memory for the matrix");
-        let factor = Lu::try_new_with_symbolic(self.symbolic.clone(), matrix.rb());
-        self.factor = factor.ok();
-        self.matrix = Some(matrix);
-        let largest = self.largest(size);
-        let weakest = (0..size).min_by(|&a, &b| largest[a].total_cmp(&largest[b]));
-        if self.factor.is_none() {
-            let column = weakest.unwrap_or(0);
-            return Err(Singular { column });
+    /// The number of negative eigenvalues of the last matrix, which the sparse methods for symmetric matrices tell without
+    /// further work.
+    pub fn negative_pivots(&self) -> Option<usize> {
+        self.factored
+            .then(|| self.factorisation.negative_pivots())
+            .flatten()
+    }
+
+    /// Finds the largest entry of each column.
+    fn measure(&mut self) {
+        self.largest.fill(0.0);
+        let largest = &mut self.largest;
+        self.pattern.visit(&self.values, |_, col, value| {
+            // Unlike `f64::max`, this keeps NaN.
+            if value.abs() > largest[col] || value.is_nan() {
+                largest[col] = value.abs();
+            }
+        });
+    }
+
+    fn balance_rows(&mut self) {
+        let [rows, cols] = &mut self.scales;
+        rows.fill(0.0);
+        self.pattern.visit(&self.values, |row, _, value| {
+            rows[row] = rows[row].max(value.abs());
+        });
+        for scale in rows.iter_mut() {
+            *scale = if *scale > 0.0 { 1.0 / *scale } else { 1.0 };
         }
-        // What a singular factor does to a known solution: residuals stay small, the solution does not come back.
-        let known = |col: usize| (1.0 + col as f64 / size as f64) / largest[col];
-        let mut x: Vec<f64> = (0..size).map(known).collect();
-        x = self.times(&x);
-        self.solve(&mut x);
-        let error = |col: usize| ((x[col] - known(col)) * largest[col]).abs();
+        self.pattern.scale(&mut self.values, rows, cols);
+    }
+
+    /// Divides rows and columns by the root of their largest entry, again and again; each round halves the orders of
+    /// magnitude that are left.
+    fn balance(&mut self) {
+        let (enough, rounds) = BALANCED;
+        self.scales.iter_mut().for_each(|scale| scale.fill(1.0));
+        for _ in 0..rounds {
+            let far = |peak: &f64| *peak > enough || *peak < 1.0 / enough;
+            if !self.largest.iter().any(far) {
+                break;
+            }
+            for (scale, peak) in self.residual.iter_mut().zip(&self.largest) {
+                *scale = 1.0 / peak.sqrt();
+            }
+            self.pattern
+                .scale(&mut self.values, &self.residual, &self.residual);
+            for scales in &mut self.scales {
+                for (scale, factor) in scales.iter_mut().zip(&self.residual) {
+                    *scale *= factor;
+                }
+            }
+            self.measure();
+        }
+    }
+
+    /// Factorises, and tries a sparse factor on a known solution.
+    fn attempt(&mut self) -> Result<(), Singular> {
+        self.factorisation.factor(&self.values)?;
+        if self.backend == Backend::Dense {
+            return Ok(());
+        }
+        let size = self.pattern.size;
+        let known = |col: usize, peak: f64| (1.0 + col as f64 / size as f64) / peak;
+        for (col, (x, &peak)) in self.rhs.iter_mut().zip(&self.largest).enumerate() {
+            *x = known(col, peak);
+        }
+        let (x, product) = (&self.rhs, &mut self.residual);
+        product.fill(0.0);
+        self.pattern.visit(&self.values, |row, col, value| {
+            product[row] += value * x[col];
+        });
+        self.factorisation.solve(product);
+        let error = |col: usize| {
+            let peak = self.largest[col];
+            ((self.residual[col] - known(col, peak)) * peak).abs()
+        };
         let lost = |col: &usize| error(*col).is_nan() || error(*col) > LOST;
         let worst = (0..size)
             .filter(lost)
@@ -164,31 +261,20 @@ impl Sparse {
         worst.map_or(Ok(()), |column| Err(Singular { column }))
     }
 
-    fn times(&self, x: &[f64]) -> Vec<f64> {
-        let matrix = self.matrix.as_ref().expect("a matrix has been set");
-        let mut y = vec![0.0; x.len()];
-        for (col, value) in x.iter().enumerate() {
-            for (row, entry) in matrix.row_idx_of_col(col).zip(matrix.val_of_col(col)) {
-                y[row] += entry * value;
-            }
+    /// Leaves the residual of `x` in `self.residual`, and returns its size relative to the largest term of the equations.
+    fn leaves(&mut self, x: &[f64]) -> f64 {
+        let (residual, largest) = (&mut self.residual, &self.largest);
+        residual.copy_from_slice(&self.rhs);
+        self.pattern.visit(&self.values, |row, col, value| {
+            residual[row] -= value * x[col];
+        });
+        let norm = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let term = |m: f64, (x, peak): (&f64, &f64)| m.max((x * peak).abs());
+        let scale = x.iter().zip(largest).fold(norm(&self.rhs), term);
+        if scale > 0.0 {
+            norm(residual) / scale
+        } else {
+            0.0
         }
-        y
-    }
-
-    /// The largest entry of each column.
-    fn largest(&self, size: usize) -> Vec<f64> {
-        let matrix = self.matrix.as_ref().expect("a matrix has been set");
-        let of_column = |col: usize| {
-            let values = matrix.val_of_col(col).iter();
-            values.fold(0.0_f64, |m, v| m.max(v.abs()))
-        };
-        (0..size).map(of_column).collect()
-    }
-
-    fn solve(&self, rhs: &mut [f64]) {
-        let factor = self.factor.as_ref().expect("factor before solving");
-        let size = rhs.len();
-        let view = faer::MatMut::from_column_major_slice_mut(rhs, size, 1);
-        factor.solve_in_place(view);
     }
 }

@@ -1,5 +1,13 @@
 //! Direct solution of square systems with a fixed pattern.
+//!
+//! [`Direct`] lays the pattern, scales, checks and refines; a [`Factorisation`] is what it does so with.
 
+mod dense;
 mod direct;
+mod factorisation;
+mod faer;
+pub(crate) mod mumps;
+mod pattern;
 
-pub use direct::{Direct, Singular};
+pub use direct::{Backend, Direct, Symmetry};
+pub use factorisation::{Factorisation, Singular};

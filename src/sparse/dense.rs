@@ -1,0 +1,65 @@
+//! Dense LU with row exchanges, for small matrices.
+
+use nalgebra::{DMatrix, DVectorViewMut, Dyn, LU};
+
+use crate::sparse::pattern::Pattern;
+use crate::sparse::{Factorisation, Singular, Symmetry};
+
+/// A pivot below this, relative to the largest entry of its row, counts as zero.
+const TINY: f64 = 1e-14;
+
+/// A dense factorisation.
+#[derive(Debug)]
+pub(crate) struct Dense {
+    pattern: Pattern,
+    values: Vec<f64>,
+    factor: Option<LU<f64, Dyn, Dyn>>,
+}
+
+impl Dense {
+    pub(crate) fn new(pattern: &Pattern) -> Self {
+        Self {
+            pattern: pattern.clone(),
+            values: vec![0.0; pattern.rows.len()],
+            factor: None,
+        }
+    }
+
+    fn matrix(&self) -> DMatrix<f64> {
+        let mut matrix = DMatrix::zeros(self.pattern.size, self.pattern.size);
+        let set = |row, col, value| matrix[(row, col)] = value;
+        self.pattern.visit(&self.values, set);
+        matrix
+    }
+}
+
+impl Factorisation for Dense {
+    fn name(&self) -> &'static str {
+        "dense LU"
+    }
+
+    fn factor(&mut self, values: &[f64]) -> Result<(), Singular> {
+        self.values.copy_from_slice(values);
+        let factor = LU::new(self.matrix());
+        let pivots = factor.lu_internal();
+        let zero = |&i: &usize| pivots[(i, i)].is_nan() || pivots[(i, i)].abs() < TINY;
+        let singular = (0..self.pattern.size).find(zero);
+        self.factor = Some(factor);
+        singular.map_or(Ok(()), |column| Err(Singular { column }))
+    }
+
+    fn solve(&mut self, rhs: &mut [f64]) {
+        let factor = self.factor.as_ref().expect("factor before solving");
+        let size = rhs.len();
+        factor.solve_mut(&mut DVectorViewMut::from_slice(rhs, size));
+    }
+
+    /// By the signs of eigenvalues: slow, and exact.
+    fn negative_pivots(&self) -> Option<usize> {
+        let count = || {
+            let eigenvalues = self.matrix().symmetric_eigenvalues();
+            eigenvalues.iter().filter(|&&value| value < 0.0).count()
+        };
+        (self.pattern.symmetry == Symmetry::Symmetric).then(count)
+    }
+}

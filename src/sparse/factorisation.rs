@@ -1,0 +1,31 @@
+//! What a method of factorisation answers.
+
+use std::fmt::Debug;
+
+use thiserror::Error;
+
+/// The matrix is singular to working precision.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[error("the matrix is singular: nothing determines unknown {column}")]
+pub struct Singular {
+    /// The column without a pivot.
+    pub column: usize,
+}
+
+/// A factorisation of square matrices with one pattern.
+pub trait Factorisation: Debug + Send {
+    /// The method, as a table names it.
+    fn name(&self) -> &'static str;
+
+    /// Factorises the matrix with these values, one for each slot of its pattern.
+    ///
+    /// # Errors
+    /// The method breaks down; that it does not, says nothing about the accuracy of its factors.
+    fn factor(&mut self, values: &[f64]) -> Result<(), Singular>;
+
+    /// Solves with the last factorisation, in place.
+    fn solve(&mut self, rhs: &mut [f64]);
+
+    /// The number of negative eigenvalues, where the method tells it.
+    fn negative_pivots(&self) -> Option<usize>;
+}
