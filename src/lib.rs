@@ -38,6 +38,7 @@
 
 pub mod control;
 pub mod dynamics;
+pub mod element;
 pub mod energy;
 pub mod functional;
 pub mod ipopt;

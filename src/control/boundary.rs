@@ -2,7 +2,7 @@
 
 use crate::control::error::BoundaryError;
 use crate::control::limits::Limits;
-use crate::control::problem::{Control, State};
+use crate::control::problem::{Control, Rest, State};
 use crate::dynamics::{Start, equilibrium};
 use crate::functional::Level;
 use crate::model::{Coordinates, Model, Quantity, System};
@@ -25,6 +25,8 @@ pub struct Boundary {
 pub struct Goal {
     /// Given coordinates; `None` where the optimisation decides.
     pub coordinates: Vec<Option<f64>>,
+    /// Whether the nodes of elastic blocks rest too.
+    pub nodes_rest: bool,
 }
 
 impl Boundary {
@@ -42,15 +44,22 @@ impl Boundary {
         let mut limits = Limits::new(&control.limits, system, redundant);
         let all_joints = all_joints_given(system, &control.goal);
         match &control.goal {
-            State::Markers(places) => {
+            State::Markers { places, rest } => {
                 for (&marker, place) in places {
-                    for axis in 0..3 {
+                    for axis in (0..3).filter(|&axis| !system.holds_marker(marker, axis)) {
                         let name = format!(
                             "goal {} of marker {}",
                             ["x", "y", "z"][axis],
                             system.markers[marker].name
                         );
                         limits.add_goal(Quantity::MarkerPlace { marker, axis }, place[axis], name);
+                        if *rest == Rest::Markers {
+                            let axis_name = ["x", "y", "z"][axis];
+                            let marker_name = &system.markers[marker].name;
+                            let name =
+                                format!("rest at the goal, {axis_name} of marker {marker_name}");
+                            limits.add_goal(Quantity::MarkerStep { marker, axis }, 0.0, name);
+                        }
                     }
                 }
             }
@@ -96,7 +105,16 @@ impl Boundary {
             model,
             Self {
                 start,
-                goal: Goal { coordinates: given },
+                goal: Goal {
+                    coordinates: given,
+                    nodes_rest: !matches!(
+                        control.goal,
+                        State::Markers {
+                            rest: Rest::Markers,
+                            ..
+                        }
+                    ),
+                },
                 rest,
                 limits,
             },
@@ -139,7 +157,11 @@ pub fn resolve_start(
 ) -> Result<Start, BoundaryError> {
     match state {
         State::RestAtVoltages(voltages) => {
-            Ok(Start::at_rest(model, rest_at(model, voltages, place)?))
+            let z = rest_at(model, voltages, place)?;
+            Ok(match model.node_rates() {
+                Some(rates) => Start::with_rates(model, z, &rates),
+                None => Start::at_rest(model, z),
+            })
         }
         State::JointAngles { angles, rates } => {
             let value = |map: &std::collections::BTreeMap<usize, f64>, j: usize| {
@@ -158,9 +180,26 @@ pub fn resolve_start(
                 Coordinates::Reduced => model.coordinates_at(&joints(rates))[..n].to_vec(),
                 Coordinates::Redundant => model.redundant_rates(&joints(angles), &joints(rates)),
             };
+            let rates = with_nodes(model, rates);
             Ok(Start::with_rates(model, z, &rates))
         }
-        State::Markers(_) => unreachable!("marker positions are a goal"),
+        State::Markers { .. } => unreachable!("marker positions are a goal"),
+    }
+}
+
+/// Rates of all coordinates from those of the bodies.
+fn with_nodes(model: &Model, mut rates: Vec<f64>) -> Vec<f64> {
+    let bodies = rates.len().min(model.action.motion.of_bodies);
+    match model.node_rates() {
+        Some(mut all) => {
+            all[..bodies].copy_from_slice(&rates[..bodies]);
+            all
+        }
+        None => {
+            rates.truncate(bodies);
+            rates.resize(model.coordinate_count(), 0.0);
+            rates
+        }
     }
 }
 

@@ -42,7 +42,9 @@ pub fn guess(
             // A simulation that ends early is held where it ended.
             while history.intervals() < intervals {
                 history.z.push(history.z[history.z.len() - 1].clone());
-                history.scalars.push(scalars.clone());
+                let last = history.scalars.last().cloned();
+                let still = || with_potentials(model, scalars.clone());
+                history.scalars.push(last.unwrap_or_else(still));
             }
             Initial {
                 history,
@@ -83,12 +85,12 @@ fn interpolate(model: &Model, boundary: &Boundary, intervals: usize, h: f64) -> 
         }
     });
     let rest = boundary.rest[1].as_ref().or(boundary.rest[0].as_ref());
-    let held: Vec<f64> = rest.map_or_else(|| vec![0.0; model.system.muscles.len()], Clone::clone);
+    let held: Vec<f64> = rest.map_or_else(|| vec![0.0; model.sources.len()], Clone::clone);
     let scalars: Vec<f64> = model.scalars(&held).iter().map(|v| v + LIFT).collect();
     let history = History {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),
         z: z.collect(),
-        scalars: vec![scalars; intervals],
+        scalars: vec![with_potentials(model, scalars); intervals],
         ..History::default()
     };
     Initial {
@@ -96,6 +98,12 @@ fn interpolate(model: &Model, boundary: &Boundary, intervals: usize, h: f64) -> 
         h,
         costates: None,
     }
+}
+
+/// Voltages, and potentials of zero, from which Gauss's laws, linear in them, are solved at once.
+fn with_potentials(model: &Model, mut voltages: Vec<f64>) -> Vec<f64> {
+    voltages.resize(voltages.len() + model.potentials, 0.0);
+    voltages
 }
 
 /// Joint coordinates of a state, where the joints form a tree.
@@ -152,7 +160,15 @@ fn from_solution(
         .collect();
     let voltages = (0..intervals).map(|k| {
         let s = (k as f64 + 0.5) / intervals as f64 * solved.intervals() as f64;
-        model.scalars(&solved.voltages[(s as usize).min(solved.intervals() - 1)])
+        let i = (s as usize).min(solved.intervals() - 1);
+        let mut scalars = model.scalars(&solved.voltages[i]);
+        match solved.potentials.get(i) {
+            Some(potentials) if potentials.len() == model.potentials => {
+                scalars.extend_from_slice(potentials);
+                scalars
+            }
+            _ => with_potentials(model, scalars),
+        }
     });
     let history = History {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),

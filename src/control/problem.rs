@@ -30,7 +30,22 @@ pub enum State {
         rates: BTreeMap<usize, f64>,
     },
     /// Positions of markers in mm, by marker index, at rest; only as a goal.
-    Markers(BTreeMap<usize, Vector3<f64>>),
+    Markers {
+        /// The places.
+        places: BTreeMap<usize, Vector3<f64>>,
+        /// What comes to rest there.
+        rest: Rest,
+    },
+}
+
+/// What comes to rest at a goal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Rest {
+    /// Every coordinate.
+    #[default]
+    Everything,
+    /// Bodies and the markers of the goal; elastic blocks have more coordinates than a few voltages can bring to rest.
+    Markers,
 }
 
 /// Voltages over time (V, one per muscle).

@@ -14,7 +14,7 @@ pub enum Variable {
         /// Entry of z.
         i: usize,
     },
-    /// Scalar `s` of interval `k`.
+    /// Scalar `s` of interval `k`: a voltage, or a potential.
     Scalar {
         /// Interval.
         k: usize,
@@ -35,6 +35,13 @@ pub enum Row {
         /// Entry of z.
         i: usize,
     },
+    /// Gauss's law of the potential that is scalar `s` of interval `k`.
+    Gauss {
+        /// Interval.
+        k: usize,
+        /// Which scalar.
+        s: usize,
+    },
     /// Limit or goal `limit` at instant or interval `k`.
     Limit {
         /// Index of the limit.
@@ -42,6 +49,21 @@ pub enum Row {
         /// Instant or interval.
         k: usize,
     },
+}
+
+/// How many entries the instants and intervals of a horizon have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// Number of intervals.
+    pub intervals: usize,
+    /// Coordinates of an instant.
+    pub coordinates: usize,
+    /// Coordinates and multipliers of an instant.
+    pub unknowns: usize,
+    /// Voltages of an interval.
+    pub voltages: usize,
+    /// Voltages and potentials of an interval.
+    pub scalars: usize,
 }
 
 /// Variables and equations of a horizon of `intervals`.
@@ -53,6 +75,7 @@ pub struct Unknowns {
     pub rows: Vec<Row>,
     of_unknown: Vec<Option<usize>>,
     of_scalar: Vec<usize>,
+    row_of_scalar: Vec<Option<usize>>,
     of_horizon: Option<usize>,
     row_of: Vec<Option<usize>>,
     unknowns: usize,
@@ -60,21 +83,27 @@ pub struct Unknowns {
 }
 
 impl Unknowns {
-    /// `given(k, i)` says whether coordinate i of instant k is given; `coordinates` of the `unknowns` entries of z are
-    /// coordinates, the others multipliers.
+    /// `given(k, i)` says whether coordinate i of instant k is given, `balanced(k, i)` whether its momentum balance is an
+    /// equation.
     pub fn new(
-        intervals: usize,
-        coordinates: usize,
-        unknowns: usize,
-        scalars: usize,
+        counts: Counts,
         free_horizon: bool,
         given: impl Fn(usize, usize) -> bool,
+        balanced: impl Fn(usize, usize) -> bool,
     ) -> Self {
+        let Counts {
+            intervals,
+            coordinates,
+            unknowns,
+            voltages,
+            scalars,
+        } = counts;
         let mut out = Self {
             variables: Vec::new(),
             rows: Vec::new(),
             of_unknown: vec![None; (intervals + 1) * unknowns],
             of_scalar: vec![0; intervals * scalars],
+            row_of_scalar: vec![None; intervals * scalars],
             of_horizon: None,
             row_of: vec![None; (intervals + 1) * unknowns],
             unknowns,
@@ -88,7 +117,11 @@ impl Unknowns {
                     out.of_unknown[k * unknowns + i] = Some(out.variables.len());
                     out.variables.push(Variable::Unknown { k, i });
                 }
-                if is_coordinate || !all_given {
+                let is_row = match is_coordinate {
+                    true => balanced(k, i),
+                    false => !all_given,
+                };
+                if is_row {
                     out.row_of[k * unknowns + i] = Some(out.rows.len());
                     out.rows.push(Row::Equation { k, i });
                 }
@@ -97,6 +130,10 @@ impl Unknowns {
                 for s in 0..scalars {
                     out.of_scalar[k * scalars + s] = out.variables.len();
                     out.variables.push(Variable::Scalar { k, s });
+                    if s >= voltages {
+                        out.row_of_scalar[k * scalars + s] = Some(out.rows.len());
+                        out.rows.push(Row::Gauss { k, s });
+                    }
                 }
             }
         }
@@ -115,6 +152,11 @@ impl Unknowns {
     /// Variable of scalar s of interval k.
     pub fn scalar(&self, k: usize, s: usize) -> usize {
         self.of_scalar[k * self.scalars + s]
+    }
+
+    /// Row of scalar s of interval k, where it is a potential.
+    pub fn row_of_scalar(&self, k: usize, s: usize) -> Option<usize> {
+        self.row_of_scalar[k * self.scalars + s]
     }
 
     /// Variable of the interval length.

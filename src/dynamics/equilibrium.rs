@@ -2,7 +2,7 @@
 
 use crate::dynamics::statics::{Outcome, State, Statics};
 use crate::dynamics::{EquilibriumError, LimitPoint, limit_point};
-use crate::model::Model;
+use crate::model::{Floating, Model};
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Fraction of the load (in V²) that is tried first.
@@ -81,7 +81,9 @@ pub fn equilibrium(
     start: &[f64],
     voltages: &[f64],
 ) -> Result<Equilibrium, EquilibriumError> {
-    model.check_held()?;
+    if let Some(Floating { name, motion }) = model.floating() {
+        return Err(EquilibriumError::Floating { name, motion });
+    }
     let mut statics = Statics::new(model);
     let mut state: State = start.to_vec();
     state.resize(start.len() + model.potentials, 0.0);

@@ -21,7 +21,7 @@ const MASSLESS: f64 = 1e-13;
 pub struct Energies {
     /// Kinetic energy.
     pub kinetic: f64,
-    /// Potential energy of each effect that has one, in the order of the effects.
+    /// Potential energy of each effect that has one, part by part, in the order of the effects.
     pub potential: Vec<f64>,
     /// Work that forces without a potential do over the interval.
     pub work: f64,
@@ -42,7 +42,7 @@ pub fn energies(model: &Model, a: &Instant, b: &Instant, scalars: &[f64], h: f64
     for effect in &model.action.intervals.effects {
         match effect.kind() {
             Kind::Kinetic => energies.kinetic += effect.energy(&frame),
-            Kind::Potential => energies.potential.push(effect.energy(&frame)),
+            Kind::Potential => effect.energies(&frame, &mut energies.potential),
             Kind::VirtualWork => energies.work += effect.energy(&frame),
             Kind::Constraint => {}
         }
@@ -104,16 +104,16 @@ impl<'m> Observer<'m> {
         for muscle in &system.muscles {
             add(format!("{}_stretch", muscle.name), "");
         }
-        for &muscle in &self.model.voltages {
-            add(format!("{}_charge", system.muscles[muscle].name), "mC");
+        for &source in &self.model.voltages {
+            let name = self.model.sources[source].name.replace('.', "_");
+            add(format!("{name}_charge"), "mC");
         }
         add("kinetic_energy".to_owned(), "N mm");
         for effect in &self.model.action.intervals.effects {
             if effect.kind() == Kind::Potential {
-                add(
-                    format!("{}_energy", effect.name().replace(' ', "_")),
-                    "N mm",
-                );
+                for part in effect.energy_parts() {
+                    add(format!("{}_energy", part.replace(' ', "_")), "N mm");
+                }
             }
         }
         add("total_energy".to_owned(), "N mm");
@@ -131,7 +131,7 @@ impl<'m> Observer<'m> {
 
     fn row(&mut self, history: &History, k: usize) -> Vec<f64> {
         let model = self.model;
-        let none = vec![0.0; model.voltages.len()];
+        let none = vec![0.0; model.action.intervals.scalars];
         let scalars = history.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
         self.here.z.copy_from_slice(&history.z[k]);
         model.action.motion.place(&mut self.here);
@@ -198,7 +198,8 @@ impl<'m> Observer<'m> {
             &Interval::given(scalars, h),
             scratch,
         );
-        let charges = scratch.interval.plain.rows.iter().map(|row| row / h);
+        let rows = &scratch.interval.plain.rows[..self.model.voltages.len()];
+        let charges = rows.iter().map(|row| row / h);
         (charges.collect(), here.forces.clone())
     }
 

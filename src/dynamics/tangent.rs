@@ -95,7 +95,10 @@ impl Tangent {
 
     /// Entries of the matrix factorised last.
     pub(super) fn entries(&self) -> impl Iterator<Item = ((usize, usize), f64)> + '_ {
-        self.entries.iter().copied().zip(self.matrix.iter().copied())
+        self.entries
+            .iter()
+            .copied()
+            .zip(self.matrix.iter().copied())
     }
 
     /// Solves with the last factorisation, in place.

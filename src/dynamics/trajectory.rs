@@ -16,7 +16,7 @@ pub struct Trajectory {
     pub joints: Vec<Vec<f64>>,
     /// Poses per instant and body.
     pub poses: Vec<Vec<Pose>>,
-    /// Voltages in V, per interval and muscle.
+    /// Voltages in V, per interval and source.
     pub voltages: Vec<Vec<f64>>,
 }
 
@@ -43,7 +43,7 @@ impl Trajectory {
             trajectory.poses.push(model.poses(&instant));
         }
         for scalars in &history.scalars {
-            let mut voltages = vec![0.0; model.system.muscles.len()];
+            let mut voltages = vec![0.0; model.sources.len()];
             for (&muscle, &voltage) in model.voltages.iter().zip(scalars) {
                 voltages[muscle] = voltage;
             }

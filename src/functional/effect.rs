@@ -84,6 +84,16 @@ pub trait Effect: Debug + Send + Sync {
     /// Kinetic or potential energy at the midpoint of an interval in mJ; the work that a virtual work does over it.
     fn energy(&self, frame: &Frame<'_>) -> f64;
 
+    /// Names of the parts of its energy, as reports show them.
+    fn energy_parts(&self) -> Vec<String> {
+        vec![self.name().to_owned()]
+    }
+
+    /// The parts of its energy, in the order of their names.
+    fn energies(&self, frame: &Frame<'_>, out: &mut Vec<f64>) {
+        out.push(self.energy(frame));
+    }
+
     /// Adds the momenta ∂T/∂ẋ at vectors x with rates v.
     fn momentum(&self, x: &[Vector], v: &[Vector], out: &mut [Vector]);
 

@@ -153,7 +153,12 @@ impl<F: Wired> Hexahedra<F> {
     }
 
     /// Adds `−h` times first derivatives, and by the length of the interval.
-    fn add_first(element: &Hexahedron<F>, local: &mut Local<F>, frame: &Frame<'_>, part: &mut Part) {
+    fn add_first(
+        element: &Hexahedron<F>,
+        local: &mut Local<F>,
+        frame: &Frame<'_>,
+        part: &mut Part,
+    ) {
         let c = -0.5 * frame.h;
         for (&v, force) in element.nodes.iter().zip(&local.forces) {
             part.forces[0][v] += force * c;
@@ -222,7 +227,14 @@ impl<F: Wired> Hexahedra<F> {
         }
     }
 
-    fn add(&self, index: usize, local: &mut Local<F>, level: Level, frame: &Frame<'_>, part: &mut Part) {
+    fn add(
+        &self,
+        index: usize,
+        local: &mut Local<F>,
+        level: Level,
+        frame: &Frame<'_>,
+        part: &mut Part,
+    ) {
         let element = &self.elements[index];
         Self::add_first(element, local, frame, part);
         if level >= Level::Hessian {
@@ -241,7 +253,10 @@ impl<F: Wired> Hexahedra<F> {
         let count = STRETCH.min(self.elements.len());
         locals.resize_with(count, Local::default);
         for (k, stretch) in self.elements.chunks(STRETCH).enumerate() {
-            let work = stretch.par_iter().with_min_len(32).zip(locals.par_iter_mut());
+            let work = stretch
+                .par_iter()
+                .with_min_len(32)
+                .zip(locals.par_iter_mut());
             work.for_each(|(element, local)| Self::local(element, level, frame, local));
             for (i, local) in locals[..stretch.len()].iter_mut().enumerate() {
                 self.add(k * STRETCH + i, local, level, frame, part);
@@ -249,7 +264,11 @@ impl<F: Wired> Hexahedra<F> {
         }
     }
 
-    fn energy_of(&self, frame: &Frame<'_>, energy: impl Fn(&Hexahedron<F>, &[Vector; 8]) -> f64 + Sync) -> f64 {
+    fn energy_of(
+        &self,
+        frame: &Frame<'_>,
+        energy: impl Fn(&Hexahedron<F>, &[Vector; 8]) -> f64 + Sync,
+    ) -> f64 {
         let of = |element: &Hexahedron<F>| energy(element, &middle(frame.vectors, &element.nodes));
         self.elements.iter().map(of).sum()
     }
@@ -355,7 +374,7 @@ impl<F: Wired> Effect for Hexahedra<F> {
             let shape = &element.shape;
             element
                 .law
-                .third(shape, (&x, &potentials), (&w, &rates), &mut plain, &mut along);
+                .third(shape, &x, &potentials, &w, &rates, &mut plain, &mut along);
             self.add(index, &mut plain, level, frame, &mut out.plain);
             self.add(index, &mut along, level, frame, &mut out.contracted);
         }

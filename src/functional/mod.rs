@@ -13,11 +13,13 @@
 mod couplings;
 mod effect;
 mod group;
+mod hexahedra;
 mod inertia;
 mod stencil;
 
 pub use couplings::{Blocks, Couplings, Part, Sides};
 pub use effect::{Effect, Frame, Horizon, Kind, Level, Measure, Output, Sum};
 pub use group::{Element, Group};
+pub use hexahedra::{Hexahedra, Hexahedron, Terminal, Wired};
 pub use inertia::{Inertia, Mass};
 pub use stencil::{Stencil, VectorArg};

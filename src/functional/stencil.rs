@@ -9,6 +9,8 @@ pub enum Stencil {
     Mid,
     /// (x_{k+1} − x_k)/h.
     Rate,
+    /// x_{k+1} − x_k.
+    Difference,
 }
 
 impl Stencil {
@@ -19,6 +21,7 @@ impl Stencil {
             Self::Here => [1.0, 0.0],
             Self::Mid => [0.5, 0.5],
             Self::Rate => [-1.0 / h, 1.0 / h],
+            Self::Difference => [-1.0, 1.0],
         }
     }
 }

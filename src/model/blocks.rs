@@ -1,7 +1,7 @@
 //! Blocks of a system: those of the scene, then one for each muscle of finite elements.
 
 use crate::math::Matrix;
-use crate::mesh::Grid;
+use crate::mesh::grid::Grid;
 use crate::model::joints::triad;
 use crate::model::system::{
     Discretisation, Electrode, Fidelity, Glue, Muscle, Potential, Solid, System,

@@ -174,7 +174,7 @@ impl Continua {
             }
         }
         let mut floating: HashMap<usize, usize> = HashMap::new();
-        let mut fresh = |name: String, potentials: &mut Vec<String>| {
+        let fresh = |name: String, potentials: &mut Vec<String>| {
             potentials.push(name);
             voltages.len() + potentials.len() - 1
         };
@@ -277,8 +277,13 @@ impl Continuum {
 /// √(μ/ε) in V/mm, the unit of fields in which mechanics and electrostatics have one magnitude; potentials are counted in
 /// this times a millimetre.
 fn unit(solids: &[Solid]) -> f64 {
-    let of = |m: &Material| m.electric.map(|e| (m.shear_modulus / e.permittivity).sqrt());
-    let units = solids.iter().flat_map(|s| s.materials.iter().filter_map(of));
+    let of = |m: &Material| {
+        m.electric
+            .map(|e| (m.shear_modulus / e.permittivity).sqrt())
+    };
+    let units = solids
+        .iter()
+        .flat_map(|s| s.materials.iter().filter_map(of));
     let largest = units.fold(0.0, f64::max);
     if largest > 0.0 { largest } else { 1.0 }
 }
@@ -378,7 +383,11 @@ pub struct Floating {
 }
 
 /// The first part of the blocks that neither supports nor bodies hold.
-pub(super) fn floating(continua: &[Continuum], vectors: &[MaterialVector], nodes: &[NodePlace]) -> Option<Floating> {
+pub(super) fn floating(
+    continua: &[Continuum],
+    vectors: &[MaterialVector],
+    nodes: &[NodePlace],
+) -> Option<Floating> {
     continua.iter().find_map(|continuum| {
         let mesh = &continuum.solid.mesh;
         mesh.parts().iter().find_map(|part| {

@@ -257,9 +257,7 @@ impl<'a> Builder<'a> {
                 scalars: [],
             })
         };
-        self.lumped()
-            .filter_map(element)
-            .collect()
+        self.lumped().filter_map(element).collect()
     }
 
     fn gravity(&mut self) -> Vec<Element<Gravity, 1, 0>> {
@@ -304,10 +302,7 @@ impl<'a> Builder<'a> {
             vectors: [mid(span)],
             scalars: [],
         };
-        self.lumped()
-            .filter(passive)
-            .map(element)
-            .collect()
+        self.lumped().filter(passive).map(element).collect()
     }
 
     fn dielectric(&self) -> Vec<Element<DielectricCell, 1, 1>> {
@@ -348,8 +343,6 @@ impl<'a> Builder<'a> {
                 scalars: [],
             })
         };
-        self.lumped()
-            .filter_map(element)
-            .collect()
+        self.lumped().filter_map(element).collect()
     }
 }

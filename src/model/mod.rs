@@ -24,7 +24,7 @@ use crate::math::Vector;
 use crate::reduction::{Instant, Motion, NodePlace, Reduced};
 use crate::sparse::Symmetry;
 use continuum::Continua;
-use system::{Attachment, Marker, Source};
+use system::{Attachment, Source};
 
 /// Coordinates in which a problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -55,6 +55,13 @@ pub enum Quantity {
         /// Component 0, 1 or 2.
         axis: usize,
     },
+    /// How far a component of the place of a marker moves in an interval, in mm.
+    MarkerStep {
+        /// Marker index.
+        marker: usize,
+        /// Component 0, 1 or 2.
+        axis: usize,
+    },
     /// (|x − c|/r)² of a marker for a ball, Σ ((x − c)_i/a_i)¹⁶ for a box, at the instants.
     MarkerRegion {
         /// Marker index.
@@ -67,7 +74,7 @@ pub enum Quantity {
 impl Quantity {
     /// Whether it is measured in the intervals rather than at the instants.
     pub fn is_of_intervals(&self) -> bool {
-        matches!(self, Self::SquaredField { .. })
+        matches!(self, Self::SquaredField { .. } | Self::MarkerStep { .. })
     }
 }
 
@@ -180,6 +187,25 @@ pub(super) fn measures(
                     instant(energy, [markers[m]])
                 }
             },
+            Quantity::MarkerStep { marker, axis } => {
+                let element = Element {
+                    energy: Place {
+                        origin: Vector::zeros(),
+                        normal: Vector::ith(axis, 1.0),
+                    },
+                    vectors: [VectorArg {
+                        vector: markers[marker],
+                        stencil: Stencil::Difference,
+                    }],
+                    scalars: [],
+                };
+                out.intervals.push(Box::new(Group::<_, 3, 1, 0>::intervals(
+                    "measure",
+                    1.0,
+                    vec![element],
+                )));
+                continue;
+            }
             Quantity::SquaredField { muscle, limit } => {
                 let Some(scalar) = voltages.iter().position(|&m| m == muscle) else {
                     continue;

@@ -1,6 +1,6 @@
 //! Effects of elastic blocks: elements by kind, masses, loads.
 
-use crate::functional::{Effect, Hexahedra, Hexahedron, Mass, ViscousHexahedra, ViscousHexahedron};
+use crate::functional::{Effect, Hexahedra, Hexahedron, Mass};
 use crate::model::continuum::{Continua, Continuum};
 use crate::model::effects::Effects;
 use std::collections::BTreeMap;
@@ -33,14 +33,6 @@ impl Continua {
                 terminals: c.terminals(e),
             })
             .collect();
-        let viscous = |(c, e): (&Continuum, usize)| {
-            Some(ViscousHexahedron {
-                shape: c.shapes[e].clone(),
-                viscosity: c.material(e).viscosity?,
-                nodes: c.nodes(e),
-            })
-        };
-        let viscous: Vec<_> = self.elements().filter_map(viscous).collect();
         let mut add = |count: usize, effect: Box<dyn Effect>| {
             if count > 0 {
                 effects.push(effect);
@@ -53,10 +45,6 @@ impl Continua {
         add(
             dielectric.len(),
             Box::new(Hexahedra::new("block electroelasticity", dielectric)),
-        );
-        add(
-            viscous.len(),
-            Box::new(ViscousHexahedra::new("block viscosity", viscous)),
         );
     }
 

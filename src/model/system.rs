@@ -33,6 +33,17 @@ pub struct Source {
 }
 
 impl System {
+    /// Whether a support holds a marker in the direction of an axis.
+    pub fn holds_marker(&self, marker: usize, axis: usize) -> bool {
+        let Marker { point, solid, .. } = &self.markers[marker];
+        let Some(solid) = solid.map(|s| &self.solids[s]) else {
+            return false;
+        };
+        let node = solid.mesh.nearest_node(&point.at);
+        let holds = |s: &Support| s.held[axis] && node.is_some_and(|n| s.nodes.contains(&n));
+        solid.supports.iter().any(holds)
+    }
+
     /// All that voltages are named for, one voltage each: the muscles, then the driven electrodes of blocks by
     /// `block.electrode`, in the order of the scene. Electrodes of one name in a block share one voltage.
     pub fn sources(&self) -> Vec<Source> {

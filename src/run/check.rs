@@ -77,6 +77,7 @@ fn coupling(program: &Transcription<'_>, model: &Model, row: &str, column: &str)
     for (r, kind) in program.unknowns().rows.iter().enumerate() {
         let entry = match *kind {
             Row::Equation { i, .. } => Some(i),
+            Row::Gauss { s, .. } => Some(n + s),
             Row::Limit { .. } => None,
         };
         entries.insert(program.constraint_name(r), entry);

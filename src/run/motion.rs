@@ -36,6 +36,7 @@ pub fn solved(model: &Model, history: &History, costates: Option<Costates>) -> S
         z: history.z.clone(),
         multiplier_time: model.multiplier_time,
         voltages: motion.voltages,
+        potentials: potentials(model, history),
         costates,
     }
 }
@@ -57,12 +58,33 @@ pub fn trajectory(model: &Model, solved: &Solved) -> Trajectory {
     }
 }
 
+/// Potentials of a motion by interval; none where a scene has none.
+fn potentials(model: &Model, history: &History) -> Vec<Vec<f64>> {
+    if model.potentials == 0 {
+        return Vec::new();
+    }
+    let rows = history.scalars.iter();
+    rows.map(|row| row[model.voltages.len()..].to_vec())
+        .collect()
+}
+
+/// Voltages and potentials of a motion that is kept, by interval.
+pub(super) fn scalars(model: &Model, kept: &Solved) -> Vec<Vec<f64>> {
+    let row = |(k, voltages): (usize, &Vec<f64>)| {
+        let mut row = model.scalars(voltages);
+        row.extend(kept.potentials.get(k).into_iter().flatten());
+        row.resize(model.action.intervals.scalars, 0.0);
+        row
+    };
+    kept.voltages.iter().enumerate().map(row).collect()
+}
+
 /// What is observed at the instants of a motion that is kept.
 pub(super) fn observed(model: &Model, kept: &Solved) -> Observations {
     let history = History {
         times: kept.times.clone(),
         z: kept.z.clone(),
-        scalars: kept.voltages.iter().map(|v| model.scalars(v)).collect(),
+        scalars: scalars(model, kept),
         ..History::default()
     };
     observations(model, &history)

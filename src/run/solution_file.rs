@@ -73,6 +73,9 @@ struct File {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     configuration: Option<Configuration>,
     voltages: BTreeMap<String, Vec<f64>>,
+    /// Potentials of elastic blocks by interval, as multiples of their unit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    potentials: Vec<Vec<f64>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     coordinates: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -143,6 +146,7 @@ pub fn write(path: &Path, model: &Model, solved: &Solved) -> Result<(), WriteErr
             joints: joints.collect(),
         }),
         voltages: model.voltages.iter().map(voltage).collect(),
+        potentials: solved.potentials.clone(),
         coordinates: Some(solved.coordinates.name().to_owned()),
         state: Some(State {
             times_ms: solved.times.clone(),
@@ -253,6 +257,7 @@ fn parse(path: &Path, model: &Model) -> Result<Solved, Reason> {
         z,
         multiplier_time,
         voltages,
+        potentials: file.potentials,
         costates: file.costates.map(|c| Costates {
             rows: c.rows,
             lower: c.lower,

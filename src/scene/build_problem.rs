@@ -195,7 +195,7 @@ fn check_final_conditions(
     scope: &Scope<'_>,
 ) -> Result<(), SceneError> {
     let (conditions, key) = match goal {
-        State::Markers(markers) => (3 * markers.len(), "markers"),
+        State::Markers { places, .. } => (3 * places.len(), "markers"),
         State::JointAngles { angles, .. } => (angles.len(), "joint_angles"),
         State::RestAtVoltages(_) => return Ok(()),
     };

@@ -95,7 +95,10 @@ pub(crate) fn goal_state(
         return voltages(map, system, &scope).map(State::RestAtVoltages);
     }
     if let Some(markers) = &spec.markers {
-        return marker_goals(markers, system, &scope).map(State::Markers);
+        return marker_goals(markers, system, &scope).map(|places| State::Markers {
+            places,
+            rest: spec.rest.unwrap_or_default().into(),
+        });
     }
     let kinds = [Angle::kind(), Length::kind()];
     let angles = by_joint(&spec.joint_angles, &kinds, system, &scope)?;
@@ -116,7 +119,7 @@ fn marker_goals(
     for (name, at) in markers {
         let place = scope.key(name);
         let index = place.find(name, &all, "the name of a marker")?;
-        if system.markers[index].point.body.is_none() {
+        if system.markers[index].point.body.is_none() && system.markers[index].solid.is_none() {
             let found = format!("{name:?}, which is fixed to the ground");
             return Err(place.wrong(found, "a marker on a body"));
         }

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::marker::PhantomData;
 
+use crate::control::problem::Rest;
 use crate::scene::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::scene::quantity::{JointCoordinate, JointRate, Quantity, Time, Voltage};
 use crate::scene::spec_limits::LimitSpec;
@@ -135,6 +136,30 @@ pub struct GoalSpec {
     /// Positions by marker, SI unit m.
     #[serde(default)]
     pub markers: Option<BTreeMap<String, Point>>,
+    /// What comes to rest at positions of markers: `everything` (where not written), or bodies and these `markers` alone, for
+    /// elastic blocks, which a few voltages cannot bring to rest everywhere.
+    #[serde(default)]
+    pub rest: Option<RestSpec>,
+}
+
+/// What comes to rest at a goal.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RestSpec {
+    /// Every coordinate.
+    #[default]
+    Everything,
+    /// Bodies and the markers of the goal.
+    Markers,
+}
+
+impl From<RestSpec> for Rest {
+    fn from(spec: RestSpec) -> Self {
+        match spec {
+            RestSpec::Everything => Self::Everything,
+            RestSpec::Markers => Self::Markers,
+        }
+    }
 }
 
 /// Bounds of a free final time.

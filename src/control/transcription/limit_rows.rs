@@ -61,7 +61,8 @@ pub(super) fn limit_rows(
         support.sort_unstable();
         support.dedup();
         let at = match (bounded.place, site) {
-            (Place::Goal, _) => intervals..intervals + 1,
+            (Place::Goal, Site::Instants) => intervals..intervals + 1,
+            (Place::Goal, Site::Intervals) => intervals - 1..intervals,
             (Place::Everywhere, Site::Intervals) => 0..intervals,
             (Place::Everywhere, Site::Instants) => 1..intervals + usize::from(!final_is_given),
         };
@@ -73,7 +74,7 @@ pub(super) fn limit_rows(
             entries.extend(reads.scalars().into_iter().map(|s| (2, s)));
         }
         let scale = match bounded.quantity {
-            Quantity::MarkerPlace { .. } => 1.0 / model.length(),
+            Quantity::MarkerPlace { .. } | Quantity::MarkerStep { .. } => 1.0 / model.length(),
             _ => 1.0,
         };
         let limit = LimitRow {

@@ -21,7 +21,7 @@ use crate::control::guess::Initial;
 use crate::control::limits::{Bounded, Place};
 use crate::control::objective::Cost;
 use crate::control::problem::{Control, Duration};
-use crate::control::unknowns::{Row, Unknowns, Variable};
+use crate::control::unknowns::{Counts, Row, Unknowns, Variable};
 use crate::functional::{Horizon, Part};
 use crate::model::Model;
 use crate::nlp::{Bounds, Entries, Nlp};
@@ -72,6 +72,8 @@ pub struct Transcription<'m> {
     instants: Vec<Instant>,
     placed: Placed,
     scalars: Vec<f64>,
+    /// Costates of Gauss's laws, scalar by scalar.
+    scalars_along: Vec<f64>,
     kilovolts: Vec<f64>,
     h: f64,
     // Scales: value = scale · variable, scaled row = scale · row.
@@ -83,7 +85,7 @@ pub struct Transcription<'m> {
     middle: Option<usize>,
     ghost: Instant,
     measured: Part,
-    /// Rows of the equations of all instants, then costates of the limits.
+    /// Step by step the rows of an instant and those of the potentials, then costates of the limits.
     rows: Vec<f64>,
     values: Vec<f64>,
     jacobian: Vec<Kept>,
@@ -107,7 +109,8 @@ impl<'m> Transcription<'m> {
     ) -> Result<Self, BoundaryError> {
         let motion = &model.action.motion;
         let (n, unknown_count) = (motion.coordinates, motion.unknowns());
-        let scalar_count = model.voltages.len();
+        let driven = model.voltages.len();
+        let scalar_count = driven + model.potentials;
         let intervals = control.intervals;
         let horizon = match control.duration {
             Duration::Given(_) => Horizon::Given,
@@ -116,7 +119,16 @@ impl<'m> Transcription<'m> {
         let goal = &boundary.goal.coordinates;
         let given = |k: usize, i: usize| k == 0 || (k == intervals && goal[i].is_some());
         let free = horizon == Horizon::Free;
-        let mut unknowns = Unknowns::new(intervals, n, unknown_count, scalar_count, free, given);
+        let counts = Counts {
+            intervals,
+            coordinates: n,
+            unknowns: unknown_count,
+            voltages: driven,
+            scalars: scalar_count,
+        };
+        let at_rest = boundary.goal.nodes_rest;
+        let balanced = |k: usize, i: usize| k < intervals || i < motion.of_bodies || at_rest;
+        let mut unknowns = Unknowns::new(counts, free, given, balanced);
         let mut instants = vec![motion.instant(); intervals + 1];
         instants[0].z.copy_from_slice(&boundary.start.z);
         for (value, goal) in instants[intervals].z.iter_mut().zip(goal) {
@@ -142,13 +154,14 @@ impl<'m> Transcription<'m> {
             boundary.rest[0].as_ref().map(kilo),
             boundary.rest[1].as_ref().map(kilo),
         ];
-        let cost = Cost::new(control.objective, scalar_count, intervals, ends);
+        let cost = Cost::new(control.objective, driven, intervals, ends);
         let layout = model.action.layout();
         let length = model.length();
         let scale = |variable: &Variable| match *variable {
             Variable::Unknown { i, .. } if i < n && model.is_length(i) => length,
             Variable::Unknown { .. } => 1.0,
-            Variable::Scalar { .. } => KILOVOLT,
+            Variable::Scalar { s, .. } if s < driven => KILOVOLT,
+            Variable::Scalar { .. } => KILOVOLT / model.potential_unit,
             Variable::Horizon => initial.h,
         };
         let variable_scales = unknowns.variables.iter().map(scale).collect();
@@ -167,7 +180,8 @@ impl<'m> Transcription<'m> {
             instants,
             placed: Placed::Nothing,
             scalars: vec![0.0; intervals * scalar_count],
-            kilovolts: vec![0.0; intervals * scalar_count],
+            scalars_along: vec![0.0; intervals * scalar_count],
+            kilovolts: vec![0.0; intervals * driven],
             h: initial.h,
             variable_scales,
             row_scales: vec![1.0; unknowns.rows.len()],
@@ -175,19 +189,15 @@ impl<'m> Transcription<'m> {
             middle: (horizon == Horizon::Given && intervals >= TWO_STRETCHES)
                 .then_some(intervals / 2),
             ghost: motion.instant(),
-            measured: Part::new(
-                motion.vectors.len(),
-                scalar_count,
-                &crate::functional::Couplings::default(),
-            ),
-            rows: vec![0.0; (intervals + 1) * unknown_count + limit_count],
+            measured: Part::new(motion.vectors.len(), scalar_count, None),
+            rows: vec![0.0; (intervals + 1) * (unknown_count + model.potentials) + limit_count],
             values: vec![0.0; layout.values(intervals) + extra],
             jacobian: Vec::new(),
             jacobian_entries: Entries::default(),
             hessian: Vec::new(),
             hessian_entries: Entries::default(),
-            gradient: vec![0.0; intervals * scalar_count],
-            voltage_slots: (0..scalar_count)
+            gradient: vec![0.0; intervals * driven],
+            voltage_slots: (0..driven)
                 .map(|s| {
                     layout
                         .scalars
@@ -212,7 +222,7 @@ impl<'m> Transcription<'m> {
             .unknowns
             .rows
             .iter()
-            .filter(|r| matches!(r, Row::Equation { .. }))
+            .filter(|r| !matches!(r, Row::Limit { .. }))
             .count()
             + goals;
         let unknowns = self.unknowns.variables.len();

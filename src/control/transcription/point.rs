@@ -26,7 +26,7 @@ impl Transcription<'_> {
     /// The motion of a point of the program.
     pub fn decode(&mut self, x: &[f64]) -> History {
         self.load(x);
-        let scalar_count = self.model.voltages.len();
+        let scalar_count = self.model.action.layout().interval_scalars;
         History {
             times: (0..=self.intervals).map(|k| k as f64 * self.h).collect(),
             z: self
@@ -76,7 +76,8 @@ impl Transcription<'_> {
             return;
         }
         self.point.copy_from_slice(x);
-        let scalar_count = self.model.voltages.len();
+        let driven = self.model.voltages.len();
+        let scalar_count = self.model.action.layout().interval_scalars;
         for ((variable, scale), value) in self
             .unknowns
             .variables
@@ -89,7 +90,9 @@ impl Transcription<'_> {
                 Variable::Unknown { k, i } => self.instants[k].z[i] = value,
                 Variable::Scalar { k, s } => {
                     self.scalars[k * scalar_count + s] = value;
-                    self.kilovolts[k * scalar_count + s] = value / KILOVOLT;
+                    if s < driven {
+                        self.kilovolts[k * driven + s] = value / KILOVOLT;
+                    }
                 }
                 Variable::Horizon => self.h = value,
             }

@@ -14,7 +14,7 @@ impl Nlp for Transcription<'_> {
 
     fn constraints(&self) -> Bounds {
         let bound = |row: &Row| match *row {
-            Row::Equation { .. } => (0.0, 0.0),
+            Row::Equation { .. } | Row::Gauss { .. } => (0.0, 0.0),
             Row::Limit { limit, .. } => {
                 let limit = &self.limits[limit];
                 (limit.lower * limit.scale, limit.upper * limit.scale)
@@ -42,7 +42,7 @@ impl Nlp for Transcription<'_> {
         let by_horizon =
             self.cost
                 .gradient(&self.kilovolts, self.h * MILLISECOND, &mut self.gradient);
-        let scalar_count = self.model.voltages.len();
+        let driven = self.model.voltages.len();
         for ((variable, scale), g) in self
             .unknowns
             .variables
@@ -51,9 +51,11 @@ impl Nlp for Transcription<'_> {
             .zip(grad)
         {
             *g = match *variable {
-                Variable::Scalar { k, s } => self.gradient[k * scalar_count + s] * scale / KILOVOLT,
+                Variable::Scalar { k, s } if s < driven => {
+                    self.gradient[k * driven + s] * scale / KILOVOLT
+                }
                 Variable::Horizon => by_horizon * MILLISECOND * scale,
-                Variable::Unknown { .. } => 0.0,
+                Variable::Scalar { .. } | Variable::Unknown { .. } => 0.0,
             };
         }
     }
@@ -61,7 +63,8 @@ impl Nlp for Transcription<'_> {
     fn constraint(&mut self, x: &[f64], g: &mut [f64]) {
         self.load(x);
         self.sweep(Level::Gradient);
-        let count = self.model.action.motion.unknowns();
+        let stride = self.stride();
+        let first = stride - self.model.action.layout().interval_scalars;
         for (value, (row, scale)) in g
             .iter_mut()
             .zip(self.unknowns.rows.iter().zip(&self.row_scales))
@@ -74,8 +77,9 @@ impl Nlp for Transcription<'_> {
                         } else {
                             0.0
                         };
-                        self.rows[k * count + i] + start
+                        self.rows[k * stride + i] + start
                     }
+                    Row::Gauss { k, s } => self.rows[k * stride + first + s],
                     Row::Limit { limit, k } => self.limit_value(&self.limits[limit], k),
                 };
         }
@@ -96,12 +100,15 @@ impl Nlp for Transcription<'_> {
             instant.l.fill(0.0);
         }
         self.rows.fill(0.0);
+        self.scalars_along.fill(0.0);
+        let count = self.model.action.layout().interval_scalars;
         let total = self.rows.len() - self.limit_rows.len();
         let first = self.unknowns.rows.len() - self.limit_rows.len();
         for (r, (row, y)) in self.unknowns.rows.iter().zip(costates).enumerate() {
             let y = y * self.row_scales[r];
             match *row {
                 Row::Equation { k, i } => self.instants[k].l[i] = y,
+                Row::Gauss { k, s } => self.scalars_along[k * count + s] = y,
                 Row::Limit { .. } => self.rows[total + r - first] = y,
             }
         }
@@ -118,12 +125,16 @@ impl Nlp for Transcription<'_> {
     fn variable_name(&self, i: usize) -> String {
         match self.unknowns.variables[i] {
             Variable::Unknown { k, i } => format!("{} at instant {k}", self.model.unknown_name(i)),
-            Variable::Scalar { k, s } => {
-                format!(
-                    "voltage of {} in interval {k}",
-                    self.model.system.muscles[self.model.voltages[s]].name
-                )
-            }
+            Variable::Scalar { k, s } => match s.checked_sub(self.model.voltages.len()) {
+                None => {
+                    let source = &self.model.sources[self.model.voltages[s]];
+                    format!("voltage of {} in interval {k}", source.name)
+                }
+                Some(p) => format!(
+                    "potential of {} in interval {k}",
+                    self.model.potential_names[p]
+                ),
+            },
             Variable::Horizon => "interval length".to_owned(),
         }
     }
@@ -140,6 +151,10 @@ impl Nlp for Transcription<'_> {
             Row::Equation { k, i } => format!(
                 "constraint {} at instant {k}",
                 self.model.multiplier_names[i - n]
+            ),
+            Row::Gauss { k, s } => format!(
+                "Gauss's law of {} in interval {k}",
+                self.model.potential_names[s - self.model.voltages.len()]
             ),
             Row::Limit { limit, k } => match (self.limits[limit].place, self.limits[limit].site) {
                 (Place::Goal, _) => self.limits[limit].name.clone(),

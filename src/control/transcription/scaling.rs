@@ -16,7 +16,14 @@ impl Transcription<'_> {
         let mut values = vec![0.0; self.jacobian.len()];
         self.jacobian(&x, &mut values);
         let is_multiplier = |v: &Variable| matches!(v, Variable::Unknown { i, .. } if *i >= n);
-        let mut largest = vec![0.0_f64; count];
+        // Rows of an instant, then of the potentials of an interval.
+        let driven = self.model.voltages.len();
+        let kind = |row: Row| match row {
+            Row::Equation { i, .. } => Some(i),
+            Row::Gauss { s, .. } => Some(count + s - driven),
+            Row::Limit { .. } => None,
+        };
+        let mut largest = vec![0.0_f64; count + self.model.potentials];
         let entries = || {
             self.jacobian_entries
                 .rows
@@ -26,8 +33,8 @@ impl Transcription<'_> {
         };
         let scale = |col: u32| self.variable_scales[col as usize];
         for ((&row, &col), value) in entries() {
-            if let (Row::Equation { i, .. }, false) = (
-                self.unknowns.rows[row as usize],
+            if let (Some(i), false) = (
+                kind(self.unknowns.rows[row as usize]),
                 is_multiplier(&self.unknowns.variables[col as usize]),
             ) && self.unknowns.horizon() != Some(col as usize)
             {
@@ -48,7 +55,7 @@ impl Transcription<'_> {
                 self.unknowns.rows[row as usize],
                 self.unknowns.variables[col as usize],
             );
-            if let (Row::Equation { i: r, .. }, Variable::Unknown { i, .. }) = (row, variable)
+            if let (Some(r), Variable::Unknown { i, .. }) = (kind(row), variable)
                 && i >= n
             {
                 columns[i] = columns[i].max((value * row_scales[r]).abs());
@@ -66,8 +73,8 @@ impl Transcription<'_> {
         }
         for (scale, row) in self.row_scales.iter_mut().zip(&self.unknowns.rows) {
             *scale = match *row {
-                Row::Equation { i, .. } => row_scales[i],
                 Row::Limit { limit, .. } => self.limits[limit].scale,
+                other => kind(other).map_or(1.0, |i| row_scales[i]),
             };
         }
         for ((kept, &row), &col) in self
@@ -91,6 +98,7 @@ impl Transcription<'_> {
 
     pub(super) fn set_bounds(&mut self, control: &Control) {
         let n = self.model.coordinate_count();
+        let driven = self.model.voltages.len();
         let mut lower = vec![f64::NEG_INFINITY; n];
         let mut upper = vec![f64::INFINITY; n];
         if self.model.coordinates == Coordinates::Reduced {
@@ -106,7 +114,8 @@ impl Transcription<'_> {
             let [low, high] = match *variable {
                 Variable::Unknown { i, .. } if i < n => [lower[i], upper[i]],
                 Variable::Unknown { .. } => [f64::NEG_INFINITY, f64::INFINITY],
-                Variable::Scalar { .. } => control.voltage_bounds,
+                Variable::Scalar { s, .. } if s < driven => control.voltage_bounds,
+                Variable::Scalar { .. } => [f64::NEG_INFINITY, f64::INFINITY],
                 Variable::Horizon => match control.duration {
                     Duration::Free { min, max, .. } => {
                         [min, max].map(|t| t / self.intervals as f64)

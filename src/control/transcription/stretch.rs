@@ -8,7 +8,7 @@ use crate::control::transcription::Placed;
 use crate::control::transcription::limit_rows::{LimitRow, Site, fill_weights};
 use crate::functional::{Horizon, Level, Sides};
 use crate::math::Vector;
-use crate::reduction::{Instant, Reduced, Scratch};
+use crate::reduction::{Instant, Interval, Reduced, Scratch};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::cell::OnceCell;
 use std::thread::available_parallelism;
@@ -22,6 +22,10 @@ pub(super) struct Shared<'a> {
     pub(super) costates: &'a [f64],
     /// Scalars of all intervals.
     pub(super) scalars: &'a [f64],
+    /// Costates of Gauss's laws of all intervals.
+    pub(super) along: &'a [f64],
+    /// Rows of one step: of the instant, then of the potentials.
+    pub(super) stride: usize,
     pub(super) h: f64,
     pub(super) horizon: Horizon,
     pub(super) placed: Placed,
@@ -47,7 +51,7 @@ pub(super) struct Stretch<'a> {
     pub(super) bench: &'a mut Bench,
     /// Values of the steps from `first` on.
     pub(super) values: &'a mut [f64],
-    /// Rows of the equations of the instants from `first` on.
+    /// Rows of the steps from `first` on.
     pub(super) rows: &'a mut [f64],
 }
 
@@ -131,13 +135,14 @@ impl Stretch<'_> {
             level,
             horizon,
             h,
+            stride,
             ..
         } = self.shared;
         let (left, right) = self.instants.split_at_mut(j + 1);
         let (a, b) = (&mut left[j], right.first_mut().unwrap_or(self.end));
         let k = self.first + j;
         let count = action.intervals.scalars;
-        let scalars = &self.shared.scalars[k * count..(k + 1) * count];
+        let of_step = k * count..(k + 1) * count;
         let Bench {
             scratch,
             weights: [_, weights],
@@ -149,28 +154,26 @@ impl Stretch<'_> {
             k,
             self.shared.costates,
         );
-        action.evaluate_interval(
-            level,
-            a,
-            b,
-            scalars,
+        let interval = Interval {
+            scalars: &self.shared.scalars[of_step.clone()],
+            along: &self.shared.along[of_step],
             h,
             horizon,
-            Sides::ALL,
+            sides: Sides::ALL,
             weights,
-            scratch,
-        );
+        };
+        action.evaluate_interval(level, [a, b], &interval, scratch);
+        if level == Level::Gradient {
+            let gauss = &mut self.rows[j * stride + action.motion.unknowns()..(j + 1) * stride];
+            let rows = &scratch.interval.plain.rows;
+            gauss.copy_from_slice(&rows[rows.len() - gauss.len()..]);
+        }
         scratch.carry(level);
-        action.pull_back_interval(
-            level,
-            a,
-            b,
-            horizon,
-            Sides::CARRIED,
-            j,
-            scratch,
-            self.values,
-        );
+        let carried = Interval {
+            sides: Sides::CARRIED,
+            ..interval
+        };
+        action.pull_back_interval(level, [a, b], &carried, j, scratch, self.values);
         scratch.interval.contracted.horizon
     }
 }
@@ -194,7 +197,7 @@ pub(super) fn instant_of(
     action.pull_back_instant(level, instant, j, scratch, values);
     if level == Level::Gradient {
         let count = action.motion.unknowns();
-        let rows = &mut rows[j * count..(j + 1) * count];
+        let rows = &mut rows[j * shared.stride..j * shared.stride + count];
         rows.fill(0.0);
         action.rows(instant, scratch, rows);
     }

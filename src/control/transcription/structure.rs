@@ -30,7 +30,26 @@ impl Transcription<'_> {
                         Some(u.scalar(k, s)),
                         layout.mixed_at(k, side) + slot,
                     ));
+                    list.push((
+                        u.row_of_scalar(k, s),
+                        u.unknown(k + side, i),
+                        layout.mixed_at(k, side) + slot,
+                    ));
                 }
+            }
+            for (slot, &(s, t)) in layout.scalars.entries().iter().enumerate() {
+                let place = layout.scalars_at(k) + slot;
+                list.push((u.row_of_scalar(k, s), Some(u.scalar(k, t)), place));
+                if s != t {
+                    list.push((u.row_of_scalar(k, t), Some(u.scalar(k, s)), place));
+                }
+            }
+            for s in 0..layout.interval_scalars {
+                list.push((
+                    u.row_of_scalar(k, s),
+                    u.horizon(),
+                    layout.horizon_scalars_at(k) + s,
+                ));
             }
         }
         let mut place = layout.values(self.intervals);
@@ -57,7 +76,11 @@ impl Transcription<'_> {
         let horizon = self.unknowns.horizon();
         let exists = |&(row, col, _): &(usize, usize, usize)| {
             Some(col) != horizon
-                || matches!(self.unknowns.rows[row], Row::Equation { i, .. } if i < n)
+                || match self.unknowns.rows[row] {
+                    Row::Equation { i, .. } => i < n,
+                    Row::Gauss { .. } => true,
+                    Row::Limit { .. } => false,
+                }
         };
         let list: Vec<_> = self.jacobian_of().into_iter().filter(exists).collect();
         for (row, col, place) in list {
@@ -135,7 +158,7 @@ impl Transcription<'_> {
         }
         if self.cost.couples_intervals() {
             for k in 1..self.intervals {
-                for s in 0..layout.interval_scalars {
+                for s in 0..self.model.voltages.len() {
                     entries.rows.push(u.scalar(k, s) as u32);
                     entries.cols.push(u.scalar(k - 1, s) as u32);
                 }

@@ -7,17 +7,24 @@ use crate::functional::{Frame, Horizon, Level, Measure, Sides};
 use crate::math::Vector;
 
 impl<'m> Transcription<'m> {
+    /// Number of rows of a step: of an instant, then of the potentials of an interval.
+    pub(super) fn stride(&self) -> usize {
+        self.model.action.motion.unknowns() + self.model.potentials
+    }
+
     /// Instant by instant and interval by interval, each while it is in the cache: forces, and second derivatives into
     /// the values. Contracted derivatives are taken along the costates in the instants.
     pub(super) fn sweep(&mut self, level: Level) {
         let (action, last) = (&self.model.action, self.intervals);
-        let layout = action.layout();
-        let (rows, costates) = self.rows.split_at_mut((last + 1) * layout.unknowns);
+        let (layout, stride) = (action.layout(), self.stride());
+        let (rows, costates) = self.rows.split_at_mut((last + 1) * stride);
         let shared = Shared {
             action,
             limits: &self.limits,
             costates,
             scalars: &self.scalars,
+            along: &self.scalars_along,
+            stride,
             h: self.h,
             horizon: self.horizon,
             placed: self.placed,
@@ -33,7 +40,7 @@ impl<'m> Transcription<'m> {
             let (left, right) = self.instants.split_at_mut(middle);
             let (end, right) = right.split_last_mut().expect("a stretch has an end");
             let (values_left, values_right) = values.split_at_mut(layout.same_at(middle));
-            let (rows_left, rows_right) = rows.split_at_mut(middle * layout.unknowns);
+            let (rows_left, rows_right) = rows.split_at_mut(middle * stride);
             let left = Stretch {
                 shared,
                 first: 0,
@@ -108,7 +115,7 @@ impl<'m> Transcription<'m> {
 
     /// The frame in which a measure is read at instant or interval k.
     fn frame(&self, site: Site, k: usize) -> Frame<'_> {
-        let scalar_count = self.model.voltages.len();
+        let scalar_count = self.model.action.layout().interval_scalars;
         let next = k + site.sides() - 1;
         Frame {
             vectors: [&self.instants[k].x, &self.instants[next].x],

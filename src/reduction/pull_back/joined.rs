@@ -93,9 +93,15 @@ impl Joined {
         each(&self.full, sides, target, values, |e, side, instant| {
             dot(ends.columns[instant], e, &line(e, &full[e.slot][side]))
         });
-        each(&self.isotropic, sides, target, values, |e, side, instant| {
-            ends.columns[instant][e.column + e.axis * e.stride] * isotropic[e.slot][side]
-        });
+        each(
+            &self.isotropic,
+            sides,
+            target,
+            values,
+            |e, side, instant| {
+                ends.columns[instant][e.column + e.axis * e.stride] * isotropic[e.slot][side]
+            },
+        );
     }
 
     /// Adds Pᵀ H_w P + P′_lᵀ H P + Pᵀ Hᵀ P′_l; only the articulated vector has a P′_l.
@@ -119,11 +125,17 @@ impl Joined {
             dot(ends.columns[instant], e, &line(e, &full[1][e.slot][side]))
                 + dot(ends.columns_l[instant], e, &h.column(e.axis).into())
         });
-        each(&self.isotropic, sides, target, values, |e, side, instant| {
-            let place = e.column + e.axis * e.stride;
-            ends.columns[instant][place] * isotropic[1][e.slot][side]
-                + ends.columns_l[instant][place] * isotropic[0][e.slot][side]
-        });
+        each(
+            &self.isotropic,
+            sides,
+            target,
+            values,
+            |e, side, instant| {
+                let place = e.column + e.axis * e.stride;
+                ends.columns[instant][place] * isotropic[1][e.slot][side]
+                    + ends.columns_l[instant][place] * isotropic[0][e.slot][side]
+            },
+        );
     }
 }
 

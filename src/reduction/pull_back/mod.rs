@@ -95,12 +95,10 @@ impl PullBack {
                 Block::Isotropic => self.linear.add_isotropic(slot, [s, t], layout, site),
             },
             (Articulated(a), Linear { parts, .. }) => {
-                self.joined
-                    .add(block, slots, a, parts, true, layout, site);
+                self.joined.add(block, slots, a, parts, true, layout, site);
             }
             (Linear { parts, .. }, Articulated(b)) => {
-                self.joined
-                    .add(block, slots, b, parts, false, layout, site);
+                self.joined.add(block, slots, b, parts, false, layout, site);
             }
         }
     }
@@ -144,14 +142,8 @@ impl PullBack {
         );
         self.linear
             .add(&blocks.full, &blocks.isotropic, sides, target, values);
-        self.joined.plain(
-            ends,
-            &blocks.full,
-            &blocks.isotropic,
-            sides,
-            target,
-            values,
-        );
+        self.joined
+            .plain(ends, &blocks.full, &blocks.isotropic, sides, target, values);
         self.mixed.plain(columns, part, target, values);
         for &(slot, place) in &self.scalars {
             values[target.scalars + place] += blocks.scalars[slot];
