@@ -27,6 +27,7 @@
 //! | [`math`], [`sparse`], [`nlp`] | jets; direct solution; what a nonlinear program is, and its check by differences |
 //! | [`mesh`] | hexahedral meshes: nodes, elements, named sets |
 //! | [`energy`] | formulas: energies and virtual works with exact derivatives |
+//! | [`element`] | formulas of the trilinear hexahedron: material law, viscosity, fields |
 //! | [`ipopt`] | the solver behind one safe function |
 //! | [`kinematics`] | material vectors, linear in the poses of bodies |
 //! | [`functional`] | sums of effects over intervals and instants |

@@ -1,0 +1,257 @@
+//! The material law of an elastomer, passive or dielectric, and the energy of a hexahedron of it.
+
+use super::local::{Electric, Local, Output, Pair};
+use super::number::{Dual, Lanes, Task, dispatch};
+use super::shape::Shape;
+use super::variations::{State, Variations};
+use crate::math::Vector;
+use pulp::Simd;
+use std::fmt::Debug;
+
+/// A compressible neo-Hookean elastomer, with the electric part of its energy where it is [`Dielectric`].
+///
+/// Per reference volume, with F = Σ x_i ⊗ G_i, E = −Σ φ_i G_i, J = det F,
+///
+/// ```text
+/// Ω = μ/2 (F:F − 3) − μ ln J + λ/2 ln²J  +  c₁ |E|² + c₂ |F E|² − ½ ε |cof(F) E|²/J.
+/// ```
+///
+/// NaN where J ≤ 0 at a Gauss point; solvers step back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elastomer<F> {
+    /// Shear modulus μ in MPa.
+    pub shear_modulus: f64,
+    /// First Lamé constant λ in MPa.
+    pub lame_lambda: f64,
+    /// Where λ/2 ln²J is evaluated.
+    pub volume: Volume,
+    /// The electric part: [`Passive`] or [`Dielectric`].
+    pub field: F,
+}
+
+/// Where the volumetric energy λ/2 ln²J of a hexahedron is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Volume {
+    /// At each Gauss point: the plain trilinear hexahedron. Stiff in volume as ν → ½.
+    Pointwise,
+    /// V λ/2 ln²J̄ of the mean dilatation J̄ = (1/V) Σ w J, V the reference volume: Q1P0, an energy as well.
+    Mean,
+}
+
+/// An elastomer without electric field.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Passive;
+
+/// Constants of the electric energy c₁ |E|² + c₂ |F E|² − ½ ε |cof(F) E|²/J, in N/V².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dielectric {
+    /// c₁.
+    pub c1: f64,
+    /// c₂.
+    pub c2: f64,
+    /// Permittivity ε of the last term: vacuum's, or the whole of an ideal dielectric.
+    pub permittivity: f64,
+}
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::Passive {}
+    impl Sealed for super::Dielectric {}
+}
+
+/// The electric part of a law: none of it ([`Passive`]), or [`Dielectric`].
+pub trait Field: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
+    /// Electric potentials of the nodes in V: `()` or `[f64; 8]`.
+    type Potentials: Copy + Debug + Default + PartialEq + Send + Sync;
+    /// Derivatives by potentials: `()` or [`Electric`].
+    type Local: Clone + Debug + Default + Send + Sync;
+
+    /// The constants and potentials, where there are any.
+    #[doc(hidden)]
+    fn constants(&self, potentials: &Self::Potentials) -> Option<(Dielectric, [f64; 8])>;
+
+    /// The derivatives by potentials, where there are any.
+    fn electric(local: &mut Self::Local) -> Option<&mut Electric>;
+}
+
+impl Field for Passive {
+    type Potentials = ();
+    type Local = ();
+
+    #[inline(always)]
+    fn constants(&self, (): &()) -> Option<(Dielectric, [f64; 8])> {
+        None
+    }
+
+    #[inline(always)]
+    fn electric((): &mut ()) -> Option<&mut Electric> {
+        None
+    }
+}
+
+impl Field for Dielectric {
+    type Potentials = [f64; 8];
+    type Local = Electric;
+
+    #[inline(always)]
+    fn constants(&self, potentials: &[f64; 8]) -> Option<(Dielectric, [f64; 8])> {
+        Some((*self, *potentials))
+    }
+
+    #[inline(always)]
+    fn electric(local: &mut Electric) -> Option<&mut Electric> {
+        Some(local)
+    }
+}
+
+impl<F: Field> Elastomer<F> {
+    /// Energy W in mJ of the hexahedron `shape` with nodes at `x` in mm and their potentials in V.
+    pub fn energy(&self, shape: &Shape, x: &[Vector; 8], potentials: &F::Potentials) -> f64 {
+        let mut energy = 0.0;
+        dispatch(Plain::<_, _, 0> {
+            law: self,
+            shape,
+            x,
+            potentials,
+            out: &mut energy,
+        });
+        energy
+    }
+
+    /// Fills energy, forces and charges.
+    pub fn gradient(
+        &self,
+        shape: &Shape,
+        x: &[Vector; 8],
+        potentials: &F::Potentials,
+        local: &mut Local<F>,
+    ) {
+        dispatch(Plain::<_, _, 1> {
+            law: self,
+            shape,
+            x,
+            potentials,
+            out: local,
+        });
+    }
+
+    /// Fills everything: energy, gradient, and stiffness, coupling and permittivity.
+    pub fn tangent(
+        &self,
+        shape: &Shape,
+        x: &[Vector; 8],
+        potentials: &F::Potentials,
+        local: &mut Local<F>,
+    ) {
+        dispatch(Plain::<_, _, 2> {
+            law: self,
+            shape,
+            x,
+            potentials,
+            out: local,
+        });
+    }
+
+    /// Fills `plain` as [`tangent`](Self::tangent) does, and `along` with the derivatives of all of it along
+    /// (w, w_potentials): the second and third derivatives contracted with that direction.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a state, a direction, and their two results"
+    )]
+    pub fn third(
+        &self,
+        shape: &Shape,
+        x: &[Vector; 8],
+        potentials: &F::Potentials,
+        w: &[Vector; 8],
+        w_potentials: &F::Potentials,
+        plain: &mut Local<F>,
+        along: &mut Local<F>,
+    ) {
+        dispatch(Along {
+            law: self,
+            shape,
+            x,
+            potentials,
+            w,
+            w_potentials,
+            out: Pair { plain, along },
+        });
+    }
+}
+
+/// Derivatives to the order `ORDER` at a state.
+struct Plain<'a, F: Field, O, const ORDER: usize> {
+    law: &'a Elastomer<F>,
+    shape: &'a Shape,
+    x: &'a [Vector; 8],
+    potentials: &'a F::Potentials,
+    out: &'a mut O,
+}
+
+impl<F: Field, O: Output<f64>, const ORDER: usize> Task for Plain<'_, F, O, ORDER> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd, const K: usize>(self, unit: S) {
+        let mut x = [[0.0; 3]; 8];
+        for i in 0..8 {
+            x[i] = [self.x[i].x, self.x[i].y, self.x[i].z];
+        }
+        let electric = self.law.field.constants(self.potentials);
+        let state = State {
+            token: unit,
+            shear_modulus: self.law.shear_modulus,
+            lame_lambda: self.law.lame_lambda,
+            volume: self.law.volume,
+            shape: self.shape,
+            x: &x,
+            electric: electric.as_ref().map(|(constants, phi)| (constants, phi)),
+        };
+        Variations::<Lanes<S, K>>::write::<ORDER>(&state, self.out);
+    }
+}
+
+/// Second derivatives at a state, and their rates along a direction.
+struct Along<'a, F: Field> {
+    law: &'a Elastomer<F>,
+    shape: &'a Shape,
+    x: &'a [Vector; 8],
+    potentials: &'a F::Potentials,
+    w: &'a [Vector; 8],
+    w_potentials: &'a F::Potentials,
+    out: Pair<'a, F>,
+}
+
+impl<F: Field> Task for Along<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd, const K: usize>(mut self, unit: S) {
+        let dual = |value: f64, rate: f64| Dual { value, rate };
+        let mut x = [[dual(0.0, 0.0); 3]; 8];
+        for i in 0..8 {
+            for a in 0..3 {
+                x[i][a] = dual(self.x[i][a], self.w[i][a]);
+            }
+        }
+        let values = self.law.field.constants(self.potentials);
+        let rates = self.law.field.constants(self.w_potentials);
+        let mut phi = [dual(0.0, 0.0); 8];
+        if let (Some((_, value)), Some((_, rate))) = (&values, &rates) {
+            for i in 0..8 {
+                phi[i] = dual(value[i], rate[i]);
+            }
+        }
+        let state = State {
+            token: unit,
+            shear_modulus: self.law.shear_modulus,
+            lame_lambda: self.law.lame_lambda,
+            volume: self.law.volume,
+            shape: self.shape,
+            x: &x,
+            electric: values.as_ref().map(|(constants, _)| (constants, &phi)),
+        };
+        Variations::<Dual<Lanes<S, K>>>::write::<2>(&state, &mut self.out);
+    }
+}

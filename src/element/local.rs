@@ -1,0 +1,158 @@
+//! Energy of one hexahedron with its first and second derivatives by the arguments of its nodes.
+
+use super::elastomer::Field;
+use super::number::Dual;
+use crate::math::{Matrix, Vector};
+
+/// Energy W of one hexahedron with its derivatives: forces, stiffness, and their electric counterparts.
+///
+/// A caller keeps one and has it filled again and again. `Local<Passive>` has no electric part.
+#[derive(Clone, Debug)]
+pub struct Local<F: Field> {
+    /// W in mJ.
+    pub energy: f64,
+    /// ∂W/∂x_i in N.
+    pub forces: [Vector; 8],
+    /// ∂²W/∂x_i∂x_j in N/mm, rows belong to i; both triangles are filled.
+    pub stiffness: [[Matrix; 8]; 8],
+    /// Derivatives by potentials: [`Electric`], or nothing.
+    pub electric: F::Local,
+}
+
+/// Derivatives of the energy of one hexahedron by the potentials of its nodes.
+#[derive(Clone, Debug)]
+pub struct Electric {
+    /// ∂W/∂φ_i in mJ/V.
+    pub charges: [f64; 8],
+    /// ∂²W/∂x_i∂φ_j in N/V, `coupling[i][j]`: all 64 vectors differ.
+    pub coupling: [[Vector; 8]; 8],
+    /// ∂²W/∂φ_i∂φ_j in mJ/V²; both triangles are filled.
+    pub permittivity: [[f64; 8]; 8],
+}
+
+impl<F: Field> Default for Local<F> {
+    fn default() -> Self {
+        Self {
+            energy: 0.0,
+            forces: [Vector::zeros(); 8],
+            stiffness: [[Matrix::zeros(); 8]; 8],
+            electric: F::Local::default(),
+        }
+    }
+}
+
+impl Default for Electric {
+    fn default() -> Self {
+        Self {
+            charges: [0.0; 8],
+            coupling: [[Vector::zeros(); 8]; 8],
+            permittivity: [[0.0; 8]; 8],
+        }
+    }
+}
+
+/// Where the variations of an energy are written, as numbers `U`; what a reader does not ask for is dropped.
+pub(super) trait Output<U> {
+    fn energy(&mut self, value: U);
+    fn force(&mut self, _i: usize, _value: [U; 3]) {}
+    fn charge(&mut self, _i: usize, _value: U) {}
+    /// The block (i, j) and, transposed, (j, i).
+    fn stiffness(&mut self, _i: usize, _j: usize, _value: [[U; 3]; 3]) {}
+    fn coupling(&mut self, _i: usize, _j: usize, _value: [U; 3]) {}
+    /// The entries (i, j) and (j, i).
+    fn permittivity(&mut self, _i: usize, _j: usize, _value: U) {}
+}
+
+/// An energy alone.
+impl Output<f64> for f64 {
+    #[inline(always)]
+    fn energy(&mut self, value: f64) {
+        *self = value;
+    }
+}
+
+impl<F: Field> Output<f64> for Local<F> {
+    #[inline(always)]
+    fn energy(&mut self, value: f64) {
+        self.energy = value;
+    }
+
+    #[inline(always)]
+    fn force(&mut self, i: usize, value: [f64; 3]) {
+        self.forces[i] = Vector::new(value[0], value[1], value[2]);
+    }
+
+    #[inline(always)]
+    fn charge(&mut self, i: usize, value: f64) {
+        if let Some(electric) = F::electric(&mut self.electric) {
+            electric.charges[i] = value;
+        }
+    }
+
+    #[inline(always)]
+    fn stiffness(&mut self, i: usize, j: usize, [a, b, c]: [[f64; 3]; 3]) {
+        // Columns one after the other, as nalgebra stores them.
+        self.stiffness[j][i] = Matrix::new(a[0], b[0], c[0], a[1], b[1], c[1], a[2], b[2], c[2]);
+        self.stiffness[i][j] = Matrix::new(a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]);
+    }
+
+    #[inline(always)]
+    fn coupling(&mut self, i: usize, j: usize, value: [f64; 3]) {
+        if let Some(electric) = F::electric(&mut self.electric) {
+            electric.coupling[i][j] = Vector::new(value[0], value[1], value[2]);
+        }
+    }
+
+    #[inline(always)]
+    fn permittivity(&mut self, i: usize, j: usize, value: f64) {
+        if let Some(electric) = F::electric(&mut self.electric) {
+            electric.permittivity[i][j] = value;
+            electric.permittivity[j][i] = value;
+        }
+    }
+}
+
+/// Variations, and their derivatives along a direction.
+pub(super) struct Pair<'a, F: Field> {
+    pub(super) plain: &'a mut Local<F>,
+    pub(super) along: &'a mut Local<F>,
+}
+
+impl<F: Field> Output<Dual<f64>> for Pair<'_, F> {
+    #[inline(always)]
+    fn energy(&mut self, d: Dual<f64>) {
+        self.plain.energy(d.value);
+        self.along.energy(d.rate);
+    }
+
+    #[inline(always)]
+    fn force(&mut self, i: usize, d: [Dual<f64>; 3]) {
+        self.plain.force(i, d.map(|d| d.value));
+        self.along.force(i, d.map(|d| d.rate));
+    }
+
+    #[inline(always)]
+    fn charge(&mut self, i: usize, d: Dual<f64>) {
+        self.plain.charge(i, d.value);
+        self.along.charge(i, d.rate);
+    }
+
+    #[inline(always)]
+    fn stiffness(&mut self, i: usize, j: usize, d: [[Dual<f64>; 3]; 3]) {
+        self.plain
+            .stiffness(i, j, d.map(|row| row.map(|d| d.value)));
+        self.along.stiffness(i, j, d.map(|row| row.map(|d| d.rate)));
+    }
+
+    #[inline(always)]
+    fn coupling(&mut self, i: usize, j: usize, d: [Dual<f64>; 3]) {
+        self.plain.coupling(i, j, d.map(|d| d.value));
+        self.along.coupling(i, j, d.map(|d| d.rate));
+    }
+
+    #[inline(always)]
+    fn permittivity(&mut self, i: usize, j: usize, d: Dual<f64>) {
+        self.plain.permittivity(i, j, d.value);
+        self.along.permittivity(i, j, d.rate);
+    }
+}

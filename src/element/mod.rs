@@ -1,0 +1,23 @@
+//! The trilinear hexahedron of a dielectric elastomer: pure formulas, without index, mesh or time.
+//!
+//! Eight nodes at x_i with electric potentials φ_i span, with the shape functions N_i and G_i = ∂N_i/∂X,
+//!
+//! ```text
+//! F = Σ x_i ⊗ G_i,      E = −Σ φ_i G_i,      W(x, φ) = Σ_g w_g Ω(F, E),
+//! ```
+//!
+//! summed over 2 × 2 × 2 Gauss points of weight w_g = det ∂X/∂ξ. [`Shape`] holds G_i and w_g, [`Elastomer`] the law Ω with
+//! the derivatives of W to third order, [`Viscosity`] the virtual work of σ = η d, [`Fields`] what is shown of a state.
+//!
+//! The formulas are written in the spatial gradients g_i = F⁻ᵀG_i and evaluated at all Gauss points side by side.
+
+mod algebra;
+mod elastomer;
+mod local;
+mod number;
+mod shape;
+mod variations;
+
+pub use elastomer::{Dielectric, Elastomer, Field, Passive, Volume};
+pub use local::{Electric, Local};
+pub use shape::{Inverted, Shape};

@@ -1,0 +1,437 @@
+//! Energy of a hexahedron, its gradient and its tangent, over any number.
+//!
+//! With g_i = F⁻ᵀG_i, e = F⁻ᵀE, ω = F⁻¹e, κ = εJ, and θ = J U′(J) of the volumetric energy U,
+//!
+//! ```text
+//! P = μF + (θ − μ − κ/2 e·e) F⁻ᵀ + 2c₂ (FE)⊗E + κ e⊗ω          ∂W/∂x_i = Σ w P G_i
+//! D = −2c₁ E − 2c₂ Fᵀ(FE) + κ ω                               ∂W/∂φ_i = Σ w D·G_i
+//!
+//! ∂²W/∂x_i∂x_j = Σ w { [μ G_i·G_j + 2c₂ (E·G_i)(E·G_j)] 1 + α g_j⊗g_i + β g_i⊗g_j
+//!                      + d⊗e − e⊗d − κ (g_i·g_j) e⊗e }
+//! ∂²W/∂x_i∂φ_j = −Σ w { 2c₂ [(E·G_i) F G_j + (G_i·G_j) FE] + κ [s_i g_j − s_j g_i + (g_i·g_j) e] }
+//! ∂²W/∂φ_i∂φ_j = Σ w { 2c₁ G_i·G_j + 2c₂ (F G_i)·(F G_j) − κ g_i·g_j }
+//!
+//! α = μ − θ + κ/2 e·e,    β = J θ′(J) + θ − κ/2 e·e,    d = κ (s_j g_i − s_i g_j),    s_i = e·g_i.
+//! ```
+//!
+//! Pointwise θ = λ ln J and β = λ − κ/2 e·e. Of the mean dilatation J̄, θ = J p with p = λ ln J̄/J̄ and β = θ − κ/2 e·e;
+//! V λ (1 − ln J̄)/J̄² ∂J̄/∂x_i ⊗ ∂J̄/∂x_j comes on top.
+//!
+//! A block is its symmetric part plus its skew part, α g_j⊗g_i + β g_i⊗g_j + d⊗e − e⊗d having the axial vector
+//! (β − α)/2 g_i × g_j + d × e.
+
+use super::algebra::{
+    Nine, Three, apply, apply_plain, cofactor, cross, dot, dot_plain, scale, sums, transpose,
+};
+use super::elastomer::{Dielectric, Volume};
+use super::local::Output;
+use super::number::{Points, Real};
+use super::shape::Shape;
+
+/// A law and the state at which it is evaluated.
+pub(super) struct State<'a, N: Points> {
+    pub(super) token: N::Token,
+    pub(super) shear_modulus: f64,
+    pub(super) lame_lambda: f64,
+    pub(super) volume: Volume,
+    pub(super) shape: &'a Shape,
+    pub(super) x: &'a [[N::Uniform; 3]; 8],
+    /// Absent at compile time for a passive law.
+    pub(super) electric: Option<(&'a Dielectric, &'a [N::Uniform; 8])>,
+}
+
+/// The electric field at the Gauss points.
+#[derive(Clone, Copy)]
+struct ElectricField<N> {
+    /// E.
+    reference: Three<N>,
+    /// e = F⁻ᵀE.
+    spatial: Three<N>,
+    /// ω = F⁻¹e.
+    pulled: Three<N>,
+    /// FE.
+    pushed: Three<N>,
+    /// κ = εJ.
+    kappa: N,
+    /// κ/2 e·e.
+    pressure: N,
+}
+
+/// Quantities at the Gauss points that energy, gradient and tangent share.
+#[expect(non_snake_case, reason = "notation of the law")]
+pub(super) struct Variations<N: Points> {
+    w: N::Plain,
+    F: Nine<N>,
+    /// F⁻ᵀ.
+    T: Nine<N>,
+    J: N,
+    ln_J: N,
+    /// θ = J U′(J).
+    theta: N,
+    /// J θ′(J) + θ.
+    beta: N,
+    electric: Option<ElectricField<N>>,
+    mean: Option<Mean<N::Uniform>>,
+}
+
+/// The mean dilatation.
+#[derive(Clone, Copy)]
+struct Mean<U> {
+    /// V λ/2 ln²J̄.
+    energy: U,
+    /// λ (1 − ln J̄)/(J̄² V), the factor of ∂(VJ̄)/∂x_i ⊗ ∂(VJ̄)/∂x_j.
+    factor: U,
+}
+
+#[expect(non_snake_case, reason = "notation of the law")]
+impl<N: Points> Variations<N> {
+    /// Writes the energy; its gradient if `ORDER` ≥ 1; its tangent if `ORDER` ≥ 2.
+    #[inline(always)]
+    pub(super) fn write<const ORDER: usize>(
+        state: &State<'_, N>,
+        out: &mut impl Output<N::Uniform>,
+    ) {
+        let point = Self::new(state);
+        out.energy(point.energy(state));
+        if ORDER >= 1 {
+            point.gradient(state, out);
+        }
+        if ORDER >= 2 {
+            point.tangent(state, out);
+        }
+    }
+
+    #[inline(always)]
+    fn new(state: &State<'_, N>) -> Self {
+        let token = state.token;
+        let zero = N::constant(token, 0.0);
+        let gradients = state.shape.gradients();
+        let w = N::load(token, state.shape.weights());
+        let mut F = [[zero; 3]; 3];
+        let mut E = [zero; 3];
+        for i in 0..8 {
+            let G = load::<N>(token, &gradients[i]);
+            for a in 0..3 {
+                let x = N::splat(token, state.x[i][a]);
+                for m in 0..3 {
+                    F[a][m] = F[a][m].plus_times(x, G[m]);
+                }
+            }
+            if let Some((_, phi)) = state.electric {
+                let minus_phi = N::splat(token, -phi[i]);
+                for m in 0..3 {
+                    E[m] = E[m].plus_times(minus_phi, G[m]);
+                }
+            }
+        }
+        let H = cofactor(&F);
+        let J = dot(F[0], H[0]).positive();
+        let inverse = J.recip();
+        let T = [
+            scale(H[0], inverse),
+            scale(H[1], inverse),
+            scale(H[2], inverse),
+        ];
+        let ln_J = J.ln();
+        let lambda = state.lame_lambda;
+        let (theta, beta, mean) = match state.volume {
+            Volume::Pointwise => (ln_J.scaled(lambda), N::constant(token, lambda), None),
+            Volume::Mean => {
+                let volume = state.shape.volume();
+                let mean = J.times(w).sum().scaled(1.0 / volume);
+                let (ln, inverse) = (mean.ln(), mean.recip());
+                let pressure = (ln * inverse).scaled(lambda);
+                let theta = J * N::splat(token, pressure);
+                let mean = Mean {
+                    energy: (ln * ln).scaled(0.5 * lambda * volume),
+                    factor: ((-ln).shifted(1.0) * inverse * inverse).scaled(lambda / volume),
+                };
+                (theta, theta, Some(mean))
+            }
+        };
+        let electric = match state.electric {
+            None => None,
+            Some((constants, _)) => {
+                let spatial = apply(&T, E);
+                let kappa = J.scaled(constants.permittivity);
+                Some(ElectricField {
+                    reference: E,
+                    spatial,
+                    pulled: apply(&transpose(&T), spatial),
+                    pushed: apply(&F, E),
+                    kappa,
+                    pressure: (kappa * dot(spatial, spatial)).scaled(0.5),
+                })
+            }
+        };
+        Self {
+            w,
+            F,
+            T,
+            J,
+            ln_J,
+            theta,
+            beta,
+            electric,
+            mean,
+        }
+    }
+
+    #[inline(always)]
+    fn energy(&self, state: &State<'_, N>) -> N::Uniform {
+        let F = &self.F;
+        let square = dot(F[0], F[0]) + dot(F[1], F[1]) + dot(F[2], F[2]);
+        let strain = square.shifted(-3.0).scaled(0.5) - self.ln_J;
+        let mut density = strain.scaled(state.shear_modulus);
+        if self.mean.is_none() {
+            density = density + (self.ln_J * self.ln_J).scaled(0.5 * state.lame_lambda);
+        }
+        if let (Some(field), Some((constants, _))) = (&self.electric, state.electric) {
+            let (E, y) = (field.reference, field.pushed);
+            density = density + dot(E, E).scaled(constants.c1) + dot(y, y).scaled(constants.c2)
+                - field.pressure;
+        }
+        let energy = density.times(self.w).sum();
+        match self.mean {
+            Some(mean) => energy + mean.energy,
+            None => energy,
+        }
+    }
+
+    #[inline(always)]
+    fn gradient(&self, state: &State<'_, N>, out: &mut impl Output<N::Uniform>) {
+        let token = state.token;
+        let mu = state.shear_modulus;
+        let mut isotropic = self.theta.shifted(-mu);
+        if let Some(field) = &self.electric {
+            isotropic = isotropic - field.pressure;
+        }
+        let zero = N::constant(token, 0.0);
+        let mut P = [[zero; 3]; 3];
+        let mut D = [zero; 3];
+        for a in 0..3 {
+            for m in 0..3 {
+                P[a][m] = self.F[a][m]
+                    .scaled(mu)
+                    .plus_product(isotropic, self.T[a][m]);
+            }
+        }
+        if let (Some(field), Some((constants, _))) = (&self.electric, state.electric) {
+            let pushed = [0, 1, 2].map(|a| field.pushed[a].scaled(2.0 * constants.c2));
+            let induced = scale(field.spatial, field.kappa);
+            for a in 0..3 {
+                for m in 0..3 {
+                    P[a][m] = P[a][m]
+                        .plus_product(pushed[a], field.reference[m])
+                        .plus_product(induced[a], field.pulled[m]);
+                }
+            }
+            let pulled = apply(&transpose(&self.F), pushed);
+            for m in 0..3 {
+                D[m] = (field.kappa * field.pulled[m])
+                    - field.reference[m].scaled(2.0 * constants.c1)
+                    - pulled[m];
+                D[m] = D[m].times(self.w);
+            }
+        }
+        for row in &mut P {
+            for entry in row {
+                *entry = entry.times(self.w);
+            }
+        }
+        for (i, gradient) in state.shape.gradients().iter().enumerate() {
+            let G = load::<N>(token, gradient);
+            out.force(i, sums(apply_plain(&P, G)));
+            if self.electric.is_some() {
+                out.charge(i, dot_plain(D, G).sum());
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn tangent(&self, state: &State<'_, N>, out: &mut impl Output<N::Uniform>) {
+        let token = state.token;
+        let zero = N::constant(token, 0.0);
+        let w = self.w;
+        let gradients = state.shape.gradients();
+        let mut alpha = (-self.theta).shifted(state.shear_modulus);
+        let mut beta = self.beta;
+        if let Some(field) = &self.electric {
+            alpha = alpha + field.pressure;
+            beta = beta - field.pressure;
+        }
+        let even = (alpha + beta).scaled(0.5).times(w);
+        let odd = (beta - alpha).scaled(0.5).times(w);
+        let w_mu = N::Plain::load(token, state.shape.weights()).scaled(state.shear_modulus);
+
+        let mut g = [[zero; 3]; 8];
+        let mut even_g = [[zero; 3]; 8];
+        let mut odd_g = [[zero; 3]; 8];
+        for i in 0..8 {
+            g[i] = apply_plain(&self.T, load::<N>(token, &gradients[i]));
+            even_g[i] = scale(g[i], even);
+            odd_g[i] = scale(g[i], odd);
+        }
+        let electric = match (&self.electric, state.electric) {
+            (Some(field), Some((constants, _))) => Some(self.charged(state, field, constants, &g)),
+            _ => None,
+        };
+        let dilatation = match self.mean {
+            None => None,
+            Some(mean) => {
+                let w_J = self.J.times(w);
+                let mut slopes = [sums([zero; 3]); 8];
+                for i in 0..8 {
+                    slopes[i] = sums(scale(g[i], w_J));
+                }
+                Some((mean.factor, slopes))
+            }
+        };
+
+        for i in 0..8 {
+            let Gi = load::<N>(token, &gradients[i]);
+            for j in 0..=i {
+                let Gj = load::<N>(token, &gradients[j]);
+                let plain = dot(Gi, Gj);
+                let mut diagonal = zero.plus_plain(plain * w_mu);
+                let (u, v) = (even_g[i], g[j]);
+                let mut even = [
+                    (u[0] * v[0]).scaled(2.0),
+                    (u[1] * v[1]).scaled(2.0),
+                    (u[2] * v[2]).scaled(2.0),
+                    (u[1] * v[2]).plus_product(u[2], v[1]),
+                    (u[2] * v[0]).plus_product(u[0], v[2]),
+                    (u[0] * v[1]).plus_product(u[1], v[0]),
+                ];
+                let mut odd = cross(odd_g[i], g[j]);
+                if let Some(c) = &electric {
+                    diagonal = diagonal.plus_product(c.c2_along[i], c.along[j]);
+                    let inner = dot(g[i], g[j]);
+                    let e = c.e;
+                    let k = scale(e, inner * c.kappa);
+                    even[0] = even[0].minus_product(k[0], e[0]);
+                    even[1] = even[1].minus_product(k[1], e[1]);
+                    even[2] = even[2].minus_product(k[2], e[2]);
+                    even[3] = even[3].minus_product(k[1], e[2]);
+                    even[4] = even[4].minus_product(k[2], e[0]);
+                    even[5] = even[5].minus_product(k[0], e[1]);
+                    let (si, sj) = (c.s[i], c.s[j]);
+                    let (pi, pj) = (&c.flux[i], &c.flux[j]);
+                    let mut skew = [zero; 3];
+                    for a in 0..3 {
+                        odd[a] = odd[a]
+                            .plus_product(sj, c.turned[i][a])
+                            .minus_product(si, c.turned[j][a]);
+                        skew[a] = (si * pj[a]).minus_product(sj, pi[a]);
+                    }
+                    let mut ij = [zero; 3];
+                    let mut ji = [zero; 3];
+                    for a in 0..3 {
+                        let common = k[a].plus_times(c.c2_pushed[a], plain);
+                        ij[a] = -(common + skew[a]).plus_product(c.c2_along[i], c.pushed[j][a]);
+                        ji[a] = -(common - skew[a]).plus_product(c.c2_along[j], c.pushed[i][a]);
+                    }
+                    out.coupling(i, j, sums(ij));
+                    if i != j {
+                        out.coupling(j, i, sums(ji));
+                    }
+                    let energy = dot(c.pushed[i], c.pushed[j]) * c.c2;
+                    let energy = energy.plus_plain(plain * c.c1);
+                    out.permittivity(i, j, energy.minus_product(inner, c.kappa).sum());
+                }
+                even[0] = even[0] + diagonal;
+                even[1] = even[1] + diagonal;
+                even[2] = even[2] + diagonal;
+                let [xx, yy, zz, yz, zx, xy] = even.map(N::sum);
+                let [ax, ay, az] = sums(odd);
+                let mut block = [
+                    [xx, xy + az, zx - ay],
+                    [xy - az, yy, yz + ax],
+                    [zx + ay, yz - ax, zz],
+                ];
+                if let Some((factor, slopes)) = &dilatation {
+                    for a in 0..3 {
+                        for b in 0..3 {
+                            block[a][b] =
+                                block[a][b].plus_product(slopes[i][a] * *factor, slopes[j][b]);
+                        }
+                    }
+                }
+                out.stiffness(i, j, block);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn charged(
+        &self,
+        state: &State<'_, N>,
+        field: &ElectricField<N>,
+        constants: &Dielectric,
+        g: &[[N; 3]; 8],
+    ) -> Charged<N> {
+        let token = state.token;
+        let zero = N::constant(token, 0.0);
+        let plain = N::Plain::load(token, state.shape.weights());
+        let c2 = 2.0 * constants.c2;
+        let kappa = field.kappa.times(self.w);
+        let mut charged = Charged {
+            c1: plain.scaled(2.0 * constants.c1),
+            c2: zero.plus_plain(plain.scaled(c2)),
+            kappa,
+            e: field.spatial,
+            c2_pushed: [0, 1, 2].map(|a| field.pushed[a].scaled(c2).times(self.w)),
+            along: [zero; 8],
+            c2_along: [zero; 8],
+            s: [zero; 8],
+            flux: [[zero; 3]; 8],
+            turned: [[zero; 3]; 8],
+            pushed: [[zero; 3]; 8],
+        };
+        for (i, gradient) in state.shape.gradients().iter().enumerate() {
+            let G = load::<N>(token, gradient);
+            charged.along[i] = dot_plain(field.reference, G);
+            charged.c2_along[i] = charged.along[i].scaled(c2).times(self.w);
+            charged.s[i] = dot(field.spatial, g[i]);
+            charged.flux[i] = scale(g[i], kappa);
+            charged.turned[i] = cross(charged.flux[i], field.spatial);
+            charged.pushed[i] = apply_plain(&self.F, G);
+        }
+        charged
+    }
+}
+
+/// Electric quantities of the nodes at the Gauss points.
+struct Charged<N: Points> {
+    /// 2 w c₁.
+    c1: N::Plain,
+    /// 2 w c₂.
+    c2: N,
+    /// w κ.
+    kappa: N,
+    e: Three<N>,
+    /// 2 w c₂ FE.
+    c2_pushed: Three<N>,
+    /// E·G_i.
+    along: [N; 8],
+    /// 2 w c₂ E·G_i.
+    c2_along: [N; 8],
+    /// e·g_i.
+    s: [N; 8],
+    /// w κ g_i.
+    flux: [[N; 3]; 8],
+    /// w κ g_i × e.
+    turned: [[N; 3]; 8],
+    /// F G_i.
+    pushed: [[N; 3]; 8],
+}
+
+/// A gradient at the Gauss points.
+#[inline(always)]
+fn load<N: Points>(token: N::Token, gradient: &[[f64; 8]; 3]) -> Three<N::Plain> {
+    [
+        N::load(token, &gradient[0]),
+        N::load(token, &gradient[1]),
+        N::load(token, &gradient[2]),
+    ]
+}
