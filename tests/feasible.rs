@@ -80,7 +80,7 @@ fn law(
                     "{value} against {momentum}"
                 );
             }
-            Row::Equation { .. } => {
+            Row::Equation { .. } | Row::Gauss { .. } => {
                 assert!(
                     value.abs() < 1e-12,
                     "{name} {coordinates:?}: {} is {value:e}",

@@ -8,10 +8,11 @@ use common::random::Random;
 use common::trunk;
 use proboscis::control::problem::Duration;
 use proboscis::control::{Boundary, Transcription, guess};
-use proboscis::functional::{Horizon, Level, Sides};
+use proboscis::functional::Level;
 use proboscis::model::system::System;
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::{Bounds, Entries, Nlp, differences};
+use proboscis::reduction::Interval;
 
 /// Noise on the variables of a guess, all of which are scaled to about one.
 const NOISE: f64 = 0.07;
@@ -104,20 +105,11 @@ fn dense(system: &System, coordinates: Coordinates) -> nalgebra::DMatrix<f64> {
     let scalars: Vec<f64> = model.voltages.iter().map(|_| 2e3 * random.unit()).collect();
     let layout = action.layout();
     let mut values = vec![0.0; layout.values(1)];
-    let mut scratch = action.scratch();
-    let (level, given, all) = (Level::Hessian, Horizon::Given, Sides::ALL);
-    action.evaluate_interval(
-        level,
-        &mut a,
-        &mut b,
-        &scalars,
-        10.0,
-        given,
-        all,
-        &[],
-        &mut scratch,
-    );
-    action.pull_back_interval(level, &a, &b, given, all, 0, &mut scratch, &mut values);
+    let mut scratch = action.scratch(Level::Hessian);
+    let level = Level::Hessian;
+    let interval = Interval::given(&scalars, 10.0);
+    action.evaluate_interval(level, [&mut a, &mut b], &interval, &mut scratch);
+    action.pull_back_interval(level, [&a, &b], &interval, 0, &mut scratch, &mut values);
     for (k, instant) in [&mut a, &mut b].into_iter().enumerate() {
         action.evaluate_instant(level, instant, &[], &mut scratch);
         action.pull_back_instant(level, instant, k, &mut scratch, &mut values);

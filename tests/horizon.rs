@@ -150,7 +150,7 @@ impl Interval {
     /// Forces at both instants, and their derivatives with h, of potentials and inertia alone.
     fn forces(&self, h: f64) -> ([Vec<Vector>; 2], [Vec<Vector>; 2], Vec<f64>) {
         let action = &self.model.action;
-        let mut out = action.intervals.output();
+        let mut out = action.intervals.output(Level::Hessian);
         let [a, b] = &self.vectors;
         let frame = self.frame([a, b], h, Horizon::Free);
         for effect in &action.intervals.effects {

@@ -3,7 +3,7 @@
 use super::trunk;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proboscis::control::problem::{
-    Control, Duration, Guess, Limit, Objective, Side, Solver, State,
+    Control, Duration, Guess, Limit, Objective, Rest, Side, Solver, State,
 };
 use proboscis::model::system::{
     Attachment, Body, Electric, Joint, JointKind, Marker, Material, Muscle, Shape, System,
@@ -381,7 +381,10 @@ pub fn cases() -> Vec<Case> {
             c.goal = joints(&[(1, 2.0)]);
         }),
         case("branched tree to a marker", branched(), &|c| {
-            c.goal = State::Markers(BTreeMap::from([(0, Vector3::new(25.0, 128.0, 12.0))]));
+            c.goal = State::Markers {
+                places: BTreeMap::from([(0, Vector3::new(25.0, 128.0, 12.0))]),
+                rest: Rest::Everything,
+            };
         }),
     ]
 }

@@ -64,7 +64,10 @@ impl Nlp for Transcription<'_> {
         self.load(x);
         self.sweep(Level::Gradient);
         let stride = self.stride();
-        let first = stride - self.model.action.layout().interval_scalars;
+        let (count, driven) = (
+            self.model.action.motion.unknowns(),
+            self.model.voltages.len(),
+        );
         for (value, (row, scale)) in g
             .iter_mut()
             .zip(self.unknowns.rows.iter().zip(&self.row_scales))
@@ -79,7 +82,7 @@ impl Nlp for Transcription<'_> {
                         };
                         self.rows[k * stride + i] + start
                     }
-                    Row::Gauss { k, s } => self.rows[k * stride + first + s],
+                    Row::Gauss { k, s } => self.rows[k * stride + count + s - driven],
                     Row::Limit { limit, k } => self.limit_value(&self.limits[limit], k),
                 };
         }

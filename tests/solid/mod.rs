@@ -1,0 +1,138 @@
+//! Elastic blocks written out by hand, in g, mm, ms, N, V.
+
+use nalgebra::Vector3;
+use proboscis::mesh::Mesh;
+use proboscis::mesh::grid::Grid;
+use proboscis::model::system::{
+    Electric, Electrode, ElementKind, Material, Potential, Solid, Support, System,
+};
+use serde_json::Value;
+
+/// A reference file of `tests/reference/fe`.
+pub(crate) fn reference(name: &str) -> Value {
+    let path = format!(
+        "{}/tests/reference/fe/{name}.json",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// Numbers of a list.
+pub(crate) fn numbers(value: &Value) -> Vec<f64> {
+    let list = value.as_array().unwrap().iter();
+    list.map(|v| v.as_f64().unwrap()).collect()
+}
+
+/// The material of an entry of a reference file, whose viscosity is half of σ = η d.
+pub(crate) fn material(entry: &Value) -> Material {
+    let m = &entry["material"];
+    let number = |key: &str| m[key].as_f64().unwrap();
+    Material {
+        density: Some(number("rho") * 1e-6),
+        shear_modulus: number("mu") * 1e-6,
+        lame_lambda: Some(number("lam") * 1e-6),
+        electric: Some(Electric {
+            c1: number("c1"),
+            c2: number("c2"),
+            permittivity: number("eps0"),
+        }),
+        viscosity: Some(2.0 * number("eta") * 1e-3).filter(|&eta| eta > 0.0),
+    }
+}
+
+/// The mesh of an entry of a reference file.
+pub(crate) fn mesh(entry: &Value) -> Mesh {
+    let of = |key: &str| numbers(&entry["mesh"][key]);
+    let size = Vector3::from_vec(of("lengths")) * 1e3;
+    let elements = of("elements").iter().map(|&n| n as usize).collect::<Vec<_>>();
+    Grid::uniform(Vector3::zeros(), size, elements.try_into().unwrap()).mesh()
+}
+
+/// A block of one material that nothing holds.
+pub(crate) fn block(mesh: Mesh, material: Material) -> Solid {
+    Solid {
+        name: "block".into(),
+        materials: vec![material],
+        element: ElementKind::Hex8,
+        electrodes: Vec::new(),
+        supports: Vec::new(),
+        glued: Vec::new(),
+        velocities: Vec::new(),
+        mesh,
+    }
+}
+
+/// Nodes of a face, held in some directions.
+pub(crate) fn held(mesh: &Mesh, face: &str, held: [bool; 3]) -> Support {
+    Support {
+        nodes: mesh.sets[face].clone(),
+        held,
+    }
+}
+
+/// An electrode on a plane z = `place`.
+pub(crate) fn electrode(mesh: &Mesh, name: &str, place: f64, potential: Potential) -> Electrode {
+    Electrode {
+        name: name.into(),
+        nodes: mesh.nodes_on_plane(2, place, 1e-9),
+        potential,
+    }
+}
+
+/// The first source of a system without muscles.
+pub(crate) const DRIVEN: Potential = Potential::Driven {
+    source: 0,
+    factor: 1.0,
+};
+
+/// A system of blocks alone.
+pub(crate) fn system(solids: Vec<Solid>) -> System {
+    System {
+        name: "blocks".into(),
+        bodies: Vec::new(),
+        joints: Vec::new(),
+        muscles: Vec::new(),
+        solids,
+        markers: Vec::new(),
+        gravity: None,
+    }
+}
+
+/// Case A of the reference: rollers on three faces, potentials 0 and V at both ends of z.
+pub(crate) fn homogeneous(entry: &Value) -> System {
+    let mesh = mesh(entry);
+    let height = mesh.bounds().1.z;
+    let mut solid = block(mesh, material(entry));
+    let mesh = &solid.mesh;
+    solid.supports = vec![
+        held(mesh, "x_min", [true, false, false]),
+        held(mesh, "y_min", [false, true, false]),
+        held(mesh, "z_min", [false, false, true]),
+    ];
+    solid.electrodes = vec![
+        electrode(mesh, "bottom", 0.0, Potential::Given(0.0)),
+        electrode(mesh, "top", height, DRIVEN),
+    ];
+    system(vec![solid])
+}
+
+/// Cases B and D: four layers with alternating electrodes, clamped below, free along z alone above.
+pub(crate) fn stack(entry: &Value) -> System {
+    let mut solid = block(mesh(entry), material(entry));
+    let mesh = &solid.mesh;
+    solid.supports = vec![
+        held(mesh, "z_min", [true; 3]),
+        held(mesh, "z_max", [true, true, false]),
+    ];
+    solid.electrodes = (0..5)
+        .map(|layer| {
+            let potential = if layer % 2 == 1 {
+                DRIVEN
+            } else {
+                Potential::Given(0.0)
+            };
+            electrode(mesh, &format!("e{layer}"), 10.0 * layer as f64, potential)
+        })
+        .collect();
+    system(vec![solid])
+}
