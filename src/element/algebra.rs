@@ -72,3 +72,25 @@ pub(super) fn cofactor<N: Real>(f: &Nine<N>) -> Nine<N> {
 pub(super) fn sums<N: Points>(a: Three<N>) -> Three<N::Uniform> {
     [a[0].sum(), a[1].sum(), a[2].sum()]
 }
+
+/// A B.
+#[inline(always)]
+pub(super) fn product<N: Real>(a: &Nine<N>, b: &Nine<N>) -> Nine<N> {
+    let b = transpose(b);
+    [apply(&b, a[0]), apply(&b, a[1]), apply(&b, a[2])]
+}
+
+/// A:B.
+#[inline(always)]
+pub(super) fn contracted<N: Real>(a: &Nine<N>, b: &Nine<N>) -> N {
+    dot(a[0], b[0]) + dot(a[1], b[1]) + dot(a[2], b[2])
+}
+
+/// ½ (A + Aᵀ).
+#[inline(always)]
+pub(super) fn symmetric<N: Real>(a: &Nine<N>) -> Nine<N> {
+    let xy = (a[0][1] + a[1][0]).scaled(0.5);
+    let yz = (a[1][2] + a[2][1]).scaled(0.5);
+    let zx = (a[2][0] + a[0][2]).scaled(0.5);
+    [[a[0][0], xy, zx], [xy, a[1][1], yz], [zx, yz, a[2][2]]]
+}

@@ -13,11 +13,16 @@
 
 mod algebra;
 mod elastomer;
+mod fields;
+mod kinematics;
 mod local;
 mod number;
 mod shape;
 mod variations;
+mod viscosity;
 
 pub use elastomer::{Dielectric, Elastomer, Field, Passive, Volume};
+pub use fields::Fields;
 pub use local::{Electric, Local};
 pub use shape::{Inverted, Shape};
+pub use viscosity::{Viscosity, ViscousContraction, ViscousLocal};

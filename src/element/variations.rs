@@ -21,9 +21,10 @@
 //! (β − α)/2 g_i × g_j + d × e.
 
 use super::algebra::{
-    Nine, Three, apply, apply_plain, cofactor, cross, dot, dot_plain, scale, sums, transpose,
+    Nine, Three, apply, apply_plain, cross, dot, dot_plain, scale, sums, transpose,
 };
 use super::elastomer::{Dielectric, Volume};
+use super::kinematics::{Kinematics, load, minus_gradient_of};
 use super::local::Output;
 use super::number::{Points, Real};
 use super::shape::Shape;
@@ -104,34 +105,7 @@ impl<N: Points> Variations<N> {
     #[inline(always)]
     fn new(state: &State<'_, N>) -> Self {
         let token = state.token;
-        let zero = N::constant(token, 0.0);
-        let gradients = state.shape.gradients();
-        let w = N::load(token, state.shape.weights());
-        let mut F = [[zero; 3]; 3];
-        let mut E = [zero; 3];
-        for i in 0..8 {
-            let G = load::<N>(token, &gradients[i]);
-            for a in 0..3 {
-                let x = N::splat(token, state.x[i][a]);
-                for m in 0..3 {
-                    F[a][m] = F[a][m].plus_times(x, G[m]);
-                }
-            }
-            if let Some((_, phi)) = state.electric {
-                let minus_phi = N::splat(token, -phi[i]);
-                for m in 0..3 {
-                    E[m] = E[m].plus_times(minus_phi, G[m]);
-                }
-            }
-        }
-        let H = cofactor(&F);
-        let J = dot(F[0], H[0]).positive();
-        let inverse = J.recip();
-        let T = [
-            scale(H[0], inverse),
-            scale(H[1], inverse),
-            scale(H[2], inverse),
-        ];
+        let Kinematics { w, F, T, J } = Kinematics::<N>::new(token, state.shape, state.x);
         let ln_J = J.ln();
         let lambda = state.lame_lambda;
         let (theta, beta, mean) = match state.volume {
@@ -151,7 +125,8 @@ impl<N: Points> Variations<N> {
         };
         let electric = match state.electric {
             None => None,
-            Some((constants, _)) => {
+            Some((constants, phi)) => {
+                let E = minus_gradient_of::<N>(token, state.shape, phi);
                 let spatial = apply(&T, E);
                 let kappa = J.scaled(constants.permittivity);
                 Some(ElectricField {
@@ -424,14 +399,4 @@ struct Charged<N: Points> {
     turned: [[N; 3]; 8],
     /// F G_i.
     pushed: [[N; 3]; 8],
-}
-
-/// A gradient at the Gauss points.
-#[inline(always)]
-fn load<N: Points>(token: N::Token, gradient: &[[f64; 8]; 3]) -> Three<N::Plain> {
-    [
-        N::load(token, &gradient[0]),
-        N::load(token, &gradient[1]),
-        N::load(token, &gradient[2]),
-    ]
 }

@@ -1,0 +1,410 @@
+//! The virtual work of the viscous stress σ = η d of a hexahedron, and its contraction with virtual displacements.
+//!
+//! With g_i = F⁻ᵀG_i, l = Σ v_i ⊗ g_i, d = sym l, l_i = lᵀg_i and c = w η J, the virtual work of displacements y_i is
+//!
+//! ```text
+//! s(x, v; y) = Σ y_i·f_i = Σ c d:z,      Y = Σ y_i ⊗ g_i,  z = sym Y,      f_i = Σ c d g_i
+//! ∂f_i/∂v_j = Σ c/2 [ (g_i·g_j) 1 + g_j⊗g_i ]
+//! ∂f_i/∂x_j = Σ c [ d g_i ⊗ g_j − d g_j ⊗ g_i − ½ (g_i·g_j) l − ½ g_j ⊗ l_i ].
+//! ```
+//!
+//! Since d and z enter alike, ∂s/∂v_j is f_j of the velocities y, and ∂²s/∂v_j∂x_i is ∂f_j/∂x_i of them. With
+//! q_i = (lᵀz + Yᵀd) g_i and Y_i = Yᵀg_i,
+//!
+//! ```text
+//! ∂s/∂x_i = Σ c [ (d:z) g_i − q_i ]
+//! ∂²s/∂x_i∂x_j = Σ c { (d:z)(g_i⊗g_j − g_j⊗g_i) − q_i⊗g_j + q_j⊗g_i − g_i⊗q_j + g_j⊗q_i
+//!                      + ½ (g_i·g_j)(lᵀY + Yᵀl) + ½ l_j⊗Y_i + ½ Y_j⊗l_i }.
+//! ```
+
+use super::algebra::{
+    Nine, Three, apply, apply_plain, contracted, dot, product, scale, sums, symmetric, transpose,
+};
+use super::kinematics::{Kinematics, gradient_of, load};
+use super::number::{Lanes, Points, Real, Task, dispatch};
+use super::shape::Shape;
+use crate::math::{Matrix, Vector};
+use pulp::Simd;
+
+/// The viscous Cauchy stress σ = η d of the rate of deformation d.
+///
+/// It is objective: with x at the midpoint of a step and v its difference quotient, a finite rotation has d = 0.
+/// NaN where J ≤ 0 at a Gauss point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viscosity {
+    /// η in MPa ms.
+    pub viscosity: f64,
+}
+
+/// Viscous forces of one hexahedron and their derivatives.
+#[derive(Clone, Debug)]
+pub struct ViscousLocal {
+    /// f_i in N, which balance external forces as ∂W/∂x_i do: the virtual work on the nodes is −Σ δx_i·f_i.
+    pub forces: [Vector; 8],
+    /// ∂f_i/∂x_j in N/mm, rows belong to i; not symmetric.
+    pub by_place: [[Matrix; 8]; 8],
+    /// ∂f_i/∂v_j in N ms/mm, rows belong to i; symmetric, both triangles are filled.
+    pub by_velocity: [[Matrix; 8]; 8],
+}
+
+/// s = Σ y_i·f_i(x, v) of one hexahedron for given y_i, and its derivatives; ∂²s/∂v∂v is zero.
+#[derive(Clone, Debug)]
+pub struct ViscousContraction {
+    /// s.
+    pub value: f64,
+    /// ∂s/∂x_i.
+    pub by_place: [Vector; 8],
+    /// ∂s/∂v_i.
+    pub by_velocity: [Vector; 8],
+    /// ∂²s/∂x_i∂x_j, rows belong to i; both triangles are filled.
+    pub place_place: [[Matrix; 8]; 8],
+    /// ∂²s/∂x_i∂v_j, rows belong to i; not symmetric.
+    pub place_velocity: [[Matrix; 8]; 8],
+}
+
+impl Default for ViscousLocal {
+    fn default() -> Self {
+        Self {
+            forces: [Vector::zeros(); 8],
+            by_place: [[Matrix::zeros(); 8]; 8],
+            by_velocity: [[Matrix::zeros(); 8]; 8],
+        }
+    }
+}
+
+impl Default for ViscousContraction {
+    fn default() -> Self {
+        Self {
+            value: 0.0,
+            by_place: [Vector::zeros(); 8],
+            by_velocity: [Vector::zeros(); 8],
+            place_place: [[Matrix::zeros(); 8]; 8],
+            place_velocity: [[Matrix::zeros(); 8]; 8],
+        }
+    }
+}
+
+impl Viscosity {
+    /// Dissipation Σ v_i·f_i = ∫ J η d:d dV ≥ 0 in mJ/ms of the hexahedron `shape` with nodes at `x` in mm and their
+    /// velocities `v` in mm/ms.
+    pub fn power(&self, shape: &Shape, x: &[Vector; 8], v: &[Vector; 8]) -> f64 {
+        let viscosity = self.viscosity;
+        dispatch(Power {
+            viscosity,
+            shape,
+            x,
+            v,
+        })
+    }
+
+    /// Fills the forces f_i.
+    pub fn forces(
+        &self,
+        shape: &Shape,
+        x: &[Vector; 8],
+        v: &[Vector; 8],
+        forces: &mut [Vector; 8],
+    ) {
+        let viscosity = self.viscosity;
+        dispatch(Forces {
+            viscosity,
+            shape,
+            x,
+            v,
+            forces,
+        });
+    }
+
+    /// Fills the forces and their derivatives.
+    pub fn tangent(
+        &self,
+        shape: &Shape,
+        x: &[Vector; 8],
+        v: &[Vector; 8],
+        local: &mut ViscousLocal,
+    ) {
+        let viscosity = self.viscosity;
+        dispatch(Tangent {
+            viscosity,
+            shape,
+            x,
+            v,
+            local,
+        });
+    }
+
+    /// Fills s = Σ y_i·f_i(x, v), its gradient and its Hessian.
+    pub fn contraction(
+        &self,
+        shape: &Shape,
+        x: &[Vector; 8],
+        v: &[Vector; 8],
+        y: &[Vector; 8],
+        out: &mut ViscousContraction,
+    ) {
+        let viscosity = self.viscosity;
+        dispatch(Contraction {
+            viscosity,
+            shape,
+            x,
+            v,
+            y,
+            out,
+        });
+    }
+}
+
+/// Spatial gradients, and rates of deformation, at the Gauss points.
+struct Flow<N: Points> {
+    token: N::Token,
+    /// F⁻ᵀ.
+    inverse: Nine<N>,
+    /// c = w η J.
+    c: N,
+}
+
+impl<N: Points<Uniform = f64>> Flow<N> {
+    #[inline(always)]
+    fn new(token: N::Token, viscosity: f64, shape: &Shape, x: &[Vector; 8]) -> Self {
+        let k = Kinematics::<N>::new(token, shape, &coordinates(x));
+        Self {
+            token,
+            inverse: k.T,
+            c: k.J.scaled(viscosity).times(k.w),
+        }
+    }
+
+    /// Σ v_i ⊗ g_i.
+    #[inline(always)]
+    fn rate(&self, shape: &Shape, v: &[Vector; 8]) -> Nine<N> {
+        let rate = gradient_of::<N>(self.token, shape, &coordinates(v));
+        product(&rate, &transpose(&self.inverse))
+    }
+
+    /// g_i.
+    #[inline(always)]
+    fn gradients(&self, shape: &Shape) -> [Three<N>; 8] {
+        let mut g = [[N::constant(self.token, 0.0); 3]; 8];
+        for (g, gradient) in g.iter_mut().zip(shape.gradients()) {
+            *g = apply_plain(&self.inverse, load::<N>(self.token, gradient));
+        }
+        g
+    }
+
+    /// Writes ∂f_i/∂x_j of the rate `l` for all i and j.
+    #[inline(always)]
+    fn by_place(
+        &self,
+        g: &[Three<N>; 8],
+        l: &Nine<N>,
+        mut write: impl FnMut(usize, usize, &Nine<f64>),
+    ) {
+        let zero = N::constant(self.token, 0.0);
+        let d = symmetric(l).map(|row| scale(row, self.c));
+        let half = self.c.scaled(0.5);
+        let half_l = l.map(|row| scale(row, half));
+        let transposed = transpose(&half_l);
+        let mut stressed = [[zero; 3]; 8];
+        let mut carried = [[zero; 3]; 8];
+        for i in 0..8 {
+            stressed[i] = apply(&d, g[i]);
+            carried[i] = apply(&transposed, g[i]);
+        }
+        for i in 0..8 {
+            for j in 0..=i {
+                let inner = dot(g[i], g[j]);
+                let mut ij = [[0.0; 3]; 3];
+                let mut ji = [[0.0; 3]; 3];
+                for a in 0..3 {
+                    for b in 0..3 {
+                        let odd = (stressed[i][a] * g[j][b]).minus_product(stressed[j][a], g[i][b]);
+                        let even = -(inner * half_l[a][b]);
+                        ij[a][b] = (even + odd).minus_product(g[j][a], carried[i][b]).sum();
+                        ji[a][b] = (even - odd).minus_product(g[i][a], carried[j][b]).sum();
+                    }
+                }
+                write(i, j, &ij);
+                write(j, i, &ji);
+            }
+        }
+    }
+}
+
+struct Power<'a> {
+    viscosity: f64,
+    shape: &'a Shape,
+    x: &'a [Vector; 8],
+    v: &'a [Vector; 8],
+}
+
+impl Task for Power<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<S: Simd, const K: usize>(self, unit: S) -> f64 {
+        let flow = Flow::<Lanes<S, K>>::new(unit, self.viscosity, self.shape, self.x);
+        let d = symmetric(&flow.rate(self.shape, self.v));
+        (flow.c * contracted(&d, &d)).sum()
+    }
+}
+
+struct Forces<'a> {
+    viscosity: f64,
+    shape: &'a Shape,
+    x: &'a [Vector; 8],
+    v: &'a [Vector; 8],
+    forces: &'a mut [Vector; 8],
+}
+
+impl Task for Forces<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd, const K: usize>(self, unit: S) {
+        let flow = Flow::<Lanes<S, K>>::new(unit, self.viscosity, self.shape, self.x);
+        let d = symmetric(&flow.rate(self.shape, self.v));
+        let stress = product(&d.map(|row| scale(row, flow.c)), &flow.inverse);
+        for (force, gradient) in self.forces.iter_mut().zip(self.shape.gradients()) {
+            let gradient = load::<Lanes<S, K>>(unit, gradient);
+            *force = vector(sums(apply(&stress, gradient)));
+        }
+    }
+}
+
+struct Tangent<'a> {
+    viscosity: f64,
+    shape: &'a Shape,
+    x: &'a [Vector; 8],
+    v: &'a [Vector; 8],
+    local: &'a mut ViscousLocal,
+}
+
+impl Task for Tangent<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd, const K: usize>(self, unit: S) {
+        let flow = Flow::<Lanes<S, K>>::new(unit, self.viscosity, self.shape, self.x);
+        let l = flow.rate(self.shape, self.v);
+        let g = flow.gradients(self.shape);
+        let local = self.local;
+        let d = symmetric(&l).map(|row| scale(row, flow.c));
+        let half = flow.c.scaled(0.5);
+        for i in 0..8 {
+            local.forces[i] = vector(sums(apply(&d, g[i])));
+            let scaled = scale(g[i], half);
+            for j in 0..=i {
+                let mut block = [[0.0; 3]; 3];
+                for a in 0..3 {
+                    block[a] = sums(scale(scaled, g[j][a]));
+                }
+                let trace = block[0][0] + block[1][1] + block[2][2];
+                for a in 0..3 {
+                    block[a][a] += trace;
+                }
+                let block = matrix(&block);
+                local.by_velocity[j][i] = block.transpose();
+                local.by_velocity[i][j] = block;
+            }
+        }
+        flow.by_place(&g, &l, |i, j, block| local.by_place[i][j] = matrix(block));
+    }
+}
+
+struct Contraction<'a> {
+    viscosity: f64,
+    shape: &'a Shape,
+    x: &'a [Vector; 8],
+    v: &'a [Vector; 8],
+    y: &'a [Vector; 8],
+    out: &'a mut ViscousContraction,
+}
+
+impl Task for Contraction<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd, const K: usize>(self, unit: S) {
+        let flow = Flow::<Lanes<S, K>>::new(unit, self.viscosity, self.shape, self.x);
+        let zero = Lanes::<S, K>::constant(unit, 0.0);
+        let half = flow.c.scaled(0.5);
+        let l = flow.rate(self.shape, self.v);
+        let y = flow.rate(self.shape, self.y);
+        let g = flow.gradients(self.shape);
+        let (d, z) = (symmetric(&l), symmetric(&y));
+        let (lt, yt) = (transpose(&l), transpose(&y));
+        let out = self.out;
+
+        let power = flow.c * contracted(&d, &z);
+        out.value = power.sum();
+        let (lz, yd, ly) = (product(&lt, &z), product(&yt, &d), product(&lt, &y));
+        let mut carried = [[zero; 3]; 3];
+        let mut mixed = [[zero; 3]; 3];
+        for a in 0..3 {
+            for b in 0..3 {
+                carried[a][b] = flow.c * (lz[a][b] + yd[a][b]);
+                mixed[a][b] = half * (ly[a][b] + ly[b][a]);
+            }
+        }
+        let stress = z.map(|row| scale(row, flow.c));
+        let mut q = [[zero; 3]; 8];
+        let mut half_l = [[zero; 3]; 8];
+        let mut pulled_y = [[zero; 3]; 8];
+        for i in 0..8 {
+            q[i] = apply(&carried, g[i]);
+            half_l[i] = scale(apply(&lt, g[i]), half);
+            pulled_y[i] = apply(&yt, g[i]);
+            let mut slope = [zero; 3];
+            for a in 0..3 {
+                slope[a] = (power * g[i][a]) - q[i][a];
+            }
+            out.by_place[i] = vector(sums(slope));
+            out.by_velocity[i] = vector(sums(apply(&stress, g[i])));
+        }
+        for i in 0..8 {
+            for j in 0..=i {
+                let inner = dot(g[i], g[j]);
+                let mut block = [[0.0; 3]; 3];
+                for a in 0..3 {
+                    for b in 0..3 {
+                        let odd = (g[i][a] * g[j][b]).minus_product(g[j][a], g[i][b]);
+                        block[a][b] = (inner * mixed[a][b])
+                            .plus_product(power, odd)
+                            .minus_product(q[i][a], g[j][b])
+                            .plus_product(q[j][a], g[i][b])
+                            .minus_product(g[i][a], q[j][b])
+                            .plus_product(g[j][a], q[i][b])
+                            .plus_product(half_l[j][a], pulled_y[i][b])
+                            .plus_product(pulled_y[j][a], half_l[i][b])
+                            .sum();
+                    }
+                }
+                let block = matrix(&block);
+                out.place_place[j][i] = block.transpose();
+                out.place_place[i][j] = block;
+            }
+        }
+        flow.by_place(&g, &y, |i, j, block| {
+            out.place_velocity[j][i] = matrix(block).transpose();
+        });
+    }
+}
+
+#[inline(always)]
+fn coordinates(x: &[Vector; 8]) -> [[f64; 3]; 8] {
+    let mut coordinates = [[0.0; 3]; 8];
+    for (c, x) in coordinates.iter_mut().zip(x) {
+        *c = [x.x, x.y, x.z];
+    }
+    coordinates
+}
+
+#[inline(always)]
+fn vector(a: [f64; 3]) -> Vector {
+    Vector::new(a[0], a[1], a[2])
+}
+
+#[inline(always)]
+fn matrix([a, b, c]: &Nine<f64>) -> Matrix {
+    Matrix::new(a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2])
+}
