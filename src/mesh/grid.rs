@@ -46,7 +46,9 @@ impl Grid {
                     ));
                 }
             }
-            let sum: f64 = layers.iter().map(|&(thickness, _)| thickness).sum();
+            let sum = layers
+                .iter()
+                .fold(0.0, |sum, &(thickness, _)| sum + thickness);
             let fits = (sum - size[axis]).abs() <= 1e-9 * size[axis];
             if !fits {
                 return Err(wrong(

@@ -9,6 +9,7 @@ pub mod joints;
 pub mod lines;
 pub mod origin;
 pub mod page;
+pub mod paraview;
 pub mod pose;
 pub mod solids;
 pub mod style;

@@ -1,0 +1,259 @@
+//! Instants of hexahedral meshes for ParaView: `.vtu` files and the `.pvd` file that lists them over time.
+//!
+//! An instant is an XML unstructured grid of VTK with one piece per solid; numbers stand inline as base64 of 64-bit
+//! little-endian numbers, so that each reads back identical. Units are the caller's; what a run leaves behind is in SI.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use nalgebra::Vector3;
+use std::borrow::Cow;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use crate::report::atomic::{self, WriteError};
+use crate::report::origin::Origin;
+
+/// Number of a trilinear hexahedron in VTK.
+const HEXAHEDRON: u8 = 12;
+
+/// A named quantity at the points or in the cells of a grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field<'a> {
+    /// Name in ParaView, such as `stress [Pa]`.
+    pub name: &'a str,
+    /// 1 for a scalar, 3 for a vector, 9 for a tensor row by row.
+    pub components: usize,
+    /// Components of the first point or cell, then those of the next.
+    pub values: Cow<'a, [f64]>,
+}
+
+/// One solid at an instant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Grid<'a> {
+    /// Places of the points.
+    pub points: &'a [Vector3<f64>],
+    /// Points of each cell, ordered as in [`Mesh::hexahedra`](crate::mesh::Mesh::hexahedra).
+    pub hexahedra: &'a [[usize; 8]],
+    /// Quantities at the points.
+    pub point_data: &'a [Field<'a>],
+    /// Quantities in the cells.
+    pub cell_data: &'a [Field<'a>],
+}
+
+/// Which data of a grid.
+#[derive(Clone, Copy)]
+enum At {
+    Points,
+    Cells,
+}
+
+impl<'a> Grid<'a> {
+    fn fields(&self, at: At) -> &'a [Field<'a>] {
+        match at {
+            At::Points => self.point_data,
+            At::Cells => self.cell_data,
+        }
+    }
+
+    fn count(&self, at: At) -> usize {
+        match at {
+            At::Points => self.points.len(),
+            At::Cells => self.hexahedra.len(),
+        }
+    }
+}
+
+/// The `.vtu` file of solids at one instant, one piece each.
+///
+/// ParaView shows the fields that all pieces have; a field that a solid lacks is therefore written as NaN there.
+///
+/// # Panics
+///
+/// Where the values of a field are not as many as its components times points or cells, where fields of one name differ in
+/// their components, and where a cell has a point that does not exist.
+pub fn vtu(grids: &[Grid<'_>], origin: &Origin) -> Vec<u8> {
+    let mut text = head("UnstructuredGrid", origin);
+    text.push_str("<UnstructuredGrid>\n");
+    let point_fields = layout(grids, At::Points);
+    let cell_fields = layout(grids, At::Cells);
+    for grid in grids {
+        piece(&mut text, grid, &point_fields, &cell_fields);
+    }
+    text.push_str("</UnstructuredGrid>\n</VTKFile>\n");
+    text.into_bytes()
+}
+
+/// The `.pvd` file that lists instants: time in s and name of the file, relative to this one.
+pub fn pvd(instants: &[(f64, String)], origin: &Origin) -> String {
+    let mut text = head("Collection", origin);
+    text.push_str("<Collection>\n");
+    for (time, file) in instants {
+        let file = escaped(file);
+        line(
+            &mut text,
+            format_args!(r#"<DataSet timestep="{time:?}" group="" part="0" file="{file}"/>"#),
+        );
+    }
+    text.push_str("</Collection>\n</VTKFile>\n");
+    text
+}
+
+/// A motion in a folder: `name_0000.vtu`, `name_0001.vtu`, … and `name.pvd`, which is the file to open.
+#[derive(Clone, Debug)]
+pub struct Series<'a> {
+    folder: PathBuf,
+    name: String,
+    origin: &'a Origin,
+    instants: Vec<(f64, String)>,
+}
+
+impl<'a> Series<'a> {
+    /// An empty series in a folder, which is made where it is missing.
+    pub fn build(folder: &Path, name: &str, origin: &'a Origin) -> Result<Self, WriteError> {
+        std::fs::create_dir_all(folder).map_err(|cause| WriteError {
+            path: folder.to_owned(),
+            cause,
+        })?;
+        Ok(Self {
+            folder: folder.to_owned(),
+            name: name.to_owned(),
+            origin,
+            instants: Vec::new(),
+        })
+    }
+
+    /// Writes the solids at a time in s as the next file; its path.
+    pub fn add(&mut self, time: f64, grids: &[Grid<'_>]) -> Result<PathBuf, WriteError> {
+        let file = format!("{}_{:04}.vtu", self.name, self.instants.len());
+        let path = self.folder.join(&file);
+        atomic::write(&path, &vtu(grids, self.origin))?;
+        self.instants.push((time, file));
+        Ok(path)
+    }
+
+    /// Writes the list of the instants so far; its path.
+    pub fn finish(&self) -> Result<PathBuf, WriteError> {
+        let path = self.folder.join(format!("{}.pvd", self.name));
+        atomic::write(&path, pvd(&self.instants, self.origin).as_bytes())?;
+        Ok(path)
+    }
+}
+
+/// Names and components of the fields of all grids, in the order of their first appearance.
+fn layout<'a>(grids: &[Grid<'a>], at: At) -> Vec<(&'a str, usize)> {
+    let mut names: Vec<(&str, usize)> = Vec::new();
+    for grid in grids {
+        for field in grid.fields(at) {
+            let Field {
+                name, components, ..
+            } = *field;
+            let (found, expected) = (field.values.len(), components * grid.count(at));
+            assert_eq!(found, expected, "number of values of the field {name:?}");
+            match names.iter().find(|(known, _)| *known == name) {
+                Some(&(_, known)) => {
+                    assert_eq!(known, components, "components of the field {name:?}");
+                }
+                None => names.push((name, components)),
+            }
+        }
+    }
+    names
+}
+
+fn piece(
+    text: &mut String,
+    grid: &Grid<'_>,
+    point_fields: &[(&str, usize)],
+    cell_fields: &[(&str, usize)],
+) {
+    let (points, cells) = (grid.points.len(), grid.hexahedra.len());
+    let connectivity = grid.hexahedra.as_flattened();
+    assert!(
+        connectivity.iter().all(|&point| point < points),
+        "a cell has a point that is not one of the {points} points"
+    );
+    line(
+        text,
+        format_args!(r#"<Piece NumberOfPoints="{points}" NumberOfCells="{cells}">"#),
+    );
+
+    text.push_str("<Points>\n");
+    let places = grid.points.iter().flat_map(|x| [x.x, x.y, x.z]);
+    array(text, "Float64", "Points", 3, bytes_of(places));
+    text.push_str("</Points>\n<Cells>\n");
+    let nodes = connectivity.iter().map(|&node| node as u64);
+    let nodes = nodes.flat_map(u64::to_le_bytes).collect();
+    array(text, "Int64", "connectivity", 1, nodes);
+    let ends = (1..=cells as u64).flat_map(|end| (8 * end).to_le_bytes());
+    array(text, "Int64", "offsets", 1, ends.collect());
+    array(text, "UInt8", "types", 1, vec![HEXAHEDRON; cells]);
+    text.push_str("</Cells>\n");
+
+    for (tag, at, fields) in [
+        ("PointData", At::Points, point_fields),
+        ("CellData", At::Cells, cell_fields),
+    ] {
+        line(text, format_args!("<{tag}>"));
+        for &(name, components) in fields {
+            let known = grid.fields(at).iter().find(|field| field.name == name);
+            let bytes = match known {
+                Some(field) => bytes_of(field.values.iter().copied()),
+                None => bytes_of((0..components * grid.count(at)).map(|_| f64::NAN)),
+            };
+            array(text, "Float64", name, components, bytes);
+        }
+        line(text, format_args!("</{tag}>"));
+    }
+    text.push_str("</Piece>\n");
+}
+
+/// Numbers inline: their length in bytes as a 64-bit number, then they themselves, both in one base64 text.
+fn array(text: &mut String, kind: &str, name: &str, components: usize, bytes: Vec<u8>) {
+    let mut block = (bytes.len() as u64).to_le_bytes().to_vec();
+    block.extend(bytes);
+    let name = escaped(name);
+    line(
+        text,
+        format_args!(
+            r#"<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="binary">"#
+        ),
+    );
+    STANDARD.encode_string(block, text);
+    text.push_str("\n</DataArray>\n");
+}
+
+fn bytes_of(values: impl Iterator<Item = f64>) -> Vec<u8> {
+    values.flat_map(f64::to_le_bytes).collect()
+}
+
+/// The XML declaration, the origin as a processing instruction (a comment must not hold the `--` of a command), and the
+/// opening tag.
+fn head(kind: &str, origin: &Origin) -> String {
+    let origin = origin.line().replace("?>", "? >");
+    format!(
+        r#"<?xml version="1.0" encoding="UTF-8"?>
+<?origin {origin}?>
+<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+"#
+    )
+}
+
+fn line(text: &mut String, arguments: std::fmt::Arguments<'_>) {
+    writeln!(text, "{arguments}").expect("writing to a string does not fail");
+}
+
+/// Text of an XML attribute; control characters become spaces.
+fn escaped(text: &str) -> String {
+    let mut out = String::new();
+    for letter in text.chars() {
+        match letter {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            control if control.is_control() => out.push(' '),
+            other => out.push(other),
+        }
+    }
+    out
+}

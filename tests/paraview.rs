@@ -1,0 +1,241 @@
+//! What ParaView is given reads back as it was: checked with a naive reader of XML and base64.
+
+use nalgebra::Vector3;
+use proboscis::mesh::grid::Grid as Planes;
+use proboscis::report::origin::Origin;
+use proboscis::report::paraview::{Field, Grid, Series, pvd, vtu};
+use proptest::prelude::*;
+use std::borrow::Cow;
+use std::fs;
+
+/// The parts of a text between two others.
+fn between<'a>(text: &'a str, start: &str, end: &str) -> Vec<&'a str> {
+    let parts = text.split(start).skip(1);
+    parts.map(|part| part.split(end).next().unwrap()).collect()
+}
+
+fn attribute(tag: &str, name: &str) -> String {
+    let value = between(tag, &format!(" {name}=\""), "\"")[0];
+    let entities = [
+        ("&lt;", "<"),
+        ("&gt;", ">"),
+        ("&quot;", "\""),
+        ("&amp;", "&"),
+    ];
+    entities
+        .iter()
+        .fold(value.to_owned(), |text, (entity, letter)| {
+            text.replace(entity, letter)
+        })
+}
+
+/// Six bits per letter, most significant first.
+fn base64(text: &str) -> Vec<u8> {
+    let alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut bytes = Vec::new();
+    let (mut bits, mut count) = (0_u32, 0);
+    for letter in text.trim().trim_end_matches('=').chars() {
+        bits = bits << 6 | alphabet.find(letter).unwrap() as u32;
+        count += 6;
+        if count >= 8 {
+            count -= 8;
+            bytes.push((bits >> count) as u8);
+            bits &= (1 << count) - 1;
+        }
+    }
+    bytes
+}
+
+/// The bytes of an array without their length, which is checked.
+fn array(piece: &str, section: &str, name: &str) -> (String, usize, Vec<u8>) {
+    let open = format!("<{section}>");
+    let section = between(piece, &open, &format!("</{}", &open[1..]))[0].to_owned();
+    let arrays = between(&section, "<DataArray", "</DataArray>");
+    let array = arrays.iter().find(|a| attribute(a, "Name") == name);
+    let array = array.unwrap_or_else(|| panic!("no {name} in {section}"));
+    assert_eq!(attribute(array, "format"), "binary");
+    let bytes = base64(array.split_once('>').unwrap().1);
+    let (length, bytes) = bytes.split_at(8);
+    let length = u64::from_le_bytes(length.try_into().unwrap());
+    assert_eq!(length, bytes.len() as u64);
+    let components = attribute(array, "NumberOfComponents").parse().unwrap();
+    (attribute(array, "type"), components, bytes.to_vec())
+}
+
+fn words(piece: &str, section: &str, name: &str) -> Vec<u64> {
+    let (_, _, bytes) = array(piece, section, name);
+    let words = bytes.chunks_exact(8);
+    words
+        .map(|b| u64::from_le_bytes(b.try_into().unwrap()))
+        .collect()
+}
+
+/// The bits of a field's numbers, so that NaN equals itself.
+fn assert_reads(piece: &str, section: &str, field: &Field<'_>) {
+    let (kind, components, _) = array(piece, section, field.name);
+    assert_eq!((kind.as_str(), components), ("Float64", field.components));
+    let bits: Vec<_> = field.values.iter().map(|x| x.to_bits()).collect();
+    assert_eq!(words(piece, section, field.name), bits, "{}", field.name);
+}
+
+fn field(name: &str, components: usize, values: Vec<f64>) -> Field<'_> {
+    Field {
+        name,
+        components,
+        values: Cow::Owned(values),
+    }
+}
+
+fn origin() -> Origin {
+    Origin {
+        command: "proboscis simulate finger.json --set time=1?>".to_owned(),
+        version: "0.0".to_owned(),
+        ..Origin::default()
+    }
+}
+
+#[test]
+fn a_solid_reads_back_as_it_was() {
+    let mesh = Planes::uniform(
+        Vector3::new(0.1, -0.2, 1e-9),
+        Vector3::new(1.0, 2.0, 3.0),
+        [3, 2, 1],
+    )
+    .mesh();
+    let (points, cells) = (mesh.nodes.len(), mesh.hexahedra.len());
+    let numbers = |count: usize| (0..count).map(|k| (k as f64).sin() / 3.0).collect();
+    let point_data = [
+        field("electric potential [V]", 1, numbers(points)),
+        field("displacement <u> & \"v\" [m]", 3, numbers(3 * points)),
+    ];
+    let cell_data = [
+        field("J", 1, numbers(cells)),
+        field("electric field [V/m]", 3, numbers(3 * cells)),
+        field("stress [Pa]", 9, numbers(9 * cells)),
+    ];
+    let grid = Grid {
+        points: &mesh.nodes,
+        hexahedra: &mesh.hexahedra,
+        point_data: &point_data,
+        cell_data: &cell_data,
+    };
+    let text = String::from_utf8(vtu(&[grid], &origin())).unwrap();
+
+    assert!(text.starts_with("<?xml version=\"1.0\""), "{text}");
+    assert!(text.contains("--set time=1? >"), "{text}");
+    let file = between(&text, "<VTKFile", ">")[0];
+    assert_eq!(attribute(file, "type"), "UnstructuredGrid");
+    assert_eq!(attribute(file, "byte_order"), "LittleEndian");
+    assert_eq!(attribute(file, "header_type"), "UInt64");
+
+    let pieces = between(&text, "<Piece", "</Piece>");
+    let [piece] = pieces[..] else {
+        panic!("{} pieces", pieces.len())
+    };
+    assert_eq!(attribute(piece, "NumberOfPoints"), points.to_string());
+    assert_eq!(attribute(piece, "NumberOfCells"), cells.to_string());
+    let places = mesh.nodes.iter().flat_map(|x| [x.x, x.y, x.z]).collect();
+    assert_reads(piece, "Points", &field("Points", 3, places));
+    let connectivity: Vec<_> = mesh.hexahedra.iter().flatten().map(|&n| n as u64).collect();
+    assert_eq!(words(piece, "Cells", "connectivity"), connectivity);
+    let offsets: Vec<_> = (1..=cells as u64).map(|end| 8 * end).collect();
+    assert_eq!(words(piece, "Cells", "offsets"), offsets);
+    let (kind, _, types) = array(piece, "Cells", "types");
+    assert_eq!((kind.as_str(), types), ("UInt8", vec![12; cells]));
+    for field in &point_data {
+        assert_reads(piece, "PointData", field);
+    }
+    for field in &cell_data {
+        assert_reads(piece, "CellData", field);
+    }
+}
+
+#[test]
+fn solids_are_pieces_with_the_same_fields() {
+    let mesh = Planes::uniform(Vector3::zeros(), Vector3::repeat(1.0), [1, 1, 1]).mesh();
+    let apart = mesh.clone().transformed(|x| x + Vector3::x() * 2.0);
+    let potential = [field("potential", 1, (0..8).map(f64::from).collect())];
+    let stretch = [field("stretch", 3, vec![1.0, 2.0, 3.0])];
+    let grids = [
+        Grid {
+            points: &mesh.nodes,
+            hexahedra: &mesh.hexahedra,
+            point_data: &potential,
+            cell_data: &[],
+        },
+        Grid {
+            points: &apart.nodes,
+            hexahedra: &apart.hexahedra,
+            point_data: &[],
+            cell_data: &stretch,
+        },
+    ];
+    let text = String::from_utf8(vtu(&grids, &origin())).unwrap();
+    let pieces = between(&text, "<Piece", "</Piece>");
+    assert_eq!(pieces.len(), 2);
+    assert_reads(pieces[0], "PointData", &potential[0]);
+    assert_reads(pieces[1], "CellData", &stretch[0]);
+    let nothing = |name, components, count| field(name, components, vec![f64::NAN; count]);
+    assert_reads(pieces[1], "PointData", &nothing("potential", 1, 8));
+    assert_reads(pieces[0], "CellData", &nothing("stretch", 3, 3));
+    let first = words(pieces[1], "Points", "Points")[0];
+    assert_eq!(f64::from_bits(first), 2.0);
+}
+
+#[test]
+fn a_series_lists_what_it_wrote() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path().join("deep").join("motion");
+    let mesh = Planes::uniform(Vector3::zeros(), Vector3::repeat(1.0), [1, 1, 1]).mesh();
+    let grids = [Grid {
+        points: &mesh.nodes,
+        hexahedra: &mesh.hexahedra,
+        ..Grid::default()
+    }];
+    let origin = origin();
+    let mut series = Series::build(&folder, "trajectory", &origin).unwrap();
+    let times = [0.0, 1e-3, 0.1 + 0.2];
+    for time in times {
+        let path = series.add(time, &grids).unwrap();
+        assert_eq!(fs::read(path).unwrap(), vtu(&grids, &origin));
+    }
+    let list = fs::read_to_string(series.finish().unwrap()).unwrap();
+    let sets = between(&list, "<DataSet", "/>");
+    assert_eq!(sets.len(), times.len());
+    for (set, time) in sets.iter().zip(times) {
+        assert_eq!(attribute(set, "timestep").parse(), Ok(time));
+        assert!(folder.join(attribute(set, "file")).is_file());
+    }
+    assert!(folder.join("trajectory.pvd").is_file());
+}
+
+#[test]
+fn no_solid_and_no_instant_are_files_too() {
+    let text = String::from_utf8(vtu(&[], &Origin::default())).unwrap();
+    assert!(text.ends_with("<UnstructuredGrid>\n</UnstructuredGrid>\n</VTKFile>\n"));
+    assert!(pvd(&[], &Origin::default()).contains("<Collection>\n</Collection>"));
+}
+
+#[test]
+#[should_panic(expected = "number of values of the field \"stress\"")]
+fn a_field_of_the_wrong_length_is_a_mistake() {
+    let data = [field("stress", 9, vec![0.0; 8])];
+    let grid = Grid {
+        point_data: &data,
+        ..Grid::default()
+    };
+    vtu(&[grid], &Origin::default());
+}
+
+proptest! {
+    #[test]
+    fn every_number_reads_back(bits in prop::collection::vec(any::<u64>(), 0..20), name in ".*") {
+        let points = vec![Vector3::zeros(); bits.len()];
+        let values = bits.iter().copied().map(f64::from_bits).collect();
+        let name: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let data = [field(&name, 1, values)];
+        let grid = Grid { points: &points, point_data: &data, ..Grid::default() };
+        let text = String::from_utf8(vtu(&[grid], &Origin::default())).unwrap();
+        assert_reads(between(&text, "<Piece", "</Piece>")[0], "PointData", &data[0]);
+    }
+}
