@@ -42,6 +42,7 @@ fn law(
     };
     let (model, boundary) = Boundary::resolve(system, &control, STEP).unwrap();
     let start = Start {
+        rates: None,
         ..boundary.start.clone()
     };
     let scalars = |from: f64, _: f64| model.scalars(&voltage((from / STEP).round() as usize));

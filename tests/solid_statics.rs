@@ -33,10 +33,7 @@ fn homogeneous_blocks_are_the_reference() {
         for (found, expected) in moved[node].iter().zip(numbers(&probe["u"])) {
             let expected = expected * 1e3;
             assert!(expected.abs() > 0.1);
-            assert!(
-                (found / expected - 1.0).abs() < 1e-11,
-                "{found} {expected}"
-            );
+            assert!((found / expected - 1.0).abs() < 1e-11, "{found} {expected}");
         }
     }
 }
@@ -44,7 +41,9 @@ fn homogeneous_blocks_are_the_reference() {
 #[test]
 fn the_stack_is_the_reference() {
     for entry in reference("caseB")["static"].as_array().unwrap() {
-        if entry["mesh"]["order"].as_u64() != Some(1) || numbers(&entry["mesh"]["elements"])[0] > 4.0 {
+        if entry["mesh"]["order"].as_u64() != Some(1)
+            || numbers(&entry["mesh"]["elements"])[0] > 4.0
+        {
             continue;
         }
         let (_, moved, potentials) = solve(stack(entry), 3e5);
@@ -52,7 +51,10 @@ fn the_stack_is_the_reference() {
         for probe in entry["probes"].as_array().unwrap() {
             let node = probe["node"].as_u64().unwrap() as usize;
             for (found, expected) in moved[node].iter().zip(numbers(&probe["u"])) {
-                assert!((found - 1e3 * expected).abs() < 1e-8 * scale, "{found} {expected}");
+                assert!(
+                    (found - 1e3 * expected).abs() < 1e-8 * scale,
+                    "{found} {expected}"
+                );
             }
         }
         if let Some(all) = entry["full_nodal_u"].as_array() {

@@ -11,7 +11,9 @@ pub struct History {
     pub z: Vec<Vec<f64>>,
     /// Momentum of each coordinate at each instant.
     pub momenta: Vec<Vec<f64>>,
-    /// Voltages of each interval in V, by scalar of the interval.
+    /// Rates of the coordinates at the start, where they are known.
+    pub rates: Option<Vec<f64>>,
+    /// Voltages of each interval in V and potentials in their unit, by scalar of the interval.
     pub scalars: Vec<Vec<f64>>,
     /// What it cost.
     pub report: StepperReport,

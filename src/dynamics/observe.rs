@@ -9,7 +9,7 @@ use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Kind, Level};
 use crate::kinematics::{Carrier, MaterialVector, Pose};
 use crate::math::Vector;
-use crate::model::Model;
+use crate::model::{Continuum, Model};
 use crate::reduction::{Instant, Interval, Scratch};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -104,6 +104,14 @@ impl<'m> Observer<'m> {
         for muscle in &system.muscles {
             add(format!("{}_stretch", muscle.name), "");
         }
+        let electrodes = self
+            .model
+            .continua
+            .iter()
+            .flat_map(Continuum::still_electrodes);
+        for (block, electrode) in electrodes {
+            add(format!("{block}_{electrode}_charge"), "mC");
+        }
         for &source in &self.model.voltages {
             let name = self.model.sources[source].name.replace('.', "_");
             add(format!("{name}_charge"), "mC");
@@ -145,7 +153,8 @@ impl<'m> Observer<'m> {
         let (charges, forces) = self.interval(scalars, h);
         let (momenta, impulses) = match at_start {
             Some(momentum) => {
-                let rates = rates(model, &mut self.here, &momentum);
+                let known = history.rates.clone();
+                let rates = known.unwrap_or_else(|| rates(model, &mut self.here, &momentum));
                 let products = momentum.iter().zip(&rates).map(|(p, v)| p * v);
                 energies.kinetic = 0.5 * products.sum::<f64>();
                 let momenta = moving(model, &mut self.here, &rates);
@@ -166,6 +175,11 @@ impl<'m> Observer<'m> {
         let mut row = Vec::new();
         let muscles = model.spans.iter().zip(&model.system.muscles);
         row.extend(muscles.map(|(&span, m)| self.here.x[span].norm() / m.length()));
+        let ends = self.before.x.iter().zip(&self.here.x);
+        let middles: Vec<Vector> = ends.map(|(a, b)| (a + b) * 0.5).collect();
+        for block in &model.continua {
+            row.extend(block.still_charges(&middles, scalars));
+        }
         row.extend(charges);
         row.push(energies.kinetic);
         row.extend(&energies.potential);
@@ -174,7 +188,11 @@ impl<'m> Observer<'m> {
             row.push(self.dissipated);
         }
         let poses = model.poses(&self.here);
-        for map in momentum_maps(&model.vectors, &poses, &momenta, &impulses) {
+        let places = Places {
+            poses: &poses,
+            x: &self.here.x,
+        };
+        for map in momentum_maps(&model.vectors, &places, &momenta, &impulses) {
             row.extend(map.iter());
         }
         row.push(self.violation());
@@ -286,24 +304,36 @@ fn vector_momenta(model: &Model, x: &[Vector], v: &[Vector]) -> Vec<Vector> {
     momenta
 }
 
+/// Where bodies and vectors are.
+struct Places<'a> {
+    poses: &'a [Pose],
+    x: &'a [Vector],
+}
+
 /// Linear momentum Σ c π and angular momentum about the origin Σ x × π of a list of momenta π of vectors x, with c the part
 /// of a translation that x takes: 1 for a point, 0 for a direction or a span. Momenta of masses count with the whole of
 /// their vectors, impulses of forces with the part on bodies: what pulls at the ground does not move the system.
 fn momentum_maps(
     vectors: &[MaterialVector],
-    poses: &[Pose],
+    places: &Places<'_>,
     momenta: &[Vector],
     impulses: &[Vector],
 ) -> [Vector; 2] {
     let (mut linear, mut angular) = (Vector::zeros(), Vector::zeros());
-    for ((vector, momentum), impulse) in vectors.iter().zip(momenta).zip(impulses) {
+    let each = vectors
+        .iter()
+        .zip(places.x)
+        .zip(momenta.iter().zip(impulses));
+    for ((vector, x), (momentum, impulse)) in each {
         for term in &vector.terms {
-            let (pose, total) = match term.carrier {
-                Carrier::Body(body) => (poses[body], momentum + impulse),
-                Carrier::Ground | Carrier::Node(_) => (Pose::GROUND, *momentum),
+            let (place, total) = match term.carrier {
+                Carrier::Body(body) => (term.at(&places.poses[body]), momentum + impulse),
+                Carrier::Ground => (term.at(&Pose::GROUND), *momentum),
+                // A vector that effects read holds no more than one node, and nothing else beside it.
+                Carrier::Node(_) => (*x, momentum + impulse),
             };
             linear += total * term.centre;
-            angular += term.at(&pose).cross(&total);
+            angular += place.cross(&total);
         }
     }
     [linear, angular]

@@ -11,6 +11,8 @@ pub struct Start {
     pub z: Vec<f64>,
     /// Momenta.
     pub momentum: Vec<f64>,
+    /// Rates of the coordinates, where the momenta were made of them.
+    pub rates: Option<Vec<f64>>,
 }
 
 impl Start {
@@ -19,6 +21,7 @@ impl Start {
         Self {
             z,
             momentum: vec![0.0; model.coordinate_count()],
+            rates: None,
         }
     }
 
@@ -28,7 +31,11 @@ impl Start {
         instant.z.copy_from_slice(&z);
         model.action.motion.place(&mut instant);
         let momentum = model.action.momentum(&mut instant, rates);
-        Self { z, momentum }
+        Self {
+            z,
+            momentum,
+            rates: Some(rates.to_vec()),
+        }
     }
 }
 
@@ -51,6 +58,7 @@ pub fn simulate(
         times: vec![0.0],
         z: vec![start.z.clone()],
         momenta: vec![start.momentum.clone()],
+        rates: start.rates.clone(),
         ..History::default()
     };
     let mut failure = None;

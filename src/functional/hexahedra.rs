@@ -1,20 +1,14 @@
 //! Elastic and dielectric hexahedra: energies of finite elements as terms of the sum.
 //!
 //! Nodes are read at the midpoint of an interval, potentials are scalars of the interval: `−h W(x̄, φ)`. A large mesh is
-//! evaluated on all cores, stretch by stretch, and added up element by element, so that the sum is the same for any
-//! number of threads.
+//! evaluated on all cores.
 
 use crate::element::{Dielectric, Elastomer, Field, Local, Passive, Shape};
+use crate::functional::stretches::Stretches;
 use crate::functional::{Couplings, Effect, Frame, Horizon, Kind, Level, Output, Part};
 use crate::math::Vector;
-use rayon::prelude::*;
 use std::fmt;
-use std::sync::Mutex;
 
-/// From so many elements on, a mesh is evaluated on all cores.
-const PARALLEL: usize = 256;
-/// Elements of a stretch.
-const STRETCH: usize = 512;
 /// No slot.
 const NONE: u32 = u32::MAX;
 
@@ -103,8 +97,7 @@ pub struct Hexahedra<F: Wired> {
     name: String,
     elements: Vec<Hexahedron<F>>,
     slots: Vec<Slots>,
-    /// Derivatives of the elements of a stretch.
-    locals: Mutex<Vec<Local<F>>>,
+    locals: Stretches<Local<F>>,
 }
 
 impl<F: Wired> fmt::Debug for Hexahedra<F> {
@@ -114,7 +107,7 @@ impl<F: Wired> fmt::Debug for Hexahedra<F> {
 }
 
 /// Half the sum of both instants.
-fn middle(vectors: [&[Vector]; 2], nodes: &[usize; 8]) -> [Vector; 8] {
+pub(super) fn middle(vectors: [&[Vector]; 2], nodes: &[usize; 8]) -> [Vector; 8] {
     nodes.map(|v| (vectors[0][v] + vectors[1][v]) * 0.5)
 }
 
@@ -125,7 +118,7 @@ impl<F: Wired> Hexahedra<F> {
             name: name.to_owned(),
             elements,
             slots: Vec::new(),
-            locals: Mutex::default(),
+            locals: Stretches::default(),
         }
     }
 
@@ -242,28 +235,6 @@ impl<F: Wired> Hexahedra<F> {
         }
     }
 
-    /// Evaluates on all cores, adds on one.
-    fn evaluate_stretches(
-        &self,
-        level: Level,
-        frame: &Frame<'_>,
-        locals: &mut Vec<Local<F>>,
-        part: &mut Part,
-    ) {
-        let count = STRETCH.min(self.elements.len());
-        locals.resize_with(count, Local::default);
-        for (k, stretch) in self.elements.chunks(STRETCH).enumerate() {
-            let work = stretch
-                .par_iter()
-                .with_min_len(32)
-                .zip(locals.par_iter_mut());
-            work.for_each(|(element, local)| Self::local(element, level, frame, local));
-            for (i, local) in locals[..stretch.len()].iter_mut().enumerate() {
-                self.add(k * STRETCH + i, local, level, frame, part);
-            }
-        }
-    }
-
     fn energy_of(
         &self,
         frame: &Frame<'_>,
@@ -352,17 +323,12 @@ impl<F: Wired> Effect for Hexahedra<F> {
 
     fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output) {
         if level < Level::Third {
-            if self.elements.len() >= PARALLEL
-                && let Ok(mut locals) = self.locals.try_lock()
-            {
-                self.evaluate_stretches(level, frame, &mut locals, &mut out.plain);
-                return;
-            }
-            let mut local = Local::default();
-            for (index, element) in self.elements.iter().enumerate() {
-                Self::local(element, level, frame, &mut local);
-                self.add(index, &mut local, level, frame, &mut out.plain);
-            }
+            let compute = |element: &Hexahedron<F>, local: &mut Local<F>| {
+                Self::local(element, level, frame, local);
+            };
+            self.locals.each(&self.elements, compute, |index, local| {
+                self.add(index, local, level, frame, &mut out.plain);
+            });
             return;
         }
         let (mut plain, mut along) = (Local::default(), Local::default());

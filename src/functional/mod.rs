@@ -16,6 +16,8 @@ mod group;
 mod hexahedra;
 mod inertia;
 mod stencil;
+mod stretches;
+mod viscous_hexahedra;
 
 pub use couplings::{Blocks, Couplings, Part, Sides};
 pub use effect::{Effect, Frame, Horizon, Kind, Level, Measure, Output, Sum};
@@ -23,3 +25,4 @@ pub use group::{Element, Group};
 pub use hexahedra::{Hexahedra, Hexahedron, Terminal, Wired};
 pub use inertia::{Inertia, Mass};
 pub use stencil::{Stencil, VectorArg};
+pub use viscous_hexahedra::{ViscousHexahedra, ViscousHexahedron};

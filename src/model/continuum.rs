@@ -4,12 +4,14 @@
 //! coordinates. Only nodes that an electric field reaches have a potential: those of dielectric elements of a part that
 //! an electrode with a voltage touches.
 
-use crate::element::{Dielectric, Elastomer, Inverted, Passive, Shape, Volume};
+use crate::element::{Dielectric, Elastomer, Inverted, Local, Passive, Shape, Volume};
 use crate::functional::Terminal;
 use crate::kinematics::{Carrier, MaterialVector, Pose, Term, Vectors};
 use crate::math::Vector;
 use crate::model::ModelError;
-use crate::model::system::{Electric, ElementKind, Glue, Material, Potential, Solid, System};
+use crate::model::system::{
+    Electric, Electrode, ElementKind, Glue, Material, Potential, Solid, System,
+};
 use crate::reduction::NodePlace;
 use std::collections::{BTreeSet, HashMap};
 
@@ -22,6 +24,8 @@ pub struct Continuum {
     pub vectors: Vec<usize>,
     /// Terminal of each node of the mesh; `None` where there is no potential.
     pub terminals: Vec<Option<Terminal>>,
+    /// Whether it is a muscle, whose electrodes are one.
+    pub of_muscle: bool,
     /// Geometry of each element.
     pub shapes: Vec<Shape>,
     /// Whether a field reaches each element.
@@ -54,13 +58,14 @@ enum Wire {
 }
 
 impl Continua {
-    /// Lays out blocks; `voltages` are the sources of the first scalars, and glued nodes keep coordinates of their own
+    /// Lays out blocks, of which the first `scene` are those of the scene; `voltages` are the sources of the first scalars, and glued nodes keep coordinates of their own
     /// where `ties` says so.
     ///
     /// # Errors
     /// An element of a mesh is turned inside out.
     pub(super) fn new(
         solids: Vec<Solid>,
+        scene: usize,
         reference: &[Pose],
         voltages: &[usize],
         ties: bool,
@@ -78,6 +83,7 @@ impl Continua {
             out.list.push(Continuum {
                 solid,
                 vectors: places,
+                of_muscle: index >= scene,
                 terminals,
                 shapes,
                 is_dielectric,
@@ -262,6 +268,40 @@ impl Continuum {
     /// Places of the nodes at vectors x.
     pub fn places(&self, x: &[Vector]) -> Vec<Vector> {
         self.vectors.iter().map(|&v| x[v]).collect()
+    }
+
+    /// Block and electrode of the electrodes that no voltage drives.
+    pub fn still_electrodes(&self) -> impl Iterator<Item = (&str, &str)> + '_ {
+        let all = self.solid.electrodes.iter().filter(|e| self.is_still(e));
+        all.map(|e| (self.solid.name.as_str(), e.name.as_str()))
+    }
+
+    fn is_still(&self, electrode: &Electrode) -> bool {
+        !self.of_muscle && !matches!(electrode.potential, Potential::Driven { .. })
+    }
+
+    /// Charges −∂W/∂φ in mC of the electrodes that no voltage drives, with the nodes at vectors x.
+    pub fn still_charges(&self, x: &[Vector], scalars: &[f64]) -> Vec<f64> {
+        let electrodes = self.solid.electrodes.iter();
+        let still: Vec<_> = electrodes.filter(|e| self.is_still(e)).collect();
+        if still.is_empty() {
+            return Vec::new();
+        }
+        let (places, potentials) = (self.places(x), self.potentials(scalars));
+        let mut charges = vec![0.0; places.len()];
+        let mut local = Local::default();
+        for (e, nodes) in self.solid.mesh.hexahedra.iter().enumerate() {
+            if self.is_dielectric[e] {
+                let (at, phi) = (nodes.map(|n| places[n]), nodes.map(|n| potentials[n]));
+                let law = self.dielectric(e);
+                law.gradient(&self.shapes[e], &at, &phi, &mut local);
+                for (&node, charge) in nodes.iter().zip(&local.electric.charges) {
+                    charges[node] -= charge;
+                }
+            }
+        }
+        let sum = |e: &&Electrode| -> f64 { e.nodes.iter().map(|&n| charges[n]).sum() };
+        still.iter().map(sum).collect()
     }
 
     /// Potentials of the nodes in V; zero where there is none.

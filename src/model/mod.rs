@@ -105,7 +105,8 @@ impl Model {
         let solids = blocks::blocks(&system);
         let voltages = continuum::voltages(&system, &solids);
         let ties = coordinates == Coordinates::Redundant;
-        let continua = Continua::new(solids, &reference, &voltages, ties, &mut vectors)?;
+        let scene = system.solids.len();
+        let continua = Continua::new(solids, scene, &reference, &voltages, ties, &mut vectors)?;
         let mut parts =
             effects::Builder::new(&system, &reference, &voltages, &continua, &mut vectors);
         let intervals = parts.intervals();

@@ -1,6 +1,7 @@
 //! Effects of elastic blocks: elements by kind, masses, loads.
 
-use crate::functional::{Effect, Hexahedra, Hexahedron, Mass};
+use crate::element::Viscosity;
+use crate::functional::{Effect, Hexahedra, Hexahedron, Mass, ViscousHexahedra, ViscousHexahedron};
 use crate::model::continuum::{Continua, Continuum};
 use crate::model::effects::Effects;
 use std::collections::BTreeMap;
@@ -33,6 +34,15 @@ impl Continua {
                 terminals: c.terminals(e),
             })
             .collect();
+        let viscous = |(c, e): (&Continuum, usize)| {
+            let viscosity = c.material(e).viscosity?;
+            Some(ViscousHexahedron {
+                shape: c.shapes[e].clone(),
+                law: Viscosity { viscosity },
+                nodes: c.nodes(e),
+            })
+        };
+        let viscous: Vec<_> = self.elements().filter_map(viscous).collect();
         let mut add = |count: usize, effect: Box<dyn Effect>| {
             if count > 0 {
                 effects.push(effect);
@@ -45,6 +55,10 @@ impl Continua {
         add(
             dielectric.len(),
             Box::new(Hexahedra::new("block electroelasticity", dielectric)),
+        );
+        add(
+            viscous.len(),
+            Box::new(ViscousHexahedra::new("block viscosity", viscous)),
         );
     }
 

@@ -44,7 +44,10 @@ pub(crate) fn material(entry: &Value) -> Material {
 pub(crate) fn mesh(entry: &Value) -> Mesh {
     let of = |key: &str| numbers(&entry["mesh"][key]);
     let size = Vector3::from_vec(of("lengths")) * 1e3;
-    let elements = of("elements").iter().map(|&n| n as usize).collect::<Vec<_>>();
+    let elements = of("elements")
+        .iter()
+        .map(|&n| n as usize)
+        .collect::<Vec<_>>();
     Grid::uniform(Vector3::zeros(), size, elements.try_into().unwrap()).mesh()
 }
 
@@ -99,6 +102,7 @@ pub(crate) fn system(solids: Vec<Solid>) -> System {
 }
 
 /// Case A of the reference: rollers on three faces, potentials 0 and V at both ends of z.
+#[allow(dead_code, reason = "each test file uses some of these")]
 pub(crate) fn homogeneous(entry: &Value) -> System {
     let mesh = mesh(entry);
     let height = mesh.bounds().1.z;
