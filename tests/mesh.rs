@@ -351,249 +351,80 @@ fn files_that_are_refused() {
     );
 }
 
+/// Format of the block, what is replaced in its file, by what, and the start of the error after the file's name.
+const REFUSED_LINES: &str = r#"
+v2 | 2.2 0 8 | 1 0 8 | 2: found format 1, expected a mesh in format 2.2 or 4.1
+v2 | 2.2 0 8 | 4 0 8 | 2: found format 4, expected a mesh in format 2.2 or 4.1
+v2 | 2.2 0 8 | 2.2 0 | 2: found "2.2 0", expected the version, 0 for ASCII, and the size of a number: 4.1 0 8
+v2 | $MeshFormat | $NOD | 1: found format 1, expected a mesh in format 2.2 or 4.1
+v2 | $MeshFormat | solid x | 1: found "solid x", expected $MeshFormat, the head of a .msh file
+v2 | Nodes\n | Knots\n | 63: found the end of the file, expected the section $Nodes
+v2 | Elements\n | Things\n | 63: found the end of the file, expected the section $Elements
+v2 | $EndElements |  | 63: found the end of the file, expected $EndElements
+v2 | $EndNodes | $EndNode | 41: found "$EndNode" after as many lines as were counted, expected $EndNodes
+v2 | $Nodes\n27 | $Nodes\n28 | 41: found "$EndNodes" before as many lines as were counted, expected a node: number, x, y, z
+v2 | $Nodes\n27 | $Nodes\n26 | 40: found "27 2 1 0.5" after as many lines as were counted, expected $EndNodes
+v2 | $Nodes\n27 | $Nodes\n-1 | 13: found "-1" in "-1", expected the number of nodes
+v2 | $Elements\n19 | $Elements\n99999999999999 | 63: found "$EndElements" before as many lines as were counted, expected an element: number, type, number of tags, tags, nodes
+v2 | \n14 1 0.5 0.25 | \n14 1 0.5 | 27: found "14 1 0.5", expected a node: number, x, y, z
+v2 | \n14 1 0.5 0.25 | \n14 1 0.5 a | 27: found "a" in "14 1 0.5 a", expected a node: number, x, y, z
+v2 | \n14 1 0.5 0.25 | \n14 1 0.5 0.25 7 | 27: found "14 1 0.5 0.25 7", expected a node: number, x, y, z
+v2 | \n14 1 0.5 0.25 | \n14 1 nan 0.25 | 27: found "14 1 nan 0.25", expected finite coordinates
+v2 | \n14 1 0.5 0.25 | \n14 1 1e999 0.25 | 27: found "14 1 1e999 0.25", expected finite coordinates
+v2 | \n14 1 0.5 0.25 | \n13 1 0.5 0.25 | 27: found a second node 13, expected a number of its own for each node
+v2 | 12 5 2 3 1 1 | 12 5 2 3 1 77 | 55: found node 77 in element 12, expected a node that $Nodes lists
+v2 | 12 5 2 3 1 1 | 12 99 2 3 1 1 | 55: found an element of type 99, expected 8-node hexahedra (type 5)
+v2 | 12 5 2 3 1 1 | 12 17 2 3 1 1 | 55: found a 20-node hexahedron of second order (type 17), expected 8-node hexahedra (type 5)
+v2 | 13 5 2 3 1 2 3 6 5 11 12 15 14 | 13 5 2 4 1 1 2 5 4 10 11 14 13 | 56: element 13: found the nodes of m.msh:55: element 12, expected each hexahedron once, in one region
+v2 | $Elements | $Nodes | 42: found a second $Nodes, expected it once
+v2 | $Elements | Elements | 42: found "Elements", expected a section such as $Nodes
+v2 | 3 4 "stiff layer" | 3 4 stiff | 10: found "3 4 stiff", expected a physical group: dimension, number, "name"
+v4 | 6 28 10 99 | 6 29 10 99 | 22: found a total of 29, expected 28, as many as the blocks hold
+v4 | 6 28 10 99 | 6 28 | 22: found "6 28", expected four counts: blocks, all of them, smallest and largest number
+v4 | 6 28 10 99 | 7 28 10 99 | 85: found "$EndNodes" before as many lines as were counted, expected a block of nodes: dimension and number of the entity, 0 or 1 for parameters, number of nodes
+v4 | 1 1 2 2\n | 1 1 2 1\n | 19: found "2 0 0 0.25 2 1 0.5 1 4 0" after as many lines as were counted, expected $EndEntities
+v4 | 1 1 2 2\n | 1 1 2\n | 13: found "1 1 2", expected the numbers of points, curves, surfaces and volumes
+v4 | 3 2 5 4 | 3 8 5 4 | 108: found the entity 8 of dimension 3, expected an entity that $Entities lists
+v4 | 3 2 5 4 | 2 2 5 4 | 108: found elements of dimension 3 in an entity of dimension 2, expected equal dimensions
+v4 | 2 1 0.5 1 4 0 | 2 1 0.5 2 3 4 0 | 109: found element 116 in soft and stiff layer, expected each hexahedron in one physical volume
+v4 | \n101 36 | \n101 99 | 89: found no node of a hexahedron in the physical group "tip", expected one node or more that is
+v4 | $Entities | $PartitionedEntities | 12: found a partitioned mesh, expected a mesh of one partition
+"#;
+
 #[test]
 fn lines_that_are_refused() {
-    // Each by a replacement in a file: what, by what, and the error.
-    let cases = [
-        (
-            "block_v2.msh",
-            "2.2 0 8",
-            "1 0 8",
-            "m.msh:2: found format 1, expected a mesh in format 2.2 or 4.1",
-        ),
-        (
-            "block_v2.msh",
-            "2.2 0 8",
-            "4 0 8",
-            "m.msh:2: found format 4, expected a mesh in format 2.2 or 4.1",
-        ),
-        (
-            "block_v2.msh",
-            "2.2 0 8",
-            "2.2 0",
-            "m.msh:2: found \"2.2 0\", expected the version, 0 for ASCII, and the size of a number: 4.1 0 8",
-        ),
-        (
-            "block_v2.msh",
-            "$MeshFormat",
-            "$NOD",
-            "m.msh:1: found format 1, expected a mesh in format 2.2 or 4.1",
-        ),
-        (
-            "block_v2.msh",
-            "$MeshFormat",
-            "solid x",
-            "m.msh:1: found \"solid x\", expected $MeshFormat, the head of a .msh file",
-        ),
-        (
-            "block_v2.msh",
-            "Nodes\n",
-            "Knots\n",
-            "m.msh:63: found the end of the file, expected the section $Nodes",
-        ),
-        (
-            "block_v2.msh",
-            "Elements\n",
-            "Things\n",
-            "m.msh:63: found the end of the file, expected the section $Elements",
-        ),
-        (
-            "block_v2.msh",
-            "$EndElements",
-            "",
-            "m.msh:63: found the end of the file, expected $EndElements",
-        ),
-        (
-            "block_v2.msh",
-            "$EndNodes",
-            "$EndNode",
-            "m.msh:41: found \"$EndNode\" after as many lines as were counted, expected $EndNodes",
-        ),
-        (
-            "block_v2.msh",
-            "$Nodes\n27",
-            "$Nodes\n28",
-            "m.msh:41: found \"$EndNodes\" before as many lines as were counted, expected a node: number, x, y, z",
-        ),
-        (
-            "block_v2.msh",
-            "$Nodes\n27",
-            "$Nodes\n26",
-            "m.msh:40: found \"27 2 1 0.5\" after as many lines as were counted, expected $EndNodes",
-        ),
-        (
-            "block_v2.msh",
-            "$Nodes\n27",
-            "$Nodes\n-1",
-            "m.msh:13: found \"-1\" in \"-1\", expected the number of nodes",
-        ),
-        (
-            "block_v2.msh",
-            "$Elements\n19",
-            "$Elements\n99999999999999",
-            "m.msh:63: found \"$EndElements\" before as many lines as were counted, expected an element: number, type, number of tags, tags, nodes",
-        ),
-        (
-            "block_v2.msh",
-            "\n14 1 0.5 0.25",
-            "\n14 1 0.5",
-            "m.msh:27: found \"14 1 0.5\", expected a node: number, x, y, z",
-        ),
-        (
-            "block_v2.msh",
-            "\n14 1 0.5 0.25",
-            "\n14 1 0.5 a",
-            "m.msh:27: found \"a\" in \"14 1 0.5 a\", expected a node: number, x, y, z",
-        ),
-        (
-            "block_v2.msh",
-            "\n14 1 0.5 0.25",
-            "\n14 1 0.5 0.25 7",
-            "m.msh:27: found \"14 1 0.5 0.25 7\", expected a node: number, x, y, z",
-        ),
-        (
-            "block_v2.msh",
-            "\n14 1 0.5 0.25",
-            "\n14 1 nan 0.25",
-            "m.msh:27: found \"14 1 nan 0.25\", expected finite coordinates",
-        ),
-        (
-            "block_v2.msh",
-            "\n14 1 0.5 0.25",
-            "\n14 1 1e999 0.25",
-            "m.msh:27: found \"14 1 1e999 0.25\", expected finite coordinates",
-        ),
-        (
-            "block_v2.msh",
-            "\n14 1 0.5 0.25",
-            "\n13 1 0.5 0.25",
-            "m.msh:27: found a second node 13, expected a number of its own for each node",
-        ),
-        (
-            "block_v2.msh",
-            "12 5 2 3 1 1 ",
-            "12 5 2 3 1 77 ",
-            "m.msh:55: found node 77 in element 12, expected a node that $Nodes lists",
-        ),
-        (
-            "block_v2.msh",
-            "12 5 2 3 1 1 ",
-            "12 99 2 3 1 1 ",
-            "m.msh:55: found an element of type 99, expected 8-node hexahedra (type 5)",
-        ),
-        (
-            "block_v2.msh",
-            "12 5 2 3 1 1 ",
-            "12 17 2 3 1 1 ",
-            "m.msh:55: found a 20-node hexahedron of second order (type 17), expected 8-node hexahedra (type 5)",
-        ),
-        (
-            "block_v2.msh",
-            "13 5 2 3 1 2 3 6 5 11 12 15 14",
-            "13 5 2 4 1 1 2 5 4 10 11 14 13",
-            "m.msh:56: element 13: found the nodes of m.msh:55: element 12, expected each hexahedron once, in one region",
-        ),
-        (
-            "block_v2.msh",
-            "$Elements",
-            "$Nodes",
-            "m.msh:42: found a second $Nodes, expected it once",
-        ),
-        (
-            "block_v2.msh",
-            "$Elements",
-            "Elements",
-            "m.msh:42: found \"Elements\", expected a section such as $Nodes",
-        ),
-        (
-            "block_v2.msh",
-            "3 4 \"stiff layer\"",
-            "3 4 stiff",
-            "m.msh:10: found \"3 4 stiff\", expected a physical group: dimension, number, \"name\"",
-        ),
-        (
-            "block_v4.msh",
-            "6 28 10 99",
-            "6 29 10 99",
-            "m.msh:22: found a total of 29, expected 28, as many as the blocks hold",
-        ),
-        (
-            "block_v4.msh",
-            "6 28 10 99",
-            "6 28",
-            "m.msh:22: found \"6 28\", expected four counts: blocks, all of them, smallest and largest number",
-        ),
-        (
-            "block_v4.msh",
-            "6 28 10 99",
-            "7 28 10 99",
-            "m.msh:85: found \"$EndNodes\" before as many lines as were counted, expected a block of nodes: dimension and number of the entity, 0 or 1 for parameters, number of nodes",
-        ),
-        (
-            "block_v4.msh",
-            "1 1 2 2\n",
-            "1 1 2 1\n",
-            "m.msh:19: found \"2 0 0 0.25 2 1 0.5 1 4 0\" after as many lines as were counted, expected $EndEntities",
-        ),
-        (
-            "block_v4.msh",
-            "1 1 2 2\n",
-            "1 1 2\n",
-            "m.msh:13: found \"1 1 2\", expected the numbers of points, curves, surfaces and volumes",
-        ),
-        (
-            "block_v4.msh",
-            "3 2 5 4",
-            "3 8 5 4",
-            "m.msh:108: found the entity 8 of dimension 3, expected an entity that $Entities lists",
-        ),
-        (
-            "block_v4.msh",
-            "3 2 5 4",
-            "2 2 5 4",
-            "m.msh:108: found elements of dimension 3 in an entity of dimension 2, expected equal dimensions",
-        ),
-        (
-            "block_v4.msh",
-            "2 1 0.5 1 4 0",
-            "2 1 0.5 2 3 4 0",
-            "m.msh:109: found element 116 in soft and stiff layer, expected each hexahedron in one physical volume",
-        ),
-        (
-            "block_v4.msh",
-            "\n101 36",
-            "\n101 99",
-            "m.msh:89: found no node of a hexahedron in the physical group \"tip\", expected one node or more that is",
-        ),
-        (
-            "block_v4.msh",
-            "$Entities",
-            "$PartitionedEntities",
-            "m.msh:12: found a partitioned mesh, expected a mesh of one partition",
-        ),
-    ];
     let mut different = Vec::new();
-    for (name, old, new, expected) in cases {
-        let good = text(name);
-        assert!(good.contains(old), "{name} has no {old:?}");
+    for row in REFUSED_LINES.trim().lines() {
+        let row = row.replace("\\n", "\n");
+        let parts: Vec<_> = row
+            .splitn(4, '|')
+            .map(|part| part.trim_matches(' '))
+            .collect();
+        let [format, old, new, expected] = parts[..] else {
+            panic!("{row}")
+        };
+        let good = text(&format!("block_{format}.msh"));
+        assert!(good.contains(old), "{row}");
         // A name of a section stands at its start and at its end.
         let count = if old.ends_with("s\n") { 2 } else { 1 };
         let error = parse(&good.replacen(old, new, count)).expect_err(expected);
         let error = error.to_string();
-        if !error.starts_with(expected) {
-            different.push(format!("{name}, {old:?} by {new:?}:\n{error}\n{expected}"));
+        if !error.starts_with(&format!("m.msh:{expected}")) {
+            different.push(format!("{row}\n{error}"));
         }
     }
     assert!(different.is_empty(), "{}", different.join("\n\n"));
     assert_eq!(
         parse("").unwrap_err().to_string(),
-        "m.msh:0: found the end of the file, expected $MeshFormat"
+        "m.msh:1: found the end of the file, expected $MeshFormat"
     );
 }
 
 #[test]
 fn meshes_that_are_refused() {
-    let spoilt = |spoil: fn(&mut Mesh)| {
+    type Spoil = fn(&mut Mesh);
+
+    let spoilt = |spoil: Spoil| {
         let mut mesh = block();
         spoil(&mut mesh);
         mesh.check().unwrap_err().to_string()
@@ -614,7 +445,7 @@ fn meshes_that_are_refused() {
     let descending = descending.mesh().check().unwrap_err().to_string();
     assert!(descending.contains("inverted"), "{descending}");
 
-    let cases: [(fn(&mut Mesh), &str); 8] = [
+    let cases: [(Spoil, &str); 8] = [
         (
             |m| m.hexahedra[3][2] = 27,
             "hexahedron 3: found node 27, expected indices below the number of nodes, 27; its nodes are at ",

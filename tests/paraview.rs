@@ -58,7 +58,8 @@ fn array(piece: &str, section: &str, name: &str) -> (String, usize, Vec<u8>) {
     let (length, bytes) = bytes.split_at(8);
     let length = u64::from_le_bytes(length.try_into().unwrap());
     assert_eq!(length, bytes.len() as u64);
-    let components = attribute(array, "NumberOfComponents").parse().unwrap();
+    let components = between(array, "NumberOfComponents=\"", "\"");
+    let components = components.first().map_or(1, |text| text.parse().unwrap());
     (attribute(array, "type"), components, bytes.to_vec())
 }
 
@@ -151,7 +152,7 @@ fn a_solid_reads_back_as_it_was() {
 }
 
 #[test]
-fn solids_are_pieces_with_the_same_fields() {
+fn solids_stand_one_after_the_other() {
     let mesh = Planes::uniform(Vector3::zeros(), Vector3::repeat(1.0), [1, 1, 1]).mesh();
     let apart = mesh.clone().transformed(|x| x + Vector3::x() * 2.0);
     let potential = [field("potential", 1, (0..8).map(f64::from).collect())];
@@ -172,14 +173,24 @@ fn solids_are_pieces_with_the_same_fields() {
     ];
     let text = String::from_utf8(vtu(&grids, &origin())).unwrap();
     let pieces = between(&text, "<Piece", "</Piece>");
-    assert_eq!(pieces.len(), 2);
-    assert_reads(pieces[0], "PointData", &potential[0]);
-    assert_reads(pieces[1], "CellData", &stretch[0]);
-    let nothing = |name, components, count| field(name, components, vec![f64::NAN; count]);
-    assert_reads(pieces[1], "PointData", &nothing("potential", 1, 8));
-    assert_reads(pieces[0], "CellData", &nothing("stretch", 3, 3));
-    let first = words(pieces[1], "Points", "Points")[0];
-    assert_eq!(f64::from_bits(first), 2.0);
+    let [piece] = pieces[..] else {
+        panic!("{} pieces", pieces.len())
+    };
+    assert_eq!(attribute(piece, "NumberOfPoints"), "16");
+    assert_eq!(attribute(piece, "NumberOfCells"), "2");
+    let places = mesh.nodes.iter().chain(&apart.nodes);
+    let places = places.flat_map(|x| [x.x, x.y, x.z]).collect();
+    assert_reads(piece, "Points", &field("Points", 3, places));
+    let nodes = words(piece, "Cells", "connectivity");
+    assert_eq!(
+        nodes,
+        [0, 1, 3, 2, 4, 5, 7, 6, 8, 9, 11, 10, 12, 13, 15, 14]
+    );
+    // A field that a solid lacks is NaN there.
+    let values = [potential[0].values.to_vec(), vec![f64::NAN; 8]].concat();
+    assert_reads(piece, "PointData", &field("potential", 1, values));
+    let values = [vec![f64::NAN; 3], stretch[0].values.to_vec()].concat();
+    assert_reads(piece, "CellData", &field("stretch", 3, values));
 }
 
 #[test]
@@ -214,6 +225,16 @@ fn no_solid_and_no_instant_are_files_too() {
     let text = String::from_utf8(vtu(&[], &Origin::default())).unwrap();
     assert!(text.ends_with("<UnstructuredGrid>\n</UnstructuredGrid>\n</VTKFile>\n"));
     assert!(pvd(&[], &Origin::default()).contains("<Collection>\n</Collection>"));
+}
+
+#[test]
+#[should_panic(expected = "a cell has point 7 of 0")]
+fn a_cell_without_its_points_is_a_mistake() {
+    let grid = Grid {
+        hexahedra: &[[7; 8]],
+        ..Grid::default()
+    };
+    vtu(&[grid], &Origin::default());
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Instants of hexahedral meshes for ParaView: `.vtu` files and the `.pvd` file that lists them over time.
 //!
-//! An instant is an XML unstructured grid of VTK with one piece per solid; numbers stand inline as base64 of 64-bit
+//! An instant is an XML unstructured grid of VTK with all solids in one piece; numbers stand inline as base64 of 64-bit
 //! little-endian numbers, so that each reads back identical. Units are the caller's; what a run leaves behind is in SI.
 
 use base64::Engine;
@@ -63,9 +63,10 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// The `.vtu` file of solids at one instant, one piece each.
+/// The `.vtu` file of solids at one instant: points and cells of the first, then those of the next, each with the points of
+/// its own.
 ///
-/// ParaView shows the fields that all pieces have; a field that a solid lacks is therefore written as NaN there.
+/// A field stands at all points or cells of a file; where a solid lacks it, its values are NaN.
 ///
 /// # Panics
 ///
@@ -74,10 +75,8 @@ impl<'a> Grid<'a> {
 pub fn vtu(grids: &[Grid<'_>], origin: &Origin) -> Vec<u8> {
     let mut text = head("UnstructuredGrid", origin);
     text.push_str("<UnstructuredGrid>\n");
-    let point_fields = layout(grids, At::Points);
-    let cell_fields = layout(grids, At::Cells);
-    for grid in grids {
-        piece(&mut text, grid, &point_fields, &cell_fields);
+    if !grids.is_empty() {
+        piece(&mut text, grids);
     }
     text.push_str("</UnstructuredGrid>\n</VTKFile>\n");
     text.into_bytes()
@@ -160,46 +159,35 @@ fn layout<'a>(grids: &[Grid<'a>], at: At) -> Vec<(&'a str, usize)> {
     names
 }
 
-fn piece(
-    text: &mut String,
-    grid: &Grid<'_>,
-    point_fields: &[(&str, usize)],
-    cell_fields: &[(&str, usize)],
-) {
-    let (points, cells) = (grid.points.len(), grid.hexahedra.len());
-    let connectivity = grid.hexahedra.as_flattened();
-    assert!(
-        connectivity.iter().all(|&point| point < points),
-        "a cell has a point that is not one of the {points} points"
-    );
+fn piece(text: &mut String, grids: &[Grid<'_>]) {
+    let count = |at| grids.iter().map(|grid| grid.count(at)).sum::<usize>();
+    let (points, cells) = (count(At::Points), count(At::Cells));
     line(
         text,
         format_args!(r#"<Piece NumberOfPoints="{points}" NumberOfCells="{cells}">"#),
     );
 
     text.push_str("<Points>\n");
-    let places = grid.points.iter().flat_map(|x| [x.x, x.y, x.z]);
+    let places = grids.iter().flat_map(|grid| grid.points);
+    let places = places.flat_map(|x| [x.x, x.y, x.z]);
     array(text, "Float64", "Points", 3, bytes_of(places));
     text.push_str("</Points>\n<Cells>\n");
-    let nodes = connectivity.iter().map(|&node| node as u64);
-    let nodes = nodes.flat_map(u64::to_le_bytes).collect();
-    array(text, "Int64", "connectivity", 1, nodes);
+    array(text, "Int64", "connectivity", 1, connectivity(grids));
     let ends = (1..=cells as u64).flat_map(|end| (8 * end).to_le_bytes());
     array(text, "Int64", "offsets", 1, ends.collect());
     array(text, "UInt8", "types", 1, vec![HEXAHEDRON; cells]);
     text.push_str("</Cells>\n");
 
-    for (tag, at, fields) in [
-        ("PointData", At::Points, point_fields),
-        ("CellData", At::Cells, cell_fields),
-    ] {
+    for (tag, at) in [("PointData", At::Points), ("CellData", At::Cells)] {
         line(text, format_args!("<{tag}>"));
-        for &(name, components) in fields {
-            let known = grid.fields(at).iter().find(|field| field.name == name);
-            let bytes = match known {
-                Some(field) => bytes_of(field.values.iter().copied()),
-                None => bytes_of((0..components * grid.count(at)).map(|_| f64::NAN)),
-            };
+        for (name, components) in layout(grids, at) {
+            let mut bytes = Vec::new();
+            for grid in grids {
+                let known = grid.fields(at).iter().find(|field| field.name == name);
+                let lacking = vec![f64::NAN; components * grid.count(at)];
+                let values = known.map_or(&lacking[..], |field| &field.values);
+                bytes.extend(bytes_of(values.iter().copied()));
+            }
             array(text, "Float64", name, components, bytes);
         }
         line(text, format_args!("</{tag}>"));
@@ -207,16 +195,33 @@ fn piece(
     text.push_str("</Piece>\n");
 }
 
+/// Points of the cells, counted over all solids.
+fn connectivity(grids: &[Grid<'_>]) -> Vec<u8> {
+    let (mut bytes, mut before) = (Vec::new(), 0);
+    for grid in grids {
+        for &point in grid.hexahedra.as_flattened() {
+            let points = grid.points.len();
+            assert!(point < points, "a cell has point {point} of {points}");
+            bytes.extend(((before + point) as u64).to_le_bytes());
+        }
+        before += grid.points.len();
+    }
+    bytes
+}
+
 /// Numbers inline: their length in bytes as a 64-bit number, then they themselves, both in one base64 text.
 fn array(text: &mut String, kind: &str, name: &str, components: usize, bytes: Vec<u8>) {
     let mut block = (bytes.len() as u64).to_le_bytes().to_vec();
     block.extend(bytes);
     let name = escaped(name);
+    // Readers take an array that says 1 for a table of one column.
+    let components = match components {
+        1 => String::new(),
+        _ => format!(r#" NumberOfComponents="{components}""#),
+    };
     line(
         text,
-        format_args!(
-            r#"<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="binary">"#
-        ),
+        format_args!(r#"<DataArray type="{kind}" Name="{name}"{components} format="binary">"#),
     );
     STANDARD.encode_string(block, text);
     text.push_str("\n</DataArray>\n");

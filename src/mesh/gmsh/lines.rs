@@ -90,7 +90,7 @@ impl<'a> Lines<'a> {
     pub(super) fn at_end(&self, expected: &str) -> MeshError {
         let line = Line {
             file: self.file,
-            number: self.number,
+            number: self.number.max(1),
             text: "",
         };
         line.error("the end of the file", expected)
