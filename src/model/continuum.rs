@@ -459,9 +459,14 @@ fn free_motion(
     let mut gram = nalgebra::Matrix6::<f64>::zeros();
     for &node in members {
         let Term { carrier, .. } = vectors[continuum.vectors[node]].terms[0];
+        let is_glued = continuum
+            .solid
+            .glued
+            .iter()
+            .any(|g| g.nodes.contains(&node));
         let held = match carrier {
-            Carrier::Node(number) => nodes[number].free.map(|free| !free),
-            Carrier::Ground | Carrier::Body(_) => [true; 3],
+            Carrier::Node(number) if !is_glued => nodes[number].free.map(|free| !free),
+            _ => [true; 3],
         };
         let arm = (mesh.nodes[node] - centre) / size;
         for axis in (0..3).filter(|&axis| held[axis]) {

@@ -5,8 +5,10 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use proboscis::control::problem::{
     Control, Duration, Guess, Limit, Objective, Rest, Side, Solver, State,
 };
+use proboscis::mesh::grid::Grid;
 use proboscis::model::system::{
-    Attachment, Body, Electric, Joint, JointKind, Marker, Material, Muscle, Shape, System,
+    Attachment, Body, Discretisation, Electric, Electrode, ElementKind, Fidelity, Glue, Joint,
+    JointKind, Marker, Material, Muscle, Potential, Shape, Solid, Support, System,
     VACUUM_PERMITTIVITY,
 };
 use proboscis::model::{Coordinates, Region};
@@ -38,7 +40,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
     Control {
         duration: Duration::Given(10.0 * intervals as f64),
         intervals,
-        start: State::RestAtVoltages(vec![0.0; system.muscles.len()]),
+        start: State::RestAtVoltages(vec![0.0; system.sources().len()]),
         goal: joints(&[]),
         voltage_bounds: [0.0, 3000.0],
         objective: Objective {
@@ -289,6 +291,95 @@ pub fn all_limits() -> Vec<Limit> {
     ]
 }
 
+/// Two segments with a muscle of finite elements, and a block between segments and ground: a dielectric part with driven,
+/// floating and grounded electrodes, a passive part of Q1P0 elements, viscosity, a roller, a marker.
+pub fn blocks() -> System {
+    let mut system = trunk(2);
+    for muscle in &mut system.muscles {
+        muscle.material.lame_lambda = Some(0.4);
+    }
+    system.muscles[0].fidelity = Fidelity::FiniteElements(Discretisation {
+        elements: [1, 1, 2],
+        layers: 2,
+        element: ElementKind::Hex8,
+    });
+    let dielectric = system.muscles[0].material;
+    let passive = Material {
+        electric: None,
+        viscosity: None,
+        lame_lambda: Some(3.0),
+        ..dielectric
+    };
+    let corner = Vector3::new(-10.0, 20.0, 30.0);
+    let mut mesh = Grid::uniform(corner, Vector3::new(20.0, 60.0, 9.0), [1, 3, 3]).mesh();
+    mesh.regions = (0..9).map(|element| usize::from(element < 3)).collect();
+    mesh.region_names = vec!["active".into(), "passive".into()];
+    let plane = |z: f64| mesh.nodes_on_plane(2, z, 1e-9);
+    let electrode = |name: &str, nodes: Vec<usize>, potential| Electrode {
+        name: name.into(),
+        nodes,
+        potential,
+    };
+    let edge = |y: f64, z: f64| -> Vec<usize> {
+        let on = |n: &usize| (mesh.nodes[*n].y - y).abs() < 1e-9;
+        plane(z).into_iter().filter(on).collect()
+    };
+    system.solids.push(Solid {
+        name: "block".into(),
+        materials: vec![dielectric, passive],
+        element: ElementKind::Hex8Q1P0,
+        electrodes: vec![
+            electrode("low", plane(33.0), Potential::Given(20.0)),
+            electrode("island", edge(40.0, 36.0), Potential::Floating),
+            electrode(
+                "high",
+                plane(39.0),
+                Potential::Driven {
+                    source: 4,
+                    factor: 1.5,
+                },
+            ),
+        ],
+        supports: vec![Support {
+            nodes: edge(40.0, 30.0),
+            held: [true, false, false],
+        }],
+        glued: vec![
+            Glue {
+                nodes: mesh.sets["y_min"].clone(),
+                body: Some(0),
+            },
+            Glue {
+                nodes: edge(80.0, 39.0),
+                body: Some(1),
+            },
+            Glue {
+                nodes: edge(60.0, 30.0),
+                body: None,
+            },
+        ],
+        velocities: Vec::new(),
+        mesh,
+    });
+    system.markers.push(Marker {
+        name: "corner".into(),
+        point: Attachment {
+            body: None,
+            at: Vector3::new(10.0, 60.0, 39.0),
+        },
+        solid: Some(0),
+    });
+    system
+}
+
+/// The marker of the block at a place, at rest, while the rest of the block may still move.
+fn corner_goal() -> State {
+    State::Markers {
+        places: BTreeMap::from([(1, Vector3::new(10.0, 60.0, 39.5))]),
+        rest: Rest::Markers,
+    }
+}
+
 /// The list.
 pub fn cases() -> Vec<Case> {
     let case = |name, system: System, change: &dyn Fn(&mut Control)| {
@@ -367,6 +458,17 @@ pub fn cases() -> Vec<Case> {
             &|c| c.goal = joints(&[(1, 0.2)]),
         ),
         case("branched tree", branched(), &|_| {}),
+        case("blocks", blocks(), &|c| c.goal = corner_goal()),
+        case("blocks, marker at rest, free time", blocks(), &|c| {
+            c.duration = free;
+            c.objective = every_objective;
+            c.limits = vec![Limit::Stretch {
+                muscle: 0,
+                min: 0.7,
+                max: 1.2,
+            }];
+            c.goal = corner_goal();
+        }),
         case("branched tree, free time", branched(), &|c| {
             c.duration = free;
             c.objective = every_objective;
