@@ -1,4 +1,6 @@
 //! Vectors and linear maps of space over the numbers of a formula.
+//!
+//! Written out, without `array::map`: a closure that is not inlined leaves the vector unit, and costs more than its work.
 
 use super::number::{Points, Real};
 
@@ -29,6 +31,12 @@ pub(super) fn cross<N: Real>(a: Three<N>, b: Three<N>) -> Three<N> {
 #[inline(always)]
 pub(super) fn scale<N: Real>(a: Three<N>, c: N) -> Three<N> {
     [a[0] * c, a[1] * c, a[2] * c]
+}
+
+/// c M.
+#[inline(always)]
+pub(super) fn scale_all<N: Real>(m: &Nine<N>, c: N) -> Nine<N> {
+    [scale(m[0], c), scale(m[1], c), scale(m[2], c)]
 }
 
 /// M a.

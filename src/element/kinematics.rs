@@ -1,6 +1,6 @@
 //! Deformation at the Gauss points.
 
-use super::algebra::{Nine, Three, cofactor, dot, scale};
+use super::algebra::{Nine, Three, cofactor, dot, scale_all};
 use super::number::Points;
 use super::shape::Shape;
 
@@ -28,7 +28,7 @@ impl<N: Points> Kinematics<N> {
         Self {
             w: N::load(token, shape.weights()),
             F,
-            T: H.map(|row| scale(row, inverse)),
+            T: scale_all(&H, inverse),
             J,
         }
     }

@@ -127,8 +127,8 @@ impl<F: Field> Output<Dual<f64>> for Pair<'_, F> {
 
     #[inline(always)]
     fn force(&mut self, i: usize, d: [Dual<f64>; 3]) {
-        self.plain.force(i, d.map(|d| d.value));
-        self.along.force(i, d.map(|d| d.rate));
+        self.plain.force(i, values(d));
+        self.along.force(i, rates(d));
     }
 
     #[inline(always)]
@@ -140,14 +140,15 @@ impl<F: Field> Output<Dual<f64>> for Pair<'_, F> {
     #[inline(always)]
     fn stiffness(&mut self, i: usize, j: usize, d: [[Dual<f64>; 3]; 3]) {
         self.plain
-            .stiffness(i, j, d.map(|row| row.map(|d| d.value)));
-        self.along.stiffness(i, j, d.map(|row| row.map(|d| d.rate)));
+            .stiffness(i, j, [values(d[0]), values(d[1]), values(d[2])]);
+        self.along
+            .stiffness(i, j, [rates(d[0]), rates(d[1]), rates(d[2])]);
     }
 
     #[inline(always)]
     fn coupling(&mut self, i: usize, j: usize, d: [Dual<f64>; 3]) {
-        self.plain.coupling(i, j, d.map(|d| d.value));
-        self.along.coupling(i, j, d.map(|d| d.rate));
+        self.plain.coupling(i, j, values(d));
+        self.along.coupling(i, j, rates(d));
     }
 
     #[inline(always)]
@@ -155,4 +156,14 @@ impl<F: Field> Output<Dual<f64>> for Pair<'_, F> {
         self.plain.permittivity(i, j, d.value);
         self.along.permittivity(i, j, d.rate);
     }
+}
+
+#[inline(always)]
+fn values(d: [Dual<f64>; 3]) -> [f64; 3] {
+    [d[0].value, d[1].value, d[2].value]
+}
+
+#[inline(always)]
+fn rates(d: [Dual<f64>; 3]) -> [f64; 3] {
+    [d[0].rate, d[1].rate, d[2].rate]
 }

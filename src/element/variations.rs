@@ -192,7 +192,7 @@ impl<N: Points> Variations<N> {
             }
         }
         if let (Some(field), Some((constants, _))) = (&self.electric, state.electric) {
-            let pushed = [0, 1, 2].map(|a| field.pushed[a].scaled(2.0 * constants.c2));
+            let pushed = scale(field.pushed, N::constant(token, 2.0 * constants.c2));
             let induced = scale(field.spatial, field.kappa);
             for a in 0..3 {
                 for m in 0..3 {
@@ -270,10 +270,12 @@ impl<N: Points> Variations<N> {
                 let plain = dot(Gi, Gj);
                 let mut diagonal = zero.plus_plain(plain * w_mu);
                 let (u, v) = (even_g[i], g[j]);
-                let mut even = [
+                let mut normal = [
                     (u[0] * v[0]).scaled(2.0),
                     (u[1] * v[1]).scaled(2.0),
                     (u[2] * v[2]).scaled(2.0),
+                ];
+                let mut shear = [
                     (u[1] * v[2]).plus_product(u[2], v[1]),
                     (u[2] * v[0]).plus_product(u[0], v[2]),
                     (u[0] * v[1]).plus_product(u[1], v[0]),
@@ -284,12 +286,11 @@ impl<N: Points> Variations<N> {
                     let inner = dot(g[i], g[j]);
                     let e = c.e;
                     let k = scale(e, inner * c.kappa);
-                    even[0] = even[0].minus_product(k[0], e[0]);
-                    even[1] = even[1].minus_product(k[1], e[1]);
-                    even[2] = even[2].minus_product(k[2], e[2]);
-                    even[3] = even[3].minus_product(k[1], e[2]);
-                    even[4] = even[4].minus_product(k[2], e[0]);
-                    even[5] = even[5].minus_product(k[0], e[1]);
+                    for a in 0..3 {
+                        let (b, c) = ((a + 1) % 3, (a + 2) % 3);
+                        normal[a] = normal[a].minus_product(k[a], e[a]);
+                        shear[a] = shear[a].minus_product(k[b], e[c]);
+                    }
                     let (si, sj) = (c.s[i], c.s[j]);
                     let (pi, pj) = (&c.flux[i], &c.flux[j]);
                     let mut skew = [zero; 3];
@@ -314,10 +315,10 @@ impl<N: Points> Variations<N> {
                     let energy = energy.plus_plain(plain * c.c1);
                     out.permittivity(i, j, energy.minus_product(inner, c.kappa).sum());
                 }
-                even[0] = even[0] + diagonal;
-                even[1] = even[1] + diagonal;
-                even[2] = even[2] + diagonal;
-                let [xx, yy, zz, yz, zx, xy] = even.map(N::sum);
+                for entry in &mut normal {
+                    *entry = *entry + diagonal;
+                }
+                let ([xx, yy, zz], [yz, zx, xy]) = (sums(normal), sums(shear));
                 let [ax, ay, az] = sums(odd);
                 let mut block = [
                     [xx, xy + az, zx - ay],
@@ -355,7 +356,7 @@ impl<N: Points> Variations<N> {
             c2: zero.plus_plain(plain.scaled(c2)),
             kappa,
             e: field.spatial,
-            c2_pushed: [0, 1, 2].map(|a| field.pushed[a].scaled(c2).times(self.w)),
+            c2_pushed: scale(field.pushed, zero.plus_plain(plain.scaled(c2))),
             along: [zero; 8],
             c2_along: [zero; 8],
             s: [zero; 8],

@@ -18,7 +18,8 @@
 //! ```
 
 use super::algebra::{
-    Nine, Three, apply, apply_plain, contracted, dot, product, scale, sums, symmetric, transpose,
+    Nine, Three, apply, apply_plain, contracted, dot, product, scale, scale_all, sums, symmetric,
+    transpose,
 };
 use super::kinematics::{Kinematics, gradient_of, load};
 use super::number::{Lanes, Points, Real, Task, dispatch};
@@ -200,9 +201,9 @@ impl<N: Points<Uniform = f64>> Flow<N> {
         mut write: impl FnMut(usize, usize, &Nine<f64>),
     ) {
         let zero = N::constant(self.token, 0.0);
-        let d = symmetric(l).map(|row| scale(row, self.c));
+        let d = scale_all(&symmetric(l), self.c);
         let half = self.c.scaled(0.5);
-        let half_l = l.map(|row| scale(row, half));
+        let half_l = scale_all(l, half);
         let transposed = transpose(&half_l);
         let mut stressed = [[zero; 3]; 8];
         let mut carried = [[zero; 3]; 8];
@@ -263,7 +264,7 @@ impl Task for Forces<'_> {
     fn run<S: Simd, const K: usize>(self, unit: S) {
         let flow = Flow::<Lanes<S, K>>::new(unit, self.viscosity, self.shape, self.x);
         let d = symmetric(&flow.rate(self.shape, self.v));
-        let stress = product(&d.map(|row| scale(row, flow.c)), &flow.inverse);
+        let stress = product(&scale_all(&d, flow.c), &flow.inverse);
         for (force, gradient) in self.forces.iter_mut().zip(self.shape.gradients()) {
             let gradient = load::<Lanes<S, K>>(unit, gradient);
             *force = vector(sums(apply(&stress, gradient)));
@@ -288,7 +289,7 @@ impl Task for Tangent<'_> {
         let l = flow.rate(self.shape, self.v);
         let g = flow.gradients(self.shape);
         let local = self.local;
-        let d = symmetric(&l).map(|row| scale(row, flow.c));
+        let d = scale_all(&symmetric(&l), flow.c);
         let half = flow.c.scaled(0.5);
         for i in 0..8 {
             local.forces[i] = vector(sums(apply(&d, g[i])));
@@ -346,7 +347,7 @@ impl Task for Contraction<'_> {
                 mixed[a][b] = half * (ly[a][b] + ly[b][a]);
             }
         }
-        let stress = z.map(|row| scale(row, flow.c));
+        let stress = scale_all(&z, flow.c);
         let mut q = [[zero; 3]; 8];
         let mut half_l = [[zero; 3]; 8];
         let mut pulled_y = [[zero; 3]; 8];
