@@ -63,7 +63,7 @@ fn table(n: usize) {
             println!(
                 "| {size:8} | {:7} | {:<11} | {analysis:11.3} | {factorisation:16.3} | {solution:11.4} | {:21.2} | {error:5.0e} |",
                 entries.len(),
-                solver.name(),
+                solver.method(),
                 factorisation / reference,
             );
         }

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVectorViewMut, Dyn, LU};
 use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Singular, Symmetry};
 
-/// A pivot below this, relative to the largest entry of its row, counts as zero.
+/// A pivot below this in a matrix whose largest entries are near 1 counts as zero.
 const TINY: f64 = 1e-14;
 
 /// A dense factorisation.

@@ -1,7 +1,7 @@
 //! Solution of square systems whose pattern is laid down once.
 //!
-//! The matrix is scaled before the factorisation, so that equations in different units meet one criterion of singularity:
-//! rows of an unsymmetric matrix by their largest entry, and a symmetric one to D A D with largest entries near 1.
+//! The matrix is scaled before the factorisation, so that equations and unknowns in different units meet one criterion of
+//! singularity: rows and then columns of an unsymmetric matrix, and a symmetric one to D A D, to largest entries near 1.
 //!
 //! A sparse factor is tried on a known solution before it is trusted: residuals of a singular or unstable factor may be small,
 //! but the solution does not come back. Later solutions are refined once where their residual is poor.
@@ -14,8 +14,12 @@ use crate::sparse::{Factorisation, Singular};
 
 /// Up to this size a dense factorisation is faster.
 const DENSE: usize = 48;
+/// Above this size MUMPS is faster than LU of faer, with OpenBLAS, as `benches/factorisation.rs` measures.
+const LARGE: usize = 15_000;
 /// A known solution, with each unknown measured by its column, has to come back better than this.
 const LOST: f64 = 1e-6;
+/// What is added to entries near 1 to make a singular matrix regular.
+const NEARBY: f64 = 1e-10;
 /// A residual above this, relative to the largest term of the equations, is refined.
 const POOR: f64 = 1e-13;
 /// Symmetric scaling ends when the largest entry of each row is between this and its inverse, or after so many rounds.
@@ -35,9 +39,10 @@ pub enum Symmetry {
 pub enum Backend {
     /// LU of nalgebra, for small matrices.
     Dense,
-    /// LU of faer, or its LDLᵀ without exchanges where the matrix is symmetric; MUMPS takes over where that breaks down.
+    /// LU of faer, or its LDLᵀ without exchanges where the matrix is symmetric: MUMPS gives the order of elimination, and takes
+    /// over where the matrix turns out not to be quasi-definite.
     Faer,
-    /// LU or LDLᵀ of MUMPS; one thread at a time, also with Ipopt.
+    /// LU or LDLᵀ of MUMPS, one thread at a time.
     Mumps,
 }
 
@@ -46,15 +51,13 @@ impl Backend {
     fn of_size(size: usize, symmetry: Symmetry) -> Self {
         match symmetry {
             _ if size <= DENSE => Self::Dense,
-            Symmetry::Symmetric => Self::Mumps,
-            Symmetry::Unsymmetric => Self::Faer,
+            Symmetry::Unsymmetric if size > LARGE => Self::Mumps,
+            _ => Self::Faer,
         }
     }
 
     fn factorisation(self, pattern: &Pattern) -> Box<dyn Factorisation> {
         match (self, pattern.symmetry) {
-            // Nothing is left for the others to analyse.
-            _ if pattern.rows.is_empty() => Box::new(Dense::new(pattern)),
             (Self::Dense, _) => Box::new(Dense::new(pattern)),
             (Self::Faer, Symmetry::Symmetric) => Box::new(FaerLdlt::new(pattern)),
             (Self::Faer, Symmetry::Unsymmetric) => Box::new(FaerLu::new(pattern)),
@@ -91,7 +94,8 @@ impl Direct {
 
     /// A solver by `backend`, or by the one that is fastest as a rule.
     ///
-    /// A symmetric matrix lists the entries of both triangles too; those above the diagonal are not read.
+    /// A symmetric matrix lists the entries of both triangles too; those above the diagonal are not read. Whatever asks MUMPS
+    /// waits until no other thread is in MUMPS or Ipopt.
     ///
     /// # Panics
     /// An entry lies outside the matrix.
@@ -102,7 +106,11 @@ impl Direct {
         backend: Option<Backend>,
     ) -> Self {
         let pattern = Pattern::new(size, entries, symmetry);
-        let backend = backend.unwrap_or_else(|| Backend::of_size(size, symmetry));
+        let backend = match pattern.rows.is_empty() {
+            // There is nothing to analyse.
+            true => Backend::Dense,
+            false => backend.unwrap_or_else(|| Backend::of_size(size, symmetry)),
+        };
         Self {
             backend,
             factorisation: backend.factorisation(&pattern),
@@ -117,7 +125,7 @@ impl Direct {
     }
 
     /// The method, as a table names it.
-    pub fn name(&self) -> &'static str {
+    pub fn method(&self) -> &'static str {
         self.factorisation.name()
     }
 
@@ -134,10 +142,15 @@ impl Direct {
             return Err(Singular { column });
         }
         match self.pattern.symmetry {
-            Symmetry::Unsymmetric => self.balance_rows(),
+            Symmetry::Unsymmetric => self.balance_rows_and_columns(),
             Symmetry::Symmetric => self.balance(),
         }
-        self.measure();
+        if self.backend == Backend::Dense {
+            let outcome = self.factorisation.factor(&self.values);
+            self.factored = outcome.is_ok();
+            return outcome;
+        }
+        self.rehearse();
         let mut outcome = self.attempt();
         let unpivoted =
             self.backend == Backend::Faer && self.pattern.symmetry == Symmetry::Symmetric;
@@ -145,11 +158,15 @@ impl Direct {
             // The matrix is singular, or merely not quasi-definite.
             let pivoted = Backend::Mumps.factorisation(&self.pattern);
             let unpivoted = std::mem::replace(&mut self.factorisation, pivoted);
-            outcome = self.attempt();
+            outcome = self
+                .attempt()
+                .map_err(|singular| self.undetermined(singular));
             match outcome {
                 Ok(()) => self.backend = Backend::Mumps,
                 Err(_) => self.factorisation = unpivoted,
             }
+        } else {
+            outcome = outcome.map_err(|singular| self.undetermined(singular));
         }
         self.factored = outcome.is_ok();
         outcome
@@ -161,6 +178,9 @@ impl Direct {
     /// No matrix has been factorised, or the last one was singular.
     pub fn solve(&mut self, rhs: &mut [f64]) {
         assert!(self.factored, "factor before solving");
+        if rhs.is_empty() {
+            return;
+        }
         for (value, scale) in rhs.iter_mut().zip(&self.scales[0]) {
             *value *= scale;
         }
@@ -197,9 +217,11 @@ impl Direct {
         });
     }
 
-    fn balance_rows(&mut self) {
+    /// Divides rows by their largest entry, then columns by the power of two near theirs, which rounds nothing.
+    fn balance_rows_and_columns(&mut self) {
+        self.scales[0].fill(0.0);
+        self.scales[1].fill(1.0);
         let [rows, cols] = &mut self.scales;
-        rows.fill(0.0);
         self.pattern.visit(&self.values, |row, _, value| {
             rows[row] = rows[row].max(value.abs());
         });
@@ -207,6 +229,16 @@ impl Direct {
             *scale = if *scale > 0.0 { 1.0 / *scale } else { 1.0 };
         }
         self.pattern.scale(&mut self.values, rows, cols);
+        self.measure();
+        let cols = &mut self.scales[1];
+        for (scale, peak) in cols.iter_mut().zip(&self.largest) {
+            if *peak > 0.0 {
+                *scale = peak.log2().round().exp2().recip();
+            }
+        }
+        self.residual.fill(1.0);
+        self.pattern.scale(&mut self.values, &self.residual, cols);
+        self.measure();
     }
 
     /// Divides rows and columns by the root of their largest entry, again and again; each round halves the orders of
@@ -233,32 +265,44 @@ impl Direct {
         }
     }
 
-    /// Factorises, and tries a sparse factor on a known solution.
-    fn attempt(&mut self) -> Result<(), Singular> {
-        self.factorisation.factor(&self.values)?;
-        if self.backend == Backend::Dense {
-            return Ok(());
+    /// The known solution at a column.
+    fn known(&self, col: usize) -> f64 {
+        (1.0 + col as f64 / self.pattern.size as f64) / self.largest[col]
+    }
+
+    /// Leaves the right-hand side of the known solution in `self.rhs`.
+    fn rehearse(&mut self) {
+        for col in 0..self.pattern.size {
+            self.residual[col] = self.known(col);
         }
-        let size = self.pattern.size;
-        let known = |col: usize, peak: f64| (1.0 + col as f64 / size as f64) / peak;
-        for (col, (x, &peak)) in self.rhs.iter_mut().zip(&self.largest).enumerate() {
-            *x = known(col, peak);
-        }
-        let (x, product) = (&self.rhs, &mut self.residual);
+        let (x, product) = (&self.residual, &mut self.rhs);
         product.fill(0.0);
         self.pattern.visit(&self.values, |row, col, value| {
             product[row] += value * x[col];
         });
-        self.factorisation.solve(product);
-        let error = |col: usize| {
-            let peak = self.largest[col];
-            ((self.residual[col] - known(col, peak)) * peak).abs()
-        };
+    }
+
+    /// Factorises, and tries the factor on the known solution.
+    fn attempt(&mut self) -> Result<(), Singular> {
+        self.factorisation.factor(&self.values)?;
+        self.residual.copy_from_slice(&self.rhs);
+        self.factorisation.solve(&mut self.residual);
+        let error = |col: usize| ((self.residual[col] - self.known(col)) * self.largest[col]).abs();
         let lost = |col: &usize| error(*col).is_nan() || error(*col) > LOST;
-        let worst = (0..size)
+        let worst = (0..self.pattern.size)
             .filter(lost)
             .max_by(|&a, &b| error(a).total_cmp(&error(b)));
         worst.map_or(Ok(()), |column| Err(Singular { column }))
+    }
+
+    /// The unknown that nothing determines in a matrix whose factor failed, perhaps with infinite numbers.
+    ///
+    /// A matrix nearby is regular, and its solution differs from the known one along what is not determined.
+    fn undetermined(&mut self, singular: Singular) -> Singular {
+        for (slot, value) in self.values.iter_mut().enumerate() {
+            *value += NEARBY * (1.0 + slot as f64).sin();
+        }
+        self.attempt().err().unwrap_or(singular)
     }
 
     /// Leaves the residual of `x` in `self.residual`, and returns its size relative to the largest term of the equations.

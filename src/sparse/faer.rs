@@ -7,6 +7,7 @@ use std::fmt;
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
+use faer::perm::PermRef;
 use faer::sparse::linalg::LuError;
 use faer::sparse::linalg::cholesky::{
     self, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
@@ -15,6 +16,7 @@ use faer::sparse::linalg::lu::{self, LuRef, NumericLu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
+use crate::sparse::mumps;
 use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Singular};
 
@@ -116,10 +118,16 @@ pub(crate) struct FaerLdlt {
 
 impl FaerLdlt {
     pub(crate) fn new(pattern: &Pattern) -> Self {
+        // Nested dissection leaves less fill than the minimum degree of faer.
+        let order = mumps::order(pattern);
+        let mut places = vec![0; order.len()];
+        for (place, &row) in order.iter().enumerate() {
+            places[row] = place;
+        }
         let analysed = cholesky::factorize_symbolic_cholesky(
             symbolic(pattern),
             Side::Lower,
-            SymmetricOrdering::Amd,
+            SymmetricOrdering::Custom(PermRef::new_checked(&order, &places, order.len())),
             Default::default(),
         )
         .expect("memory for the symbolic factorisation");
@@ -170,7 +178,7 @@ impl Factorisation for FaerLdlt {
             MemStack::new(&mut self.memory.0),
             Default::default(),
         );
-        // A zero pivot says nothing about its column: the matrix may be regular, and its order unlucky.
+        // A zero pivot tells no column: the matrix may be regular, and its order unlucky.
         factor.map(|_| ()).map_err(|_| Singular { column: 0 })
     }
 

@@ -9,6 +9,7 @@ use std::ffi::{c_int, c_void};
 use std::fmt;
 use std::mem::{self, MaybeUninit};
 use std::ptr;
+use std::slice;
 use std::sync::Once;
 
 use crate::sparse::Symmetry;
@@ -86,6 +87,16 @@ impl Instance {
     /// INFOG(`number`).
     pub(super) fn information(&self, number: usize) -> c_int {
         self.data.infog[number - 1]
+    }
+
+    /// The place of each row in the order of elimination, counted from one; empty before the analysis.
+    pub(super) fn places(&self) -> &[c_int] {
+        let (start, size) = (self.data.sym_perm, usize::try_from(self.data.n));
+        match size {
+            // SAFETY: after the analysis the pointer leads to `n` numbers, which stay unchanged until the next call.
+            Ok(size) if !start.is_null() => unsafe { slice::from_raw_parts(start, size) },
+            _ => &[],
+        }
     }
 
     /// Does `job` with the values of the matrix or the right-hand side, and returns INFOG(1): negative where it failed.

@@ -16,7 +16,7 @@ use ffi::{Instance, Job};
 
 /// Ordering of the elimination, ICNTL(7), as measured by `benches/factorisation.rs`: SCOTCH.
 const ORDERING: i32 = 3;
-/// A pivot below this in a matrix whose largest entries are 1 is a null pivot.
+/// A pivot below this in a matrix whose largest entries are near 1 is a null pivot.
 const TINY: f64 = 1e-14;
 /// Space beyond the estimate in per cent, at first and at most.
 const SPACE: [i32; 2] = [30, 4000];
@@ -72,7 +72,7 @@ impl Mumps {
         }
         // The pattern alone decides on the order, and the matrix is scaled before it comes here.
         instance.control(6, 0);
-        instance.control(7, ordering());
+        instance.control(7, ORDERING);
         instance.control(8, 0);
         instance.control(14, SPACE[0]);
         // A null pivot is left out, and the check of a known solution names it.
@@ -87,6 +87,15 @@ impl Mumps {
             space: SPACE[0],
         }
     }
+}
+
+/// Rows in an order of elimination with little fill; the pattern is not empty.
+pub(crate) fn order(pattern: &Pattern) -> Vec<usize> {
+    let analysed = Mumps::new(pattern);
+    let mut rows: Vec<usize> = (0..pattern.size).collect();
+    let places = analysed.instance.places();
+    rows.sort_unstable_by_key(|&row| places[row]);
+    rows
 }
 
 impl Factorisation for Mumps {
@@ -128,11 +137,4 @@ impl Factorisation for Mumps {
 fn failure(instance: &Instance, job: &str) -> String {
     let [code, detail] = [1, 2].map(|number| instance.information(number));
     format!("{job} by MUMPS ended with INFOG(1) = {code}, INFOG(2) = {detail}")
-}
-
-fn ordering() -> i32 {
-    std::env::var("MUMPS_ORD")
-        .ok()
-        .and_then(|s| s.parse().ok())
-        .unwrap_or(ORDERING)
 }
