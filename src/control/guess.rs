@@ -83,7 +83,7 @@ fn interpolate(model: &Model, boundary: &Boundary, intervals: usize, h: f64) -> 
         }
     });
     let rest = boundary.rest[1].as_ref().or(boundary.rest[0].as_ref());
-    let held: Vec<f64> = rest.map_or_else(|| vec![0.0; model.system.muscles.len()], Clone::clone);
+    let held: Vec<f64> = rest.map_or_else(|| vec![0.0; model.system.sources().len()], Clone::clone);
     let scalars: Vec<f64> = model.scalars(&held).iter().map(|v| v + LIFT).collect();
     let history = History {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),

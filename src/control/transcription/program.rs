@@ -119,10 +119,8 @@ impl Nlp for Transcription<'_> {
         match self.unknowns.variables[i] {
             Variable::Unknown { k, i } => format!("{} at instant {k}", self.model.unknown_name(i)),
             Variable::Scalar { k, s } => {
-                format!(
-                    "voltage of {} in interval {k}",
-                    self.model.system.muscles[self.model.voltages[s]].name
-                )
+                let source = &self.model.system.sources()[self.model.voltages[s]];
+                format!("voltage of {} in interval {k}", source.name)
             }
             Variable::Horizon => "interval length".to_owned(),
         }
