@@ -1,4 +1,13 @@
 //! Hexahedral meshes: nodes, elements, named node sets. Geometry only: no material, no unknown.
+//!
+//! Meshes come from planes ([`grid`]) or from a file ([`gmsh`]); [`Mesh::check`] says whether elements can be integrated.
+
+pub mod error;
+mod geometry;
+pub mod gmsh;
+pub mod grid;
+pub mod quality;
+pub mod topology;
 
 use nalgebra::Vector3;
 use std::collections::BTreeMap;

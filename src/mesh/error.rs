@@ -1,0 +1,93 @@
+//! What is wrong with a mesh or its file: the place, what was found, what is expected.
+
+use nalgebra::Vector3;
+use std::fmt;
+use thiserror::Error;
+
+/// A mesh that cannot be read or used.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum MeshError {
+    /// The operating system does not give the file.
+    #[error("{file}: cannot be read: {cause}")]
+    Unreadable {
+        /// File as the user named it.
+        file: String,
+        /// What the operating system said.
+        cause: String,
+    },
+    /// A line of a file does not say what it should.
+    #[error("{file}:{line}: found {found}, expected {expected}")]
+    Line {
+        /// File as the user named it.
+        file: String,
+        /// Number of the line, counted from one.
+        line: usize,
+        /// What was found.
+        found: String,
+        /// What is expected instead.
+        expected: String,
+    },
+    /// Layers of a box do not fill it.
+    #[error("layers along {axis}: found {found}, expected {expected}")]
+    Layers {
+        /// Direction of the layers: x, y or z.
+        axis: char,
+        /// What was found.
+        found: String,
+        /// What is expected instead.
+        expected: String,
+    },
+    /// An element cannot be integrated.
+    #[error(
+        "{element}: found {found}, expected {expected}; its nodes are at {}",
+        places(nodes)
+    )]
+    Element {
+        /// The element.
+        element: ElementName,
+        /// Places in mm of those nodes that exist, in the order of the element.
+        nodes: Vec<Vector3<f64>>,
+        /// What was found.
+        found: String,
+        /// What is expected instead.
+        expected: String,
+    },
+    /// The mesh as a whole is not usable.
+    #[error("mesh: found {found}, expected {expected}")]
+    Whole {
+        /// What was found.
+        found: String,
+        /// What is expected instead.
+        expected: String,
+    },
+}
+
+/// Which element is meant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ElementName {
+    /// Index into [`hexahedra`](super::Mesh::hexahedra).
+    Index(usize),
+    /// Where it stands in a file.
+    File {
+        /// File as the user named it.
+        file: String,
+        /// Number of the line, counted from one.
+        line: usize,
+        /// Number of the element in the file.
+        number: u64,
+    },
+}
+
+impl fmt::Display for ElementName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Index(index) => write!(f, "hexahedron {index}"),
+            Self::File { file, line, number } => write!(f, "{file}:{line}: element {number}"),
+        }
+    }
+}
+
+fn places(nodes: &[Vector3<f64>]) -> String {
+    let place = |x: &Vector3<f64>| format!("({}, {}, {})", x.x, x.y, x.z);
+    nodes.iter().map(place).collect::<Vec<_>>().join(", ")
+}

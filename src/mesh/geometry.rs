@@ -1,0 +1,55 @@
+//! Where the nodes of a mesh are: bounds, nodes at a place, rigid placement.
+
+use super::Mesh;
+use nalgebra::Vector3;
+
+impl Mesh {
+    /// The mesh with its nodes moved to `map(x)`; a map that turns space inside out makes a mesh that
+    /// [`check`](Self::check) refuses.
+    pub fn transformed(mut self, map: impl FnMut(Vector3<f64>) -> Vector3<f64>) -> Self {
+        self.nodes = self.nodes.into_iter().map(map).collect();
+        self
+    }
+
+    /// Lower and upper corner in mm of the box around all nodes; `(+∞, −∞)` for no nodes.
+    pub fn bounds(&self) -> (Vector3<f64>, Vector3<f64>) {
+        let (lower, upper) = (f64::INFINITY, f64::NEG_INFINITY);
+        let start = (Vector3::repeat(lower), Vector3::repeat(upper));
+        let nodes = self.nodes.iter();
+        nodes.fold(start, |(lower, upper), x| (lower.inf(x), upper.sup(x)))
+    }
+
+    /// Diagonal in mm of the box around all nodes; zero for no nodes.
+    pub fn size(&self) -> f64 {
+        let (lower, upper) = self.bounds();
+        if self.nodes.is_empty() {
+            0.0
+        } else {
+            (upper - lower).norm()
+        }
+    }
+
+    /// Nodes with `|x_axis − value| ≤ tolerance`, ascending; axes are 0, 1, 2 for x, y, z, lengths in mm.
+    pub fn nodes_on_plane(&self, axis: usize, value: f64, tolerance: f64) -> Vec<usize> {
+        self.nodes_where(|x| (x[axis] - value).abs() <= tolerance)
+    }
+
+    /// Nodes inside the closed box from `lower` to `upper` in mm, ascending.
+    pub fn select(&self, lower: &Vector3<f64>, upper: &Vector3<f64>) -> Vec<usize> {
+        self.nodes_where(|x| (0..3).all(|axis| (lower[axis]..=upper[axis]).contains(&x[axis])))
+    }
+
+    /// The node nearest to a place in mm, the first of several; none where there are no nodes.
+    pub fn nearest_node(&self, place: &Vector3<f64>) -> Option<usize> {
+        let distance = |&node: &usize| (self.nodes[node] - place).norm_squared();
+        (0..self.nodes.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    }
+
+    fn nodes_where(&self, holds: impl Fn(&Vector3<f64>) -> bool) -> Vec<usize> {
+        let nodes = self.nodes.iter().enumerate();
+        nodes
+            .filter(|(_, x)| holds(x))
+            .map(|(node, _)| node)
+            .collect()
+    }
+}

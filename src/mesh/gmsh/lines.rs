@@ -1,0 +1,154 @@
+//! The lines of a file with their numbers, and the words of a line.
+
+use super::quoted;
+use crate::mesh::error::MeshError;
+use nalgebra::Vector3;
+use std::iter::Enumerate;
+use std::str::{FromStr, SplitWhitespace};
+
+/// What is left of a file; empty lines do not count.
+pub(super) struct Lines<'a> {
+    file: &'a str,
+    left: Enumerate<std::str::Lines<'a>>,
+    /// Number of the line that was read last.
+    number: usize,
+}
+
+/// A line without the spaces around it.
+#[derive(Clone, Copy)]
+pub(super) struct Line<'a> {
+    file: &'a str,
+    pub(super) number: usize,
+    pub(super) text: &'a str,
+}
+
+/// The words of a line.
+pub(super) struct Words<'a> {
+    line: Line<'a>,
+    left: SplitWhitespace<'a>,
+    /// What the line is expected to say.
+    shape: &'a str,
+}
+
+impl<'a> Lines<'a> {
+    pub(super) fn new(file: &'a str, text: &'a str) -> Self {
+        Self {
+            file,
+            left: text.lines().enumerate(),
+            number: 0,
+        }
+    }
+
+    /// The next line, or nothing at the end of the file.
+    pub(super) fn next_or_end(&mut self) -> Option<Line<'a>> {
+        for (index, text) in self.left.by_ref() {
+            self.number = index + 1;
+            let text = text.trim();
+            if !text.is_empty() {
+                return Some(Line {
+                    file: self.file,
+                    number: self.number,
+                    text,
+                });
+            }
+        }
+        None
+    }
+
+    /// The next line, where one is expected.
+    pub(super) fn next(&mut self, expected: &str) -> Result<Line<'a>, MeshError> {
+        self.next_or_end().ok_or_else(|| self.at_end(expected))
+    }
+
+    /// The next line, which continues a section: a count that is too large is found at the section's end.
+    pub(super) fn record(&mut self, expected: &str) -> Result<Line<'a>, MeshError> {
+        let line = self.next(expected)?;
+        if line.text.starts_with('$') {
+            let found = format!("{} before as many lines as were counted", quoted(line.text));
+            return Err(line.error(found, expected));
+        }
+        Ok(line)
+    }
+
+    /// The line that ends a section.
+    pub(super) fn end(&mut self, name: &str) -> Result<(), MeshError> {
+        let line = self.next(name)?;
+        if line.text == name {
+            return Ok(());
+        }
+        let found = format!("{} after as many lines as were counted", quoted(line.text));
+        Err(line.error(found, name))
+    }
+
+    /// Leaves out a section up to the line that ends it.
+    pub(super) fn skip(&mut self, end: &str) -> Result<(), MeshError> {
+        while self.next(end)?.text != end {}
+        Ok(())
+    }
+
+    /// The end of the file where something is expected.
+    pub(super) fn at_end(&self, expected: &str) -> MeshError {
+        let line = Line {
+            file: self.file,
+            number: self.number,
+            text: "",
+        };
+        line.error("the end of the file", expected)
+    }
+}
+
+impl<'a> Line<'a> {
+    /// This line is not as expected.
+    pub(super) fn error(&self, found: impl Into<String>, expected: impl Into<String>) -> MeshError {
+        MeshError::Line {
+            file: self.file.to_owned(),
+            line: self.number,
+            found: found.into(),
+            expected: expected.into(),
+        }
+    }
+
+    /// The words of a line that is expected to say what `shape` describes.
+    pub(super) fn words(&self, shape: &'a str) -> Words<'a> {
+        Words {
+            line: *self,
+            left: self.text.split_whitespace(),
+            shape,
+        }
+    }
+}
+
+impl<'a> Words<'a> {
+    /// The next word.
+    pub(super) fn word(&mut self) -> Result<&'a str, MeshError> {
+        let word = self.left.next();
+        word.ok_or_else(|| self.line.error(quoted(self.line.text), self.shape))
+    }
+
+    /// The next word as a number.
+    pub(super) fn number<T: FromStr>(&mut self) -> Result<T, MeshError> {
+        let word = self.word()?;
+        word.parse().map_err(|_| {
+            let found = format!("{} in {}", quoted(word), quoted(self.line.text));
+            self.line.error(found, self.shape)
+        })
+    }
+
+    /// The next three words as a place.
+    pub(super) fn place(&mut self) -> Result<Vector3<f64>, MeshError> {
+        let place = Vector3::new(self.number()?, self.number()?, self.number()?);
+        if place.iter().all(|x: &f64| x.is_finite()) {
+            return Ok(place);
+        }
+        let expected = "finite coordinates";
+        Err(self.line.error(quoted(self.line.text), expected))
+    }
+
+    /// Nothing is left.
+    pub(super) fn end(&mut self) -> Result<(), MeshError> {
+        match self.left.next() {
+            None => Ok(()),
+            Some(_) => Err(self.line.error(quoted(self.line.text), self.shape)),
+        }
+    }
+}

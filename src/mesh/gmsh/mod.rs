@@ -1,0 +1,227 @@
+//! Meshes from Gmsh: `.msh` files of format 2.2 and 4.1 in ASCII.
+//!
+//! - **Reading** turns the lines of either format into the same `Contents`: nodes, elements and groups by their
+//!   numbers in the file.
+//! - **Assembling** turns these into a [`Mesh`]: physical volumes become regions, physical surfaces, curves and points
+//!   become sets of nodes.
+//!
+//! Nodes and elements are in the order of their numbers in the file, so that both formats of one mesh read equal.
+
+mod assemble;
+mod kind;
+mod lines;
+mod version2;
+mod version4;
+
+use super::Mesh;
+use super::error::MeshError;
+use lines::{Line, Lines};
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Name of the region of hexahedra that belong to no physical volume.
+pub const UNGROUPED: &str = "ungrouped";
+
+const FORMATS: &str = "a mesh in format 2.2 or 4.1";
+const SECTION: &str = "a section such as $Nodes";
+
+/// Reads a file with lengths in `unit` mm; the mesh is [checked](Mesh::check).
+///
+/// Physical volumes become regions in the order of their numbers, hexahedra of none become the region [`UNGROUPED`], the
+/// last one. Physical surfaces, curves and points become sets; what has no name is called `volume_7`, `surface_7`,
+/// `curve_7` or `point_7` by its number, and groups of one name are one set. Nodes that no hexahedron uses are dropped.
+///
+/// # Panics
+///
+/// Where the unit is not a positive number.
+pub fn read(path: &Path, unit: f64) -> Result<Mesh, MeshError> {
+    let file = path.display().to_string();
+    match std::fs::read(path) {
+        Ok(bytes) => parse(&bytes, &file, unit),
+        Err(cause) => Err(MeshError::Unreadable {
+            file,
+            cause: cause.to_string(),
+        }),
+    }
+}
+
+/// Reads the bytes of a file, see [`read`]; errors call it `file`.
+pub fn parse(bytes: &[u8], file: &str, unit: f64) -> Result<Mesh, MeshError> {
+    assert!(
+        unit > 0.0 && unit.is_finite(),
+        "a unit of {unit} mm is no length"
+    );
+    // Names of other encodings lose letters; a binary file is refused by its first lines.
+    let text = String::from_utf8_lossy(bytes);
+    let mut lines = Lines::new(file, &text);
+    let format = format(&mut lines)?;
+    let contents = contents(&mut lines, format)?;
+    contents.assemble(file, unit)
+}
+
+/// Layout of nodes and elements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    /// 2.0 to 2.2: elements carry their groups.
+    Two,
+    /// 4.1: blocks of elements belong to entities, which carry groups.
+    Four,
+}
+
+/// Number of a physical group by the dimension of its elements; zero is no group.
+type Group = (usize, u64);
+
+/// An element of a kind that is of use.
+struct Element {
+    number: u64,
+    /// Number of its line in the file.
+    line: usize,
+    /// 0 point, 1 line, 2 quadrangle, 3 hexahedron.
+    dimension: usize,
+    /// Numbers of its nodes in the file.
+    nodes: Vec<u64>,
+    /// Numbers of the physical groups it belongs to.
+    groups: Vec<u64>,
+}
+
+/// A file as read, by the numbers in it.
+#[derive(Default)]
+struct Contents {
+    names: BTreeMap<Group, String>,
+    nodes: BTreeMap<u64, Vector3<f64>>,
+    elements: Vec<Element>,
+    /// Line of `$Elements`.
+    line: usize,
+}
+
+fn format(lines: &mut Lines<'_>) -> Result<Format, MeshError> {
+    let first = lines.next("$MeshFormat")?;
+    match first.text {
+        "$MeshFormat" => {}
+        "$NOD" => return Err(first.error("format 1", FORMATS)),
+        other => return Err(first.error(quoted(other), "$MeshFormat, the head of a .msh file")),
+    }
+    let line = lines.next("the version of the format")?;
+    let mut words = line.words("the version, 0 for ASCII, and the size of a number: 4.1 0 8");
+    let version = words.word()?;
+    let binary = words.word()?;
+    words.word()?;
+    words.end()?;
+    let format = match version {
+        "2" | "2.0" | "2.1" | "2.2" => Format::Two,
+        "4.1" => Format::Four,
+        other => return Err(line.error(format!("format {other}"), FORMATS)),
+    };
+    if binary != "0" {
+        let expected =
+            "an ASCII file: save with Mesh.Binary = 0 (gmsh -save … -setnumber Mesh.Binary 0)";
+        return Err(line.error("a binary file", expected));
+    }
+    lines.end("$EndMeshFormat")?;
+    Ok(format)
+}
+
+fn contents(lines: &mut Lines<'_>, format: Format) -> Result<Contents, MeshError> {
+    let mut contents = Contents::default();
+    let mut entities = None;
+    let (mut nodes, mut elements) = (None, None);
+    while let Some(line) = lines.next_or_end() {
+        match line.text {
+            "$PhysicalNames" => contents.names.extend(physical_names(lines)?),
+            "$Entities" if format == Format::Four => {
+                once(&line, entities.is_some())?;
+                if elements.is_some() {
+                    return Err(line.error("$Entities after $Elements", "it before them"));
+                }
+                entities = Some(version4::entities(lines)?);
+            }
+            "$PartitionedEntities" => {
+                return Err(line.error("a partitioned mesh", "a mesh of one partition"));
+            }
+            "$Nodes" => {
+                once(&line, nodes.is_some())?;
+                nodes = Some(match format {
+                    Format::Two => version2::nodes(lines)?,
+                    Format::Four => version4::nodes(lines)?,
+                });
+            }
+            "$Elements" => {
+                once(&line, elements.is_some())?;
+                contents.line = line.number;
+                elements = Some(match format {
+                    Format::Two => version2::elements(lines)?,
+                    Format::Four => version4::elements(lines, entities.as_ref())?,
+                });
+            }
+            other => match other.strip_prefix('$') {
+                Some(name) if !name.starts_with("End") => lines.skip(&format!("$End{name}"))?,
+                _ => return Err(line.error(quoted(other), SECTION)),
+            },
+        }
+    }
+    contents.nodes = nodes.ok_or_else(|| lines.at_end("the section $Nodes"))?;
+    contents.elements = elements.ok_or_else(|| lines.at_end("the section $Elements"))?;
+    Ok(contents)
+}
+
+fn once(line: &Line<'_>, again: bool) -> Result<(), MeshError> {
+    if again {
+        return Err(line.error(format!("a second {}", line.text), "it once"));
+    }
+    Ok(())
+}
+
+/// `$PhysicalNames`: a count, then lines of dimension, number and quoted name.
+fn physical_names(lines: &mut Lines<'_>) -> Result<BTreeMap<Group, String>, MeshError> {
+    let line = lines.next("the number of physical names")?;
+    let mut words = line.words("the number of physical names");
+    let count: usize = words.number()?;
+    words.end()?;
+    let mut names = BTreeMap::new();
+    for _ in 0..count {
+        let shape = "a physical group: dimension, number, \"name\"";
+        let line = lines.record(shape)?;
+        let mut words = line.words(shape);
+        let dimension: usize = words.number()?;
+        let number: i64 = words.number()?;
+        let name = line.text.split_once('"').and_then(|(_, rest)| {
+            let (name, _) = rest.rsplit_once('"')?;
+            Some(name.trim())
+        });
+        match name {
+            Some(name) if dimension <= 3 => {
+                if !name.is_empty() {
+                    names.insert((dimension, number.unsigned_abs()), name.to_owned());
+                }
+            }
+            _ => return Err(line.error(quoted(line.text), shape)),
+        }
+    }
+    lines.end("$EndPhysicalNames")?;
+    Ok(names)
+}
+
+/// Puts a node in, unless there is one of its number.
+fn insert(
+    nodes: &mut BTreeMap<u64, Vector3<f64>>,
+    line: &Line<'_>,
+    number: u64,
+    place: Vector3<f64>,
+) -> Result<(), MeshError> {
+    match nodes.insert(number, place) {
+        None => Ok(()),
+        Some(_) => Err(line.error(
+            format!("a second node {number}"),
+            "a number of its own for each node",
+        )),
+    }
+}
+
+/// Text of a file in a message, cut where it is long.
+fn quoted(text: &str) -> String {
+    match text.char_indices().nth(60) {
+        Some((end, _)) => format!("{:?} …", &text[..end]),
+        None => format!("{text:?}"),
+    }
+}

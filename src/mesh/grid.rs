@@ -1,0 +1,127 @@
+//! Structured boxes: hexahedra between node planes along x, y and z.
+
+use super::Mesh;
+use super::error::MeshError;
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+
+const AXES: [char; 3] = ['x', 'y', 'z'];
+
+/// A box cut by planes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// Coordinates in mm of the node planes along x, y and z, ascending, two or more per direction.
+    pub planes: [Vec<f64>; 3],
+}
+
+impl Grid {
+    /// A box of equal elements, lengths in mm: plane i of n is `origin + L i / n`, the last one `origin + L`.
+    pub fn uniform(origin: Vector3<f64>, size: Vector3<f64>, elements: [usize; 3]) -> Self {
+        let planes = [0, 1, 2].map(|axis| planes(origin[axis], &[(size[axis], elements[axis])]));
+        Self { planes }
+    }
+
+    /// A box of layers, lengths in mm: along each direction layers `(thickness, elements)` from the lower side to the
+    /// upper, whose thicknesses sum to the size (to 1e-9 of it); planes are equally spaced within a layer.
+    pub fn layers(
+        origin: Vector3<f64>,
+        size: Vector3<f64>,
+        per_direction: [Vec<(f64, usize)>; 3],
+    ) -> Result<Self, MeshError> {
+        let mut grid = Self {
+            planes: Default::default(),
+        };
+        for (axis, layers) in per_direction.iter().enumerate() {
+            let wrong = |found: String, expected: String| MeshError::Layers {
+                axis: AXES[axis],
+                found,
+                expected,
+            };
+            for &(thickness, elements) in layers {
+                let fills = thickness > 0.0 && thickness.is_finite() && elements > 0;
+                if !fills {
+                    return Err(wrong(
+                        format!("a layer of {thickness} mm in {elements} elements"),
+                        "a positive thickness in one or more elements".to_owned(),
+                    ));
+                }
+            }
+            let sum: f64 = layers.iter().map(|&(thickness, _)| thickness).sum();
+            let fits = (sum - size[axis]).abs() <= 1e-9 * size[axis];
+            if !fits {
+                return Err(wrong(
+                    format!("thicknesses that sum to {sum} mm"),
+                    format!("{} mm, the size of the box", size[axis]),
+                ));
+            }
+            grid.planes[axis] = planes(origin[axis], layers);
+            if let Some(last) = grid.planes[axis].last_mut() {
+                *last = origin[axis] + size[axis];
+            }
+        }
+        Ok(grid)
+    }
+
+    /// The hexahedra of the box, of one region `box`: nodes and elements count along x first, then y, then z; the sides
+    /// are the sets `x_min`, `x_max`, `y_min`, `y_max`, `z_min` and `z_max`.
+    pub fn mesh(&self) -> Mesh {
+        let [n_x, n_y, n_z] = [0, 1, 2].map(|axis| self.planes[axis].len());
+        let node = |x: usize, y: usize, z: usize| x + n_x * (y + n_y * z);
+        let nodes = triples([n_x, n_y, n_z])
+            .map(|[x, y, z]| Vector3::new(self.planes[0][x], self.planes[1][y], self.planes[2][z]))
+            .collect();
+        let hexahedra: Vec<_> = triples([n_x, n_y, n_z].map(|planes| planes.saturating_sub(1)))
+            .map(|[x, y, z]| {
+                let lower = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)];
+                let corner = |i: usize| {
+                    let (x, y) = lower[i % 4];
+                    node(x, y, z + i / 4)
+                };
+                std::array::from_fn(corner)
+            })
+            .collect();
+        Mesh {
+            nodes,
+            regions: vec![0; hexahedra.len()],
+            region_names: vec!["box".to_owned()],
+            hexahedra,
+            sets: sides([n_x, n_y, n_z]),
+        }
+    }
+}
+
+/// Planes of layers from a place on; the first plane of a layer is the last one of the layer before.
+fn planes(origin: f64, layers: &[(f64, usize)]) -> Vec<f64> {
+    let mut planes = vec![origin];
+    let mut below = 0.0;
+    for &(thickness, elements) in layers {
+        let inner = (1..elements).map(|i| below + thickness * i as f64 / elements as f64);
+        planes.extend(inner.map(|height| origin + height));
+        below += thickness;
+        if elements > 0 {
+            planes.push(origin + below);
+        }
+    }
+    planes
+}
+
+/// Nodes of the six sides, ascending.
+fn sides(planes: [usize; 3]) -> BTreeMap<String, Vec<usize>> {
+    let mut sets = BTreeMap::new();
+    for (axis, name) in AXES.into_iter().enumerate() {
+        for (side, plane) in [("min", 0), ("max", planes[axis].saturating_sub(1))] {
+            let places = triples(planes).enumerate();
+            let nodes = places.filter(|(_, place)| place[axis] == plane);
+            sets.insert(
+                format!("{name}_{side}"),
+                nodes.map(|(node, _)| node).collect(),
+            );
+        }
+    }
+    sets
+}
+
+/// All (x, y, z) below the counts, x fastest.
+fn triples([n_x, n_y, n_z]: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    (0..n_z).flat_map(move |z| (0..n_y).flat_map(move |y| (0..n_x).map(move |x| [x, y, z])))
+}
