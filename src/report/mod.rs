@@ -81,7 +81,7 @@ pub fn write_run(folder: &Path, run: &Run<'_>) -> Result<Vec<PathBuf>, WriteErro
             pose::svg(system, trajectory, run.held, origin),
         ),
     ];
-    if !system.muscles.is_empty() {
+    if !system.sources().is_empty() {
         files.push(("voltages.svg", voltages::svg(system, trajectory, origin)));
     }
     if !system.markers.is_empty() {

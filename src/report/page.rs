@@ -18,15 +18,13 @@ pub fn html(run: &Run<'_>) -> String {
     );
     body.push_str(&summary(run.summary));
     body.push_str(&section("Motion", "motion", 720, &animation::plot(run)));
-    let muscles: Vec<_> = (0..run.system.muscles.len())
-        .map(|i| {
-            let (colour, dash) = style::muscle(i);
-            let name = &run.system.muscles[i].name;
-            Series::curve(name, voltages::steps(run.trajectory, i), colour).dashed(dash)
-        })
-        .collect();
     let mut figures = vec![
-        ("Voltages", "voltages", "voltage [kV]", muscles),
+        (
+            "Voltages",
+            "voltages",
+            "voltage [kV]",
+            voltages::curves(run.system, run.trajectory),
+        ),
         (
             "Joints",
             "joints",

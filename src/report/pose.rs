@@ -52,7 +52,7 @@ pub fn svg(
         width.max(120.0) + 2.0 * MARGIN + SIDE,
         height.max(230.0) + 2.0 * MARGIN,
     ];
-    let zero = vec![0.0; system.muscles.len()];
+    let zero = vec![0.0; system.sources().len()];
     let last_voltages = held.map_or_else(
         || trajectory.voltages.last().cloned().unwrap_or(zero),
         <[f64]>::to_vec,

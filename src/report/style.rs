@@ -89,7 +89,7 @@ pub fn hue(i: usize) -> Colour {
     }
 }
 
-/// Colour and dash of muscle `i`, counted from zero: the pair at a joint shares a hue;
+/// Colour and dash of muscle or source `i`, counted from zero: the pair at a joint shares a hue;
 /// agonists (muscles 1, 3, …) are solid, antagonists (muscles 2, 4, …) dashed.
 pub fn muscle(i: usize) -> (Colour, Dash) {
     let dash = if i.is_multiple_of(2) {

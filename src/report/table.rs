@@ -25,11 +25,16 @@ pub fn trajectory_csv(observations: &Observations, origin: &Origin) -> String {
     )
 }
 
-/// `controls.csv`: one row per interval with its start and end in ms and the voltage of each muscle in V.
+/// `controls.csv`: one row per interval with its start and end in ms and the voltage of each source in V.
 pub fn controls_csv(trajectory: &Trajectory, system: &System, origin: &Origin) -> String {
     let header = ["start [ms]".to_owned(), "end [ms]".to_owned()]
         .into_iter()
-        .chain(system.muscles.iter().map(|m| format!("{} [V]", m.name)));
+        .chain(
+            system
+                .sources()
+                .into_iter()
+                .map(|s| format!("{} [V]", s.name)),
+        );
     let ends = trajectory.times.windows(2);
     csv(
         origin,

@@ -1,4 +1,4 @@
-//! Voltages over time: one step function per muscle, agonists solid, antagonists dashed.
+//! Voltages over time: one step function per source, agonists solid, antagonists dashed.
 
 use crate::dynamics::trajectory::Trajectory;
 use crate::model::system::System;
@@ -7,25 +7,31 @@ use crate::report::lines::{LinePlot, Series};
 use crate::report::origin::Origin;
 use crate::report::style;
 
-/// Steps (time in s, voltage in kV) of one muscle: each voltage from the start of its interval to the end.
-pub fn steps(trajectory: &Trajectory, muscle: usize) -> Vec<[f64; 2]> {
+/// Steps (time in s, voltage in kV) of one source: each voltage from the start of its interval to the end.
+pub fn steps(trajectory: &Trajectory, source: usize) -> Vec<[f64; 2]> {
     let ends = trajectory.times.windows(2);
     ends.zip(&trajectory.voltages)
-        .flat_map(|(ends, voltages)| [[ends[0], voltages[muscle]], [ends[1], voltages[muscle]]])
+        .flat_map(|(ends, voltages)| [[ends[0], voltages[source]], [ends[1], voltages[source]]])
         .map(|[time, voltage]| [time / 1e3, voltage / 1e3])
         .collect()
 }
 
-/// `voltages.svg`: the voltage of each muscle in kV over time in s.
-pub fn svg(system: &System, trajectory: &Trajectory, origin: &Origin) -> String {
-    let series = system.muscles.iter().enumerate().map(|(i, muscle)| {
+/// The curve of each source.
+pub fn curves(system: &System, trajectory: &Trajectory) -> Vec<Series> {
+    let sources = system.sources().into_iter().enumerate();
+    let curve = sources.map(|(i, source)| {
         let (colour, dash) = style::muscle(i);
-        Series::curve(&muscle.name, steps(trajectory, i), colour).dashed(dash)
+        Series::curve(&source.name, steps(trajectory, i), colour).dashed(dash)
     });
+    curve.collect()
+}
+
+/// `voltages.svg`: the voltage of each source in kV over time in s.
+pub fn svg(system: &System, trajectory: &Trajectory, origin: &Origin) -> String {
     LinePlot::new(
         Axis::linear("time [s]", Extent::Tight),
         Axis::linear("voltage [kV]", Extent::FromZero),
-        series.collect(),
+        curves(system, trajectory),
     )
     .svg(origin)
 }

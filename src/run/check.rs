@@ -29,8 +29,8 @@ const INTERVALS: usize = 6;
 /// The input is wrong.
 pub fn check(request: &Request) -> Result<Told, RunError> {
     let loaded = read_problem(&request.input, &request.set)?;
-    let muscles = loaded.system.muscles.len();
-    let control = as_control(loaded.task, muscles);
+    let sources = loaded.system.sources().len();
+    let control = as_control(loaded.task, sources);
     let (model, boundary) = resolve(&request.input, &loaded.system, &control)?;
     let Prepared {
         mut program, point, ..
@@ -94,7 +94,7 @@ fn coupling(program: &Transcription<'_>, model: &Model, row: &str, column: &str)
 }
 
 /// The control problem whose program has the derivatives of a task.
-fn as_control(task: Task, muscles: usize) -> Control {
+fn as_control(task: Task, sources: usize) -> Control {
     let at_reference = || State::JointAngles {
         angles: BTreeMap::new(),
         rates: BTreeMap::new(),
@@ -133,7 +133,7 @@ fn as_control(task: Task, muscles: usize) -> Control {
                 Voltages::Sampled { rows, .. } => rows
                     .into_iter()
                     .next()
-                    .unwrap_or_else(|| vec![0.0; muscles]),
+                    .unwrap_or_else(|| vec![0.0; sources]),
             };
             without_goal(start, step, row, coordinates)
         }

@@ -78,7 +78,7 @@ fn of_model(file: &Path, model: &Model) -> Result<String, RunError> {
         row
     }));
     let system = &model.system;
-    let sizes = [
+    let mut sizes = vec![
         ("bodies", system.bodies.len()),
         ("joints", system.joints.len()),
         ("muscles", system.muscles.len()),
@@ -87,6 +87,9 @@ fn of_model(file: &Path, model: &Model) -> Result<String, RunError> {
         ("multipliers of an instant", model.multiplier_names.len()),
         ("voltages of an interval", model.voltages.len()),
     ];
+    if !system.solids.is_empty() {
+        sizes.insert(3, ("elastic blocks", system.solids.len()));
+    }
     Ok(format!(
         "{}, {} coordinates\n\n{}\n{}",
         system.name,

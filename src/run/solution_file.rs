@@ -133,9 +133,10 @@ pub fn write(path: &Path, model: &Model, solved: &Solved) -> Result<(), WriteErr
         directors: solved.poses.iter().map(|p| p[b].directors.into()).collect(),
     };
     let bodies = system.bodies.iter().enumerate();
-    let voltage = |&m: &usize| {
-        let history = solved.voltages.iter().map(|row| row[m]).collect();
-        (system.muscles[m].name.clone(), history)
+    let sources = system.sources();
+    let voltage = |&s: &usize| {
+        let history = solved.voltages.iter().map(|row| row[s]).collect();
+        (sources[s].name.clone(), history)
     };
     let file = File {
         scene: system.name.clone(),
@@ -201,9 +202,10 @@ fn parse(path: &Path, model: &Model) -> Result<Solved, Reason> {
     let named = |joint: &&Joint| has_coordinate(joint);
     let joints = system.joints.iter().filter(named).map(|j| j.name.as_str());
     same_names("joint", by_joint.keys().map(String::as_str), joints)?;
-    let muscles = model.voltages.iter();
-    let muscles = muscles.map(|&m| system.muscles[m].name.as_str());
-    same_names("muscle", file.voltages.keys().map(String::as_str), muscles)?;
+    let sources = system.sources();
+    let driven = model.voltages.iter().map(|&s| sources[s].name.as_str());
+    let named = file.voltages.keys().map(String::as_str);
+    same_names("muscle or electrode", named, driven)?;
     let place_of = |name: &str, system: &System| {
         let found = system.joints.iter().position(|joint| joint.name == name);
         found.expect("the names were compared")
@@ -216,13 +218,13 @@ fn parse(path: &Path, model: &Model) -> Result<Solved, Reason> {
             row[j] = value * unit(&system.joints[j]);
         }
     }
-    let mut voltages = vec![vec![0.0; system.muscles.len()]; instants - 1];
-    for &m in &model.voltages {
-        let name = &system.muscles[m].name;
+    let mut voltages = vec![vec![0.0; sources.len()]; instants - 1];
+    for &s in &model.voltages {
+        let name = &sources[s].name;
         let column = &file.voltages[name];
         same_length(name, column.len(), instants - 1, "intervals")?;
         for (row, &value) in voltages.iter_mut().zip(column) {
-            row[m] = value;
+            row[s] = value;
         }
     }
     let poses = poses(file.configuration.as_ref(), system, instants)?;

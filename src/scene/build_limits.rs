@@ -2,9 +2,9 @@
 
 use crate::control::problem::{Limit, Side};
 use crate::model::Region;
-use crate::model::system::System;
+use crate::model::system::{Fidelity, System};
 use crate::scene::build_scene::{names, vector};
-use crate::scene::build_state::{driven_muscle, joint_value, joint_with_coordinate};
+use crate::scene::build_state::{ELECTRIC_KEYS, joint_value, joint_with_coordinate};
 use crate::scene::error::SceneError;
 use crate::scene::quantity::{Angle, Length};
 use crate::scene::scope::Scope;
@@ -105,13 +105,35 @@ fn electric_field(
     let one = spec.muscle.as_ref().map(Some);
     let name = scope.exactly_one([("muscle", one), ("muscles", spec.muscles.map(|_| None))])?;
     let muscles = match name {
-        Some(name) => vec![driven_muscle(name, system, &scope.key("muscle"))?],
+        Some(name) => vec![muscle_with_field(name, system, &scope.key("muscle"))?],
         None => (0..system.muscles.len())
             .filter(|&muscle| system.muscles[muscle].material.electric.is_some())
             .collect(),
     };
+    let of_elements = |&&muscle: &&usize| system.muscles[muscle].fidelity != Fidelity::Lumped;
+    if let Some(&muscle) = muscles.iter().find(of_elements) {
+        let place = scope.key(if spec.muscle.is_some() {
+            "muscle"
+        } else {
+            "muscles"
+        });
+        let name = &system.muscles[muscle].name;
+        let found = format!("{name:?}, a muscle of finite elements, where the field varies");
+        return Err(place.wrong(found, "a lumped muscle"));
+    }
     let limit = |muscle| Limit::ElectricField { muscle, max };
     Ok(muscles.into_iter().map(limit).collect())
+}
+
+/// Index of a muscle with an electric term.
+fn muscle_with_field(name: &str, system: &System, scope: &Scope<'_>) -> Result<usize, SceneError> {
+    let muscles = names(&system.muscles, |muscle| &muscle.name);
+    let index = scope.find(name, &muscles, "the name of a muscle")?;
+    if system.muscles[index].material.electric.is_some() {
+        return Ok(index);
+    }
+    let found = format!("{name:?}, whose material has no electric term");
+    Err(scope.wrong(found, format!("a muscle of {ELECTRIC_KEYS}")))
 }
 
 fn marker(spec: &MarkerLimitSpec, system: &System, scope: &Scope<'_>) -> Result<Limit, SceneError> {

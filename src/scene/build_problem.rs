@@ -1,4 +1,4 @@
-//! From a problem as written to the task it means, with one voltage per muscle and indices for names.
+//! From a problem as written to the task it means, with one voltage per source and indices for names.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -8,9 +8,9 @@ use crate::control::problem::{
 };
 use crate::ipopt::OptionValue;
 use crate::model::Coordinates;
-use crate::model::system::System;
+use crate::model::system::{Fidelity, Muscle, System};
 use crate::scene::build_limits::limit;
-use crate::scene::build_state::{goal_state, start_state, voltages};
+use crate::scene::build_state::{ELECTRIC_KEYS, goal_state, start_state, voltages};
 use crate::scene::document::Document;
 use crate::scene::error::SceneError;
 use crate::scene::graph::{has_free_part, tree_freedoms};
@@ -97,14 +97,9 @@ fn control(spec: &ControlSpec, system: &System, scope: &Scope<'_>) -> Result<Con
     if spec.intervals == 0 {
         return Err(scope.key("intervals").wrong("0", "1 interval or more"));
     }
-    if system
-        .muscles
-        .iter()
-        .all(|muscle| muscle.material.electric.is_none())
-    {
-        let found = "a scene without any muscle that takes a voltage";
-        let expected =
-            "a muscle whose material has \"relative_permittivity\", or \"c1\" and \"c2\"";
+    if !system.sources().iter().any(|source| source.takes_voltage) {
+        let found = "a scene without any muscle or electrode that takes a voltage";
+        let expected = format!("a muscle of {ELECTRIC_KEYS}, or a driven electrode");
         return Err(scope.wrong(found, expected));
     }
     let voltage_bounds = voltage_bounds(spec, &scope.key("voltage_bounds"))?;
@@ -166,7 +161,7 @@ fn voltage_bounds(spec: &ControlSpec, scope: &Scope<'_>) -> Result<[f64; 2], Sce
     Ok(bounds)
 }
 
-/// Rest voltages of muscles that take one lie in the bounds.
+/// Rest voltages of sources that take one lie in the bounds.
 fn check_rest_voltages(
     state: &State,
     system: &System,
@@ -176,10 +171,10 @@ fn check_rest_voltages(
     let State::RestAtVoltages(voltages) = state else {
         return Ok(());
     };
-    for (muscle, &voltage) in system.muscles.iter().zip(voltages) {
+    for (source, &voltage) in system.sources().iter().zip(voltages) {
         let outside = voltage < lower || voltage > upper;
-        if outside && muscle.material.electric.is_some() {
-            let place = scope.key("rest_at_voltages").key(&muscle.name);
+        if outside && source.takes_voltage {
+            let place = scope.key("rest_at_voltages").key(&source.name);
             let found = format!("{voltage} V");
             let expected = format!("a voltage within the bounds {lower} V to {upper} V");
             return Err(place.wrong(found, expected));
@@ -188,12 +183,16 @@ fn check_rest_voltages(
     Ok(())
 }
 
-/// No more final conditions than degrees of freedom, where these can be counted from the joints.
+/// No more final conditions than degrees of freedom, where these can be counted from the joints: nodes bring more.
 fn check_final_conditions(
     goal: &State,
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<(), SceneError> {
+    let lumped = |muscle: &Muscle| muscle.fidelity == Fidelity::Lumped;
+    if !system.solids.is_empty() || !system.muscles.iter().all(lumped) {
+        return Ok(());
+    }
     let (conditions, key) = match goal {
         State::Markers { places, .. } => (3 * places.len(), "markers"),
         State::JointAngles { angles, .. } => (angles.len(), "joint_angles"),

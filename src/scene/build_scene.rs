@@ -2,22 +2,19 @@
 
 use nalgebra::Vector3;
 
-use crate::model::system::{
-    Attachment, Fidelity, Joint, JointKind, Marker, Material, Muscle, System,
-};
+use crate::model::system::{Attachment, Joint, JointKind, Material, System};
 use crate::scene::build_body::{body, unit_axis};
+use crate::scene::build_electrodes::number_sources;
+use crate::scene::build_marker::marker;
 use crate::scene::build_material::materials;
+use crate::scene::build_muscle::{ModelSpec, fidelity, muscle, positive_sides};
+use crate::scene::build_solid::solid;
 use crate::scene::error::SceneError;
 use crate::scene::expand::expanded;
 use crate::scene::graph::check_connected;
-use crate::scene::quantity::{Damping, Length, Measure, Quantity, RotationalDamping};
+use crate::scene::quantity::{Damping, Measure, Quantity, RotationalDamping};
 use crate::scene::scope::Scope;
-use crate::scene::spec_scene::{
-    AxisSpec, ChainSpec, JointSpec, MuscleModel, MuscleSpec, Point, PointSpec, SceneSpec,
-};
-
-/// Spans shorter than this in mm have no direction.
-const SHORTEST_SPAN: f64 = 1e-9;
+use crate::scene::spec_scene::{AxisSpec, ChainSpec, JointSpec, Point, SceneSpec};
 
 /// Longest chain that the shorthand writes out.
 const LONGEST_CHAIN: usize = 1000;
@@ -31,31 +28,37 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     let bodies = Entries::new(scope, "bodies", scene.bodies.len());
     let joints = Entries::new(scope, "joints", scene.joints.len());
     let muscles = Entries::new(scope, "muscles", scene.muscles.len());
+    let solids = Entries::new(scope, "solids", scene.solids.len());
     let markers = Entries::new(scope, "markers", scene.markers.len());
 
     let scene = expanded(scene.clone());
     let body_names = names(&scene.bodies, |body| &body.name);
+    let muscle_names = names(&scene.muscles, |muscle| &muscle.name);
+    let solid_names = names(&scene.solids, |solid| &solid.name);
     bodies.unique(&body_names, &["ground"])?;
     joints.unique(&names(&scene.joints, |joint| &joint.name), &[])?;
-    muscles.unique(&names(&scene.muscles, |muscle| &muscle.name), &["solution"])?;
+    muscles.unique(&muscle_names, &["solution"])?;
+    // Blocks and muscles share files and names of voltages.
+    let all = [muscle_names, solid_names.clone()].concat();
+    let place = |index: usize| scope.key("solids").index(index - scene.muscles.len());
+    scope.unique(&all, &[], |index| place(index).key("name"))?;
     markers.unique(&names(&scene.markers, |marker| &marker.name), &[])?;
 
+    let muscles = muscles.build(&scene.muscles, |spec, scope| {
+        muscle(spec, &body_names, &materials, scope)
+    })?;
+    let mut blocks = solids.build(&scene.solids, |spec, scope| {
+        solid(spec, &body_names, &materials, scope)
+    })?;
+    number_sources(&mut blocks, muscles.len());
     let system = System {
         bodies: bodies.build(&scene.bodies, body)?,
         joints: joints.build(&scene.joints, |spec, scope| joint(spec, &body_names, scope))?,
-        muscles: muscles.build(&scene.muscles, |spec, scope| {
-            muscle(spec, &body_names, &materials, scope)
-        })?,
-        solids: Vec::new(),
+        muscles,
         markers: markers.build(&scene.markers, |spec, scope| {
-            let point = attachment(&spec.body, &spec.at, &body_names, scope)?;
-            let name = spec.name.clone();
-            Ok(Marker {
-                name,
-                point,
-                solid: None,
-            })
+            marker(spec, &body_names, &blocks, scope)
         })?,
+        solids: blocks,
         gravity: scene
             .gravity
             .as_ref()
@@ -64,6 +67,8 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
         name: scene.name,
     };
     check_connected(&scene.bodies, &system.joints, |index| bodies.scope(index))?;
+    let sources = names(&system.sources(), |source| &source.name);
+    scope.unique(&sources, &[], |_| scope.key("solids"))?;
     Ok(system)
 }
 
@@ -146,7 +151,15 @@ fn check_chain(
     }
     if let Some(pair) = &chain.muscles {
         let scope = scope.key("muscles");
-        find_material(&pair.material, materials, &scope)?;
+        find_material(&pair.material, materials, &scope.key("material"))?;
+        let model = ModelSpec {
+            model: pair.model,
+            elements: pair.elements,
+            layers: pair.layers,
+            element: pair.element,
+            material: &pair.material,
+        };
+        fidelity(&model, materials, &scope)?;
         scope.key("arm").positive(&pair.arm)?;
         scope.key("rest_length").positive(&pair.rest_length)?;
         positive_sides(&pair.cross_section, &scope)?;
@@ -233,75 +246,36 @@ enum JointKey {
     Fixed,
 }
 
-fn muscle(
-    spec: &MuscleSpec,
-    bodies: &[String],
-    materials: &[(String, Material)],
-    scope: &Scope<'_>,
-) -> Result<Muscle, SceneError> {
-    if spec.model == MuscleModel::FiniteElements {
-        let found = "\"finite_elements\", which is not available in this version";
-        return Err(scope.key("model").wrong(found, "\"lumped\""));
-    }
-    let material = find_material(&spec.material, materials, scope)?;
-    let end =
-        |key: &str, point: &PointSpec| attachment(&point.body, &point.at, bodies, &scope.key(key));
-    let (from, to) = (end("from", &spec.from)?, end("to", &spec.to)?);
-    let length = (to.at - from.at).norm();
-    if length.is_nan() || length < SHORTEST_SPAN {
-        let found = "the place where the muscle starts, which makes its length zero";
-        return Err(scope
-            .key("to")
-            .key("at")
-            .wrong(found, "another place than \"from\""));
-    }
-    if from.body == to.body {
-        let found = format!("{:?}, where the muscle starts too", spec.to.body);
-        return Err(scope
-            .key("to")
-            .key("body")
-            .wrong(found, "another body than \"from\""));
-    }
-    Ok(Muscle {
-        name: spec.name.clone(),
-        from,
-        to,
-        cross_section: positive_sides(&spec.cross_section, scope)?,
-        layer_thickness: scope
-            .key("layer_thickness")
-            .positive(&spec.layer_thickness)?,
-        material,
-        section_inertia: spec.section_inertia,
-        fidelity: Fidelity::Lumped,
-    })
-}
-
-/// Sides of the cross-section of a muscle or of a pair.
-fn positive_sides(
-    sides: &[Quantity<Length>; 2],
-    scope: &Scope<'_>,
-) -> Result<[f64; 2], SceneError> {
-    let place = scope.key("cross_section");
-    let [first, second] = sides;
-    Ok([
-        place.index(0).positive(first)?,
-        place.index(1).positive(second)?,
-    ])
-}
-
-fn find_material(
+/// The material of a name that stands at `scope`.
+pub(crate) fn find_material(
     name: &str,
     materials: &[(String, Material)],
     scope: &Scope<'_>,
 ) -> Result<Material, SceneError> {
     let names: Vec<String> = materials.iter().map(|(name, _)| name.clone()).collect();
-    let found = scope
-        .key("material")
-        .find(name, &names, "the name of a material");
+    let found = scope.find(name, &names, "the name of a material");
     found.map(|index| materials[index].1)
 }
 
-fn attachment(
+/// The material of finite elements, whose name stands at `scope`: it says how it resists changes of volume.
+pub(crate) fn find_compressible(
+    name: &str,
+    materials: &[(String, Material)],
+    scope: &Scope<'_>,
+) -> Result<Material, SceneError> {
+    let material = find_material(name, materials, scope)?;
+    if material.lame_lambda.is_some() {
+        return Ok(material);
+    }
+    let found = format!("{name:?}, which has neither \"lame_lambda\" nor \"poisson_ratio\"");
+    Err(scope.wrong(
+        found,
+        "a material with one of them, as finite elements need it",
+    ))
+}
+
+/// A point of a body that is written under `body` and `at`.
+pub(crate) fn attachment(
     body: &str,
     at: &Point,
     bodies: &[String],
@@ -313,7 +287,7 @@ fn attachment(
 }
 
 /// Index of a body; `None` is the ground.
-fn find_body(
+pub(crate) fn find_body(
     name: &str,
     bodies: &[String],
     scope: &Scope<'_>,

@@ -1,10 +1,10 @@
-//! From states and voltages as written to indices and one voltage per muscle.
+//! From states and voltages as written to indices and one voltage per source.
 
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
 use crate::control::problem::State;
-use crate::model::system::{JointKind, System};
+use crate::model::system::{JointKind, Source, System};
 use crate::scene::build_scene::{names, vector};
 use crate::scene::error::SceneError;
 use crate::scene::quantity::{Angle, AngularVelocity, Kind, Length, Measure, Quantity, Velocity};
@@ -12,35 +12,39 @@ use crate::scene::scope::Scope;
 use crate::scene::spec_problem::{GoalSpec, StartSpec, VoltageMap};
 use crate::scene::spec_scene::Point;
 
-/// One voltage per muscle in V, 0 where not named.
+/// What a name of a voltage may be, for messages.
+pub(crate) const A_SOURCE: &str = "the name of a muscle or of a driven electrode (block.electrode)";
+
+/// What gives a material an electric term, for messages.
+pub(crate) const ELECTRIC_KEYS: &str =
+    "a material with \"relative_permittivity\", or \"c1\" and \"c2\"";
+
+/// One voltage per source in V, 0 where not named.
 pub(crate) fn voltages(
     map: &VoltageMap,
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<Vec<f64>, SceneError> {
-    let mut voltages = vec![0.0; system.muscles.len()];
+    let sources = system.sources();
+    let mut voltages = vec![0.0; sources.len()];
     for (name, voltage) in map {
-        voltages[driven_muscle(name, system, &scope.key(name))?] = voltage.value();
+        voltages[driven(name, &sources, &scope.key(name))?] = voltage.value();
     }
     Ok(voltages)
 }
 
-/// Index of a muscle that takes a voltage.
-pub(crate) fn driven_muscle(
+/// Index of a source that takes a voltage.
+pub(crate) fn driven(
     name: &str,
-    system: &System,
+    sources: &[Source],
     scope: &Scope<'_>,
 ) -> Result<usize, SceneError> {
-    let muscles = names(&system.muscles, |muscle| &muscle.name);
-    let index = scope.find(name, &muscles, "the name of a muscle")?;
-    if system.muscles[index].material.electric.is_some() {
+    let index = scope.find(name, &names(sources, |source| &source.name), A_SOURCE)?;
+    if sources[index].takes_voltage {
         return Ok(index);
     }
     let found = format!("{name:?}, whose material has no electric term");
-    Err(scope.wrong(
-        found,
-        "a muscle whose material has \"relative_permittivity\", or \"c1\" and \"c2\"",
-    ))
+    Err(scope.wrong(found, format!("a muscle of {ELECTRIC_KEYS}")))
 }
 
 /// A state at the start.
@@ -119,9 +123,10 @@ fn marker_goals(
     for (name, at) in markers {
         let place = scope.key(name);
         let index = place.find(name, &all, "the name of a marker")?;
-        if system.markers[index].point.body.is_none() && system.markers[index].solid.is_none() {
+        let marker = &system.markers[index];
+        if marker.point.body.is_none() && marker.solid.is_none() {
             let found = format!("{name:?}, which is fixed to the ground");
-            return Err(place.wrong(found, "a marker on a body"));
+            return Err(place.wrong(found, "a marker on a body or a block"));
         }
         goals.insert(index, vector(at));
     }

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use crate::scene::quantity::Quantity;
 use crate::scene::spec_scene::{
-    AxisSpec, BodySpec, ChainSpec, CylinderSpec, JointSpec, MarkerSpec, MuscleModel, MuscleSpec,
-    Point, PointSpec, SceneSpec,
+    AxisSpec, BodySpec, ChainSpec, CylinderSpec, JointSpec, MarkerSpec, MuscleSpec, Point,
+    PointSpec, SceneSpec,
 };
 
 /// The same scene without shorthand; what the chain stands for comes after what is written.
@@ -106,7 +106,10 @@ impl Link {
             let middle = self.at + self.arm_axis * (side * pair.arm.value());
             MuscleSpec {
                 name: format!("muscle{}", 2 * self.number - 1 + place),
-                model: MuscleModel::Lumped,
+                model: pair.model,
+                elements: pair.elements,
+                layers: pair.layers,
+                element: pair.element,
                 material: pair.material.clone(),
                 cross_section: pair.cross_section.clone(),
                 layer_thickness: pair.layer_thickness.clone(),
@@ -130,7 +133,8 @@ fn tip(chain: &ChainSpec) -> Option<MarkerSpec> {
     let end = link.axis * (chain.segments as f64 * chain.length.value());
     Some(MarkerSpec {
         name: chain.tip_marker.clone()?,
-        body: link.segment(),
+        body: Some(link.segment()),
+        solid: None,
         at: point(&end),
     })
 }

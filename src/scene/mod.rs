@@ -1,15 +1,21 @@
 //! Scene and problem files: what is written, read with units, checked, and turned into what it means.
 //!
 //! - `quantity`, `unit`: numbers with units, converted once to g, mm, ms, N, MPa, V.
-//! - `spec_scene`, `spec_problem`, `spec_limits`, `either`: the serde types of the two files; `expand`: the chain shorthand.
+//! - `spec_scene`, `spec_solids`, `spec_problem`, `spec_limits`, `either`: the serde types of the two files; `expand`: the chain shorthand.
 //! - `document`, `locate`, `wording`, `error`, `set`: text, places in it, mistakes, overrides.
 //! - `build_*`, `graph`, `scope`, `solution`: from what is written to [`System`] and [`Task`].
 
 mod build_body;
+mod build_electrodes;
 mod build_limits;
+mod build_marker;
 mod build_material;
+mod build_mesh;
+mod build_muscle;
+mod build_place;
 mod build_problem;
 mod build_scene;
+mod build_solid;
 mod build_state;
 mod document;
 mod either;
@@ -25,6 +31,7 @@ mod solution;
 pub mod spec_limits;
 pub mod spec_problem;
 pub mod spec_scene;
+pub mod spec_solids;
 mod start;
 mod typed;
 mod unit;

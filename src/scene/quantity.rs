@@ -97,6 +97,8 @@ measures! {
     Velocity: si::velocity::Dimension, [0], "a velocity", "\"0.2 m/s\"";
     /// Angular velocity: rad/s, rad/ms inside.
     AngularVelocity: si::angular_velocity::Dimension, [1], "an angular velocity", "\"2 rad/s\"";
+    /// Rate of a stretch: 1/s, 1/ms inside.
+    Rate: si::frequency::Dimension, [0], "a rate", "\"25 1/s\"";
     /// Moment of inertia: kg m², g mm² inside.
     MomentOfInertia: si::moment_of_inertia::Dimension, [0], "a moment of inertia", "\"9.25e-6 kg m^2\"";
     /// Damping of a rotation: N m s/rad, N mm ms inside.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use crate::control::problem::Voltages;
 use crate::model::system::System;
-use crate::scene::build_state::driven_muscle;
+use crate::scene::build_state::driven;
 use crate::scene::document::Document;
 use crate::scene::error::SceneError;
 use crate::scene::scope::Scope;
@@ -15,11 +15,11 @@ use crate::scene::scope::Scope;
 struct Solution {
     /// Instants in s.
     time: Vec<f64>,
-    /// Voltages in V by muscle, one per interval.
+    /// Voltages in V by source, one per interval.
     voltages: BTreeMap<String, Vec<f64>>,
 }
 
-/// Voltages of a solution; 0 for muscles that it does not know.
+/// Voltages of a solution; 0 for sources that it does not know.
 pub(crate) fn sampled_voltages(
     document: &Document,
     system: &System,
@@ -36,17 +36,18 @@ pub(crate) fn sampled_voltages(
         return Err(place.index(index + 1).wrong(found, "increasing times"));
     }
     let ends: Vec<f64> = solution.time[1..].iter().map(|time| 1e3 * time).collect();
-    let mut rows = vec![vec![0.0; system.muscles.len()]; ends.len()];
+    let sources = system.sources();
+    let mut rows = vec![vec![0.0; sources.len()]; ends.len()];
     for (name, history) in &solution.voltages {
         let place = scope.key("voltages").key(name);
-        let muscle = driven_muscle(name, system, &place)?;
+        let source = driven(name, &sources, &place)?;
         if history.len() != ends.len() {
             let found = format!("{} voltages", history.len());
             let expected = format!("{}, one per interval", ends.len());
             return Err(place.wrong(found, expected));
         }
         for (row, voltage) in rows.iter_mut().zip(history) {
-            row[muscle] = *voltage;
+            row[source] = *voltage;
         }
     }
     Ok(Voltages::Sampled { ends, rows })

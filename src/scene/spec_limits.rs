@@ -1,7 +1,7 @@
 //! Path limits as they are written: a part of the problem file.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::scene::quantity::{ElectricField, JointCoordinate, Length, Quantity};
 use crate::scene::spec_scene::Point;
@@ -101,7 +101,7 @@ pub struct RegionSpec {
 }
 
 /// Two corners of a box.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CornersSpec {
     /// Lower corner, SI unit m.

@@ -44,7 +44,7 @@ pub enum CoordinatesSpec {
     Redundant,
 }
 
-/// Voltages by the names of muscles, SI unit V; 0 where not named.
+/// Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
 pub type VoltageMap = BTreeMap<String, Quantity<Voltage>>;
 
 /// A forward simulation.
@@ -70,7 +70,7 @@ pub struct SimulateSpec {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EquilibriumSpec {
-    /// Voltages by the names of muscles, SI unit V; 0 where not named.
+    /// Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
     #[serde(default)]
     pub voltages: VoltageMap,
     /// Coordinates.
@@ -223,7 +223,7 @@ pub enum OptionSpec {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GuessSimulationSpec {
-    /// Constant voltages by the names of muscles, SI unit V; 0 where not named.
+    /// Constant voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
     #[serde(default)]
     pub voltages: VoltageMap,
 }
@@ -284,7 +284,7 @@ impl Default for GuessSpec {
     }
 }
 
-/// Constant voltages by muscle, or `{"solution": path}`.
+/// Constant voltages by muscle or driven electrode, or `{"solution": path}`.
 #[derive(Clone, Debug, JsonSchema)]
 #[serde(untagged)]
 pub enum VoltagesSpec {
@@ -328,7 +328,7 @@ impl<'de> Visitor<'de> for VoltagesVisitor {
     type Value = VoltagesSpec;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("voltages by muscle or an object with \"solution\"")
+        f.write_str("voltages by name or an object with \"solution\"")
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<VoltagesSpec, A::Error> {

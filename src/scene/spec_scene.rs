@@ -8,6 +8,7 @@ use crate::scene::quantity::{
     Acceleration, Density, JointDamping, Length, Mass, MomentOfInertia, Permittivity, Quantity,
     Stress, Viscosity,
 };
+use crate::scene::spec_solids::{ElementSpec, SolidSpec};
 
 /// A point or a vector of lengths.
 pub type Point = [Quantity<Length>; 3];
@@ -33,6 +34,9 @@ pub struct SceneSpec {
     /// Dielectric elastomer muscles.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub muscles: Vec<MuscleSpec>,
+    /// Elastic blocks of finite elements.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub solids: Vec<SolidSpec>,
     /// Points whose motion is reported.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub markers: Vec<MarkerSpec>,
@@ -53,7 +57,7 @@ pub struct MaterialSpec {
     pub density: Option<Quantity<Density>>,
     /// Shear modulus μ, SI unit Pa.
     pub shear_modulus: Quantity<Stress>,
-    /// First Lamé constant λ, SI unit Pa; or give `poisson_ratio`.
+    /// First Lamé constant λ, SI unit Pa; or give `poisson_ratio`. Finite elements need one of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lame_lambda: Option<Quantity<Stress>>,
     /// Poisson's ratio, between −1 and 0.5; or give `lame_lambda`.
@@ -193,6 +197,15 @@ pub struct MuscleSpec {
     /// Model; `lumped` where not written.
     #[serde(default)]
     pub model: MuscleModel,
+    /// Elements along both sides of the cross-section and along the span; of `finite_elements` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elements: Option<[usize; 3]>,
+    /// Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layers: Option<usize>,
+    /// Which hexahedron; of `finite_elements` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub element: Option<ElementSpec>,
     /// Name of the material.
     pub material: String,
     /// Sides of the rectangular cross-section at rest, SI unit m.
@@ -215,7 +228,7 @@ pub enum MuscleModel {
     /// One stretch at constant volume.
     #[default]
     Lumped,
-    /// Finite elements; not available in this version.
+    /// Finite elements, glued to both bodies with its end faces.
     FiniteElements,
 }
 
@@ -229,14 +242,18 @@ pub struct PointSpec {
     pub at: Point,
 }
 
-/// A named material point of a body.
+/// A named material point of a body or of a block: exactly one of `body` and `solid`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MarkerSpec {
     /// Unique name.
     pub name: String,
     /// Name of the body, or `ground`.
-    pub body: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<String>,
+    /// Name of the block; its node nearest to the place is meant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solid: Option<String>,
     /// Place, SI unit m.
     pub at: Point,
 }
@@ -272,6 +289,18 @@ pub struct ChainSpec {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PairSpec {
+    /// Model; `lumped` where not written.
+    #[serde(default)]
+    pub model: MuscleModel,
+    /// Elements along both sides of the cross-section and along the span; of `finite_elements` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elements: Option<[usize; 3]>,
+    /// Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layers: Option<usize>,
+    /// Which hexahedron; of `finite_elements` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub element: Option<ElementSpec>,
     /// Name of the material.
     pub material: String,
     /// Distance from the long axis, SI unit m.

@@ -1,11 +1,12 @@
-//! What is read from the command line besides overrides: the scene of any file, and voltages by muscle.
+//! What is read from the command line besides overrides: the scene of any file, and voltages by source.
 
 use std::path::Path;
 
 use serde_json::Value;
 
-use crate::model::system::System;
-use crate::scene::build_scene::{build_scene, names};
+use crate::model::system::{Source, System};
+use crate::scene::build_scene::build_scene;
+use crate::scene::build_state::A_SOURCE;
 use crate::scene::document::Document;
 use crate::scene::error::{Mistake, SceneError, nearest};
 use crate::scene::quantity::{Quantity, Voltage};
@@ -28,12 +29,13 @@ pub fn read_system(path: &Path, overrides: &[String]) -> Result<System, SceneErr
     build_scene(&document.parse()?, &Scope::of(&document))
 }
 
-/// One voltage per muscle in V from words such as `muscle2=1.7kV`, 0 where not named.
+/// One voltage per source in V from words such as `muscle2=1.7kV`, 0 where not named.
 ///
 /// # Errors
-/// A muscle does not exist or takes no voltage, or a voltage is none.
+/// A source does not exist or takes no voltage, or a voltage is none.
 pub fn driven_voltages(words: &[String], system: &System) -> Result<Vec<f64>, SceneError> {
-    let mut voltages = vec![0.0; system.muscles.len()];
+    let sources = system.sources();
+    let mut voltages = vec![0.0; sources.len()];
     let mistake = |word: &str, expected: String, nearest: Option<String>| -> SceneError {
         Mistake {
             file: "command line".to_owned(),
@@ -51,20 +53,18 @@ pub fn driven_voltages(words: &[String], system: &System) -> Result<Vec<f64>, Sc
         let (name, value) = word
             .split_once('=')
             .ok_or_else(|| mistake(word, expected(), None))?;
-        let all = names(&system.muscles, |muscle| &muscle.name);
         let name = name.trim();
-        let takes_one = |&index: &usize| system.muscles[index].material.electric.is_some();
-        let muscle = all.iter().position(|other| other == name).filter(takes_one);
-        let muscle = muscle.ok_or_else(|| {
-            let nearest = nearest(name, all.iter().map(String::as_str));
-            let expected = "the name of a muscle that takes a voltage".to_owned();
+        let named = |source: &Source| source.name == name && source.takes_voltage;
+        let source = sources.iter().position(named).ok_or_else(|| {
+            let nearest = nearest(name, sources.iter().map(|source| source.name.as_str()));
+            let expected = format!("{A_SOURCE} that takes a voltage");
             mistake(name, expected, nearest.filter(|other| other != name))
         })?;
         let value = value.trim();
         let json = serde_json::from_str(value).unwrap_or_else(|_| Value::from(value));
         let quantity: Quantity<Voltage> = serde_json::from_value(json)
             .map_err(|_| mistake(word, Quantity::<Voltage>::expected(), None))?;
-        voltages[muscle] = quantity.value();
+        voltages[source] = quantity.value();
     }
     Ok(voltages)
 }

@@ -12,8 +12,7 @@ pub(crate) struct Wording {
 }
 
 /// Keys of the file format that this version does not read, and what it says about them.
-const UNAVAILABLE: [(&str, &str); 4] = [
-    ("solids", "elastic blocks are not available in this version"),
+const UNAVAILABLE: [(&str, &str); 2] = [
     (
         "tracking",
         "this objective is not available in this version",
@@ -21,10 +20,6 @@ const UNAVAILABLE: [(&str, &str); 4] = [
     (
         "electrical_energy",
         "this objective is not available in this version",
-    ),
-    (
-        "elements",
-        "finite elements are not available in this version",
     ),
 ];
 
