@@ -19,4 +19,4 @@ pub use error::{EquilibriumError, StepError};
 pub use history::History;
 pub use observe::{Energies, energies, observations};
 pub use simulate::{Start, simulate};
-pub use stepper::{Stepper, StepperReport};
+pub use stepper::{Newton, Stepper, StepperReport};

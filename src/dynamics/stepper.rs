@@ -13,7 +13,9 @@ use crate::dynamics::tangent::{Entries, Tangent};
 use crate::functional::{Level, Sides};
 use crate::math::Vector;
 use crate::model::Model;
-use crate::reduction::{Instant, Interval, Scratch};
+use crate::reduction::{Instant as Place, Interval, Scratch};
+use crate::sparse::Singular;
+use std::time::Instant;
 
 /// Limit of Newton iterations in one step.
 const ITERATIONS: usize = 16;
@@ -22,8 +24,23 @@ const HALVINGS: u32 = 10;
 /// Convergence: the error after a Newton update of relative size δ is of order δ².
 const UPDATE: f64 = 1e-9;
 
-/// What the steps cost.
+/// A reused tangent that makes the updates shrink by less than this is factorised anew.
+const SLOW: f64 = 0.4;
+/// Limit of iterations with a reused tangent.
+const REUSED: usize = 40;
+
+/// When the tangent of a step is factorised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Newton {
+    /// In every iteration: few iterations, each with a factorisation.
+    #[default]
+    Full,
+    /// Only where the last factorisation, of an iteration or of a step before, converges too slowly.
+    Reused,
+}
+
+/// What the steps cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepperReport {
     /// Steps taken, halved ones included.
     pub steps: usize,
@@ -31,14 +48,22 @@ pub struct StepperReport {
     pub iterations: usize,
     /// Steps that had to be halved.
     pub halved: usize,
+    /// Factorisations of the tangent.
+    pub factorisations: usize,
+    /// Seconds in the rows and the tangent.
+    pub assembly: f64,
+    /// Seconds in factorisations.
+    pub factorisation: f64,
+    /// Seconds in solutions with them.
+    pub solution: f64,
 }
 
 /// State at one instant and the storage to go on from it.
 #[derive(Debug)]
 pub struct Stepper<'m> {
     model: &'m Model,
-    here: Instant,
-    next: Instant,
+    here: Place,
+    next: Place,
     /// Momentum P_kᵀ p_k by coordinate, in the units of an action per coordinate.
     momentum: Vec<f64>,
     /// Rates of the coordinates over the last step, for the first guess.
@@ -47,6 +72,9 @@ pub struct Stepper<'m> {
     scratch: Scratch,
     values: Vec<f64>,
     tangent: Tangent,
+    newton: Newton,
+    /// Step and voltages of the tangent that is factorised.
+    factored: Option<f64>,
     /// Voltages and potentials of the interval.
     scalars: Vec<f64>,
     residual: Vec<f64>,
@@ -93,11 +121,24 @@ impl<'m> Stepper<'m> {
             scratch: model.action.scratch(Level::Hessian),
             values: vec![0.0; layout.values(1)],
             tangent: entries.tangent(size, model.step_symmetry()),
+            newton: Newton::Full,
+            factored: None,
             scalars: vec![0.0; layout.interval_scalars],
             residual: vec![0.0; size],
             scales: (0..size).map(scale).collect(),
             report: StepperReport::default(),
         }
+    }
+
+    /// Chooses when the tangent is factorised.
+    pub fn with(mut self, newton: Newton) -> Self {
+        self.newton = newton;
+        self
+    }
+
+    /// The method that factorises.
+    pub fn solver(&self) -> &'static str {
+        self.tangent.name()
     }
 
     /// Time in ms.
@@ -111,7 +152,7 @@ impl<'m> Stepper<'m> {
     }
 
     /// The instant now.
-    pub fn instant(&self) -> &Instant {
+    pub fn instant(&self) -> &Place {
         &self.here
     }
 
@@ -201,6 +242,15 @@ impl<'m> Stepper<'m> {
             .pull_back(&here.columns, &here.forces, &mut residual[..n]);
     }
 
+    fn factor(&mut self, h: f64) -> Result<(), Singular> {
+        let began = Instant::now();
+        let done = self.tangent.factor(&self.values);
+        self.report.factorisation += began.elapsed().as_secs_f64();
+        self.report.factorisations += 1;
+        self.factored = done.is_ok().then_some(h);
+        done
+    }
+
     /// One Newton solution; accepted only when it converged.
     fn attempt(&mut self, h: f64) -> Result<(), StepError> {
         let n = self.model.action.motion.coordinates;
@@ -213,15 +263,29 @@ impl<'m> Stepper<'m> {
         let driven = self.model.voltages.len();
         let potentials = self.scalars[driven..].to_vec();
         let mut residuals = Vec::with_capacity(ITERATIONS);
-        for _ in 0..ITERATIONS {
+        // A tangent of another step length is another matrix.
+        let mut reused = self.newton == Newton::Reused && self.factored == Some(h);
+        let mut last = f64::INFINITY;
+        let limit = match self.newton {
+            Newton::Full => ITERATIONS,
+            Newton::Reused => REUSED,
+        };
+        for _ in 0..limit {
             self.report.iterations += 1;
-            self.evaluate(Level::Hessian, h);
+            let level = if reused {
+                Level::Gradient
+            } else {
+                Level::Hessian
+            };
+            let began = Instant::now();
+            self.evaluate(level, h);
+            self.report.assembly += began.elapsed().as_secs_f64();
             let norm = self.residual.iter().map(|r| r * r).sum::<f64>().sqrt();
             residuals.push(norm);
             if !norm.is_finite() {
                 break;
             }
-            if let Err(singular) = self.tangent.factor(&self.values) {
+            if !reused && let Err(singular) = self.factor(h) {
                 self.here.z[n..].copy_from_slice(&saved);
                 self.scalars[driven..].copy_from_slice(&potentials);
                 let name = self.model.unknown_name(singular.column);
@@ -231,7 +295,9 @@ impl<'m> Stepper<'m> {
                     name,
                 });
             }
+            let began = Instant::now();
             self.tangent.solve(&mut self.residual);
+            self.report.solution += began.elapsed().as_secs_f64();
             let mut size: f64 = 0.0;
             for (z, update) in self.next.z.iter_mut().zip(&self.residual) {
                 *z -= update;
@@ -242,10 +308,23 @@ impl<'m> Stepper<'m> {
             for (update, scale) in self.residual.iter().zip(&self.scales) {
                 size = size.max((update / scale).abs());
             }
-            if size < UPDATE {
+            // Newton's updates shrink quadratically, those of a reused tangent by a factor.
+            // What a tangent of an earlier step does is not known before its second update.
+            let rate = match last.is_finite() {
+                true => size / last,
+                false if reused => SLOW,
+                false => 0.0,
+            };
+            let is_close = match self.newton {
+                Newton::Full => size < UPDATE,
+                Newton::Reused => size * (rate / (1.0 - rate)).max(size) < UPDATE * UPDATE.sqrt(),
+            };
+            if is_close && (rate < 1.0 || size < UPDATE) {
                 self.accept(h);
                 return Ok(());
             }
+            reused = self.newton == Newton::Reused && (rate < SLOW || last == f64::INFINITY);
+            last = size;
         }
         self.here.z[n..].copy_from_slice(&saved);
         self.scalars[driven..].copy_from_slice(&potentials);

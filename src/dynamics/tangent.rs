@@ -79,6 +79,11 @@ impl Entries {
 }
 
 impl Tangent {
+    /// The method that factorises.
+    pub(super) fn name(&self) -> &'static str {
+        self.solver.method()
+    }
+
     /// Factorises the matrix of these values.
     pub(super) fn factor(&mut self, values: &[f64]) -> Result<(), Singular> {
         self.matrix.fill(0.0);
