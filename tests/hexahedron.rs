@@ -1,5 +1,11 @@
 //! The hexahedron against naive oracles: textbook formulas with loops over dual numbers, shape functions written anew.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "nodes and components are the indices of the formulas"
+)]
+
+#[expect(unreachable_pub, reason = "other tests use it through a module")]
 #[path = "common/random.rs"]
 mod random;
 
@@ -709,7 +715,7 @@ fn patch_test() {
     for volume in [Volume::Pointwise, Volume::Mean] {
         let law = law(volume, DIELECTRIC);
         let mut sums = vec![Vector::zeros(); 16];
-        let mut charges = vec![0.0; 16];
+        let mut charges = [0.0; 16];
         let mut total = 0.0;
         let mut stresses = Vec::new();
         for hexahedron in &hexahedra {
