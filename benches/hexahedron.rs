@@ -54,7 +54,7 @@ fn variations<F: Field>(
                 black_box(&x),
                 potentials,
                 black_box(&mut local),
-            )
+            );
         });
     });
     group.bench_function("tangent", |b| {
@@ -64,7 +64,7 @@ fn variations<F: Field>(
                 black_box(&x),
                 potentials,
                 black_box(&mut local),
-            )
+            );
         });
     });
     group.bench_function("third", |b| {
@@ -137,7 +137,7 @@ fn viscosity(criterion: &mut Criterion) {
                 &v,
                 &x,
                 black_box(&mut contraction),
-            )
+            );
         });
     });
     group.finish();
