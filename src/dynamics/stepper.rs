@@ -9,12 +9,13 @@
 //! with the potentials φ of the interval, which have no inertia, by Gauss's law.
 
 use crate::dynamics::StepError;
+use crate::dynamics::anderson::Anderson;
 use crate::dynamics::tangent::{Entries, Tangent};
 use crate::functional::{Level, Sides};
 use crate::math::Vector;
 use crate::model::Model;
 use crate::reduction::{Instant as Place, Interval, Scratch};
-use crate::sparse::Singular;
+use crate::sparse::{Backend, Singular};
 use std::time::Instant;
 
 /// Limit of Newton iterations in one step.
@@ -24,8 +25,10 @@ const HALVINGS: u32 = 10;
 /// Convergence: the error after a Newton update of relative size δ is of order δ².
 const UPDATE: f64 = 1e-9;
 
+/// Error, by the rate of the updates, that an iteration with a reused tangent leaves.
+const LEFT: f64 = 1e-10;
 /// A reused tangent that makes the updates shrink by less than this is factorised anew.
-const SLOW: f64 = 0.4;
+const SLOW: f64 = 0.75;
 /// Limit of iterations with a reused tangent.
 const REUSED: usize = 40;
 
@@ -37,6 +40,15 @@ pub enum Newton {
     Full,
     /// Only where the last factorisation, of an iteration or of a step before, converges too slowly.
     Reused,
+}
+
+/// How the equations of a step are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Solving {
+    /// When the tangent is factorised.
+    pub newton: Newton,
+    /// Who factorises it; `None`: whoever is fastest as a rule.
+    pub backend: Option<Backend>,
 }
 
 /// What the steps cost.
@@ -66,13 +78,15 @@ pub struct Stepper<'m> {
     next: Place,
     /// Momentum P_kᵀ p_k by coordinate, in the units of an action per coordinate.
     momentum: Vec<f64>,
-    /// Rates of the coordinates over the last step, for the first guess.
+    /// Rates of the coordinates over the last step, and how they changed, for the first guess.
     rates: Vec<f64>,
+    changes: Vec<f64>,
     time: f64,
     scratch: Scratch,
     values: Vec<f64>,
     tangent: Tangent,
     newton: Newton,
+    anderson: Anderson,
     /// Step and voltages of the tangent that is factorised.
     factored: Option<f64>,
     /// Voltages and potentials of the interval.
@@ -84,7 +98,7 @@ pub struct Stepper<'m> {
 
 impl<'m> Stepper<'m> {
     /// Starts at coordinates `z` with the momentum of each coordinate at time zero.
-    pub fn new(model: &'m Model, z: &[f64], momentum: &[f64]) -> Self {
+    pub fn new(model: &'m Model, z: &[f64], momentum: &[f64], solving: Solving) -> Self {
         let motion = &model.action.motion;
         let (n, layout) = (motion.coordinates, model.action.layout());
         let mut entries = Entries::default();
@@ -117,23 +131,19 @@ impl<'m> Stepper<'m> {
             next,
             momentum: momentum.to_vec(),
             rates: vec![0.0; n],
+            changes: vec![0.0; n],
             time: 0.0,
             scratch: model.action.scratch(Level::Hessian),
             values: vec![0.0; layout.values(1)],
-            tangent: entries.tangent(size, model.step_symmetry()),
-            newton: Newton::Full,
+            tangent: entries.tangent(size, model.step_symmetry(), solving.backend),
+            newton: solving.newton,
+            anderson: Anderson::default(),
             factored: None,
             scalars: vec![0.0; layout.interval_scalars],
             residual: vec![0.0; size],
             scales: (0..size).map(scale).collect(),
             report: StepperReport::default(),
         }
-    }
-
-    /// Chooses when the tangent is factorised.
-    pub fn with(mut self, newton: Newton) -> Self {
-        self.newton = newton;
-        self
     }
 
     /// The method that factorises.
@@ -256,7 +266,7 @@ impl<'m> Stepper<'m> {
         let n = self.model.action.motion.coordinates;
         let m = self.model.action.motion.unknowns();
         for i in 0..n {
-            self.next.z[i] = self.here.z[i] + h * self.rates[i];
+            self.next.z[i] = self.here.z[i] + h * (self.rates[i] + self.changes[i]);
         }
         let saved: Vec<f64> = self.here.z[n..].to_vec();
         self.next.z[n..].copy_from_slice(&saved);
@@ -266,6 +276,7 @@ impl<'m> Stepper<'m> {
         // A tangent of another step length is another matrix.
         let mut reused = self.newton == Newton::Reused && self.factored == Some(h);
         let mut last = f64::INFINITY;
+        self.anderson.start();
         let limit = match self.newton {
             Newton::Full => ITERATIONS,
             Newton::Reused => REUSED,
@@ -285,6 +296,9 @@ impl<'m> Stepper<'m> {
             if !norm.is_finite() {
                 break;
             }
+            if !reused {
+                self.anderson.start();
+            }
             if !reused && let Err(singular) = self.factor(h) {
                 self.here.z[n..].copy_from_slice(&saved);
                 self.scalars[driven..].copy_from_slice(&potentials);
@@ -296,17 +310,23 @@ impl<'m> Stepper<'m> {
                 });
             }
             let began = Instant::now();
-            self.tangent.solve(&mut self.residual);
+            match self.newton {
+                Newton::Full => self.tangent.solve(&mut self.residual),
+                Newton::Reused => self.tangent.solve_roughly(&mut self.residual),
+            }
             self.report.solution += began.elapsed().as_secs_f64();
             let mut size: f64 = 0.0;
+            for (update, scale) in self.residual.iter().zip(&self.scales) {
+                size = size.max((update / scale).abs());
+            }
+            if self.newton == Newton::Reused {
+                self.anderson.improve(&mut self.residual);
+            }
             for (z, update) in self.next.z.iter_mut().zip(&self.residual) {
                 *z -= update;
             }
             for (potential, update) in self.scalars[driven..].iter_mut().zip(&self.residual[m..]) {
                 *potential -= update;
-            }
-            for (update, scale) in self.residual.iter().zip(&self.scales) {
-                size = size.max((update / scale).abs());
             }
             // Newton's updates shrink quadratically, those of a reused tangent by a factor.
             // What a tangent of an earlier step does is not known before its second update.
@@ -317,7 +337,7 @@ impl<'m> Stepper<'m> {
             };
             let is_close = match self.newton {
                 Newton::Full => size < UPDATE,
-                Newton::Reused => size * (rate / (1.0 - rate)).max(size) < UPDATE * UPDATE.sqrt(),
+                Newton::Reused => size * (rate / (1.0 - rate)).max(size) < LEFT,
             };
             if is_close && (rate < 1.0 || size < UPDATE) {
                 self.accept(h);
@@ -353,7 +373,14 @@ impl<'m> Stepper<'m> {
             &mut self.momentum,
         );
         for (i, rate) in self.rates.iter_mut().enumerate() {
-            *rate = (self.next.z[i] - self.here.z[i]) / h;
+            let new = (self.next.z[i] - self.here.z[i]) / h;
+            // In the first step nothing is known of the change.
+            self.changes[i] = if self.report.steps > 0 {
+                new - *rate
+            } else {
+                0.0
+            };
+            *rate = new;
         }
         std::mem::swap(&mut self.here, &mut self.next);
         self.time += h;

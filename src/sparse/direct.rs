@@ -175,6 +175,18 @@ impl Direct {
     /// # Panics
     /// No matrix has been factorised, or the last one was singular.
     pub fn solve(&mut self, rhs: &mut [f64]) {
+        self.solve_to(rhs, POOR);
+    }
+
+    /// Solves without a look at the residual, for an iteration that corrects what is lost.
+    ///
+    /// # Panics
+    /// No matrix has been factorised.
+    pub fn solve_roughly(&mut self, rhs: &mut [f64]) {
+        self.solve_to(rhs, f64::INFINITY);
+    }
+
+    fn solve_to(&mut self, rhs: &mut [f64], poor: f64) {
         assert!(self.factored, "factor before solving");
         if rhs.is_empty() {
             return;
@@ -184,7 +196,7 @@ impl Direct {
         }
         self.rhs.copy_from_slice(rhs);
         self.factorisation.solve(rhs);
-        if self.backend != Backend::Dense && self.leaves(rhs) > POOR {
+        if self.backend != Backend::Dense && poor.is_finite() && self.leaves(rhs) > poor {
             self.factorisation.solve(&mut self.residual);
             for (value, correction) in rhs.iter_mut().zip(&self.residual) {
                 *value += correction;
