@@ -3,12 +3,14 @@
 use nalgebra::Vector3;
 
 use crate::dynamics::trajectory::Trajectory;
-use crate::model::system::{Attachment, Joint, System};
+use crate::model::system::{Attachment, Fidelity, Joint, System};
 use crate::report::body::{Tint, draw_back, draw_front, extent_points};
 use crate::report::canvas::{self, Align, Canvas, Place, Stroke};
 use crate::report::colour_bar::colour_bar;
 use crate::report::origin::Origin;
-use crate::report::solids::{Prism, circle};
+use crate::report::skin;
+use crate::report::skins::{Skin, Skins};
+use crate::report::solids::{Prism, circle, slice};
 use crate::report::style::{self, Colour};
 use crate::report::view::View;
 
@@ -24,11 +26,14 @@ const SIDE: f64 = 112.0;
 const LAYERS: usize = 12;
 
 /// `configuration.svg`: first and last instant in axonometric view with y upwards, muscles coloured by
-/// the voltages that hold the last instant (V, one per muscle) or else by those of the last interval, and the path of
-/// each marker.
+/// the voltages that hold the last instant (V, one per muscle) or else by those of the last interval, blocks by the
+/// potentials of the last interval, and the path of each marker.
+///
+/// Of a single instant blocks have their reference configuration behind them.
 pub fn svg(
     system: &System,
     trajectory: &Trajectory,
+    skins: &Skins,
     held: Option<&[f64]>,
     origin: &Origin,
 ) -> String {
@@ -40,13 +45,17 @@ pub fn svg(
         for (body, pose) in system.bodies.iter().zip(&trajectory.poses[k]) {
             points.extend(extent_points(&body.shape, pose));
         }
-        for i in 0..system.muscles.len() {
+        for i in lumped(system) {
             points.extend(Prism::muscle(system, trajectory, k, i).corners());
         }
+        for skin in &skins.list {
+            points.extend(&skin.places[skins.position(k)]);
+        }
     }
-    for marker in &system.markers {
-        points.extend((0..=last).map(|k| trajectory.point(k, &marker.point, system)));
+    if last == 0 {
+        points.extend(skins.list.iter().flat_map(|skin| &skin.reference));
     }
+    points.extend(trajectory.marks.iter().flatten());
     let (view, [width, height]) = view.fitted(&points, [MARGIN, MARGIN], MOST);
     let size = [
         width.max(120.0) + 2.0 * MARGIN + SIDE,
@@ -57,13 +66,16 @@ pub fn svg(
         || trajectory.voltages.last().cloned().unwrap_or(zero),
         <[f64]>::to_vec,
     );
+    let highest = vec![skins.highest()];
     let scale = match held {
-        Some(_) => style::voltage_scale([&last_voltages]),
-        None => style::voltage_scale(&trajectory.voltages),
+        Some(_) => style::voltage_scale([&last_voltages, &highest]),
+        None => style::voltage_scale(trajectory.voltages.iter().chain([&highest])),
     };
+    let is_charged = !system.muscles.is_empty() || skins.list.iter().any(|skin| skin.is_charged);
     let drawing = Drawing {
         system,
         trajectory,
+        skins,
         view,
         voltages: last_voltages,
         is_held: held.is_some(),
@@ -73,14 +85,28 @@ pub fn svg(
         drawing.ground(canvas, &ground);
         if last > 0 {
             drawing.instant(canvas, 0, Tint::Ghost);
+        } else {
+            for skin in &skins.list {
+                drawing.skin(canvas, skin, &skin.reference, Tint::Ghost);
+            }
         }
         drawing.instant(canvas, last, Tint::Coloured);
         drawing.paths(canvas);
         let left = size[0] - SIDE + 14.0;
-        colour_bar(canvas, [left, MARGIN + 14.0], scale);
-        drawing.names(canvas, [left, MARGIN + 168.0], last);
+        let mut top = MARGIN + 14.0;
+        if is_charged {
+            colour_bar(canvas, [left, top], scale);
+            top += 154.0;
+        }
+        drawing.names(canvas, [left, top], last);
         drawing.triad(canvas, [left + 22.0, size[1] - MARGIN - 16.0]);
     })
+}
+
+/// Muscles of one stretch, which are drawn as prisms; the others have surfaces.
+pub(super) fn lumped(system: &System) -> impl Iterator<Item = usize> + '_ {
+    let muscles = system.muscles.iter().enumerate();
+    muscles.filter_map(|(i, m)| (m.fidelity == Fidelity::Lumped).then_some(i))
 }
 
 /// A disc in the ground below the points that are held by it, in mm; empty where nothing is.
@@ -103,9 +129,25 @@ fn ground_plate(system: &System) -> Vec<Vector3<f64>> {
     circle(middle, Vector3::x(), Vector3::z(), radius)
 }
 
+/// What is drawn between the walls of the bodies.
+enum Inside<'a> {
+    Muscle(usize, Prism),
+    Skin(&'a Skin, &'a [Vector3<f64>]),
+}
+
+impl Inside<'_> {
+    fn centre(&self) -> Vector3<f64> {
+        match self {
+            Self::Muscle(_, prism) => prism.centre,
+            Self::Skin(_, places) => places.iter().sum::<Vector3<f64>>() / places.len() as f64,
+        }
+    }
+}
+
 struct Drawing<'a> {
     system: &'a System,
     trajectory: &'a Trajectory,
+    skins: &'a Skins,
     view: View,
     /// Voltages in V that colour the muscles.
     voltages: Vec<f64>,
@@ -134,27 +176,35 @@ impl Drawing<'_> {
         for (body, pose) in &bodies {
             draw_back(canvas, view, &body.shape, pose, tint);
         }
-        let mut muscles: Vec<_> = (0..self.system.muscles.len())
-            .map(|i| (i, Prism::muscle(self.system, self.trajectory, k, i)))
+        let prisms = lumped(self.system).map(|i| {
+            let prism = Prism::muscle(self.system, self.trajectory, k, i);
+            Inside::Muscle(i, prism)
+        });
+        let position = self.skins.position(k);
+        let skins = self.skins.list.iter();
+        let skins = skins.map(|skin| Inside::Skin(skin, &skin.places[position]));
+        let mut inside: Vec<_> = prisms
+            .chain(skins)
+            .map(|inside| (inside.centre(), inside))
             .collect();
-        muscles.sort_by(|(_, a), (_, b)| view.depth(&a.centre).total_cmp(&view.depth(&b.centre)));
-        let axis_depth = |prism: &Prism| {
+        inside.sort_by(|(a, _), (b, _)| view.depth(a).total_cmp(&view.depth(b)));
+        let axis_depth = |centre: &Vector3<f64>| {
             let near = self.joint_places(k).into_iter().min_by(|a, b| {
-                let distance = |p: &Vector3<f64>| (p - prism.centre).norm();
+                let distance = |p: &Vector3<f64>| (p - centre).norm();
                 distance(a).total_cmp(&distance(b))
             });
             near.map_or(f64::NEG_INFINITY, |joint| view.depth(&joint))
         };
-        let (behind, before): (Vec<_>, Vec<_>) = muscles
+        let (behind, before): (Vec<_>, Vec<_>) = inside
             .into_iter()
-            .partition(|(_, prism)| view.depth(&prism.centre) < axis_depth(prism));
-        for (i, prism) in &behind {
-            self.muscle(canvas, prism, self.colour(*i, tint));
-        }
+            .partition(|(centre, _)| view.depth(centre) < axis_depth(centre));
+        let draw = |inside: &Inside<'_>| match inside {
+            Inside::Muscle(i, prism) => self.muscle(canvas, prism, self.colour(*i, tint)),
+            Inside::Skin(skin, places) => self.skin(canvas, skin, places, tint),
+        };
+        behind.iter().for_each(|(_, inside)| draw(inside));
         self.joints(canvas, k, tint);
-        for (i, prism) in &before {
-            self.muscle(canvas, prism, self.colour(*i, tint));
-        }
+        before.iter().for_each(|(_, inside)| draw(inside));
         for (body, pose) in &bodies {
             draw_front(canvas, view, &body.shape, pose, tint);
         }
@@ -166,6 +216,19 @@ impl Drawing<'_> {
             Tint::Ghost => style::GRID,
             Tint::Coloured => style::voltage(self.voltages[muscle].abs() / self.scale),
         }
+    }
+
+    /// The surface of a block, coloured as at the last instant: by its potentials, of a muscle by its voltage.
+    fn skin(&self, canvas: &Canvas<'_>, skin: &Skin, places: &[Vector3<f64>], tint: Tint) {
+        let colour = |quad: &[usize; 4]| match (skin.muscle, skin.potentials.last()) {
+            (Some(muscle), _) => self.colour(muscle, tint),
+            (None, Some(potentials)) if skin.is_charged => {
+                let mean = quad.iter().map(|&corner| potentials[corner]).sum::<f64>() / 4.0;
+                style::voltage(mean / self.scale)
+            }
+            _ => style::PASSIVE,
+        };
+        skin::draw(canvas, &self.view, skin, places, tint, colour);
     }
 
     /// The faces that look at the viewer, lit from the upper left, with lines that hint at the layers.
@@ -226,16 +289,17 @@ impl Drawing<'_> {
     }
 
     fn paths(&self, canvas: &Canvas<'_>) {
-        for marker in &self.system.markers {
-            let path: Vec<_> = (0..self.trajectory.times.len())
-                .map(|k| self.trajectory.point(k, &marker.point, self.system))
-                .collect();
-            let places = self.view.places(&path);
-            canvas.line(&places, Stroke::solid(style::INK, 1.1));
-            if let [first, .., last] = places[..] {
-                let rim = Stroke::solid(style::INK, 1.1);
-                canvas.disc(first, 2.8, style::PAPER, rim);
-                canvas.disc(last, 2.4, style::INK, rim);
+        let rim = Stroke::solid(style::INK, 1.1);
+        for marker in 0..self.system.markers.len() {
+            let places = self.view.places(&self.trajectory.path(marker));
+            canvas.line(&places, rim);
+            match places[..] {
+                [first, .., last] => {
+                    canvas.disc(first, 2.8, style::PAPER, rim);
+                    canvas.disc(last, 2.4, style::INK, rim);
+                }
+                [only] if !self.skins.list.is_empty() => canvas.disc(only, 2.4, style::INK, rim),
+                _ => {}
             }
         }
     }
@@ -253,11 +317,22 @@ impl Drawing<'_> {
             canvas.outline(&corners, Stroke::solid(colour, 0.8));
         };
         let mut rows = vec![];
+        let of_blocks = self.system.bodies.is_empty() && !self.skins.list.is_empty();
         if last > 0 {
             rows.push((format!("at {}", time(0)), style::GHOST));
+        } else if of_blocks {
+            rows.push(("reference".to_owned(), style::GHOST));
         }
         let held = if self.is_held { ", held" } else { "" };
-        rows.push((format!("at {}{held}", time(last)), style::BODY));
+        let now = if of_blocks {
+            style::voltage(0.5)
+        } else {
+            style::BODY
+        };
+        match (last, of_blocks) {
+            (0, true) => rows.push(("at rest".to_owned(), now)),
+            _ => rows.push((format!("at {}{held}", time(last)), now)),
+        }
         for (i, (name, colour)) in rows.iter().enumerate() {
             let at = top + 16.0 * i as f64;
             swatch(at, *colour);
@@ -318,19 +393,4 @@ impl Drawing<'_> {
             Align::Left,
         );
     }
-}
-
-/// The line across a side face at `height` from −1 to 1 along the length of its prism.
-fn slice(
-    corners: &[Vector3<f64>; 4],
-    half: &Vector3<f64>,
-    centre: Vector3<f64>,
-    height: f64,
-) -> Vec<Vector3<f64>> {
-    let at = |p: &Vector3<f64>| (p - centre).dot(half) / half.norm_squared();
-    let edges = (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
-    edges
-        .filter(|(a, b)| (at(a) - height) * (at(b) - height) < 0.0)
-        .map(|(a, b)| a + (b - a) * ((height - at(&a)) / (at(&b) - at(&a))))
-        .collect()
 }
