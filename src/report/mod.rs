@@ -6,6 +6,7 @@ pub mod body;
 pub mod canvas;
 pub mod colour_bar;
 pub mod joints;
+pub mod legend;
 pub mod lines;
 pub mod origin;
 pub mod page;

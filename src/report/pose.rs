@@ -5,10 +5,11 @@ use nalgebra::Vector3;
 use crate::dynamics::trajectory::Trajectory;
 use crate::model::system::{Attachment, Fidelity, Joint, System};
 use crate::report::body::{Tint, draw_back, draw_front, extent_points};
-use crate::report::canvas::{self, Align, Canvas, Place, Stroke};
+use crate::report::canvas::{self, Canvas, Place, Stroke};
 use crate::report::colour_bar::colour_bar;
+use crate::report::legend::{self, Sample};
 use crate::report::origin::Origin;
-use crate::report::skin;
+use crate::report::skin::{self, Paint};
 use crate::report::skins::{Skin, Skins};
 use crate::report::solids::{Prism, circle, slice};
 use crate::report::style::{self, Colour};
@@ -20,8 +21,10 @@ pub const ANGLES: [f64; 2] = [0.5, 0.32];
 const MOST: [f64; 2] = [400.0, 440.0];
 /// Margin around the drawing in pt.
 const MARGIN: f64 = 22.0;
-/// Width of the column with colour bar and names in pt.
+/// Least width of the column with colour bar and names in pt.
 const SIDE: f64 = 112.0;
+/// Height of the colour bar with what is above and below it in pt.
+const BAR: f64 = 154.0;
 /// Lines across a muscle that hint at its layers.
 const LAYERS: usize = 12;
 
@@ -57,10 +60,6 @@ pub fn svg(
     }
     points.extend(trajectory.marks.iter().flatten());
     let (view, [width, height]) = view.fitted(&points, [MARGIN, MARGIN], MOST);
-    let size = [
-        width.max(120.0) + 2.0 * MARGIN + SIDE,
-        height.max(230.0) + 2.0 * MARGIN,
-    ];
     let zero = vec![0.0; system.sources().len()];
     let last_voltages = held.map_or_else(
         || trajectory.voltages.last().cloned().unwrap_or(zero),
@@ -72,7 +71,7 @@ pub fn svg(
         None => style::voltage_scale(trajectory.voltages.iter().chain([&highest])),
     };
     let is_charged = !system.muscles.is_empty() || skins.list.iter().any(|skin| skin.is_charged);
-    let drawing = Drawing {
+    let mut drawing = Drawing {
         system,
         trajectory,
         skins,
@@ -81,6 +80,16 @@ pub fn svg(
         is_held: held.is_some(),
         scale,
     };
+    let names = drawing.names(last);
+    let bar = if is_charged { BAR } else { 0.0 };
+    let beside = bar + legend::ROW * names.len() as f64 + legend::TRIAD;
+    let side = SIDE.max(legend::width(&names) + 22.0);
+    let size = [
+        width.max(120.0) + 2.0 * MARGIN + side,
+        height.max(beside) + 2.0 * MARGIN,
+    ];
+    // What is flat stands in the middle.
+    drawing.view.origin[1] += 0.5 * (size[1] - 2.0 * MARGIN - height);
     canvas::svg(size, origin, |canvas| {
         drawing.ground(canvas, &ground);
         if last > 0 {
@@ -92,14 +101,14 @@ pub fn svg(
         }
         drawing.instant(canvas, last, Tint::Coloured);
         drawing.paths(canvas);
-        let left = size[0] - SIDE + 14.0;
-        let mut top = MARGIN + 14.0;
+        let left = size[0] - side + 14.0;
+        let top = MARGIN + 14.0;
         if is_charged {
             colour_bar(canvas, [left, top], scale);
-            top += 154.0;
         }
-        drawing.names(canvas, [left, top], last);
-        drawing.triad(canvas, [left + 22.0, size[1] - MARGIN - 16.0]);
+        legend::draw(canvas, [left, top + bar], &names);
+        let corner = [left + 22.0, size[1] - MARGIN - 16.0];
+        legend::triad(canvas, &drawing.view, corner);
     })
 }
 
@@ -220,15 +229,16 @@ impl Drawing<'_> {
 
     /// The surface of a block, coloured as at the last instant: by its potentials, of a muscle by its voltage.
     fn skin(&self, canvas: &Canvas<'_>, skin: &Skin, places: &[Vector3<f64>], tint: Tint) {
-        let colour = |quad: &[usize; 4]| match (skin.muscle, skin.potentials.last()) {
-            (Some(muscle), _) => self.colour(muscle, tint),
-            (None, Some(potentials)) if skin.is_charged => {
-                let mean = quad.iter().map(|&corner| potentials[corner]).sum::<f64>() / 4.0;
-                style::voltage(mean / self.scale)
-            }
-            _ => style::PASSIVE,
+        let paint = match (skin.muscle, skin.potentials.last()) {
+            (_, _) if tint == Tint::Ghost => Paint::Ghost,
+            (Some(muscle), _) => Paint::Even(self.colour(muscle, tint)),
+            (None, Some(potentials)) if skin.is_charged => Paint::Potential {
+                potentials,
+                scale: self.scale,
+            },
+            _ => Paint::Even(style::PASSIVE),
         };
-        skin::draw(canvas, &self.view, skin, places, tint, colour);
+        skin::draw(canvas, &self.view, skin, places, paint);
     }
 
     /// The faces that look at the viewer, lit from the upper left, with lines that hint at the layers.
@@ -305,92 +315,40 @@ impl Drawing<'_> {
     }
 
     /// What the drawn things are.
-    fn names(&self, canvas: &Canvas<'_>, [left, top]: Place, last: usize) {
+    fn names(&self, last: usize) -> Vec<(String, Sample)> {
         let time = |k: usize| {
             let seconds = format!("{:.3}", self.trajectory.times[k] / 1e3);
             format!("{} s", seconds.trim_end_matches('0').trim_end_matches('.'))
         };
-        let swatch = |at: f64, colour: Colour| {
-            let corners = [[0.0, -4.0], [14.0, -4.0], [14.0, 4.0], [0.0, 4.0]];
-            let corners = corners.map(|c| [left + c[0], at + c[1]]);
-            canvas.fill(&corners, colour.mix(style::PAPER, 0.55), 1.0);
-            canvas.outline(&corners, Stroke::solid(colour, 0.8));
+        let has_blocks = !self.skins.list.is_empty();
+        let of_blocks = self.system.bodies.is_empty() && has_blocks;
+        let now = match self.skins.list.first() {
+            Some(skin) if of_blocks && skin.is_charged => style::voltage(0.5),
+            Some(_) if of_blocks => style::PASSIVE.mix(style::INK, 0.25),
+            _ => style::BODY,
         };
         let mut rows = vec![];
-        let of_blocks = self.system.bodies.is_empty() && !self.skins.list.is_empty();
-        if last > 0 {
-            rows.push((format!("at {}", time(0)), style::GHOST));
-        } else if of_blocks {
-            rows.push(("reference".to_owned(), style::GHOST));
+        match last {
+            0 if has_blocks => {
+                rows.push(("reference".to_owned(), Sample::Swatch(style::GHOST)));
+                rows.push(("at rest".to_owned(), Sample::Swatch(now)));
+            }
+            _ => {
+                if last > 0 {
+                    let first = format!("at {}", time(0));
+                    rows.push((first, Sample::Swatch(style::GHOST)));
+                }
+                let held = if self.is_held { ", held" } else { "" };
+                let end = format!("at {}{held}", time(last));
+                rows.push((end, Sample::Swatch(now)));
+            }
         }
-        let held = if self.is_held { ", held" } else { "" };
-        let now = if of_blocks {
-            style::voltage(0.5)
-        } else {
-            style::BODY
-        };
-        match (last, of_blocks) {
-            (0, true) => rows.push(("at rest".to_owned(), now)),
-            _ => rows.push((format!("at {}{held}", time(last)), now)),
+        for marker in self.system.markers.iter().take(3) {
+            rows.push(match last {
+                0 if has_blocks => (marker.name.clone(), Sample::Place),
+                _ => (format!("path of {}", marker.name), Sample::Path),
+            });
         }
-        for (i, (name, colour)) in rows.iter().enumerate() {
-            let at = top + 16.0 * i as f64;
-            swatch(at, *colour);
-            canvas.text(
-                [left + 20.0, at],
-                name,
-                style::TICK_SIZE,
-                style::INK,
-                Align::Left,
-            );
-        }
-        for (i, marker) in self.system.markers.iter().enumerate().take(3) {
-            let at = top + 16.0 * (rows.len() + i) as f64;
-            canvas.line(
-                &[[left, at], [left + 14.0, at]],
-                Stroke::solid(style::INK, 1.1),
-            );
-            let name = format!("path of {}", marker.name);
-            canvas.text(
-                [left + 20.0, at],
-                &name,
-                style::TICK_SIZE,
-                style::INK,
-                Align::Left,
-            );
-        }
-    }
-
-    /// The axes of the ground frame, and a bar of a round length.
-    fn triad(&self, canvas: &Canvas<'_>, at: Place) {
-        let unit = View {
-            scale: 24.0,
-            origin: at,
-            ..self.view
-        };
-        for (name, axis) in [
-            ("x", Vector3::x()),
-            ("y", Vector3::y()),
-            ("z", Vector3::z()),
-        ] {
-            canvas.line(&[at, unit.place(&axis)], Stroke::solid(style::MUTED, 1.0));
-            let place = unit.place(&(axis * 1.4));
-            canvas.text(place, name, style::TICK_SIZE, style::INK, Align::Centre);
-        }
-        let rough = 60.0 / self.view.scale;
-        let power = 10_f64.powf(rough.log10().floor());
-        let round = [5.0, 2.0, 1.0].into_iter().find(|m| m * power <= rough);
-        let length = round.unwrap_or(1.0) * power;
-        let (left, top) = (at[0] - 22.0, at[1] - 64.0);
-        let right = left + length * self.view.scale;
-        canvas.line(&[[left, top], [right, top]], Stroke::solid(style::INK, 1.6));
-        let label = format!("{length} mm");
-        canvas.text(
-            [left, top - 10.0],
-            &label,
-            style::TICK_SIZE,
-            style::INK,
-            Align::Left,
-        );
+        rows
     }
 }
