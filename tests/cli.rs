@@ -461,6 +461,103 @@ fn simulations_and_equilibria_answer() {
     );
 }
 
+/// A small version of the clamped stack.
+const COARSE: &str = "scene.solids[0].box.elements=[1,1,8]";
+
+#[test]
+fn blocks_leave_what_is_promised() {
+    let folder = workshop();
+    let path = folder.path();
+    let problem = "problems/clamped_stack_step.json";
+    let short = "simulate.duration=2 ms";
+    let arguments = ["simulate", problem, "--set", COARSE, "--set", short];
+    let (status, out, err) = run(path, &arguments);
+    assert_eq!((status, err.as_str()), (0, ""), "{out}");
+    let results = path.join("results/clamped_stack_step");
+    for file in [
+        "trajectory.pvd",
+        "fields/0000.vtu",
+        "fields/0004.vtu",
+        "configuration.svg",
+        "charge.svg",
+        "energy.svg",
+        "tip_path.svg",
+        "report.html",
+    ] {
+        assert!(results.join(file).is_file(), "{file}");
+    }
+    let told = summary(path, "results/clamped_stack_step");
+    let block = json!({ "nodes": 36, "elements": 8, "unknowns": 88, "potentials": 16 });
+    assert_eq!(told["blocks"]["block"], block);
+    assert_eq!(told["instants_written"], 5);
+    assert!(told["charges"]["block.stack"].as_f64().unwrap() > 1e-7);
+    let effects = told["effects"].as_array().unwrap();
+    let electric = effects
+        .iter()
+        .find(|e| e["name"] == "block electroelasticity");
+    assert_eq!(electric.unwrap()["equations"], 16);
+
+    let problem = "problems/clamped_stack.json";
+    let arguments = ["equilibrium", problem, "--set", COARSE, "-o", "rest"];
+    let (status, out, err) = run(path, &arguments);
+    assert_eq!((status, err.as_str()), (0, ""));
+    assert!(out.contains("stable equilibrium"), "{out}");
+    let (status, inspected, _) = run(path, &["inspect", problem, "--set", COARSE]);
+    assert!(status == 0 && inspected.contains("potentials of an interval"));
+    for file in ["trajectory.pvd", "fields/0000.vtu", "configuration.svg"] {
+        assert!(path.join("rest").join(file).is_file(), "{file}");
+    }
+    assert!(!path.join("rest/fields/0001.vtu").exists());
+}
+
+#[test]
+fn an_equilibrium_that_is_lost_keeps_its_last_state() {
+    let folder = workshop();
+    let path = folder.path();
+    let high = "block.stack=900kV";
+    let file = "problems/clamped_stack.json";
+    let arguments = ["equilibrium", file, "--set", COARSE, "--voltages", high];
+    let arguments = [&arguments[..], &["-o", "lost"]].concat();
+    let (status, out, err) = run(path, &arguments);
+    assert_eq!((status, out.trim()), (1, "no equilibrium"), "{err}");
+    assert_eq!(err.lines().count(), 1);
+    assert!(err.contains("pull-in at ") && err.contains("lost"), "{err}");
+    let told = summary(path, "lost");
+    assert_eq!(told["status"], "pull_in");
+    let reached = told["voltages"]["block.stack"].as_f64().unwrap();
+    let fraction = told["fraction"].as_f64().unwrap();
+    assert!(fraction > 0.1 && fraction < 0.99, "{fraction}");
+    assert!((reached - 9e5 * fraction).abs() < 1e-3);
+    // Layers are 10 mm thick.
+    assert!(told["largest_nominal_field"].as_f64().unwrap() > 0.99 * reached / 0.01);
+    for file in ["trajectory.pvd", "fields/0000.vtu", "configuration.svg"] {
+        assert!(path.join("lost").join(file).is_file(), "{file}");
+    }
+
+    // A motion that ends early is kept as far as it went.
+    let file = "problems/clamped_stack_step.json";
+    let high = "simulate.voltages={\"block.stack\":\"1200 kV\"}";
+    let arguments = ["simulate", file, "--set", COARSE, "--set", high];
+    let (status, _, err) = run(path, &[&arguments[..], &["-o", "early"]].concat());
+    assert_eq!(status, 1, "{err}");
+    assert_eq!(summary(path, "early")["status"], "step_failed");
+    assert!(path.join("early/trajectory.pvd").is_file());
+    assert!(path.join("early/report.html").is_file());
+}
+
+#[test]
+fn a_block_that_floats_is_refused() {
+    let folder = workshop();
+    let loose = "scene.solids[0].fixed=[{\"face\":\"z_min\",\"directions\":[\"z\"]}]";
+    let file = "problems/clamped_stack.json";
+    let arguments = ["equilibrium", file, "--set", COARSE, "--set", loose];
+    refused_run(
+        folder.path(),
+        &[&arguments[..], &["-o", "results"]].concat(),
+        &[file, "block is not held", "costs nothing"],
+    );
+}
+
 /// Whether a kept problem has finite elements, whose derivatives are too many for differences.
 fn has_elements(name: &str) -> bool {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems");

@@ -10,6 +10,7 @@ use proboscis::model::system::{JointKind, Shape, System};
 use proboscis::report::axes::{Axis, Extent};
 use proboscis::report::lines::{LinePlot, Mark, Series};
 use proboscis::report::origin::Origin;
+use proboscis::report::skins::Skins;
 use proboscis::report::{Run, atomic, page, pose, style, table, tip_path, voltages, write_run};
 
 fn origin() -> Origin {
@@ -204,7 +205,7 @@ fn what_is_not_finite_is_not_drawn() {
     for svg in [
         voltages::svg(&system, &trajectory, &origin()),
         tip_path::svg(&system, &[("swing", &trajectory)], &origin()),
-        pose::svg(&system, &trajectory, None, &origin()),
+        pose::svg(&system, &trajectory, &Skins::default(), None, &origin()),
         plot.svg(&origin()),
     ] {
         assert_well_formed(&svg);
@@ -225,7 +226,7 @@ fn every_shape_is_drawn() {
     for (body, shape) in system.bodies.iter_mut().zip(shapes) {
         body.shape = shape;
     }
-    let svg = pose::svg(&system, &trajectory, None, &origin());
+    let svg = pose::svg(&system, &trajectory, &Skins::default(), None, &origin());
     assert_well_formed(&svg);
     assert!(svg.contains("voltage [kV]") && svg.contains("path of tip"));
 }
@@ -289,6 +290,7 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
     let run = Run {
         system: &system,
         trajectory: &trajectory,
+        skins: &Skins::default(),
         name: "swing",
         observations: &observations,
         comparison: Some(("again", &trajectory)),

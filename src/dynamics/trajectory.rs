@@ -1,4 +1,4 @@
-//! What a motion leaves behind: instants, joint coordinates, poses, voltages and observed columns.
+//! What a motion leaves behind: instants, joint coordinates, poses, places of markers, voltages and observed columns.
 
 use nalgebra::Vector3;
 
@@ -16,6 +16,8 @@ pub struct Trajectory {
     pub joints: Vec<Vec<f64>>,
     /// Poses per instant and body.
     pub poses: Vec<Vec<Pose>>,
+    /// Places of the markers in mm, per instant and marker of the system.
+    pub marks: Vec<Vec<Vector3<f64>>>,
     /// Voltages in V, per interval and source.
     pub voltages: Vec<Vec<f64>>,
 }
@@ -41,6 +43,8 @@ impl Trajectory {
                 .joints
                 .push(with_coordinate.map(|(&value, _)| value).collect());
             trajectory.poses.push(model.poses(&instant));
+            let marks = model.markers.iter().map(|&vector| instant.x[vector]);
+            trajectory.marks.push(marks.collect());
         }
         for scalars in &history.scalars {
             let mut voltages = vec![0.0; model.sources.len()];
@@ -58,6 +62,11 @@ impl Trajectory {
             Some(body) => self.poses[k][body].point(&system.bodies[body].pose().local(&point.at)),
             None => point.at,
         }
+    }
+
+    /// Path in mm of a marker of the system, instant by instant.
+    pub fn path(&self, marker: usize) -> Vec<Vector3<f64>> {
+        self.marks.iter().map(|places| places[marker]).collect()
     }
 
     /// Number N of intervals.
@@ -95,10 +104,8 @@ impl Trajectory {
                 values: self.joints.iter().map(|u| u[i]).collect(),
             });
         }
-        for marker in &system.markers {
-            let path: Vec<_> = (0..self.times.len())
-                .map(|k| self.point(k, &marker.point, system))
-                .collect();
+        for (m, marker) in system.markers.iter().enumerate() {
+            let path = self.path(m);
             for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
                 columns.push(Column {
                     name: format!("{}_{axis}", marker.name),

@@ -1,4 +1,4 @@
-//! The motion in space as a plotly figure: bodies as glass, muscles coloured by voltage, a slider over time.
+//! The motion in space as a plotly figure: bodies as glass, muscles and blocks coloured by voltage, a slider over time.
 
 use nalgebra::Vector3;
 use plotly::common::{
@@ -14,39 +14,49 @@ use plotly::{Configuration, Plot, Scatter3D, Traces};
 
 use crate::model::system::Attachment;
 use crate::report::page::{escape, layout, rgb};
-use crate::report::pose::ANGLES;
+use crate::report::pose::{ANGLES, lumped};
+use crate::report::skins::{Skin, shown};
 use crate::report::solids::{Mesh, Prism};
 use crate::report::view::View;
-use crate::report::{Run, style, tip_path};
+use crate::report::{Run, style};
 
-/// Most frames of the animation; a longer motion is shown at evenly spread instants.
-const FRAMES: usize = 80;
 /// Shortest and longest time in ms that a frame stays.
 const PACE: [f64; 2] = [40.0, 120.0];
 /// Why building a button or a step of the slider cannot fail.
 const COMPLETE: &str = "an animation step needs no more than its frame";
 
-/// The figure: a trace of bodies, one of muscles, one of joints, then the marker paths.
+/// The figure: a trace of bodies, one of muscles, one of joints, one of the blocks with potentials and one of those
+/// without where there are any, then the marker paths.
 pub fn plot(run: &Run<'_>) -> Plot {
     let last = run.trajectory.times.len().saturating_sub(1);
-    let stride = last.div_ceil(FRAMES).max(1);
-    let mut instants: Vec<_> = (0..=last).step_by(stride).collect();
-    if instants.last() != Some(&last) {
-        instants.push(last);
-    }
-    let scale = style::voltage_scale(&run.trajectory.voltages) / 1e3;
+    let instants = match run.skins.list.is_empty() {
+        true => shown(last, 0),
+        false => run.skins.instants.clone(),
+    };
+    let highest = vec![run.skins.highest()];
+    let scale = style::voltage_scale(run.trajectory.voltages.iter().chain([&highest])) / 1e3;
     let stage = Stage { run, scale };
+    let kinds = [true, false].map(|is| run.skins.list.iter().any(|skin| skin.is_charged == is));
+    let kinds = [true, false].into_iter().zip(kinds);
+    let kinds: Vec<bool> = kinds.filter_map(|(is, any)| any.then_some(is)).collect();
     let mut plot = Plot::new();
     plot.add_trace(stage.bodies(last));
     plot.add_trace(stage.muscles(last));
     plot.add_trace(stage.joints(last));
+    for &is_charged in &kinds {
+        plot.add_trace(stage.blocks(last, is_charged, true));
+    }
     stage.add_paths(&mut plot);
     for &k in &instants {
         let mut data = Traces::new();
         data.push(stage.bodies(k));
         data.push(stage.muscles(k));
         data.push(stage.joints(k));
-        let frame = Frame::new().name(name(k)).traces(vec![0, 1, 2]);
+        for &is_charged in &kinds {
+            data.push(stage.blocks(k, is_charged, false));
+        }
+        let traces = (0..3 + kinds.len()).collect();
+        let frame = Frame::new().name(name(k)).traces(traces);
         plot.add_frame(frame.data(data));
     }
     let duration = run.trajectory.times.last().unwrap_or(&0.0);
@@ -63,6 +73,8 @@ pub fn plot(run: &Run<'_>) -> Plot {
     plot
 }
 
+type Surface = Mesh3D<f64, f64, f64>;
+
 fn name(k: usize) -> String {
     format!("instant {k}")
 }
@@ -74,7 +86,7 @@ struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    fn bodies(&self, k: usize) -> Box<Mesh3D<f64, f64, f64>> {
+    fn bodies(&self, k: usize) -> Box<Surface> {
         let mut mesh = Mesh::default();
         for (body, pose) in self
             .run
@@ -93,26 +105,30 @@ impl Stage<'_> {
             .hover_info(HoverInfo::Skip)
     }
 
-    fn muscles(&self, k: usize) -> Box<Mesh3D<f64, f64, f64>> {
+    fn muscles(&self, k: usize) -> Box<Surface> {
         let trajectory = self.run.trajectory;
         let voltages = trajectory.voltages.get(k.saturating_sub(1));
         let mut mesh = Mesh::default();
         let mut intensity = Vec::new();
-        for i in 0..self.run.system.muscles.len() {
+        for i in lumped(self.run.system) {
             mesh.add_prism(&Prism::muscle(self.run.system, trajectory, k, i));
             let kilovolts = voltages.map_or(0.0, |v| v[i].abs() / 1e3);
             intensity.resize(mesh.vertices.len(), (kilovolts * 1e4).round() / 1e4);
         }
+        self.by_voltage(surface(&mesh), intensity)
+            .name("muscles")
+            .show_scale(!mesh.vertices.is_empty())
+    }
+
+    /// A surface with colours by voltage in kV.
+    fn by_voltage(&self, mesh: Box<Surface>, kilovolts: Vec<f64>) -> Box<Surface> {
         let stops = (0..=6).map(|i| f64::from(i) / 6.0);
         let colours = stops.map(|s| ColorScaleElement(s, style::voltage(s).hex()));
-        surface(&mesh)
-            .name("muscles")
-            .intensity(intensity)
+        mesh.intensity(kilovolts)
             .intensity_mode(IntensityMode::Vertex)
             .color_scale(ColorScale::Vector(colours.collect()))
             .c_min(0.0)
             .c_max(self.scale)
-            .show_scale(true)
             .color_bar(
                 ColorBar::new()
                     .title("kV")
@@ -123,6 +139,45 @@ impl Stage<'_> {
             .flat_shading(true)
             .lighting(Lighting::new().ambient(0.75).diffuse(0.45).specular(0.1))
             .hover_info(HoverInfo::Skip)
+    }
+
+    /// The blocks that have potentials, or those that have none; frames go without the triangles, which stay.
+    fn blocks(&self, k: usize, is_charged: bool, with_triangles: bool) -> Box<Surface> {
+        let skins = self.run.skins;
+        let position = skins.position(k);
+        let of_kind = |skin: &&Skin| skin.is_charged == is_charged;
+        let (mut mesh, mut kilovolts) = (Mesh::default(), Vec::new());
+        for skin in skins.list.iter().filter(of_kind) {
+            let first = mesh.vertices.len();
+            mesh.vertices.extend(&skin.places[position]);
+            let volts = skin.potentials[position].iter();
+            kilovolts.extend(volts.map(|v| (v * 10.0).round() / 1e4));
+            if with_triangles {
+                for quad in &skin.quads {
+                    let [a, b, c, d] = quad.map(|corner| first + corner);
+                    mesh.triangles.extend([[a, b, c], [a, c, d]]);
+                }
+            }
+        }
+        let surface = match with_triangles {
+            true => surface(&mesh),
+            false => {
+                let [x, y, z] = columns(&mesh.vertices);
+                Mesh3D::new(x, y, z, None, None, None)
+            }
+        };
+        if is_charged {
+            let has_bar = lumped(self.run.system).next().is_none();
+            self.by_voltage(surface, kilovolts)
+                .name("blocks")
+                .show_scale(has_bar)
+        } else {
+            surface
+                .name("passive blocks")
+                .color(rgb(style::PASSIVE))
+                .flat_shading(true)
+                .hover_info(HoverInfo::Skip)
+        }
     }
 
     /// Lines from each joint to the centres of its bodies.
@@ -158,9 +213,8 @@ impl Stage<'_> {
             curves.push((name, trajectory, DashType::Dot, style::MUTED));
         }
         for (name, trajectory, dash, colour) in curves {
-            for marker in &self.run.system.markers {
-                let path = tip_path::path(self.run.system, trajectory, marker);
-                let [x, y, z] = columns(&path);
+            for (m, marker) in self.run.system.markers.iter().enumerate() {
+                let [x, y, z] = columns(&trajectory.path(m));
                 let line = Line::new().color(rgb(colour)).width(3.0).dash(dash.clone());
                 let trace = Scatter3D::new(x, y, z)
                     .name(escape(&format!("{}, {name}", marker.name)))
@@ -185,15 +239,26 @@ impl Stage<'_> {
             {
                 mesh.add_body(&body.shape, pose);
             }
-            for i in 0..self.run.system.muscles.len() {
+            for i in lumped(self.run.system) {
                 mesh.add_prism(&Prism::muscle(self.run.system, self.run.trajectory, k, i));
             }
+            let position = self.run.skins.position(k);
+            for skin in &self.run.skins.list {
+                mesh.vertices.extend(&skin.places[position]);
+            }
         }
-        let axis = |i: usize| {
+        let range = |i: usize| {
             let values = mesh.vertices.iter().map(|p| p[i]).filter(|x| x.is_finite());
-            let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| {
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| {
                 [a.min(x), b.max(x)]
-            });
+            })
+        };
+        let ranges = [0, 1, 2].map(range);
+        let widest = ranges.iter().map(|[low, high]| high - low);
+        // A margin of 10 mm, less where all is small.
+        let margin = (0.2 * widest.fold(0.0, f64::max)).min(10.0);
+        let axis = |i: usize| {
+            let [low, high] = ranges[i];
             let axis = Axis::new()
                 .title(["x [mm]", "y [mm]", "z [mm]"][i])
                 .grid_color(rgb(style::GRID))
@@ -201,7 +266,10 @@ impl Stage<'_> {
             if low > high {
                 return axis;
             }
-            axis.range(vec![(low - 10.0).floor(), (high + 10.0).ceil()])
+            if margin < 10.0 {
+                return axis.range(vec![low - margin, high + margin]);
+            }
+            axis.range(vec![(low - margin).floor(), (high + margin).ceil()])
         };
         let toward = View::axonometric(ANGLES[0], ANGLES[1]).toward * 2.1;
         LayoutScene::new()
@@ -263,14 +331,14 @@ fn buttons(pace: usize) -> UpdateMenu {
         .y_anchor(Anchor::Top)
 }
 
-fn surface(mesh: &Mesh) -> Box<Mesh3D<f64, f64, f64>> {
+fn surface(mesh: &Mesh) -> Box<Surface> {
     let [x, y, z] = columns(&mesh.vertices);
     let corner = |i: usize| Some(mesh.triangles.iter().map(|t| t[i]).collect());
     Mesh3D::new(x, y, z, corner(0), corner(1), corner(2))
 }
 
-/// Coordinates in mm to a hundredth, so that the page stays small.
+/// Coordinates in mm to a thousandth, so that the page stays small.
 fn columns(points: &[Vector3<f64>]) -> [Vec<f64>; 3] {
-    let round = |x: f64| (x * 100.0).round() / 100.0;
+    let round = |x: f64| (x * 1e3).round() / 1e3;
     [0, 1, 2].map(|i| points.iter().map(|p| round(p[i])).collect())
 }

@@ -1,4 +1,4 @@
-//! Joint coordinates and energies over time.
+//! Joint coordinates, charges and energies over time.
 
 use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::model::system::System;
@@ -41,6 +41,30 @@ pub fn svg(system: &System, trajectory: &Trajectory, origin: &Origin) -> String 
         Axis::linear("time [s]", Extent::Tight),
         Axis::linear(label(system, trajectory), Extent::Padded),
         curves(system, trajectory),
+    )
+    .svg(origin)
+}
+
+/// The observed charges of electrodes and muscles over time in s, in µC.
+pub fn charges(trajectory: &Trajectory, observations: &Observations) -> Vec<Series> {
+    let columns = observations.columns.iter();
+    let named = columns.filter_map(|c| Some((c.name.strip_suffix("_charge")?, c)));
+    named
+        .enumerate()
+        .map(|(i, (name, column))| {
+            let instants = trajectory.times.iter().zip(&column.values);
+            let points = instants.map(|(t, q)| [t / 1e3, q * 1e3]).collect();
+            Series::curve(name.replace('_', " "), points, style::hue(i))
+        })
+        .collect()
+}
+
+/// `charge.svg`: the charges over time in s.
+pub fn charge_svg(charges: Vec<Series>, origin: &Origin) -> String {
+    LinePlot::new(
+        Axis::linear("time [s]", Extent::Tight),
+        Axis::linear("charge [µC]", Extent::Padded),
+        charges,
     )
     .svg(origin)
 }

@@ -6,11 +6,14 @@ pub mod body;
 pub mod canvas;
 pub mod colour_bar;
 pub mod joints;
+pub mod legend;
 pub mod lines;
 pub mod origin;
 pub mod page;
 pub mod paraview;
 pub mod pose;
+pub mod skin;
+pub mod skins;
 pub mod solids;
 pub mod style;
 pub mod table;
@@ -24,6 +27,7 @@ use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::model::system::System;
 use crate::report::atomic::WriteError;
 use crate::report::origin::Origin;
+use crate::report::skins::Skins;
 
 /// What there is to show of a run.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +36,8 @@ pub struct Run<'a> {
     pub system: &'a System,
     /// Its motion and voltages.
     pub trajectory: &'a Trajectory,
+    /// Surfaces of its elastic blocks.
+    pub skins: &'a Skins,
     /// Name of the motion in legends, such as `optimal voltages`.
     pub name: &'a str,
     /// What was observed at the instants, see [`Trajectory::observe`]; energies are columns whose name contains `energy`, in N mm.
@@ -55,6 +61,7 @@ pub fn write_run(folder: &Path, run: &Run<'_>) -> Result<Vec<PathBuf>, WriteErro
     let Run {
         system,
         trajectory,
+        skins,
         observations,
         origin,
         ..
@@ -78,7 +85,7 @@ pub fn write_run(folder: &Path, run: &Run<'_>) -> Result<Vec<PathBuf>, WriteErro
         ),
         (
             "configuration.svg",
-            pose::svg(system, trajectory, run.held, origin),
+            pose::svg(system, trajectory, skins, run.held, origin),
         ),
     ];
     if !system.sources().is_empty() {
@@ -89,6 +96,10 @@ pub fn write_run(folder: &Path, run: &Run<'_>) -> Result<Vec<PathBuf>, WriteErro
     }
     if !trajectory.coordinates(system).is_empty() {
         files.push(("joint_angles.svg", joints::svg(system, trajectory, origin)));
+    }
+    let charges = joints::charges(trajectory, observations);
+    if !skins.list.is_empty() && !charges.is_empty() {
+        files.push(("charge.svg", joints::charge_svg(charges, origin)));
     }
     if !energies.is_empty() {
         files.push(("energy.svg", joints::energy_svg(energies, origin)));

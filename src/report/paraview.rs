@@ -98,10 +98,14 @@ pub fn pvd(instants: &[(f64, String)], origin: &Origin) -> String {
 }
 
 /// A motion in a folder: `name_0000.vtu`, `name_0001.vtu`, … and `name.pvd`, which is the file to open.
+///
+/// With a folder for the instants they are `folder/0000.vtu`, `folder/0001.vtu`, …
 #[derive(Clone, Debug)]
 pub struct Series<'a> {
     folder: PathBuf,
     name: String,
+    /// Folder of the instants within `folder`.
+    within: Option<String>,
     origin: &'a Origin,
     instants: Vec<(f64, String)>,
 }
@@ -116,14 +120,29 @@ impl<'a> Series<'a> {
         Ok(Self {
             folder: folder.to_owned(),
             name: name.to_owned(),
+            within: None,
             origin,
             instants: Vec::new(),
         })
     }
 
+    /// The same with the instants in a folder of their own, which is made where it is missing.
+    pub fn within(self, folder: &str) -> Result<Self, WriteError> {
+        let path = self.folder.join(folder);
+        std::fs::create_dir_all(&path).map_err(|cause| WriteError { path, cause })?;
+        Ok(Self {
+            within: Some(folder.to_owned()),
+            ..self
+        })
+    }
+
     /// Writes the solids at a time in s as the next file; its path.
     pub fn add(&mut self, time: f64, grids: &[Grid<'_>]) -> Result<PathBuf, WriteError> {
-        let file = format!("{}_{:04}.vtu", self.name, self.instants.len());
+        let number = self.instants.len();
+        let file = match &self.within {
+            Some(folder) => format!("{folder}/{number:04}.vtu"),
+            None => format!("{}_{number:04}.vtu", self.name),
+        };
         let path = self.folder.join(&file);
         atomic::write(&path, &vtu(grids, self.origin))?;
         self.instants.push((time, file));

@@ -3,12 +3,15 @@
 use nalgebra::Vector3;
 
 use crate::dynamics::trajectory::Trajectory;
-use crate::model::system::{Attachment, Joint, System};
+use crate::model::system::{Attachment, Fidelity, Joint, System};
 use crate::report::body::{Tint, draw_back, draw_front, extent_points};
-use crate::report::canvas::{self, Align, Canvas, Place, Stroke};
+use crate::report::canvas::{self, Canvas, Place, Stroke};
 use crate::report::colour_bar::colour_bar;
+use crate::report::legend::{self, Sample};
 use crate::report::origin::Origin;
-use crate::report::solids::{Prism, circle};
+use crate::report::skin::{self, Paint};
+use crate::report::skins::{Skin, Skins};
+use crate::report::solids::{Prism, circle, slice};
 use crate::report::style::{self, Colour};
 use crate::report::view::View;
 
@@ -18,17 +21,22 @@ pub const ANGLES: [f64; 2] = [0.5, 0.32];
 const MOST: [f64; 2] = [400.0, 440.0];
 /// Margin around the drawing in pt.
 const MARGIN: f64 = 22.0;
-/// Width of the column with colour bar and names in pt.
+/// Least width of the column with colour bar and names in pt.
 const SIDE: f64 = 112.0;
+/// Height of the colour bar with what is above and below it in pt.
+const BAR: f64 = 154.0;
 /// Lines across a muscle that hint at its layers.
 const LAYERS: usize = 12;
 
 /// `configuration.svg`: first and last instant in axonometric view with y upwards, muscles coloured by
-/// the voltages that hold the last instant (V, one per muscle) or else by those of the last interval, and the path of
-/// each marker.
+/// the voltages that hold the last instant (V, one per muscle) or else by those of the last interval, blocks by the
+/// potentials of the last interval, and the path of each marker.
+///
+/// Of a single instant blocks have their reference configuration behind them.
 pub fn svg(
     system: &System,
     trajectory: &Trajectory,
+    skins: &Skins,
     held: Option<&[f64]>,
     origin: &Origin,
 ) -> String {
@@ -40,47 +48,74 @@ pub fn svg(
         for (body, pose) in system.bodies.iter().zip(&trajectory.poses[k]) {
             points.extend(extent_points(&body.shape, pose));
         }
-        for i in 0..system.muscles.len() {
+        for i in lumped(system) {
             points.extend(Prism::muscle(system, trajectory, k, i).corners());
         }
+        for skin in &skins.list {
+            points.extend(&skin.places[skins.position(k)]);
+        }
     }
-    for marker in &system.markers {
-        points.extend((0..=last).map(|k| trajectory.point(k, &marker.point, system)));
+    if last == 0 {
+        points.extend(skins.list.iter().flat_map(|skin| &skin.reference));
     }
+    points.extend(trajectory.marks.iter().flatten());
     let (view, [width, height]) = view.fitted(&points, [MARGIN, MARGIN], MOST);
-    let size = [
-        width.max(120.0) + 2.0 * MARGIN + SIDE,
-        height.max(230.0) + 2.0 * MARGIN,
-    ];
     let zero = vec![0.0; system.sources().len()];
     let last_voltages = held.map_or_else(
         || trajectory.voltages.last().cloned().unwrap_or(zero),
         <[f64]>::to_vec,
     );
+    let highest = vec![skins.highest()];
     let scale = match held {
-        Some(_) => style::voltage_scale([&last_voltages]),
-        None => style::voltage_scale(&trajectory.voltages),
+        Some(_) => style::voltage_scale([&last_voltages, &highest]),
+        None => style::voltage_scale(trajectory.voltages.iter().chain([&highest])),
     };
-    let drawing = Drawing {
+    let is_charged = !system.muscles.is_empty() || skins.list.iter().any(|skin| skin.is_charged);
+    let mut drawing = Drawing {
         system,
         trajectory,
+        skins,
         view,
         voltages: last_voltages,
         is_held: held.is_some(),
         scale,
     };
+    let names = drawing.names(last);
+    let bar = if is_charged { BAR } else { 0.0 };
+    let beside = bar + legend::ROW * names.len() as f64 + legend::TRIAD;
+    let side = SIDE.max(legend::width(&names) + 22.0);
+    let size = [
+        width.max(120.0) + 2.0 * MARGIN + side,
+        height.max(beside) + 2.0 * MARGIN,
+    ];
+    // What is flat stands in the middle.
+    drawing.view.origin[1] += 0.5 * (size[1] - 2.0 * MARGIN - height);
     canvas::svg(size, origin, |canvas| {
         drawing.ground(canvas, &ground);
         if last > 0 {
             drawing.instant(canvas, 0, Tint::Ghost);
+        } else {
+            for skin in &skins.list {
+                drawing.skin(canvas, skin, &skin.reference, Tint::Ghost);
+            }
         }
         drawing.instant(canvas, last, Tint::Coloured);
         drawing.paths(canvas);
-        let left = size[0] - SIDE + 14.0;
-        colour_bar(canvas, [left, MARGIN + 14.0], scale);
-        drawing.names(canvas, [left, MARGIN + 168.0], last);
-        drawing.triad(canvas, [left + 22.0, size[1] - MARGIN - 16.0]);
+        let left = size[0] - side + 14.0;
+        let top = MARGIN + 14.0;
+        if is_charged {
+            colour_bar(canvas, [left, top], scale);
+        }
+        legend::draw(canvas, [left, top + bar], &names);
+        let corner = [left + 22.0, size[1] - MARGIN - 16.0];
+        legend::triad(canvas, &drawing.view, corner);
     })
+}
+
+/// Muscles of one stretch, which are drawn as prisms; the others have surfaces.
+pub(super) fn lumped(system: &System) -> impl Iterator<Item = usize> + '_ {
+    let muscles = system.muscles.iter().enumerate();
+    muscles.filter_map(|(i, m)| (m.fidelity == Fidelity::Lumped).then_some(i))
 }
 
 /// A disc in the ground below the points that are held by it, in mm; empty where nothing is.
@@ -103,9 +138,25 @@ fn ground_plate(system: &System) -> Vec<Vector3<f64>> {
     circle(middle, Vector3::x(), Vector3::z(), radius)
 }
 
+/// What is drawn between the walls of the bodies.
+enum Inside<'a> {
+    Muscle(usize, Prism),
+    Skin(&'a Skin, &'a [Vector3<f64>]),
+}
+
+impl Inside<'_> {
+    fn centre(&self) -> Vector3<f64> {
+        match self {
+            Self::Muscle(_, prism) => prism.centre,
+            Self::Skin(_, places) => places.iter().sum::<Vector3<f64>>() / places.len() as f64,
+        }
+    }
+}
+
 struct Drawing<'a> {
     system: &'a System,
     trajectory: &'a Trajectory,
+    skins: &'a Skins,
     view: View,
     /// Voltages in V that colour the muscles.
     voltages: Vec<f64>,
@@ -134,27 +185,35 @@ impl Drawing<'_> {
         for (body, pose) in &bodies {
             draw_back(canvas, view, &body.shape, pose, tint);
         }
-        let mut muscles: Vec<_> = (0..self.system.muscles.len())
-            .map(|i| (i, Prism::muscle(self.system, self.trajectory, k, i)))
+        let prisms = lumped(self.system).map(|i| {
+            let prism = Prism::muscle(self.system, self.trajectory, k, i);
+            Inside::Muscle(i, prism)
+        });
+        let position = self.skins.position(k);
+        let skins = self.skins.list.iter();
+        let skins = skins.map(|skin| Inside::Skin(skin, &skin.places[position]));
+        let mut inside: Vec<_> = prisms
+            .chain(skins)
+            .map(|inside| (inside.centre(), inside))
             .collect();
-        muscles.sort_by(|(_, a), (_, b)| view.depth(&a.centre).total_cmp(&view.depth(&b.centre)));
-        let axis_depth = |prism: &Prism| {
+        inside.sort_by(|(a, _), (b, _)| view.depth(a).total_cmp(&view.depth(b)));
+        let axis_depth = |centre: &Vector3<f64>| {
             let near = self.joint_places(k).into_iter().min_by(|a, b| {
-                let distance = |p: &Vector3<f64>| (p - prism.centre).norm();
+                let distance = |p: &Vector3<f64>| (p - centre).norm();
                 distance(a).total_cmp(&distance(b))
             });
             near.map_or(f64::NEG_INFINITY, |joint| view.depth(&joint))
         };
-        let (behind, before): (Vec<_>, Vec<_>) = muscles
+        let (behind, before): (Vec<_>, Vec<_>) = inside
             .into_iter()
-            .partition(|(_, prism)| view.depth(&prism.centre) < axis_depth(prism));
-        for (i, prism) in &behind {
-            self.muscle(canvas, prism, self.colour(*i, tint));
-        }
+            .partition(|(centre, _)| view.depth(centre) < axis_depth(centre));
+        let draw = |inside: &Inside<'_>| match inside {
+            Inside::Muscle(i, prism) => self.muscle(canvas, prism, self.colour(*i, tint)),
+            Inside::Skin(skin, places) => self.skin(canvas, skin, places, tint),
+        };
+        behind.iter().for_each(|(_, inside)| draw(inside));
         self.joints(canvas, k, tint);
-        for (i, prism) in &before {
-            self.muscle(canvas, prism, self.colour(*i, tint));
-        }
+        before.iter().for_each(|(_, inside)| draw(inside));
         for (body, pose) in &bodies {
             draw_front(canvas, view, &body.shape, pose, tint);
         }
@@ -166,6 +225,20 @@ impl Drawing<'_> {
             Tint::Ghost => style::GRID,
             Tint::Coloured => style::voltage(self.voltages[muscle].abs() / self.scale),
         }
+    }
+
+    /// The surface of a block, coloured as at the last instant: by its potentials, of a muscle by its voltage.
+    fn skin(&self, canvas: &Canvas<'_>, skin: &Skin, places: &[Vector3<f64>], tint: Tint) {
+        let paint = match (skin.muscle, skin.potentials.last()) {
+            (_, _) if tint == Tint::Ghost => Paint::Ghost,
+            (Some(muscle), _) => Paint::Even(self.colour(muscle, tint)),
+            (None, Some(potentials)) if skin.is_charged => Paint::Potential {
+                potentials,
+                scale: self.scale,
+            },
+            _ => Paint::Even(style::PASSIVE),
+        };
+        skin::draw(canvas, &self.view, skin, places, paint);
     }
 
     /// The faces that look at the viewer, lit from the upper left, with lines that hint at the layers.
@@ -226,111 +299,56 @@ impl Drawing<'_> {
     }
 
     fn paths(&self, canvas: &Canvas<'_>) {
-        for marker in &self.system.markers {
-            let path: Vec<_> = (0..self.trajectory.times.len())
-                .map(|k| self.trajectory.point(k, &marker.point, self.system))
-                .collect();
-            let places = self.view.places(&path);
-            canvas.line(&places, Stroke::solid(style::INK, 1.1));
-            if let [first, .., last] = places[..] {
-                let rim = Stroke::solid(style::INK, 1.1);
-                canvas.disc(first, 2.8, style::PAPER, rim);
-                canvas.disc(last, 2.4, style::INK, rim);
+        let rim = Stroke::solid(style::INK, 1.1);
+        for marker in 0..self.system.markers.len() {
+            let places = self.view.places(&self.trajectory.path(marker));
+            canvas.line(&places, rim);
+            match places[..] {
+                [first, .., last] => {
+                    canvas.disc(first, 2.8, style::PAPER, rim);
+                    canvas.disc(last, 2.4, style::INK, rim);
+                }
+                [only] if !self.skins.list.is_empty() => canvas.disc(only, 2.4, style::INK, rim),
+                _ => {}
             }
         }
     }
 
     /// What the drawn things are.
-    fn names(&self, canvas: &Canvas<'_>, [left, top]: Place, last: usize) {
+    fn names(&self, last: usize) -> Vec<(String, Sample)> {
         let time = |k: usize| {
             let seconds = format!("{:.3}", self.trajectory.times[k] / 1e3);
             format!("{} s", seconds.trim_end_matches('0').trim_end_matches('.'))
         };
-        let swatch = |at: f64, colour: Colour| {
-            let corners = [[0.0, -4.0], [14.0, -4.0], [14.0, 4.0], [0.0, 4.0]];
-            let corners = corners.map(|c| [left + c[0], at + c[1]]);
-            canvas.fill(&corners, colour.mix(style::PAPER, 0.55), 1.0);
-            canvas.outline(&corners, Stroke::solid(colour, 0.8));
+        let has_blocks = !self.skins.list.is_empty();
+        let of_blocks = self.system.bodies.is_empty() && has_blocks;
+        let now = match self.skins.list.first() {
+            Some(skin) if of_blocks && skin.is_charged => style::voltage(0.5),
+            Some(_) if of_blocks => style::PASSIVE.mix(style::INK, 0.25),
+            _ => style::BODY,
         };
         let mut rows = vec![];
-        if last > 0 {
-            rows.push((format!("at {}", time(0)), style::GHOST));
+        match last {
+            0 if has_blocks => {
+                rows.push(("reference".to_owned(), Sample::Swatch(style::GHOST)));
+                rows.push(("at rest".to_owned(), Sample::Swatch(now)));
+            }
+            _ => {
+                if last > 0 {
+                    let first = format!("at {}", time(0));
+                    rows.push((first, Sample::Swatch(style::GHOST)));
+                }
+                let held = if self.is_held { ", held" } else { "" };
+                let end = format!("at {}{held}", time(last));
+                rows.push((end, Sample::Swatch(now)));
+            }
         }
-        let held = if self.is_held { ", held" } else { "" };
-        rows.push((format!("at {}{held}", time(last)), style::BODY));
-        for (i, (name, colour)) in rows.iter().enumerate() {
-            let at = top + 16.0 * i as f64;
-            swatch(at, *colour);
-            canvas.text(
-                [left + 20.0, at],
-                name,
-                style::TICK_SIZE,
-                style::INK,
-                Align::Left,
-            );
+        for marker in self.system.markers.iter().take(3) {
+            rows.push(match last {
+                0 if has_blocks => (marker.name.clone(), Sample::Place),
+                _ => (format!("path of {}", marker.name), Sample::Path),
+            });
         }
-        for (i, marker) in self.system.markers.iter().enumerate().take(3) {
-            let at = top + 16.0 * (rows.len() + i) as f64;
-            canvas.line(
-                &[[left, at], [left + 14.0, at]],
-                Stroke::solid(style::INK, 1.1),
-            );
-            let name = format!("path of {}", marker.name);
-            canvas.text(
-                [left + 20.0, at],
-                &name,
-                style::TICK_SIZE,
-                style::INK,
-                Align::Left,
-            );
-        }
+        rows
     }
-
-    /// The axes of the ground frame, and a bar of a round length.
-    fn triad(&self, canvas: &Canvas<'_>, at: Place) {
-        let unit = View {
-            scale: 24.0,
-            origin: at,
-            ..self.view
-        };
-        for (name, axis) in [
-            ("x", Vector3::x()),
-            ("y", Vector3::y()),
-            ("z", Vector3::z()),
-        ] {
-            canvas.line(&[at, unit.place(&axis)], Stroke::solid(style::MUTED, 1.0));
-            let place = unit.place(&(axis * 1.4));
-            canvas.text(place, name, style::TICK_SIZE, style::INK, Align::Centre);
-        }
-        let rough = 60.0 / self.view.scale;
-        let power = 10_f64.powf(rough.log10().floor());
-        let round = [5.0, 2.0, 1.0].into_iter().find(|m| m * power <= rough);
-        let length = round.unwrap_or(1.0) * power;
-        let (left, top) = (at[0] - 22.0, at[1] - 64.0);
-        let right = left + length * self.view.scale;
-        canvas.line(&[[left, top], [right, top]], Stroke::solid(style::INK, 1.6));
-        let label = format!("{length} mm");
-        canvas.text(
-            [left, top - 10.0],
-            &label,
-            style::TICK_SIZE,
-            style::INK,
-            Align::Left,
-        );
-    }
-}
-
-/// The line across a side face at `height` from −1 to 1 along the length of its prism.
-fn slice(
-    corners: &[Vector3<f64>; 4],
-    half: &Vector3<f64>,
-    centre: Vector3<f64>,
-    height: f64,
-) -> Vec<Vector3<f64>> {
-    let at = |p: &Vector3<f64>| (p - centre).dot(half) / half.norm_squared();
-    let edges = (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
-    edges
-        .filter(|(a, b)| (at(a) - height) * (at(b) - height) < 0.0)
-        .map(|(a, b)| a + (b - a) * ((height - at(&a)) / (at(&b) - at(&a))))
-        .collect()
 }

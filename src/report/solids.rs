@@ -127,6 +127,21 @@ fn section_axes(
     (a, along.cross(&a))
 }
 
+/// The line across a side face at `height` from −1 to 1 along the length of its prism.
+pub(super) fn slice(
+    corners: &[Vector3<f64>; 4],
+    half: &Vector3<f64>,
+    centre: Vector3<f64>,
+    height: f64,
+) -> Vec<Vector3<f64>> {
+    let at = |p: &Vector3<f64>| (p - centre).dot(half) / half.norm_squared();
+    let edges = (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
+    edges
+        .filter(|(a, b)| (at(a) - height) * (at(b) - height) < 0.0)
+        .map(|(a, b)| a + (b - a) * ((height - at(&a)) / (at(&b) - at(&a))))
+        .collect()
+}
+
 /// Vertices in mm and triangles of a surface.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {

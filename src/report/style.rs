@@ -27,6 +27,8 @@ pub const GRID: Colour = Colour(0xe6, 0xe8, 0xeb);
 pub const PAPER: Colour = Colour(0xff, 0xff, 0xff);
 /// Rigid bodies.
 pub const BODY: Colour = Colour(0x6f, 0x8f, 0xb0);
+/// Elastic blocks without potentials.
+pub const PASSIVE: Colour = Colour(0xd9, 0xcf, 0xbc);
 /// The initial configuration.
 pub const GHOST: Colour = Colour(0xc4, 0xc8, 0xcd);
 

@@ -3,18 +3,11 @@
 use nalgebra::Vector3;
 
 use crate::dynamics::trajectory::Trajectory;
-use crate::model::system::{Marker, System};
+use crate::model::system::System;
 use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{Aspect, LinePlot, Mark, Series};
 use crate::report::origin::Origin;
 use crate::report::style;
-
-/// Places in mm of a marker at all instants.
-pub fn path(system: &System, trajectory: &Trajectory, marker: &Marker) -> Vec<Vector3<f64>> {
-    (0..trajectory.times.len())
-        .map(|k| trajectory.point(k, &marker.point, system))
-        .collect()
-}
 
 /// The two axes of largest extent, horizontal first: y is never horizontal, and x goes before z.
 fn plane<'a>(points: impl Iterator<Item = &'a Vector3<f64>>) -> [usize; 2] {
@@ -44,8 +37,8 @@ pub fn svg(system: &System, trajectories: &[(&str, &Trajectory)], origin: &Origi
     let paths: Vec<_> = trajectories
         .iter()
         .map(|(name, trajectory)| {
-            let markers = system.markers.iter();
-            let paths: Vec<_> = markers.map(|m| path(system, trajectory, m)).collect();
+            let markers = 0..system.markers.len();
+            let paths: Vec<_> = markers.map(|m| trajectory.path(m)).collect();
             (name, paths)
         })
         .collect();

@@ -8,7 +8,7 @@ use crate::control::problem::{
 use crate::control::{Row, Transcription, Variable};
 use crate::model::{Coordinates, Model};
 use crate::nlp::{Nlp, differences};
-use crate::run::effects::effect_counts;
+use crate::run::effects;
 use crate::run::error::RunError;
 use crate::run::request::{Request, Told};
 use crate::run::solve::{Prepared, prepare, resolve};
@@ -86,11 +86,7 @@ fn coupling(program: &Transcription<'_>, model: &Model, row: &str, column: &str)
     let (Some(i), Some(j)) = (entry(row), entry(column)) else {
         return Vec::new();
     };
-    let effects = effect_counts(model).unwrap_or_default().into_iter();
-    effects
-        .filter(|effect| effect.pairs.contains(&(i, j)))
-        .map(|effect| effect.name)
-        .collect()
+    effects::coupling(model, i, j)
 }
 
 /// The control problem whose program has the derivatives of a task.

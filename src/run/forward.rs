@@ -9,9 +9,12 @@ use crate::dynamics::observations;
 use crate::dynamics::simulate;
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
+use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
+use crate::run::blocks::Blocks;
 use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
+use crate::run::fields;
 use crate::run::motion::{solved, trajectory};
 use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
@@ -74,6 +77,10 @@ pub(super) fn simulation(
         history.report,
     ));
     summary.effects = effects;
+    let observed = observations(&model, &history);
+    let origin = request.origin(false);
+    let written = fields::write(&folder, &model, &history, &origin)?;
+    summary.blocks = Blocks::of(&model).map(|b| b.after(&model, &observed, written));
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),
         setup,
@@ -95,11 +102,12 @@ pub(super) fn simulation(
     let run = Run {
         system,
         trajectory: &motion,
+        skins: &Skins::new(&model, &history),
         name: "simulation",
-        observations: &observations(&model, &history),
+        observations: &observed,
         comparison: None,
         held: None,
-        origin: &request.origin(false),
+        origin: &origin,
         title: "Simulation",
         summary: &rows,
     };

@@ -7,6 +7,7 @@ use crate::model::{Model, System};
 use crate::nlp::Nlp;
 use crate::report::atomic;
 use crate::report::table;
+use crate::run::blocks::Blocks;
 use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
 use crate::run::request::{Request, Told};
@@ -89,6 +90,13 @@ fn of_model(file: &Path, model: &Model) -> Result<String, RunError> {
     ];
     if !system.solids.is_empty() {
         sizes.insert(3, ("elastic blocks", system.solids.len()));
+    }
+    if let Some(blocks) = Blocks::of(model) {
+        sizes.extend([
+            ("potentials of an interval", blocks.potentials),
+            ("nodes", blocks.nodes),
+            ("elements", blocks.elements),
+        ]);
     }
     Ok(format!(
         "{}, {} coordinates\n\n{}\n{}",

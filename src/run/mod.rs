@@ -1,13 +1,15 @@
 //! What the program does with a problem file: solve, simulate, rest, inspect, check, and the files it leaves.
 //!
 //! - `solve`, `forward`, `rest`: the three tasks; `task` chooses what a file asks for.
-//! - `motion`, `resimulate`, `violations`, `effects`: what is read from a result.
-//! - `solution_file`, `summary`: the two JSON files; figures, tables and page are written by [`report`](crate::report).
+//! - `motion`, `resimulate`, `violations`, `effects`, `blocks`: what is read from a scene or a result.
+//! - `solution_file`, `summary`: the two JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
 //! - `inspect`, `spy`, `check`, `starter`: the other commands.
 
+mod blocks;
 mod check;
 mod effects;
 mod error;
+mod fields;
 mod forward;
 mod inspect;
 mod motion;
@@ -23,6 +25,7 @@ mod summary;
 mod task;
 mod violations;
 
+pub use blocks::{BlockSize, Blocks};
 pub use check::check;
 pub use effects::{EffectCounts, effect_counts};
 pub use error::RunError;

@@ -1,8 +1,9 @@
 //! From coordinates and multipliers to what people look at: poses, joint coordinates, voltages by muscle.
 
 use crate::control::{Costates, Solved};
-use crate::dynamics::trajectory::{Observations, Trajectory};
-use crate::dynamics::{History, observations};
+use crate::dynamics::History;
+use crate::dynamics::trajectory::Trajectory;
+use crate::math::Vector;
 use crate::model::system::{Joint, JointKind};
 use crate::model::{JointGauge, Model};
 
@@ -54,8 +55,20 @@ pub fn trajectory(model: &Model, solved: &Solved) -> Trajectory {
         times: solved.times.clone(),
         joints: solved.joints.iter().map(shown).collect(),
         poses: solved.poses.clone(),
+        marks: marks(model, &solved.z),
         voltages: solved.voltages.clone(),
     }
+}
+
+/// Places of the markers at instants with coordinates z.
+fn marks(model: &Model, z: &[Vec<f64>]) -> Vec<Vec<Vector>> {
+    let mut instant = model.action.motion.instant();
+    let mut at = |z: &Vec<f64>| {
+        instant.z.copy_from_slice(z);
+        model.action.motion.place(&mut instant);
+        model.markers.iter().map(|&v| instant.x[v]).collect()
+    };
+    z.iter().map(&mut at).collect()
 }
 
 /// Potentials of a motion by interval; none where a scene has none.
@@ -79,13 +92,12 @@ pub(super) fn scalars(model: &Model, kept: &Solved) -> Vec<Vec<f64>> {
     kept.voltages.iter().enumerate().map(row).collect()
 }
 
-/// What is observed at the instants of a motion that is kept.
-pub(super) fn observed(model: &Model, kept: &Solved) -> Observations {
-    let history = History {
+/// The record of a motion that is kept.
+pub(super) fn history(model: &Model, kept: &Solved) -> History {
+    History {
         times: kept.times.clone(),
         z: kept.z.clone(),
         scalars: scalars(model, kept),
         ..History::default()
-    };
-    observations(model, &history)
+    }
 }

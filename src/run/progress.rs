@@ -1,6 +1,6 @@
 //! Progress on standard error: the iterations of a solve, the steps of a simulation.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -19,6 +19,7 @@ pub enum Shown {
 #[derive(Debug)]
 pub(super) struct Progress {
     bar: ProgressBar,
+    began: Instant,
 }
 
 impl Progress {
@@ -27,14 +28,21 @@ impl Progress {
         let bar = target(ProgressBar::no_length(), shown);
         bar.set_style(style("{spinner} {elapsed_precise} {msg}"));
         bar.enable_steady_tick(Duration::from_millis(120));
-        Self { bar }
+        Self::starting(bar)
     }
 
     /// A simulation of `steps` steps.
     pub(super) fn of_steps(shown: Shown, steps: usize) -> Self {
         let bar = target(ProgressBar::new(steps as u64), shown);
-        bar.set_style(style("{elapsed_precise} {wide_bar} step {pos} of {len}"));
-        Self { bar }
+        bar.set_style(style(
+            "{elapsed_precise} {wide_bar} step {pos} of {len} {msg}",
+        ));
+        Self::starting(bar)
+    }
+
+    fn starting(bar: ProgressBar) -> Self {
+        let began = Instant::now();
+        Self { bar, began }
     }
 
     /// An iterate was accepted.
@@ -52,6 +60,11 @@ impl Progress {
     /// Step `step` is done.
     pub(super) fn step(&self, step: usize) {
         self.bar.set_position(step as u64);
+        let seconds = self.began.elapsed().as_secs_f64() / step.max(1) as f64;
+        // Short steps are too many to watch.
+        if seconds > 0.01 {
+            self.bar.set_message(format!("({seconds:.2} s each)"));
+        }
     }
 }
 

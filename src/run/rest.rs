@@ -1,20 +1,25 @@
 //! A static equilibrium: joint coordinates, marker places, stiffness.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::control::Solved;
 use crate::control::problem::Task;
-use crate::dynamics::{Equilibrium, History, equilibrium};
-use crate::model::system::{Joint, JointKind, Marker};
+use crate::dynamics::trajectory::Trajectory;
+use crate::dynamics::{
+    Equilibrium, EquilibriumError, History, Instability, equilibrium, observations,
+};
+use crate::model::system::{Joint, JointKind};
 use crate::model::{Coordinates, Model, System};
 use crate::report::atomic;
+use crate::report::skins::Skins;
 use crate::report::{pose, table};
+use crate::run::blocks::Blocks;
 use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
+use crate::run::fields;
 use crate::run::inspect::key;
-use crate::run::motion::{has_coordinate, solved, trajectory};
+use crate::run::motion::{has_coordinate, solved};
 use crate::run::request::{Request, Told};
 use crate::run::solve::make_folder;
 use crate::run::summary::{Rest, Seconds, Summary};
@@ -33,12 +38,24 @@ pub fn equilibrium_of_file(
     if let Some(voltages) = voltages {
         let system = read_system(&request.input, &request.set)?;
         let voltages = driven_voltages(voltages, &system)?;
-        return at(request, &system, &voltages, None, began);
+        let asked = Asked {
+            system: &system,
+            voltages: &voltages,
+            coordinates: None,
+            folder: request.output.clone(),
+        };
+        return at(request, &asked, began);
     }
     let loaded = read_problem(&request.input, &request.set)?;
     match &loaded.task {
         Task::Equilibrium(voltages, coordinates) => {
-            at(request, &loaded.system, voltages, *coordinates, began)
+            let asked = Asked {
+                system: &loaded.system,
+                voltages,
+                coordinates: *coordinates,
+                folder: request.output.clone(),
+            };
+            at(request, &asked, began)
         }
         other => Err(RunError::Problem {
             file: request.input.clone(),
@@ -48,21 +65,45 @@ pub fn equilibrium_of_file(
     }
 }
 
-/// Finds the equilibrium under voltages (V, one per muscle); writes files where a folder was asked for.
-pub(super) fn at(
-    request: &Request,
-    system: &System,
-    voltages: &[f64],
-    coordinates: Option<Coordinates>,
-    began: Instant,
-) -> Result<Told, RunError> {
+/// An equilibrium that is looked for.
+pub(super) struct Asked<'a> {
+    pub(super) system: &'a System,
+    /// Voltages in V by source.
+    pub(super) voltages: &'a [f64],
+    pub(super) coordinates: Option<Coordinates>,
+    /// Where files go, if anywhere.
+    pub(super) folder: Option<PathBuf>,
+}
+
+/// Finds the equilibrium under voltages; where it is lost on the way there, the last one is kept.
+pub(super) fn at(request: &Request, asked: &Asked<'_>, began: Instant) -> Result<Told, RunError> {
     let wrong = |error| RunError::boundary(&request.input, "equilibrium", &error);
-    let model =
-        Model::new(system.clone(), coordinates, 1.0, &[]).map_err(|error| wrong(error.into()))?;
+    let model = Model::new(asked.system.clone(), asked.coordinates, 1.0, &[])
+        .map_err(|error| wrong(error.into()))?;
     let setup = began.elapsed().as_secs_f64();
     let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
-    let found = match equilibrium(&model, &zero, &model.scalars(voltages)) {
-        Ok(found) => found,
+    let (status, found, failure) = match equilibrium(&model, &zero, &model.scalars(asked.voltages))
+    {
+        Ok(found) => ("at_rest", found, None),
+        Err(EquilibriumError::LimitPoint {
+            fraction,
+            kind,
+            last,
+        }) => {
+            let end = End {
+                fraction,
+                kind,
+                field: None,
+            };
+            (end.status(), *last, Some(end))
+        }
+        Err(error @ EquilibriumError::Floating { .. }) => {
+            return Err(RunError::Problem {
+                file: request.input.clone(),
+                place: "equilibrium".to_owned(),
+                reason: error.to_string(),
+            });
+        }
         Err(error) => {
             return Ok(Told {
                 is_solved: false,
@@ -71,63 +112,121 @@ pub(super) fn at(
             });
         }
     };
+    let n = model.coordinate_count();
     let state = History {
         times: vec![0.0],
         z: vec![found.z.clone()],
+        momenta: vec![vec![0.0; n]],
+        scalars: vec![found.scalars.clone()],
         ..History::default()
     };
-    let state = solved(&model, &state, None);
-    let rest = describe(&model, &state, &found);
-    let result = text(&model, &rest);
-    if let Some(folder) = &request.output {
+    let field = fields::largest_nominal_field(&model, &state, 0);
+    let failure = failure.map(|end| End { field, ..end });
+    let motion = Trajectory::from_history(&model, &state);
+    let rest = Rest {
+        fraction: failure.as_ref().map(|end| end.fraction),
+        largest_nominal_field: field,
+        ..describe(&model, &state, &motion, &found)
+    };
+    let told = match &failure {
+        None => Told {
+            is_solved: true,
+            result: text(&model, &rest),
+            notes: Vec::new(),
+        },
+        Some(end) => Told {
+            is_solved: false,
+            result: "no equilibrium".to_owned(),
+            notes: vec![end.message(&rest, asked.folder.as_deref())],
+        },
+    };
+    if let Some(folder) = &asked.folder {
         make_folder(folder)?;
-        let mut summary = Summary::new(request, "at_rest", model.coordinates.name());
+        let origin = request.origin(false);
+        let written = fields::write(folder, &model, &state, &origin)?;
+        let mut summary = Summary::new(request, status, model.coordinates.name());
+        summary.message = told.notes.first().cloned();
         summary.effects = effect_counts(&model).map_err(|error| wrong(error.into()))?;
         summary.rest = Some(rest);
+        let observed = observations(&model, &state);
+        summary.blocks = Blocks::of(&model).map(|b| b.after(&model, &observed, written));
         summary.seconds = Seconds {
             total: began.elapsed().as_secs_f64(),
             setup,
             ..Seconds::default()
         };
         summary.write(folder)?;
-        write_picture(request, folder, &model, &state, voltages)?;
+        let svg = pose::svg(
+            &model.system,
+            &motion,
+            &Skins::new(&model, &state),
+            Some(&motion.voltages[0]),
+            &origin,
+        );
+        atomic::write(&folder.join("configuration.svg"), svg.as_bytes())?;
     }
-    Ok(Told {
-        is_solved: true,
-        result,
-        notes: Vec::new(),
-    })
+    Ok(told)
 }
 
-fn write_picture(
-    request: &Request,
-    folder: &Path,
-    model: &Model,
-    state: &Solved,
-    voltages: &[f64],
-) -> Result<(), RunError> {
-    let motion = trajectory(model, state);
-    let svg = pose::svg(
-        &model.system,
-        &motion,
-        Some(voltages),
-        &request.origin(false),
-    );
-    atomic::write(&folder.join("configuration.svg"), svg.as_bytes())?;
-    Ok(())
+/// Where the equilibria under growing voltages end.
+#[derive(Clone, Copy, Debug)]
+struct End {
+    /// Part of the voltages asked for that was reached.
+    fraction: f64,
+    kind: Option<Instability>,
+    /// Largest field of a block in V/m, in its reference configuration.
+    field: Option<f64>,
 }
 
-fn describe(model: &Model, state: &Solved, found: &Equilibrium) -> Rest {
+impl End {
+    /// The word in files.
+    fn status(&self) -> &'static str {
+        match self.kind {
+            Some(Instability::PullIn) => "pull_in",
+            Some(Instability::Buckling) => "buckling",
+            None => "limit_point",
+        }
+    }
+
+    /// One line: what is lost, at which voltages, and where the last state is.
+    fn message(&self, rest: &Rest, folder: Option<&Path>) -> String {
+        let why = match self.kind {
+            Some(Instability::PullIn) => "pull-in",
+            Some(Instability::Buckling) => "buckling",
+            None => "a limit point",
+        };
+        let on = rest.voltages.iter().filter(|(_, v)| **v != 0.0);
+        let voltages: Vec<_> = on
+            .map(|(name, v)| format!("{name} = {:.6} kV", v / 1e3))
+            .collect();
+        let mut text = format!(
+            "no equilibrium under these voltages: {why} at {:.6} % of them, {}",
+            100.0 * self.fraction,
+            voltages.join(", ")
+        );
+        if let Some(field) = self.field {
+            text.push_str(&format!("; largest nominal field {:.3} MV/m", field / 1e6));
+        }
+        if let Some(folder) = folder {
+            text.push_str(&format!("; the state there is in {}", folder.display()));
+        }
+        text
+    }
+}
+
+fn describe(model: &Model, state: &History, motion: &Trajectory, found: &Equilibrium) -> Rest {
     let system = &model.system;
-    let joints = system.joints.iter().zip(&state.joints[0]);
-    let motion = trajectory(model, state);
-    let place = |marker: &Marker| {
-        let place = motion.point(0, &marker.point, system) / 1e3;
-        (marker.name.clone(), place.into())
-    };
+    let kept = solved(model, state, None);
+    let joints = system.joints.iter().zip(&kept.joints[0]);
+    let markers = system.markers.iter().zip(&motion.marks[0]);
+    let voltages = model.sources.iter().zip(&motion.voltages[0]);
+    let driven = voltages.filter(|(source, _)| source.takes_voltage);
     let prismatic = |joint: &Joint| matches!(joint.kind, JointKind::Prismatic { .. });
     let only_angles = !system.joints.iter().any(prismatic);
     Rest {
+        voltages: driven.map(|(s, v)| (s.name.clone(), *v)).collect(),
+        fraction: None,
+        largest_nominal_field: None,
         joints: joints
             .filter(|(joint, _)| has_coordinate(joint))
             .map(|(joint, &value)| {
@@ -135,7 +234,9 @@ fn describe(model: &Model, state: &Solved, found: &Equilibrium) -> Rest {
                 (joint.name.clone(), value / unit)
             })
             .collect::<BTreeMap<_, _>>(),
-        markers: system.markers.iter().map(place).collect(),
+        markers: markers
+            .map(|(marker, place)| (marker.name.clone(), (place / 1e3).into()))
+            .collect(),
         // N mm/rad; where displacements take part the coordinates are mixed and the numbers those of g, mm, ms.
         stiffness: match only_angles {
             true => found.stiffness.iter().map(|k| k / 1e3).collect(),

@@ -8,14 +8,18 @@ use std::time::Instant;
 
 use crate::control::problem::{Control, Duration, Guess};
 use crate::control::{Boundary, Solved, Transcription, guess};
+use crate::dynamics::observations;
 use crate::ipopt::{self, OptionValue, Options, Start, Status};
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
 use crate::report::atomic::WriteError;
+use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
+use crate::run::blocks::Blocks;
 use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
-use crate::run::motion::{observed, solved, trajectory};
+use crate::run::fields;
+use crate::run::motion::{history, solved, trajectory};
 use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
 use crate::run::resimulate::{resimulate, under_constant_voltages};
@@ -186,7 +190,7 @@ pub(super) fn control(
         jacobian: seconds.jacobian,
         hessian: seconds.hessian,
     };
-    write_files(request, &folder, &model, &boundary, &kept, &summary)?;
+    write_files(request, &folder, &model, &boundary, &kept, &mut summary)?;
     Ok(told(&summary, solution.status, &violated, &folder))
 }
 
@@ -204,9 +208,14 @@ fn write_files(
     model: &Model,
     boundary: &Boundary,
     kept: &Solved,
-    summary: &Summary,
+    summary: &mut Summary,
 ) -> Result<(), WriteError> {
     solution_file::write(&folder.join("solution.json"), model, kept)?;
+    let history = history(model, kept);
+    let observed = observations(model, &history);
+    let origin = request.origin(true);
+    let written = fields::write(folder, model, &history, &origin)?;
+    summary.blocks = Blocks::of(model).map(|b| b.after(model, &observed, written));
     summary.write(folder)?;
     let motion = trajectory(model, kept);
     let is_solved = summary.message.is_none();
@@ -218,15 +227,16 @@ fn write_files(
     let run = Run {
         system: &model.system,
         trajectory: &motion,
+        skins: &Skins::new(model, &history),
         name: if is_solved {
             "optimal voltages"
         } else {
             "last iterate"
         },
-        observations: &observed(model, kept),
+        observations: &observed,
         comparison: compared.as_ref().map(|c| ("constant voltages", c)),
         held: boundary.rest[1].as_deref().filter(|_| is_solved),
-        origin: &request.origin(true),
+        origin: &origin,
         title: "Optimal control",
         summary: &rows,
     };

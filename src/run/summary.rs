@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::dynamics::StepperReport;
 use crate::report::atomic::{self, WriteError};
+use crate::run::blocks::Blocks;
 use crate::run::effects::EffectCounts;
 use crate::run::request::Request;
 use crate::run::resimulate::Resimulation;
@@ -28,6 +29,8 @@ pub(super) struct Summary {
     pub(super) simulation: Option<Simulation>,
     #[serde(flatten)]
     pub(super) rest: Option<Rest>,
+    #[serde(flatten)]
+    pub(super) blocks: Option<Blocks>,
     pub(super) coordinates: &'static str,
     pub(super) seconds: Seconds,
     pub(super) effects: Vec<EffectCounts>,
@@ -88,9 +91,17 @@ impl Simulation {
     }
 }
 
-/// A static equilibrium.
+/// A static equilibrium, or the last one on the way to the voltages asked for.
 #[derive(Debug, Serialize)]
 pub(super) struct Rest {
+    /// Voltage of each muscle and electrode in V.
+    pub(super) voltages: std::collections::BTreeMap<String, f64>,
+    /// What part of the voltages asked for these are, where they were not reached.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) fraction: Option<f64>,
+    /// Largest electric field of an element of a block in its reference configuration in V/m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) largest_nominal_field: Option<f64>,
     /// Coordinate of each joint in rad or m.
     pub(super) joints: std::collections::BTreeMap<String, f64>,
     /// Place of each marker in m.
@@ -150,6 +161,7 @@ impl Summary {
             program: None,
             simulation: None,
             rest: None,
+            blocks: None,
             coordinates,
             seconds: Seconds::default(),
             effects: Vec::new(),

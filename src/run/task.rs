@@ -21,7 +21,13 @@ pub fn run(request: &Request) -> Result<Told, RunError> {
             forward::simulation(request, &loaded.system, &simulation, began)
         }
         Task::Equilibrium(voltages, coordinates) => {
-            rest::at(request, &loaded.system, &voltages, coordinates, began)
+            let asked = rest::Asked {
+                system: &loaded.system,
+                voltages: &voltages,
+                coordinates,
+                folder: Some(request.folder()),
+            };
+            rest::at(request, &asked, began)
         }
     }
 }

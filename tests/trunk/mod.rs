@@ -118,12 +118,21 @@ pub(crate) fn trajectory(
         });
         poses.collect()
     });
-    Trajectory {
+    let mut trajectory = Trajectory {
         poses: poses.collect(),
         times,
         joints,
         voltages,
-    }
+        ..Trajectory::default()
+    };
+    let marks = |k: usize| {
+        let markers = system.markers.iter();
+        markers
+            .map(|m| trajectory.point(k, &m.point, system))
+            .collect()
+    };
+    trajectory.marks = (0..trajectory.times.len()).map(marks).collect();
+    trajectory
 }
 
 /// A damped swing over `intervals` of 15 ms towards a bend, each joint at its own pace.

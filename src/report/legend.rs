@@ -1,0 +1,85 @@
+//! What stands beside a drawing in space: names of what is drawn, axes, a scale.
+
+use nalgebra::Vector3;
+
+use crate::report::canvas::{Align, Canvas, Place, Stroke, text_width};
+use crate::report::style::{self, Colour};
+use crate::report::view::View;
+
+/// Height of a row in pt.
+pub const ROW: f64 = 16.0;
+/// Height of axes and scale in pt.
+pub const TRIAD: f64 = 112.0;
+/// Where the text of a row begins in pt.
+const TEXT: f64 = 20.0;
+
+/// How a thing looks in the drawing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sample {
+    /// A surface.
+    Swatch(Colour),
+    /// The path of a marker.
+    Path,
+    /// The place of a marker.
+    Place,
+}
+
+/// Width in pt that rows take.
+pub fn width(rows: &[(String, Sample)]) -> f64 {
+    let texts = rows.iter();
+    let widths = texts.map(|(name, _)| text_width(name, style::TICK_SIZE));
+    TEXT + widths.fold(0.0, f64::max)
+}
+
+/// The rows, the middle of the first at the given place.
+pub fn draw(canvas: &Canvas<'_>, [left, top]: Place, rows: &[(String, Sample)]) {
+    let ink = Stroke::solid(style::INK, 1.1);
+    for (i, (name, sample)) in rows.iter().enumerate() {
+        let at = top + ROW * i as f64;
+        match *sample {
+            Sample::Swatch(colour) => {
+                let corners = [[0.0, -4.0], [14.0, -4.0], [14.0, 4.0], [0.0, 4.0]];
+                let corners = corners.map(|c| [left + c[0], at + c[1]]);
+                canvas.fill(&corners, colour.mix(style::PAPER, 0.55), 1.0);
+                canvas.outline(&corners, Stroke::solid(colour, 0.8));
+            }
+            Sample::Path => canvas.line(&[[left, at], [left + 14.0, at]], ink),
+            Sample::Place => canvas.disc([left + 7.0, at], 2.4, style::INK, ink),
+        }
+        let place = [left + TEXT, at];
+        canvas.text(place, name, style::TICK_SIZE, style::INK, Align::Left);
+    }
+}
+
+/// The axes of the ground frame, and a bar of a round length.
+pub fn triad(canvas: &Canvas<'_>, view: &View, at: Place) {
+    let unit = View {
+        scale: 24.0,
+        origin: at,
+        ..*view
+    };
+    for (name, axis) in [
+        ("x", Vector3::x()),
+        ("y", Vector3::y()),
+        ("z", Vector3::z()),
+    ] {
+        canvas.line(&[at, unit.place(&axis)], Stroke::solid(style::MUTED, 1.0));
+        let place = unit.place(&(axis * 1.4));
+        canvas.text(place, name, style::TICK_SIZE, style::INK, Align::Centre);
+    }
+    let rough = 60.0 / view.scale;
+    let power = 10_f64.powf(rough.log10().floor());
+    let round = [5.0, 2.0, 1.0].into_iter().find(|m| m * power <= rough);
+    let length = round.unwrap_or(1.0) * power;
+    let (left, top) = (at[0] - 22.0, at[1] - 64.0);
+    let right = left + length * view.scale;
+    canvas.line(&[[left, top], [right, top]], Stroke::solid(style::INK, 1.6));
+    let label = format!("{length} mm");
+    canvas.text(
+        [left, top - 10.0],
+        &label,
+        style::TICK_SIZE,
+        style::INK,
+        Align::Left,
+    );
+}

@@ -1,0 +1,168 @@
+//! Surfaces of elastic blocks at the instants that pictures show.
+
+use std::collections::HashMap;
+
+use nalgebra::Vector3;
+
+use crate::dynamics::History;
+use crate::model::system::Fidelity;
+use crate::model::{Continuum, Model};
+
+/// Most instants that an animation shows.
+const FRAMES: usize = 80;
+/// Fewest of them, however large the surfaces are.
+const LEAST: usize = 6;
+/// Places that all instants together may have, so that pages stay small.
+const PLACES: usize = 200_000;
+/// Cosine of the angle between faces from which on their common edge is drawn strong.
+const SHARP: f64 = 0.8;
+
+/// The surface of a block, or of a muscle of finite elements.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Skin {
+    /// The muscle, by its index in the system; `None` for a block of the scene.
+    pub muscle: Option<usize>,
+    /// Whether potentials reach it.
+    pub is_charged: bool,
+    /// Corners of the faces, counter-clockwise seen from outside.
+    pub quads: Vec<[usize; 4]>,
+    /// Whether the edge from each corner of a face to the next is one of the body, rather than of its elements.
+    pub sharp: Vec<[bool; 4]>,
+    /// Places of the corners in the reference configuration in mm.
+    pub reference: Vec<Vector3<f64>>,
+    /// Places of the corners in mm, per instant shown.
+    pub places: Vec<Vec<Vector3<f64>>>,
+    /// Amount of the potential at the corners in V, per instant shown: that of the interval that ends there.
+    pub potentials: Vec<Vec<f64>>,
+}
+
+/// Surfaces of all blocks.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Skins {
+    /// The instants shown: the first, the last, and some between.
+    pub instants: Vec<usize>,
+    /// The surfaces; none where nothing is elastic.
+    pub list: Vec<Skin>,
+}
+
+/// Instants that a picture of `places` moving places shows of `last` + 1 of them.
+pub fn shown(last: usize, places: usize) -> Vec<usize> {
+    let most = PLACES / places.max(1);
+    let stride = last.div_ceil(most.clamp(LEAST, FRAMES)).max(1);
+    let mut instants: Vec<_> = (0..=last).step_by(stride).collect();
+    if instants.last() != Some(&last) {
+        instants.push(last);
+    }
+    instants
+}
+
+impl Skins {
+    /// Surfaces of the blocks of a model along a motion of one instant or more.
+    pub fn new(model: &Model, history: &History) -> Self {
+        let mut muscles = model
+            .system
+            .muscles
+            .iter()
+            .enumerate()
+            .filter_map(|(i, m)| (m.fidelity != Fidelity::Lumped).then_some(i));
+        let mut parts = Vec::new();
+        for continuum in &model.continua {
+            let muscle = continuum.of_muscle.then(|| muscles.next()).flatten();
+            parts.push(Skin::still(continuum, muscle));
+        }
+        let places = parts.iter().map(|(skin, _)| skin.reference.len()).sum();
+        let instants = shown(history.z.len() - 1, places);
+        let none = vec![0.0; model.action.intervals.scalars];
+        let mut instant = model.action.motion.instant();
+        for &k in &instants {
+            instant.z.copy_from_slice(&history.z[k]);
+            model.action.motion.place(&mut instant);
+            let scalars = history.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
+            for (continuum, (skin, nodes)) in model.continua.iter().zip(&mut parts) {
+                let vectors = nodes.iter().map(|&n| instant.x[continuum.vectors[n]]);
+                skin.places.push(vectors.collect());
+                let potentials = match skin.muscle {
+                    Some(muscle) => {
+                        let s = model.voltages.iter().position(|&v| v == muscle);
+                        vec![s.map_or(0.0, |s| scalars[s].abs()); nodes.len()]
+                    }
+                    None => {
+                        let all = continuum.potentials(scalars);
+                        nodes.iter().map(|&n| all[n].abs()).collect()
+                    }
+                };
+                skin.potentials.push(potentials);
+            }
+        }
+        Self {
+            instants,
+            list: parts.into_iter().map(|(skin, _)| skin).collect(),
+        }
+    }
+
+    /// Where an instant stands among those shown; the last of them for others.
+    pub fn position(&self, instant: usize) -> usize {
+        let found = self.instants.iter().position(|&k| k == instant);
+        found.unwrap_or(self.instants.len().saturating_sub(1))
+    }
+
+    /// Highest potential in V of the blocks of the scene at all instants shown.
+    pub fn highest(&self) -> f64 {
+        let blocks = self.list.iter().filter(|skin| skin.muscle.is_none());
+        let all = blocks.flat_map(|skin| skin.potentials.iter().flatten());
+        all.copied().fold(0.0, f64::max)
+    }
+}
+
+impl Skin {
+    /// A surface at no instants yet, and the nodes of the mesh that its corners are.
+    fn still(continuum: &Continuum, muscle: Option<usize>) -> (Self, Vec<usize>) {
+        let mesh = &continuum.solid.mesh;
+        let mut nodes = Vec::new();
+        let mut corner = HashMap::new();
+        let mut number = |node: usize| {
+            *corner.entry(node).or_insert_with(|| {
+                nodes.push(node);
+                nodes.len() - 1
+            })
+        };
+        let boundary = mesh.boundary_quads();
+        let quads: Vec<_> = boundary.iter().map(|quad| quad.map(&mut number)).collect();
+        let reference: Vec<_> = nodes.iter().map(|&node| mesh.nodes[node]).collect();
+        let skin = Self {
+            muscle,
+            is_charged: continuum.terminals.iter().any(Option::is_some),
+            sharp: sharp(&quads, &reference),
+            quads,
+            reference,
+            ..Self::default()
+        };
+        (skin, nodes)
+    }
+}
+
+/// Outward normal of a face, as long as twice its area.
+pub fn normal(corners: &[Vector3<f64>; 4]) -> Vector3<f64> {
+    (corners[2] - corners[0]).cross(&(corners[3] - corners[1]))
+}
+
+/// Edges at which faces meet at an angle.
+fn sharp(quads: &[[usize; 4]], places: &[Vector3<f64>]) -> Vec<[bool; 4]> {
+    let key = |quad: &[usize; 4], i: usize| {
+        let (a, b) = (quad[i], quad[(i + 1) % 4]);
+        [a.min(b), a.max(b)]
+    };
+    let unit = |quad: &[usize; 4]| normal(&quad.map(|corner| places[corner])).normalize();
+    let mut normals: HashMap<[usize; 2], Vec<Vector3<f64>>> = HashMap::new();
+    for quad in quads {
+        for i in 0..4 {
+            normals.entry(key(quad, i)).or_default().push(unit(quad));
+        }
+    }
+    let is_sharp = |edge: [usize; 2]| match normals[&edge][..] {
+        [a, b] => a.dot(&b) < SHARP,
+        _ => true,
+    };
+    let edges = |quad: &[usize; 4]| std::array::from_fn(|i| is_sharp(key(quad, i)));
+    quads.iter().map(edges).collect()
+}

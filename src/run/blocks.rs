@@ -1,0 +1,104 @@
+//! Elastic blocks in numbers: how large they are, and the charges of their electrodes at the end.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Serialize;
+
+use crate::dynamics::trajectory::Observations;
+use crate::kinematics::Carrier;
+use crate::model::{Continuum, Model};
+
+/// A block, or a muscle of finite elements.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct BlockSize {
+    /// Nodes of the mesh.
+    pub nodes: usize,
+    /// Elements.
+    pub elements: usize,
+    /// Coordinates of an instant.
+    pub unknowns: usize,
+    /// Potentials of an interval.
+    pub potentials: usize,
+}
+
+/// All blocks of a scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Blocks {
+    /// By name.
+    pub blocks: BTreeMap<String, BlockSize>,
+    /// Nodes of all blocks.
+    pub nodes: usize,
+    /// Elements of all blocks.
+    pub elements: usize,
+    /// Coordinates of an instant of all blocks.
+    pub unknowns: usize,
+    /// Potentials of an interval.
+    pub potentials: usize,
+    /// Charge in C at the end by `block.electrode` or by muscle.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub charges: BTreeMap<String, f64>,
+    /// Instants whose fields were written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instants_written: Option<usize>,
+}
+
+impl Blocks {
+    /// Those of a model; `None` where nothing is elastic.
+    pub fn of(model: &Model) -> Option<Self> {
+        if model.continua.is_empty() {
+            return None;
+        }
+        let named = model.continua.iter();
+        let blocks: BTreeMap<_, _> = named
+            .map(|c| (c.solid.name.clone(), BlockSize::of(model, c)))
+            .collect();
+        let sum = |part: fn(&BlockSize) -> usize| blocks.values().map(part).sum();
+        Some(Self {
+            nodes: sum(|b| b.nodes),
+            elements: sum(|b| b.elements),
+            unknowns: sum(|b| b.unknowns),
+            potentials: model.potentials,
+            blocks,
+            ..Self::default()
+        })
+    }
+
+    /// The same with the charges at the last instant observed and the number of instants written.
+    pub(super) fn after(self, model: &Model, observed: &Observations, written: usize) -> Self {
+        let still = model.continua.iter().flat_map(Continuum::still_electrodes);
+        let still = still.map(|(block, electrode)| format!("{block}.{electrode}"));
+        let driven = model.voltages.iter();
+        let driven = driven.map(|&source| model.sources[source].name.clone());
+        // Charges are observed in this order, in mC.
+        let columns = observed.columns.iter();
+        let charges = columns.filter(|column| column.name.ends_with("_charge"));
+        let last = charges.filter_map(|column| column.values.last());
+        Self {
+            charges: still.chain(driven).zip(last.map(|q| q / 1e3)).collect(),
+            instants_written: Some(written),
+            ..self
+        }
+    }
+}
+
+impl BlockSize {
+    fn of(model: &Model, continuum: &Continuum) -> Self {
+        let coordinates = |&vector: &usize| {
+            let is_node = |carrier| matches!(carrier, Carrier::Node(_));
+            let terms = &model.vectors[vector].terms;
+            match terms.iter().any(|term| is_node(term.carrier)) {
+                true => model.action.motion.support(vector).len(),
+                false => 0,
+            }
+        };
+        let scalars = continuum.terminals.iter().flatten();
+        let scalars = scalars.filter_map(|terminal| terminal.scalar.map(|(s, _)| s));
+        let potentials: BTreeSet<usize> = scalars.filter(|&s| s >= model.voltages.len()).collect();
+        Self {
+            nodes: continuum.solid.mesh.nodes.len(),
+            elements: continuum.shapes.len(),
+            unknowns: continuum.vectors.iter().map(coordinates).sum(),
+            potentials: potentials.len(),
+        }
+    }
+}

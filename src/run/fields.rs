@@ -1,0 +1,285 @@
+//! Fields of elastic blocks for ParaView: `fields/0000.vtu`, `fields/0001.vtu`, … and `trajectory.pvd`, in SI.
+//!
+//! Potentials belong to intervals: instant k shows those of the interval that ends there, the first instant those of the
+//! first interval. So do velocities, the mean ones of that interval, and with them the viscous part of the stress. What
+//! else an element shows is taken at the places of the instant, as a mean over its reference volume.
+
+use std::fs;
+use std::path::Path;
+
+use crate::dynamics::History;
+use crate::element::{Fields, Viscosity};
+use crate::math::{Matrix, Vector};
+use crate::model::{Continuum, Model};
+use crate::reduction::Instant;
+use crate::report::atomic::WriteError;
+use crate::report::origin::Origin;
+use crate::report::paraview::{Field, Grid, Series};
+
+/// Instants that are written at most.
+const MOST: usize = 200;
+/// Folder of the instants.
+const FOLDER: &str = "fields";
+
+/// Writes the fields of a motion instant by instant; the number of instants written, zero where nothing is elastic.
+pub(super) fn write(
+    folder: &Path,
+    model: &Model,
+    history: &History,
+    origin: &Origin,
+) -> Result<usize, WriteError> {
+    if model.continua.is_empty() {
+        return Ok(0);
+    }
+    let instants = spread(history.z.len(), MOST);
+    let mut series = Series::build(folder, "trajectory", origin)?.within(FOLDER)?;
+    let mut states = States::new(model, history);
+    for &k in &instants {
+        let blocks: Vec<Block<'_>> = states.at(k);
+        let grids: Vec<Grid<'_>> = blocks.iter().map(Block::grid).collect();
+        series.add(history.times[k] / 1e3, &grids)?;
+    }
+    series.finish()?;
+    remove_older(&folder.join(FOLDER), instants.len());
+    Ok(instants.len())
+}
+
+/// Largest reference field −∂φ/∂X of an element in V/m at an instant; `None` where there is none.
+pub(super) fn largest_nominal_field(model: &Model, history: &History, k: usize) -> Option<f64> {
+    let mut states = States::new(model, history);
+    let state = states.place(k);
+    let each = model.continua.iter().flat_map(|continuum| {
+        let (places, potentials) = (
+            continuum.places(&state.here.x),
+            continuum.potentials(state.scalars),
+        );
+        let elements = (0..continuum.shapes.len()).filter(|&e| continuum.is_dielectric[e]);
+        let field = move |e: usize| {
+            let fields = fields(continuum, e, &places, &potentials);
+            fields.reference_electric_field.norm() * 1e3
+        };
+        elements.map(field).collect::<Vec<_>>()
+    });
+    each.reduce(f64::max)
+}
+
+/// At most `most` of `count` instants: all, or evenly chosen ones with the first and the last.
+fn spread(count: usize, most: usize) -> Vec<usize> {
+    if count <= most {
+        return (0..count).collect();
+    }
+    let place = |i: usize| (i * (count - 1) + (most - 1) / 2) / (most - 1);
+    (0..most).map(place).collect()
+}
+
+/// Files of a longer motion that stood here before.
+fn remove_older(folder: &Path, count: usize) {
+    for number in count..=MOST {
+        fs::remove_file(folder.join(format!("{number:04}.vtu"))).ok();
+    }
+}
+
+/// The instants of a motion, one at a time.
+struct States<'m> {
+    model: &'m Model,
+    history: &'m History,
+    here: Instant,
+    there: Instant,
+    none: Vec<f64>,
+}
+
+/// One instant: its places, those of the other end of its interval and the time to there, voltages and potentials.
+struct State<'s> {
+    here: &'s Instant,
+    there: Option<(&'s Instant, f64)>,
+    scalars: &'s [f64],
+}
+
+impl<'m> States<'m> {
+    fn new(model: &'m Model, history: &'m History) -> Self {
+        Self {
+            model,
+            history,
+            here: model.action.motion.instant(),
+            there: model.action.motion.instant(),
+            none: vec![0.0; model.action.intervals.scalars],
+        }
+    }
+
+    fn place(&mut self, k: usize) -> State<'_> {
+        let Self { model, history, .. } = *self;
+        let last = history.z.len() - 1;
+        let other = match k {
+            0 => 1.min(last),
+            _ => k - 1,
+        };
+        for (instant, k) in [(&mut self.here, k), (&mut self.there, other)] {
+            instant.z.copy_from_slice(&history.z[k]);
+            model.action.motion.place(instant);
+        }
+        let time = history.times[other] - history.times[k];
+        let scalars = history.scalars.get(k.saturating_sub(1));
+        State {
+            here: &self.here,
+            there: (other != k).then_some((&self.there, time)),
+            scalars: scalars.unwrap_or(&self.none),
+        }
+    }
+
+    fn at(&mut self, k: usize) -> Vec<Block<'m>> {
+        let model = self.model;
+        let state = self.place(k);
+        let blocks = model.continua.iter().enumerate();
+        blocks.map(|(b, c)| Block::new(b, c, &state)).collect()
+    }
+}
+
+/// What is shown of a block at an instant.
+struct Block<'m> {
+    hexahedra: &'m [[usize; 8]],
+    points: Vec<Vector>,
+    point_data: Vec<Field<'static>>,
+    cell_data: Vec<Field<'static>>,
+}
+
+impl<'m> Block<'m> {
+    fn new(number: usize, continuum: &'m Continuum, state: &State<'_>) -> Self {
+        let mesh = &continuum.solid.mesh;
+        let places = continuum.places(&state.here.x);
+        let potentials = continuum.potentials(state.scalars);
+        let velocities = state.there.map(|(there, time)| {
+            let others = continuum.places(&there.x);
+            let pairs = others.iter().zip(&places);
+            pairs
+                .map(|(there, here)| (there - here) / time)
+                .collect::<Vec<_>>()
+        });
+        let moved = places.iter().zip(&mesh.nodes);
+        let moved = moved.flat_map(|(x, at)| components(&(x - at), 1e-3));
+        let mut point_data = vec![field("displacement [m]", 3, moved)];
+        if let Some(velocities) = &velocities {
+            let values = velocities.iter().flat_map(|v| components(v, 1.0));
+            point_data.push(field("velocity [m/s]", 3, values));
+        }
+        if continuum.terminals.iter().any(Option::is_some) {
+            let known = potentials.iter().zip(&continuum.terminals);
+            let values = known.map(|(phi, terminal)| terminal.map_or(f64::NAN, |_| *phi));
+            point_data.push(field("potential [V]", 1, values));
+        }
+        let is_dielectric = continuum.is_dielectric.contains(&true);
+        let cell_data = cells(
+            number,
+            continuum,
+            &places,
+            &potentials,
+            velocities.as_deref(),
+        );
+        Self {
+            hexahedra: &mesh.hexahedra,
+            points: places.iter().map(|x| x * 1e-3).collect(),
+            point_data,
+            cell_data: cell_data
+                .into_iter()
+                .filter(|field| is_dielectric || !field.name.starts_with("electric"))
+                .collect(),
+        }
+    }
+
+    fn grid(&self) -> Grid<'_> {
+        Grid {
+            points: &self.points,
+            hexahedra: self.hexahedra,
+            point_data: &self.point_data,
+            cell_data: &self.cell_data,
+        }
+    }
+}
+
+/// Quantities of the elements.
+fn cells(
+    number: usize,
+    continuum: &Continuum,
+    places: &[Vector],
+    potentials: &[f64],
+    velocities: Option<&[Vector]>,
+) -> Vec<Field<'static>> {
+    let count = continuum.shapes.len();
+    let mut all: Vec<Fields> = (0..count)
+        .map(|e| fields(continuum, e, places, potentials))
+        .collect();
+    if let Some(velocities) = velocities {
+        for (e, fields) in all.iter_mut().enumerate() {
+            let Some(viscosity) = continuum.material(e).viscosity else {
+                continue;
+            };
+            let nodes = continuum.solid.mesh.hexahedra[e];
+            let (x, v) = (nodes.map(|n| places[n]), nodes.map(|n| velocities[n]));
+            fields.stress += Viscosity { viscosity }.stress(&continuum.shapes[e], &x, &v);
+        }
+    }
+    let each = all.iter();
+    vec![
+        field(
+            "electric field [V/m]",
+            3,
+            each.clone()
+                .flat_map(|f| components(&f.electric_field, 1e3)),
+        ),
+        // N/(V mm) is 1000 C/m².
+        field(
+            "electric displacement [C/m^2]",
+            3,
+            each.clone()
+                .flat_map(|f| components(&f.electric_displacement, 1e3)),
+        ),
+        field(
+            "stress [Pa]",
+            9,
+            each.clone().flat_map(|f| by_rows(&f.stress, 1e6)),
+        ),
+        field(
+            "von Mises stress [Pa]",
+            1,
+            each.clone().map(|f| 1e6 * f.von_mises()),
+        ),
+        field("J", 1, each.map(|f| f.jacobian_determinant)),
+        field(
+            "region",
+            1,
+            continuum.solid.mesh.regions.iter().map(|&r| r as f64),
+        ),
+        field("block", 1, (0..count).map(|_| number as f64)),
+    ]
+}
+
+/// Fields of an element without its viscosity.
+fn fields(continuum: &Continuum, e: usize, places: &[Vector], potentials: &[f64]) -> Fields {
+    let (shape, nodes) = (&continuum.shapes[e], continuum.solid.mesh.hexahedra[e]);
+    let x = nodes.map(|n| places[n]);
+    if continuum.is_dielectric[e] {
+        let phi = nodes.map(|n| potentials[n]);
+        continuum.dielectric(e).fields(shape, &x, &phi)
+    } else {
+        continuum.passive(e).fields(shape, &x, &())
+    }
+}
+
+fn field(
+    name: &'static str,
+    components: usize,
+    values: impl Iterator<Item = f64>,
+) -> Field<'static> {
+    Field {
+        name,
+        components,
+        values: values.collect(),
+    }
+}
+
+fn components(vector: &Vector, unit: f64) -> [f64; 3] {
+    [0, 1, 2].map(|i| unit * vector[i])
+}
+
+fn by_rows(matrix: &Matrix, unit: f64) -> [f64; 9] {
+    std::array::from_fn(|i| unit * matrix[(i / 3, i % 3)])
+}
