@@ -44,7 +44,7 @@ impl Boundary {
         let mut limits = Limits::new(&control.limits, system, redundant);
         let all_joints = all_joints_given(system, &control.goal);
         match &control.goal {
-            State::Markers { places, rest } => {
+            State::Markers { places, rest, .. } => {
                 for (&marker, place) in places {
                     for axis in (0..3).filter(|&axis| !system.holds_marker(marker, axis)) {
                         let name = format!(
@@ -98,6 +98,7 @@ impl Boundary {
         }
         let voltages = |state: &State| match state {
             State::RestAtVoltages(v) => Some(v.clone()),
+            State::Markers { hold, .. } => hold.clone(),
             _ => None,
         };
         let rest = [voltages(&control.start), voltages(&control.goal)];

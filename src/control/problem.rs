@@ -36,6 +36,8 @@ pub enum State {
         places: BTreeMap<usize, Vector3<f64>>,
         /// What comes to rest there.
         rest: Rest,
+        /// Voltages that are held afterwards (V, one per source), where they are known.
+        hold: Option<Vec<f64>>,
     },
 }
 

@@ -18,7 +18,7 @@ const HELD: usize = 5;
 pub(super) struct Distance {
     /// Greatest distance of a joint angle in rad.
     pub(super) angle: f64,
-    /// Greatest distance of a joint displacement or of the centre of a body in m.
+    /// Greatest distance of a joint displacement, of the centre of a body or of a node in m.
     pub(super) length: f64,
 }
 
@@ -101,5 +101,8 @@ impl Distance {
         for (a, b) in motion.poses[k].iter().zip(&other.poses[l]) {
             self.length = self.length.max((a.centre - b.centre).norm() / 1e3);
         }
+        let nodes = model.action.motion.of_bodies..model.coordinate_count();
+        let ends = motion.z[k][nodes.clone()].iter().zip(&other.z[l][nodes]);
+        self.length = ends.fold(self.length, |m, (a, b)| m.max((a - b).abs() / 1e3));
     }
 }

@@ -246,10 +246,13 @@ fn write_files(
 /// Options of the linear solver: the ordering that was fastest for the kind of program, unless the problem names one.
 ///
 /// Approximate minimum degree (0) where each instant is a small dense block or the duration is given; minimum fill (2)
-/// where a free duration couples all instants of a redundant program. Measurements: `benches/README.md`.
+/// where a free duration couples all instants of a redundant program; nested dissection of SCOTCH (3) for the meshes of elastic
+/// blocks. Measurements: `benches/README.md`.
 fn linear_solver(model: &Model, control: &Control) -> BTreeMap<String, OptionValue> {
     let free = matches!(control.duration, Duration::Free { .. });
-    let ordering = if free && model.coordinates == Coordinates::Redundant {
+    let ordering = if !model.action.motion.of_nodes.is_empty() {
+        3
+    } else if free && model.coordinates == Coordinates::Redundant {
         2
     } else {
         0

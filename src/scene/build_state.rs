@@ -94,14 +94,17 @@ pub(crate) fn goal_state(
         ),
         ("markers", spec.markers.as_ref().map(|_| "markers")),
     ])?;
-    let scope = scope.key(key);
+    let outer = scope;
+    let scope = outer.key(key);
     if let Some(map) = &spec.rest_at_voltages {
         return voltages(map, system, &scope).map(State::RestAtVoltages);
     }
     if let Some(markers) = &spec.markers {
-        return marker_goals(markers, system, &scope).map(|places| State::Markers {
-            places,
+        let held = |map| voltages(map, system, &outer.key("hold"));
+        return Ok(State::Markers {
+            places: marker_goals(markers, system, &scope)?,
             rest: spec.rest.unwrap_or_default().into(),
+            hold: spec.hold.as_ref().map(held).transpose()?,
         });
     }
     let kinds = [Angle::kind(), Length::kind()];

@@ -187,6 +187,9 @@ pub struct GoalSpec {
     /// elastic blocks, which a few voltages cannot bring to rest everywhere.
     #[serde(default)]
     pub rest: Option<RestSpec>,
+    /// Voltages that are held after positions of markers are reached, SI unit V; 0 where not named.
+    #[serde(default)]
+    pub hold: Option<VoltageMap>,
 }
 
 /// What comes to rest at a goal.

@@ -377,6 +377,7 @@ fn corner_goal() -> State {
     State::Markers {
         places: BTreeMap::from([(1, Vector3::new(10.0, 60.0, 39.5))]),
         rest: Rest::Markers,
+        hold: None,
     }
 }
 
@@ -486,6 +487,7 @@ pub fn cases() -> Vec<Case> {
             c.goal = State::Markers {
                 places: BTreeMap::from([(0, Vector3::new(25.0, 128.0, 12.0))]),
                 rest: Rest::Everything,
+                hold: None,
             };
         }),
     ]
