@@ -97,14 +97,14 @@ fn tangent(n: usize) -> (usize, Vec<(usize, usize)>, Vec<f64>) {
     for z in 0..shape[2] - 1 {
         for y in 0..n - 1 {
             for x in 0..n - 1 {
-                for a in 0..8 {
+                for (a, blocks_of_a) in element.iter().enumerate() {
                     let [i, j, k] = corner(a);
                     let row = node([x + i, y + j, z + k]);
-                    for b in 0..8 {
+                    for (b, part) in blocks_of_a.iter().enumerate() {
                         let [p, q, r] = corner(b);
                         let neighbour = (p + 1 - i) + 3 * ((q + 1 - j) + 3 * (r + 1 - k));
                         let block = &mut blocks[27 * row + neighbour];
-                        for (value, part) in block.iter_mut().zip(&element[a][b]) {
+                        for (value, part) in block.iter_mut().zip(part) {
                             *value += part;
                         }
                     }
@@ -161,10 +161,9 @@ fn element() -> [[[f64; NODE * NODE]; 8]; 8] {
             })
         };
         let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        for a in 0..8 {
-            for b in 0..8 {
+        for (a, blocks) in blocks.iter_mut().enumerate() {
+            for (b, block) in blocks.iter_mut().enumerate() {
                 let (g, h) = (gradient(a), gradient(b));
-                let block = &mut blocks[a][b];
                 let inner = dot(&g, &h);
                 for i in 0..3 {
                     for j in 0..3 {

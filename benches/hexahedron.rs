@@ -1,7 +1,10 @@
 //! One hexahedron: microseconds of an evaluation.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use proboscis::element::{Dielectric, Elastomer, Field, Local, Passive, Shape, Volume};
+use proboscis::element::{
+    Dielectric, Elastomer, Field, Local, Passive, Shape, Viscosity, ViscousContraction,
+    ViscousLocal, Volume,
+};
 use proboscis::math::Vector;
 use std::hint::black_box;
 use std::time::Duration;
@@ -51,7 +54,7 @@ fn variations<F: Field>(
                 black_box(&x),
                 potentials,
                 black_box(&mut local),
-            )
+            );
         });
     });
     group.bench_function("tangent", |b| {
@@ -61,7 +64,7 @@ fn variations<F: Field>(
                 black_box(&x),
                 potentials,
                 black_box(&mut local),
-            )
+            );
         });
     });
     group.bench_function("third", |b| {
@@ -110,5 +113,35 @@ fn hexahedron(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, hexahedron);
+fn viscosity(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("viscous");
+    group
+        .warm_up_time(Duration::from_millis(200))
+        .measurement_time(Duration::from_millis(800));
+    let State { shape, x, v, .. } = state();
+    let law = Viscosity { viscosity: 2e-3 };
+    let mut forces = [Vector::zeros(); 8];
+    let mut local = ViscousLocal::default();
+    let mut contraction = ViscousContraction::default();
+    group.bench_function("forces", |b| {
+        b.iter(|| law.forces(black_box(&shape), black_box(&x), &v, black_box(&mut forces)));
+    });
+    group.bench_function("tangent", |b| {
+        b.iter(|| law.tangent(black_box(&shape), black_box(&x), &v, black_box(&mut local)));
+    });
+    group.bench_function("contraction", |b| {
+        b.iter(|| {
+            law.contraction(
+                black_box(&shape),
+                black_box(&x),
+                &v,
+                &x,
+                black_box(&mut contraction),
+            );
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, hexahedron, viscosity);
 criterion_main!(benches);

@@ -281,7 +281,7 @@ fn redundant_constraints_are_refused_by_name() {
         let model = Model::new(plane_four_bar(&turn), None, h, &[]).unwrap();
         assert_eq!(model.coordinates, Coordinates::Redundant);
         let start = Start::at_rest(&model, at_reference(&model));
-        let mut stepper = Stepper::new(&model, &start.z, &start.momentum);
+        let mut stepper = Stepper::new(&model, &start.z, &start.momentum, Default::default());
         let failure = (0..50).find_map(|_| stepper.step(h, &[]).err());
         println!(
             "{failure:?} after {} ms, {:?}",

@@ -185,7 +185,7 @@ fn the_energy_of_the_undamped_trunk_does_not_drift() {
         .collect();
     let scalars = model.scalars(&voltages);
     let start = Start::at_rest(&model, at_reference(&model));
-    let mut stepper = Stepper::new(&model, &start.z, &start.momentum);
+    let mut stepper = Stepper::new(&model, &start.z, &start.momentum, Default::default());
     let mut before = placed(&model, &start.z);
     let mut first = None;
     let mut errors = Vec::with_capacity(blocks * block);

@@ -625,6 +625,7 @@ fn mistakes_in_a_block_name_place_found_and_expected() {
         ("\"name\": \"middle\"", "\"name\": \"ends\"", "solids[0].electrodes[1].name", "\"ends\" a second time", "only driven electrodes share one", "ends"),
         ("\"grounded\"", "\"ground\"", "solids[0].electrodes[1].potential", "\"ground\"", "\"grounded\"", "ground"),
         ("\"grounded\"", "{ \"given\": \"5 mm\" }", "solids[0].electrodes[1].potential.given", "a length", "a voltage", "5 mm"),
+        ("\"grounded\"", "\"given\"", "solids[0].electrodes[1].potential.given", "a word alone", "an object with this key", "given"),
         ("\"layers\": 4", "\"layers\": 3", "solids[1].stack.layers", "3", "a divisor of the 8 elements along z", "3"),
         ("\"layers\": 4", "\"layers\": 0", "solids[1].stack.layers", "0", "a divisor of the 8 elements along z", "0"),
         ("\"stack\": { \"axis\": \"z\", \"layers\": 4, \"name\": \"stack\" }", "\"electrodes\": [ { \"name\": \"a\", \"face\": \"x_min\", \"potential\": \"floating\" } ]", "solids[1].electrodes", "floating electrodes only", "grounded, driven or given", "floating"),

@@ -117,7 +117,7 @@ pub(crate) fn at_rest(coordinates: Coordinates) -> (Model, Start, Vec<f64>) {
 
 /// Takes `count` steps from rest.
 pub(crate) fn march(model: &Model, start: &Start, scalars: &[f64], count: usize) -> StepperReport {
-    let mut stepper = Stepper::new(model, &start.z, &start.momentum);
+    let mut stepper = Stepper::new(model, &start.z, &start.momentum, Default::default());
     for _ in 0..count {
         black_box(stepper.step(STEP, scalars).expect("the trunk moves on"));
     }

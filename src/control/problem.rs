@@ -1,5 +1,6 @@
 //! What is asked of a system: simulate it, find its equilibrium, or steer it. Units g, mm, ms, N, V.
 
+use crate::dynamics::Solving;
 use crate::ipopt::OptionValue;
 use crate::model::{Coordinates, Region};
 use nalgebra::Vector3;
@@ -75,6 +76,8 @@ pub struct Simulation {
     pub voltages: Voltages,
     /// `None`: reduced where the joints form a tree.
     pub coordinates: Option<Coordinates>,
+    /// How the equations of a step are solved.
+    pub solving: Solving,
 }
 
 /// Final time of a control problem in ms.

@@ -15,6 +15,8 @@ pub struct History {
     pub rates: Option<Vec<f64>>,
     /// Voltages of each interval in V and potentials in their unit, by scalar of the interval.
     pub scalars: Vec<Vec<f64>>,
+    /// The method that factorised the tangents of the steps.
+    pub solver: &'static str,
     /// What it cost.
     pub report: StepperReport,
 }

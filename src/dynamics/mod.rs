@@ -1,5 +1,6 @@
 //! Motion in time and rest: two readers of the discrete action.
 
+mod anderson;
 mod continuation;
 mod equilibrium;
 mod error;
@@ -18,5 +19,5 @@ pub use equilibrium::{Equilibrium, equilibrium};
 pub use error::{EquilibriumError, StepError};
 pub use history::History;
 pub use observe::{Energies, energies, observations};
-pub use simulate::{Start, simulate};
-pub use stepper::{Stepper, StepperReport};
+pub use simulate::{Start, simulate, simulate_by};
+pub use stepper::{Newton, Solving, Stepper, StepperReport};

@@ -1,6 +1,6 @@
 //! Simulation: step after step, recorded.
 
-use crate::dynamics::{History, StepError, Stepper};
+use crate::dynamics::{History, Solving, StepError, Stepper};
 use crate::model::Model;
 use std::ops::ControlFlow;
 
@@ -50,10 +50,31 @@ pub fn simulate(
     h: f64,
     steps: usize,
     voltages: impl Fn(f64, f64) -> Vec<f64>,
+    observer: impl FnMut(usize) -> ControlFlow<()>,
+) -> (History, Option<StepError>) {
+    simulate_by(
+        Solving::default(),
+        model,
+        start,
+        h,
+        steps,
+        voltages,
+        observer,
+    )
+}
+
+/// Integrates like [`simulate`], with the equations of a step solved as `solving` says.
+pub fn simulate_by(
+    solving: Solving,
+    model: &Model,
+    start: &Start,
+    h: f64,
+    steps: usize,
+    voltages: impl Fn(f64, f64) -> Vec<f64>,
     mut observer: impl FnMut(usize) -> ControlFlow<()>,
 ) -> (History, Option<StepError>) {
     let n = model.coordinate_count();
-    let mut stepper = Stepper::new(model, &start.z, &start.momentum);
+    let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
     let mut history = History {
         times: vec![0.0],
         z: vec![start.z.clone()],
@@ -82,5 +103,6 @@ pub fn simulate(
         }
     }
     history.report = stepper.report();
+    history.solver = stepper.solver();
     (history, failure)
 }

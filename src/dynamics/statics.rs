@@ -65,7 +65,7 @@ impl<'m> Statics<'m> {
         let electric = (model.potentials > 0).then(|| {
             let mut entries = Entries::default();
             entries.add_potentials(model, &[]);
-            entries.tangent_from(m, model.potentials, Symmetry::Symmetric)
+            entries.tangent_from(m, model.potentials, Symmetry::Symmetric, None)
         });
         let length = model.length();
         let scale = |i: usize| match i {
@@ -80,7 +80,7 @@ impl<'m> Statics<'m> {
             scratch: model.action.scratch(Level::Hessian),
             values: vec![0.0; layout.values(1)],
             scalars: vec![0.0; layout.interval_scalars],
-            tangent: entries.tangent(size, Symmetry::Symmetric),
+            tangent: entries.tangent(size, Symmetry::Symmetric, None),
             electric,
             residual: vec![0.0; size],
             scales: (0..size).map(scale).collect(),

@@ -9,11 +9,14 @@
 //! with the potentials φ of the interval, which have no inertia, by Gauss's law.
 
 use crate::dynamics::StepError;
+use crate::dynamics::anderson::Anderson;
 use crate::dynamics::tangent::{Entries, Tangent};
 use crate::functional::{Level, Sides};
 use crate::math::Vector;
 use crate::model::Model;
-use crate::reduction::{Instant, Interval, Scratch};
+use crate::reduction::{Instant as Place, Interval, Scratch};
+use crate::sparse::{Backend, Singular};
+use std::time::Instant;
 
 /// Limit of Newton iterations in one step.
 const ITERATIONS: usize = 16;
@@ -22,8 +25,34 @@ const HALVINGS: u32 = 10;
 /// Convergence: the error after a Newton update of relative size δ is of order δ².
 const UPDATE: f64 = 1e-9;
 
-/// What the steps cost.
+/// Error, by the rate of the updates, that an iteration with a reused tangent leaves.
+const LEFT: f64 = 1e-10;
+/// A reused tangent that makes the updates shrink by less than this is factorised anew.
+const SLOW: f64 = 0.75;
+/// Limit of iterations with a reused tangent.
+const REUSED: usize = 40;
+
+/// When the tangent of a step is factorised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Newton {
+    /// In every iteration: few iterations, each with a factorisation.
+    #[default]
+    Full,
+    /// Only where the last factorisation, of an iteration or of a step before, converges too slowly.
+    Reused,
+}
+
+/// How the equations of a step are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Solving {
+    /// When the tangent is factorised.
+    pub newton: Newton,
+    /// Who factorises it; `None`: whoever is fastest as a rule.
+    pub backend: Option<Backend>,
+}
+
+/// What the steps cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepperReport {
     /// Steps taken, halved ones included.
     pub steps: usize,
@@ -31,22 +60,35 @@ pub struct StepperReport {
     pub iterations: usize,
     /// Steps that had to be halved.
     pub halved: usize,
+    /// Factorisations of the tangent.
+    pub factorisations: usize,
+    /// Seconds in the rows and the tangent.
+    pub assembly: f64,
+    /// Seconds in factorisations.
+    pub factorisation: f64,
+    /// Seconds in solutions with them.
+    pub solution: f64,
 }
 
 /// State at one instant and the storage to go on from it.
 #[derive(Debug)]
 pub struct Stepper<'m> {
     model: &'m Model,
-    here: Instant,
-    next: Instant,
+    here: Place,
+    next: Place,
     /// Momentum P_kᵀ p_k by coordinate, in the units of an action per coordinate.
     momentum: Vec<f64>,
-    /// Rates of the coordinates over the last step, for the first guess.
+    /// Rates of the coordinates over the last step, and how they changed, for the first guess.
     rates: Vec<f64>,
+    changes: Vec<f64>,
     time: f64,
     scratch: Scratch,
     values: Vec<f64>,
     tangent: Tangent,
+    newton: Newton,
+    anderson: Anderson,
+    /// Step and voltages of the tangent that is factorised.
+    factored: Option<f64>,
     /// Voltages and potentials of the interval.
     scalars: Vec<f64>,
     residual: Vec<f64>,
@@ -56,7 +98,7 @@ pub struct Stepper<'m> {
 
 impl<'m> Stepper<'m> {
     /// Starts at coordinates `z` with the momentum of each coordinate at time zero.
-    pub fn new(model: &'m Model, z: &[f64], momentum: &[f64]) -> Self {
+    pub fn new(model: &'m Model, z: &[f64], momentum: &[f64], solving: Solving) -> Self {
         let motion = &model.action.motion;
         let (n, layout) = (motion.coordinates, model.action.layout());
         let mut entries = Entries::default();
@@ -89,15 +131,24 @@ impl<'m> Stepper<'m> {
             next,
             momentum: momentum.to_vec(),
             rates: vec![0.0; n],
+            changes: vec![0.0; n],
             time: 0.0,
             scratch: model.action.scratch(Level::Hessian),
             values: vec![0.0; layout.values(1)],
-            tangent: entries.tangent(size, model.step_symmetry()),
+            tangent: entries.tangent(size, model.step_symmetry(), solving.backend),
+            newton: solving.newton,
+            anderson: Anderson::default(),
+            factored: None,
             scalars: vec![0.0; layout.interval_scalars],
             residual: vec![0.0; size],
             scales: (0..size).map(scale).collect(),
             report: StepperReport::default(),
         }
+    }
+
+    /// The method that factorises.
+    pub fn solver(&self) -> &'static str {
+        self.tangent.name()
     }
 
     /// Time in ms.
@@ -111,7 +162,7 @@ impl<'m> Stepper<'m> {
     }
 
     /// The instant now.
-    pub fn instant(&self) -> &Instant {
+    pub fn instant(&self) -> &Place {
         &self.here
     }
 
@@ -201,27 +252,54 @@ impl<'m> Stepper<'m> {
             .pull_back(&here.columns, &here.forces, &mut residual[..n]);
     }
 
+    fn factor(&mut self, h: f64) -> Result<(), Singular> {
+        let began = Instant::now();
+        let done = self.tangent.factor(&self.values);
+        self.report.factorisation += began.elapsed().as_secs_f64();
+        self.report.factorisations += 1;
+        self.factored = done.is_ok().then_some(h);
+        done
+    }
+
     /// One Newton solution; accepted only when it converged.
     fn attempt(&mut self, h: f64) -> Result<(), StepError> {
         let n = self.model.action.motion.coordinates;
         let m = self.model.action.motion.unknowns();
         for i in 0..n {
-            self.next.z[i] = self.here.z[i] + h * self.rates[i];
+            self.next.z[i] = self.here.z[i] + h * (self.rates[i] + self.changes[i]);
         }
         let saved: Vec<f64> = self.here.z[n..].to_vec();
         self.next.z[n..].copy_from_slice(&saved);
         let driven = self.model.voltages.len();
         let potentials = self.scalars[driven..].to_vec();
         let mut residuals = Vec::with_capacity(ITERATIONS);
-        for _ in 0..ITERATIONS {
+        // A tangent of another step length is another matrix.
+        let mut reused = self.newton == Newton::Reused && self.factored == Some(h);
+        let mut last = f64::INFINITY;
+        self.anderson.start();
+        let limit = match self.newton {
+            Newton::Full => ITERATIONS,
+            Newton::Reused => REUSED,
+        };
+        for _ in 0..limit {
             self.report.iterations += 1;
-            self.evaluate(Level::Hessian, h);
+            let level = if reused {
+                Level::Gradient
+            } else {
+                Level::Hessian
+            };
+            let began = Instant::now();
+            self.evaluate(level, h);
+            self.report.assembly += began.elapsed().as_secs_f64();
             let norm = self.residual.iter().map(|r| r * r).sum::<f64>().sqrt();
             residuals.push(norm);
             if !norm.is_finite() {
                 break;
             }
-            if let Err(singular) = self.tangent.factor(&self.values) {
+            if !reused {
+                self.anderson.start();
+            }
+            if !reused && let Err(singular) = self.factor(h) {
                 self.here.z[n..].copy_from_slice(&saved);
                 self.scalars[driven..].copy_from_slice(&potentials);
                 let name = self.model.unknown_name(singular.column);
@@ -231,21 +309,42 @@ impl<'m> Stepper<'m> {
                     name,
                 });
             }
-            self.tangent.solve(&mut self.residual);
+            let began = Instant::now();
+            match self.newton {
+                Newton::Full => self.tangent.solve(&mut self.residual),
+                Newton::Reused => self.tangent.solve_roughly(&mut self.residual),
+            }
+            self.report.solution += began.elapsed().as_secs_f64();
             let mut size: f64 = 0.0;
+            for (update, scale) in self.residual.iter().zip(&self.scales) {
+                size = size.max((update / scale).abs());
+            }
+            if self.newton == Newton::Reused {
+                self.anderson.improve(&mut self.residual);
+            }
             for (z, update) in self.next.z.iter_mut().zip(&self.residual) {
                 *z -= update;
             }
             for (potential, update) in self.scalars[driven..].iter_mut().zip(&self.residual[m..]) {
                 *potential -= update;
             }
-            for (update, scale) in self.residual.iter().zip(&self.scales) {
-                size = size.max((update / scale).abs());
-            }
-            if size < UPDATE {
+            // Newton's updates shrink quadratically, those of a reused tangent by a factor.
+            // What a tangent of an earlier step does is not known before its second update.
+            let rate = match last.is_finite() {
+                true => size / last,
+                false if reused => SLOW,
+                false => 0.0,
+            };
+            let is_close = match self.newton {
+                Newton::Full => size < UPDATE,
+                Newton::Reused => size * (rate / (1.0 - rate)).max(size) < LEFT,
+            };
+            if is_close && (rate < 1.0 || size < UPDATE) {
                 self.accept(h);
                 return Ok(());
             }
+            reused = self.newton == Newton::Reused && (rate < SLOW || last == f64::INFINITY);
+            last = size;
         }
         self.here.z[n..].copy_from_slice(&saved);
         self.scalars[driven..].copy_from_slice(&potentials);
@@ -274,7 +373,14 @@ impl<'m> Stepper<'m> {
             &mut self.momentum,
         );
         for (i, rate) in self.rates.iter_mut().enumerate() {
-            *rate = (self.next.z[i] - self.here.z[i]) / h;
+            let new = (self.next.z[i] - self.here.z[i]) / h;
+            // In the first step nothing is known of the change.
+            self.changes[i] = if self.report.steps > 0 {
+                new - *rate
+            } else {
+                0.0
+            };
+            *rate = new;
         }
         std::mem::swap(&mut self.here, &mut self.next);
         self.time += h;

@@ -4,7 +4,7 @@
 
 use crate::model::Model;
 use crate::reduction::Layout;
-use crate::sparse::{Direct, Singular, Symmetry};
+use crate::sparse::{Backend, Direct, Singular, Symmetry};
 
 /// Places in the values of the action, summed into the entries of a matrix.
 #[derive(Debug)]
@@ -60,25 +60,41 @@ impl Entries {
     }
 
     /// Prepares the factorisation of the unknowns from `first` on.
-    pub(super) fn tangent_from(mut self, first: usize, size: usize, symmetry: Symmetry) -> Tangent {
+    pub(super) fn tangent_from(
+        mut self,
+        first: usize,
+        size: usize,
+        symmetry: Symmetry,
+        backend: Option<Backend>,
+    ) -> Tangent {
         for (row, col) in &mut self.entries {
             (*row, *col) = (*row - first, *col - first);
         }
         Tangent {
             matrix: vec![0.0; self.entries.len()],
-            solver: Direct::with(size, &self.entries, symmetry, None),
+            solver: Direct::with(size, &self.entries, symmetry, backend),
             gather: self.gather,
             entries: self.entries,
         }
     }
 
     /// Prepares the factorisation.
-    pub(super) fn tangent(self, size: usize, symmetry: Symmetry) -> Tangent {
-        self.tangent_from(0, size, symmetry)
+    pub(super) fn tangent(
+        self,
+        size: usize,
+        symmetry: Symmetry,
+        backend: Option<Backend>,
+    ) -> Tangent {
+        self.tangent_from(0, size, symmetry, backend)
     }
 }
 
 impl Tangent {
+    /// The method that factorises.
+    pub(super) fn name(&self) -> &'static str {
+        self.solver.method()
+    }
+
     /// Factorises the matrix of these values.
     pub(super) fn factor(&mut self, values: &[f64]) -> Result<(), Singular> {
         self.matrix.fill(0.0);
@@ -99,6 +115,11 @@ impl Tangent {
             .iter()
             .copied()
             .zip(self.matrix.iter().copied())
+    }
+
+    /// Solves with the last factorisation in place, without a look at the residual.
+    pub(super) fn solve_roughly(&mut self, rhs: &mut [f64]) {
+        self.solver.solve_roughly(rhs);
     }
 
     /// Solves with the last factorisation, in place.

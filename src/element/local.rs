@@ -64,9 +64,9 @@ pub(super) trait Output<U> {
 }
 
 /// An energy alone.
-impl Output<f64> for f64 {
+impl Output<Self> for f64 {
     #[inline(always)]
-    fn energy(&mut self, value: f64) {
+    fn energy(&mut self, value: Self) {
         *self = value;
     }
 }

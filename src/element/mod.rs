@@ -11,6 +11,11 @@
 //!
 //! The formulas are written in the spatial gradients g_i = F⁻ᵀG_i and evaluated at all Gauss points side by side.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "nodes and components are the indices of the formulas"
+)]
+
 mod algebra;
 mod elastomer;
 mod fields;

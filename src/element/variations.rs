@@ -247,8 +247,12 @@ impl<N: Points> Variations<N> {
             even_g[i] = scale(g[i], even);
             odd_g[i] = scale(g[i], odd);
         }
+        let mut charged = Charged::zero(token);
         let electric = match (&self.electric, state.electric) {
-            (Some(field), Some((constants, _))) => Some(self.charged(state, field, constants, &g)),
+            (Some(field), Some((constants, _))) => {
+                charged.fill(self, state, field, constants, &g);
+                Some(&charged)
+            }
             _ => None,
         };
         let dilatation = match self.mean {
@@ -281,7 +285,7 @@ impl<N: Points> Variations<N> {
                     (u[0] * v[1]).plus_product(u[1], v[0]),
                 ];
                 let mut odd = cross(odd_g[i], g[j]);
-                if let Some(c) = &electric {
+                if let Some(c) = electric {
                     diagonal = diagonal.plus_product(c.c2_along[i], c.along[j]);
                     let inner = dot(g[i], g[j]);
                     let e = c.e;
@@ -311,7 +315,7 @@ impl<N: Points> Variations<N> {
                     if i != j {
                         out.coupling(j, i, sums(ji));
                     }
-                    let energy = dot(c.pushed[i], c.pushed[j]) * c.c2;
+                    let energy = dot(c.pushed[i], c.pushed[j]).times(c.c2);
                     let energy = energy.plus_plain(plain * c.c1);
                     out.permittivity(i, j, energy.minus_product(inner, c.kappa).sum());
                 }
@@ -337,44 +341,6 @@ impl<N: Points> Variations<N> {
             }
         }
     }
-
-    #[inline(always)]
-    fn charged(
-        &self,
-        state: &State<'_, N>,
-        field: &ElectricField<N>,
-        constants: &Dielectric,
-        g: &[[N; 3]; 8],
-    ) -> Charged<N> {
-        let token = state.token;
-        let zero = N::constant(token, 0.0);
-        let plain = N::Plain::load(token, state.shape.weights());
-        let c2 = 2.0 * constants.c2;
-        let kappa = field.kappa.times(self.w);
-        let mut charged = Charged {
-            c1: plain.scaled(2.0 * constants.c1),
-            c2: zero.plus_plain(plain.scaled(c2)),
-            kappa,
-            e: field.spatial,
-            c2_pushed: scale(field.pushed, zero.plus_plain(plain.scaled(c2))),
-            along: [zero; 8],
-            c2_along: [zero; 8],
-            s: [zero; 8],
-            flux: [[zero; 3]; 8],
-            turned: [[zero; 3]; 8],
-            pushed: [[zero; 3]; 8],
-        };
-        for (i, gradient) in state.shape.gradients().iter().enumerate() {
-            let G = load::<N>(token, gradient);
-            charged.along[i] = dot_plain(field.reference, G);
-            charged.c2_along[i] = charged.along[i].scaled(c2).times(self.w);
-            charged.s[i] = dot(field.spatial, g[i]);
-            charged.flux[i] = scale(g[i], kappa);
-            charged.turned[i] = cross(charged.flux[i], field.spatial);
-            charged.pushed[i] = apply_plain(&self.F, G);
-        }
-        charged
-    }
 }
 
 /// Electric quantities of the nodes at the Gauss points.
@@ -382,7 +348,7 @@ struct Charged<N: Points> {
     /// 2 w c₁.
     c1: N::Plain,
     /// 2 w c₂.
-    c2: N,
+    c2: N::Plain,
     /// w κ.
     kappa: N,
     e: Three<N>,
@@ -400,4 +366,55 @@ struct Charged<N: Points> {
     turned: [[N; 3]; 8],
     /// F G_i.
     pushed: [[N; 3]; 8],
+}
+
+#[expect(non_snake_case, reason = "notation of the law")]
+impl<N: Points> Charged<N> {
+    #[inline(always)]
+    fn zero(token: N::Token) -> Self {
+        let zero = N::constant(token, 0.0);
+        Self {
+            c1: N::Plain::constant(token, 0.0),
+            c2: N::Plain::constant(token, 0.0),
+            kappa: zero,
+            e: [zero; 3],
+            c2_pushed: [zero; 3],
+            along: [zero; 8],
+            c2_along: [zero; 8],
+            s: [zero; 8],
+            flux: [[zero; 3]; 8],
+            turned: [[zero; 3]; 8],
+            pushed: [[zero; 3]; 8],
+        }
+    }
+
+    /// In place: a copy of this much would be felt.
+    #[inline(always)]
+    fn fill(
+        &mut self,
+        point: &Variations<N>,
+        state: &State<'_, N>,
+        field: &ElectricField<N>,
+        constants: &Dielectric,
+        g: &[[N; 3]; 8],
+    ) {
+        let token = state.token;
+        let w = N::Plain::load(token, state.shape.weights());
+        self.c1 = w.scaled(2.0 * constants.c1);
+        self.c2 = w.scaled(2.0 * constants.c2);
+        self.kappa = field.kappa.times(point.w);
+        self.e = field.spatial;
+        for a in 0..3 {
+            self.c2_pushed[a] = field.pushed[a].times(self.c2);
+        }
+        for (i, gradient) in state.shape.gradients().iter().enumerate() {
+            let G = load::<N>(token, gradient);
+            self.along[i] = dot_plain(field.reference, G);
+            self.c2_along[i] = self.along[i].times(self.c2);
+            self.s[i] = dot(field.spatial, g[i]);
+            self.flux[i] = scale(g[i], self.kappa);
+            self.turned[i] = cross(self.flux[i], field.spatial);
+            self.pushed[i] = apply_plain(&point.F, G);
+        }
+    }
 }

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use crate::control::problem::{
     Control, Duration, Guess, Objective, Simulation, Solver, State, Task, Voltages,
 };
+use crate::dynamics::Solving;
 use crate::ipopt::OptionValue;
 use crate::model::Coordinates;
 use crate::model::system::{Fidelity, Muscle, System};
@@ -89,6 +90,10 @@ fn simulation(
         start,
         voltages,
         coordinates: coordinates(spec.coordinates, system, scope)?,
+        solving: Solving {
+            newton: spec.newton.unwrap_or_default().into(),
+            backend: spec.linear_solver.map(Into::into),
+        },
     })
 }
 

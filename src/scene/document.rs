@@ -60,6 +60,8 @@ impl Document {
             let steps = error.path().iter().filter_map(|segment| match segment {
                 serde_path_to_error::Segment::Seq { index } => Some(Step::Index(*index)),
                 serde_path_to_error::Segment::Map { key } => Some(Step::Key(key.clone())),
+                // A word that stands as the key of its value, such as {"given": "5 kV"}.
+                serde_path_to_error::Segment::Enum { variant } => Some(Step::Key(variant.clone())),
                 _ => None,
             });
             let place = Place(steps.collect());

@@ -8,10 +8,12 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use crate::control::problem::Rest;
+use crate::dynamics::Newton;
 use crate::scene::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::scene::quantity::{JointCoordinate, JointRate, Quantity, Time, Voltage};
 use crate::scene::spec_limits::LimitSpec;
 use crate::scene::spec_scene::{Point, SceneSpec};
+use crate::sparse::Backend;
 
 /// What is asked of a scene: exactly one of `simulate`, `equilibrium`, `control`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -64,6 +66,51 @@ pub struct SimulateSpec {
     /// Coordinates.
     #[serde(default)]
     pub coordinates: Option<CoordinatesSpec>,
+    /// When the tangent of a step is factorised; `full` where not written.
+    #[serde(default)]
+    pub newton: Option<NewtonSpec>,
+    /// Who factorises it; the one that is fastest as a rule where not written.
+    #[serde(default)]
+    pub linear_solver: Option<LinearSolverSpec>,
+}
+
+/// When the tangent of a step is factorised.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum NewtonSpec {
+    /// In every iteration.
+    #[default]
+    Full,
+    /// Only where the last factorisation converges too slowly: for large meshes, whose factorisation is the cost.
+    Reused,
+}
+
+impl From<NewtonSpec> for Newton {
+    fn from(spec: NewtonSpec) -> Self {
+        match spec {
+            NewtonSpec::Full => Self::Full,
+            NewtonSpec::Reused => Self::Reused,
+        }
+    }
+}
+
+/// Who factorises a tangent.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LinearSolverSpec {
+    /// LDLᵀ or LU of faer.
+    Faer,
+    /// LDLᵀ or LU of MUMPS.
+    Mumps,
+}
+
+impl From<LinearSolverSpec> for Backend {
+    fn from(spec: LinearSolverSpec) -> Self {
+        match spec {
+            LinearSolverSpec::Faer => Self::Faer,
+            LinearSolverSpec::Mumps => Self::Mumps,
+        }
+    }
 }
 
 /// A static equilibrium.

@@ -191,7 +191,7 @@ pub enum FixedSpec {
     /// Held in all directions.
     Clamped(String),
     /// Held in some.
-    Held(HeldSpec),
+    Held(Box<HeldSpec>),
 }
 
 /// A `face`, `plane` or `box` whose nodes are held in some directions: a roller is held in one.
@@ -231,7 +231,7 @@ pub struct VelocitySpec {
 }
 
 scalar_or_object! {
-    FixedSpec: String = Self::Clamped, HeldSpec = Self::Held,
+    FixedSpec: String = Self::Clamped, Box<HeldSpec> = Self::Held,
         "the name of a face, or an object with \"face\" and \"directions\"";
 }
 

@@ -105,6 +105,8 @@ fn json_word(text: &str) -> String {
         "a boolean" => "true or false",
         "a string" | "a borrowed string" => "a text",
         "null" => "null",
+        "unit variant" => "a word alone",
+        "newtype variant" => "an object with this key",
         "an array of length 2" => "a list of 2 values",
         "an array of length 3" | "fewer elements in array" => "a list of 3 values",
         _ if text.starts_with("struct ") => "an object",

@@ -1,7 +1,7 @@
 //! Solution of square systems whose pattern is laid down once.
 //!
 //! The matrix is scaled before the factorisation, so that equations and unknowns in different units meet one criterion of
-//! singularity: rows and then columns of an unsymmetric matrix, and a symmetric one to D A D, to largest entries near 1.
+//! singularity: the largest entries of rows and columns become near 1, and a symmetric matrix stays symmetric.
 //!
 //! A sparse factor is tried on a known solution before it is trusted: residuals of a singular or unstable factor may be small,
 //! but the solution does not come back. Later solutions are refined once where their residual is poor.
@@ -22,7 +22,8 @@ const LOST: f64 = 1e-6;
 const NEARBY: f64 = 1e-10;
 /// A residual above this, relative to the largest term of the equations, is refined.
 const POOR: f64 = 1e-13;
-/// Symmetric scaling ends when the largest entry of each row is between this and its inverse, or after so many rounds.
+/// Scaling of rows and columns at once ends when their largest entries are between this and its inverse, or after so many
+/// rounds.
 const BALANCED: (f64, usize) = (4.0, 12);
 
 /// Whether a matrix equals its transpose.
@@ -76,8 +77,8 @@ pub struct Direct {
     values: Vec<f64>,
     /// Factors of rows, and of columns.
     scales: [Vec<f64>; 2],
-    /// Largest entry of each column of the scaled matrix.
-    largest: Vec<f64>,
+    /// Largest entry of each row, and of each column, of the scaled matrix.
+    largest: [Vec<f64>; 2],
     rhs: Vec<f64>,
     residual: Vec<f64>,
     factored: bool,
@@ -116,7 +117,7 @@ impl Direct {
             factorisation: backend.factorisation(&pattern),
             values: vec![0.0; pattern.rows.len()],
             scales: [vec![1.0; size], vec![1.0; size]],
-            largest: vec![0.0; size],
+            largest: [vec![0.0; size], vec![0.0; size]],
             rhs: vec![0.0; size],
             residual: vec![0.0; size],
             factored: false,
@@ -138,13 +139,10 @@ impl Direct {
         self.pattern.gather(values, &mut self.values);
         self.measure();
         let lost = |peak: &f64| *peak == 0.0 || !peak.is_finite();
-        if let Some(column) = self.largest.iter().position(lost) {
+        if let Some(column) = self.largest[1].iter().position(lost) {
             return Err(Singular { column });
         }
-        match self.pattern.symmetry {
-            Symmetry::Unsymmetric => self.balance_rows_and_columns(),
-            Symmetry::Symmetric => self.balance(),
-        }
+        self.equilibrate();
         if self.backend == Backend::Dense {
             let outcome = self.factorisation.factor(&self.values);
             self.factored = outcome.is_ok();
@@ -177,6 +175,18 @@ impl Direct {
     /// # Panics
     /// No matrix has been factorised, or the last one was singular.
     pub fn solve(&mut self, rhs: &mut [f64]) {
+        self.solve_to(rhs, POOR);
+    }
+
+    /// Solves without a look at the residual, for an iteration that corrects what is lost.
+    ///
+    /// # Panics
+    /// No matrix has been factorised.
+    pub fn solve_roughly(&mut self, rhs: &mut [f64]) {
+        self.solve_to(rhs, f64::INFINITY);
+    }
+
+    fn solve_to(&mut self, rhs: &mut [f64], poor: f64) {
         assert!(self.factored, "factor before solving");
         if rhs.is_empty() {
             return;
@@ -186,7 +196,7 @@ impl Direct {
         }
         self.rhs.copy_from_slice(rhs);
         self.factorisation.solve(rhs);
-        if self.backend != Backend::Dense && self.leaves(rhs) > POOR {
+        if self.backend != Backend::Dense && poor.is_finite() && self.leaves(rhs) > poor {
             self.factorisation.solve(&mut self.residual);
             for (value, correction) in rhs.iter_mut().zip(&self.residual) {
                 *value += correction;
@@ -205,69 +215,68 @@ impl Direct {
             .flatten()
     }
 
-    /// Finds the largest entry of each column.
+    /// Finds the largest entry of each row and column.
     fn measure(&mut self) {
-        self.largest.fill(0.0);
-        let largest = &mut self.largest;
-        self.pattern.visit(&self.values, |_, col, value| {
-            // Unlike `f64::max`, this keeps NaN.
-            if value.abs() > largest[col] || value.is_nan() {
-                largest[col] = value.abs();
+        let [rows, cols] = &mut self.largest;
+        rows.fill(0.0);
+        cols.fill(0.0);
+        // Unlike `f64::max`, this keeps NaN.
+        let grow = |peak: &mut f64, value: f64| {
+            if value.abs() > *peak || value.is_nan() {
+                *peak = value.abs();
             }
+        };
+        self.pattern.visit(&self.values, |row, col, value| {
+            grow(&mut rows[row], value);
+            grow(&mut cols[col], value);
         });
     }
 
-    /// Divides rows by their largest entry, then columns by the power of two near theirs, which rounds nothing.
-    fn balance_rows_and_columns(&mut self) {
-        self.scales[0].fill(0.0);
-        self.scales[1].fill(1.0);
-        let [rows, cols] = &mut self.scales;
-        self.pattern.visit(&self.values, |row, _, value| {
-            rows[row] = rows[row].max(value.abs());
-        });
-        for scale in rows.iter_mut() {
-            *scale = if *scale > 0.0 { 1.0 / *scale } else { 1.0 };
-        }
-        self.pattern.scale(&mut self.values, rows, cols);
-        self.measure();
-        let cols = &mut self.scales[1];
-        for (scale, peak) in cols.iter_mut().zip(&self.largest) {
-            if *peak > 0.0 {
-                *scale = peak.log2().round().exp2().recip();
+    /// Multiplies rows and columns by functions of their largest entries.
+    fn scale(&mut self, functions: [fn(f64) -> f64; 2]) {
+        let Self {
+            pattern,
+            values,
+            scales,
+            largest,
+            rhs,
+            residual,
+            ..
+        } = self;
+        for (i, factors) in [&mut *residual, &mut *rhs].into_iter().enumerate() {
+            let lists = factors.iter_mut().zip(&largest[i]).zip(&mut scales[i]);
+            for ((factor, &peak), scale) in lists {
+                *factor = if peak > 0.0 { functions[i](peak) } else { 1.0 };
+                *scale *= *factor;
             }
         }
-        self.residual.fill(1.0);
-        self.pattern.scale(&mut self.values, &self.residual, cols);
+        pattern.scale(values, residual, rhs);
         self.measure();
     }
 
-    /// Divides rows and columns by the root of their largest entry, again and again; each round halves the orders of
-    /// magnitude that are left.
-    fn balance(&mut self) {
-        let (enough, rounds) = BALANCED;
+    /// Brings the largest entries near 1.
+    fn equilibrate(&mut self) {
         self.scales.iter_mut().for_each(|scale| scale.fill(1.0));
+        if self.pattern.symmetry == Symmetry::Unsymmetric && self.backend != Backend::Mumps {
+            // Exchanges of rows see the scales of rows alone; a power of two rounds nothing.
+            self.scale([f64::recip, |_| 1.0]);
+            self.scale([|_| 1.0, |peak| peak.log2().round().exp2().recip()]);
+            return;
+        }
+        // Each round halves the orders of magnitude that are left.
+        let (enough, rounds) = BALANCED;
+        let far = |peak: &f64| *peak > enough || *peak < 1.0 / enough;
         for _ in 0..rounds {
-            let far = |peak: &f64| *peak > enough || *peak < 1.0 / enough;
-            if !self.largest.iter().any(far) {
+            if !self.largest.iter().flatten().any(far) {
                 break;
             }
-            for (scale, peak) in self.residual.iter_mut().zip(&self.largest) {
-                *scale = 1.0 / peak.sqrt();
-            }
-            self.pattern
-                .scale(&mut self.values, &self.residual, &self.residual);
-            for scales in &mut self.scales {
-                for (scale, factor) in scales.iter_mut().zip(&self.residual) {
-                    *scale *= factor;
-                }
-            }
-            self.measure();
+            self.scale([|peak| peak.sqrt().recip(); 2]);
         }
     }
 
     /// The known solution at a column.
     fn known(&self, col: usize) -> f64 {
-        (1.0 + col as f64 / self.pattern.size as f64) / self.largest[col]
+        (1.0 + col as f64 / self.pattern.size as f64) / self.largest[1][col]
     }
 
     /// Leaves the right-hand side of the known solution in `self.rhs`.
@@ -287,7 +296,8 @@ impl Direct {
         self.factorisation.factor(&self.values)?;
         self.residual.copy_from_slice(&self.rhs);
         self.factorisation.solve(&mut self.residual);
-        let error = |col: usize| ((self.residual[col] - self.known(col)) * self.largest[col]).abs();
+        let error =
+            |col: usize| ((self.residual[col] - self.known(col)) * self.largest[1][col]).abs();
         let lost = |col: &usize| error(*col).is_nan() || error(*col) > LOST;
         let worst = (0..self.pattern.size)
             .filter(lost)
@@ -307,7 +317,7 @@ impl Direct {
 
     /// Leaves the residual of `x` in `self.residual`, and returns its size relative to the largest term of the equations.
     fn leaves(&mut self, x: &[f64]) -> f64 {
-        let (residual, largest) = (&mut self.residual, &self.largest);
+        let (residual, largest) = (&mut self.residual, &self.largest[1]);
         residual.copy_from_slice(&self.rhs);
         self.pattern.visit(&self.values, |row, col, value| {
             residual[row] -= value * x[col];
