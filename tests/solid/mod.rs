@@ -1,8 +1,11 @@
 //! Elastic blocks written out by hand, in g, mm, ms, N, V.
+#![allow(dead_code, reason = "each test file uses some of these")]
 
 use nalgebra::Vector3;
+use proboscis::dynamics::equilibrium;
 use proboscis::mesh::Mesh;
 use proboscis::mesh::grid::Grid;
+use proboscis::model::Model;
 use proboscis::model::system::{
     Electric, Electrode, ElementKind, Material, Potential, Solid, Support, System,
 };
@@ -102,7 +105,6 @@ pub(crate) fn system(solids: Vec<Solid>) -> System {
 }
 
 /// Case A of the reference: rollers on three faces, potentials 0 and V at both ends of z.
-#[allow(dead_code, reason = "each test file uses some of these")]
 pub(crate) fn homogeneous(entry: &Value) -> System {
     let mesh = mesh(entry);
     let height = mesh.bounds().1.z;
@@ -139,4 +141,45 @@ pub(crate) fn stack(entry: &Value) -> System {
         })
         .collect();
     system(vec![solid])
+}
+
+/// An elastic dielectric without density and viscosity.
+pub(crate) fn dielectric(shear_modulus: f64, lame_lambda: f64, electric: Electric) -> Material {
+    Material {
+        density: None,
+        shear_modulus,
+        lame_lambda: Some(lame_lambda),
+        electric: Some(electric),
+        viscosity: None,
+    }
+}
+
+/// The published material set (2.5) of physics, with a viscosity in MPa ms.
+pub(crate) fn published(viscosity: Option<f64>) -> Material {
+    let electric = Electric {
+        c1: 5e-8,
+        c2: 1e-9,
+        permittivity: 8.854e-12,
+    };
+    Material {
+        density: Some(1.0),
+        viscosity,
+        ..dielectric(233.0, 999.8, electric)
+    }
+}
+
+/// Places of the nodes of the first block at the coordinates of an instant.
+pub(crate) fn placed(model: &Model, z: &[f64]) -> Vec<Vector3<f64>> {
+    let mut instant = model.action.motion.instant();
+    instant.z.copy_from_slice(z);
+    model.action.motion.place(&mut instant);
+    model.continua[0].places(&instant.x)
+}
+
+/// Places of the nodes of the first block at rest under voltages, on the path from the reference.
+pub(crate) fn at_rest(system: System, voltages: &[f64]) -> Vec<Vector3<f64>> {
+    let model = Model::new(system, None, 1.0, &[]).unwrap();
+    let found = equilibrium(&model, &model.coordinates_at(&[]), voltages).unwrap();
+    assert_eq!(found.is_stable(), Some(true));
+    placed(&model, &found.z)
 }
