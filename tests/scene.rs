@@ -763,7 +763,7 @@ fn voltages_are_named_for_driven_electrodes() {
         r#"{ "scene": "scene.json", "equilibrium": { "voltages": { "pile.stack": "2 kV" } } }"#;
     let (_folder, path) = folder(BLOCK, problem);
     let task = read_problem(&path, &[]).expect("an equilibrium").task;
-    assert!(matches!(task, Task::Equilibrium(voltages, _) if voltages == [0.0, 2000.0]));
+    assert!(matches!(task, Task::Equilibrium(task) if task.voltages == [0.0, 2000.0]));
     let wrong = problem.replace("pile.stack", "pile.stak");
     let error = mistake(BLOCK, &wrong, &[]);
     assert_eq!(error.path(), "equilibrium.voltages.pile.stak");

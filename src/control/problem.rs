@@ -12,10 +12,22 @@ use std::path::PathBuf;
 pub enum Task {
     /// Integrate forward in time.
     Simulate(Simulation),
-    /// Find the static equilibrium under voltages (V, one per muscle).
-    Equilibrium(Vec<f64>, Option<Coordinates>),
+    /// Find a static equilibrium.
+    Equilibrium(AtRest),
     /// Find optimal voltages.
     Control(Box<Control>),
+}
+
+/// A static equilibrium, or the path of equilibria that leads there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AtRest {
+    /// Voltages in V, one per source.
+    pub voltages: Vec<f64>,
+    /// `None`: reduced where the joints form a tree.
+    pub coordinates: Option<Coordinates>,
+    /// How many equilibria of the path from zero voltage are followed by arc length, past limit points; `None`: only the
+    /// equilibrium under the voltages is looked for.
+    pub path: Option<usize>,
 }
 
 /// A state of rest, or of given motion.

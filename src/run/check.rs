@@ -133,8 +133,8 @@ fn as_control(task: Task, sources: usize) -> Control {
             };
             without_goal(start, step, row, coordinates)
         }
-        Task::Equilibrium(voltages, coordinates) => {
-            without_goal(at_reference(), 1.0, voltages, coordinates)
+        Task::Equilibrium(task) => {
+            without_goal(at_reference(), 1.0, task.voltages, task.coordinates)
         }
     }
 }

@@ -30,8 +30,8 @@ pub fn inspect(request: &Request) -> Result<Told, RunError> {
                 .map_err(|error| wrong(error.into()))?;
             of_model(&request.input, &model)?
         }
-        Task::Equilibrium(_, coordinates) => {
-            let model = Model::new(system.clone(), *coordinates, 1.0, &[])
+        Task::Equilibrium(task) => {
+            let model = Model::new(system.clone(), task.coordinates, 1.0, &[])
                 .map_err(|error| wrong(error.into()))?;
             of_model(&request.input, &model)?
         }

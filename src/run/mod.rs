@@ -13,6 +13,7 @@ mod fields;
 mod forward;
 mod inspect;
 mod motion;
+mod path;
 mod progress;
 mod request;
 mod resimulate;

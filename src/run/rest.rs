@@ -20,6 +20,7 @@ use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::inspect::key;
 use crate::run::motion::{has_coordinate, solved};
+use crate::run::path;
 use crate::run::request::{Request, Told};
 use crate::run::solve::make_folder;
 use crate::run::summary::{Rest, Seconds, Summary};
@@ -42,17 +43,19 @@ pub fn equilibrium_of_file(
             system: &system,
             voltages: &voltages,
             coordinates: None,
+            path: None,
             folder: request.output.clone(),
         };
         return at(request, &asked, began);
     }
     let loaded = read_problem(&request.input, &request.set)?;
     match &loaded.task {
-        Task::Equilibrium(voltages, coordinates) => {
+        Task::Equilibrium(task) => {
             let asked = Asked {
                 system: &loaded.system,
-                voltages,
-                coordinates: *coordinates,
+                voltages: &task.voltages,
+                coordinates: task.coordinates,
+                path: task.path,
                 folder: request.output.clone(),
             };
             at(request, &asked, began)
@@ -71,12 +74,17 @@ pub(super) struct Asked<'a> {
     /// Voltages in V by source.
     pub(super) voltages: &'a [f64],
     pub(super) coordinates: Option<Coordinates>,
+    /// How many equilibria of the path are followed, instead of the one under the voltages.
+    pub(super) path: Option<usize>,
     /// Where files go, if anywhere.
     pub(super) folder: Option<PathBuf>,
 }
 
-/// Finds the equilibrium under voltages; where it is lost on the way there, the last one is kept.
+/// Finds the equilibrium under voltages, or follows the path there; where it is lost on the way there, the last one is kept.
 pub(super) fn at(request: &Request, asked: &Asked<'_>, began: Instant) -> Result<Told, RunError> {
+    if let Some(points) = asked.path {
+        return path::follow(request, asked, points, began);
+    }
     let wrong = |error| RunError::boundary(&request.input, "equilibrium", &error);
     let model = Model::new(asked.system.clone(), asked.coordinates, 1.0, &[])
         .map_err(|error| wrong(error.into()))?;

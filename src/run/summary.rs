@@ -8,6 +8,7 @@ use crate::dynamics::StepperReport;
 use crate::report::atomic::{self, WriteError};
 use crate::run::blocks::Blocks;
 use crate::run::effects::EffectCounts;
+use crate::run::path::Followed;
 use crate::run::request::Request;
 use crate::run::resimulate::Resimulation;
 use crate::run::violations::Violation;
@@ -29,6 +30,8 @@ pub(super) struct Summary {
     pub(super) simulation: Option<Simulation>,
     #[serde(flatten)]
     pub(super) rest: Option<Rest>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) path: Option<Followed>,
     #[serde(flatten)]
     pub(super) blocks: Option<Blocks>,
     pub(super) coordinates: &'static str,
@@ -161,6 +164,7 @@ impl Summary {
             program: None,
             simulation: None,
             rest: None,
+            path: None,
             blocks: None,
             coordinates,
             seconds: Seconds::default(),

@@ -20,11 +20,12 @@ pub fn run(request: &Request) -> Result<Told, RunError> {
         Task::Simulate(simulation) => {
             forward::simulation(request, &loaded.system, &simulation, began)
         }
-        Task::Equilibrium(voltages, coordinates) => {
+        Task::Equilibrium(task) => {
             let asked = rest::Asked {
                 system: &loaded.system,
-                voltages: &voltages,
-                coordinates,
+                voltages: &task.voltages,
+                coordinates: task.coordinates,
+                path: task.path,
                 folder: Some(request.folder()),
             };
             rest::at(request, &asked, began)

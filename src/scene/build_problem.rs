@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use crate::control::problem::{
-    Control, Duration, Guess, Objective, Simulation, Solver, State, Task, Voltages,
+    AtRest, Control, Duration, Guess, Objective, Simulation, Solver, State, Task, Voltages,
 };
 use crate::dynamics::Solving;
 use crate::ipopt::OptionValue;
@@ -37,7 +37,14 @@ pub(crate) fn build_problem(
             let scope = scope.key("equilibrium");
             let voltages = voltages(&spec.voltages, system, &scope.key("voltages"))?;
             let coordinates = coordinates(spec.coordinates, system, &scope)?;
-            Ok(Task::Equilibrium(voltages, coordinates))
+            if spec.path == Some(0) {
+                return Err(scope.key("path").wrong("0", "1 point or more"));
+            }
+            Ok(Task::Equilibrium(AtRest {
+                voltages,
+                coordinates,
+                path: spec.path,
+            }))
         })
     });
     let control = problem.control.as_ref().map(|spec| -> Build<'_> {

@@ -123,6 +123,9 @@ pub struct EquilibriumSpec {
     /// Coordinates.
     #[serde(default)]
     pub coordinates: Option<CoordinatesSpec>,
+    /// Follow the path of equilibria from zero voltage by arc length for so many points, past limit points such as pull-in.
+    #[serde(default)]
+    pub path: Option<usize>,
 }
 
 /// An optimal control problem.
