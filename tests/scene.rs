@@ -320,7 +320,8 @@ fn simulation_and_solution_are_checked() {
         simulation.voltages,
         Voltages::Sampled {
             ends: vec![500.0, 1000.0],
-            rows
+            rows,
+            solution: folder.path().join("solution.json"),
         }
     );
     let State::JointAngles { angles, rates } = simulation.start else {

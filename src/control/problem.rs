@@ -5,7 +5,7 @@ use crate::ipopt::OptionValue;
 use crate::model::{Coordinates, Region};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A task with everything resolved: one voltage per muscle, indices for names.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,7 +74,19 @@ pub enum Voltages {
         ends: Vec<f64>,
         /// Rows of voltages.
         rows: Vec<Vec<f64>>,
+        /// The solution they were read from.
+        solution: PathBuf,
     },
+}
+
+impl Voltages {
+    /// The solution that they are from.
+    pub fn solution(&self) -> Option<&Path> {
+        match self {
+            Self::Constant(_) => None,
+            Self::Sampled { solution, .. } => Some(solution),
+        }
+    }
 }
 
 /// A forward simulation.

@@ -6,12 +6,13 @@ use std::time::Instant;
 use crate::control::problem::{Simulation, Voltages};
 use crate::control::resolve_start;
 use crate::dynamics::observations;
-use crate::dynamics::simulate;
+use crate::dynamics::simulate_by;
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::run::blocks::Blocks;
+use crate::run::comparison::{self, Comparison};
 use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
 use crate::run::fields;
@@ -46,7 +47,7 @@ pub(super) fn simulation(
     let mut stopped = None;
     let (history, failure) = {
         let progress = Progress::of_steps(request.progress, steps);
-        simulate(&model, &start, h, steps, scalars, |step| {
+        simulate_by(task.solving, &model, &start, h, steps, scalars, |step| {
             progress.step(step);
             let late = |limit: f64| began.elapsed().as_secs_f64() > limit;
             stopped = match step < steps {
@@ -71,11 +72,7 @@ pub(super) fn simulation(
     }
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = failure.as_ref().map(ToString::to_string);
-    summary.simulation = Some(summary::Simulation::new(
-        history.intervals(),
-        reached,
-        history.report,
-    ));
+    summary.simulation = Some(summary::Simulation::new(&history));
     summary.effects = effects;
     let observed = observations(&model, &history);
     let origin = request.origin(false);
@@ -87,8 +84,15 @@ pub(super) fn simulation(
         solver: spent,
         ..Seconds::default()
     };
-    summary.write(&folder)?;
     let motion = trajectory(&model, &kept);
+    let path = task.voltages.solution();
+    let earlier = path.and_then(|path| comparison::earlier(&model, path));
+    summary.comparison = path
+        .zip(earlier.as_ref())
+        .map(|(path, earlier)| Comparison::new(&model, path, &motion, earlier));
+    let compared = summary.comparison.iter().flat_map(Comparison::notes);
+    let notes = summary.message.iter().cloned().chain(compared).collect();
+    summary.write(&folder)?;
     let rows = [
         ("status".to_owned(), status.replace('_', " ")),
         ("steps".to_owned(), history.intervals().to_string()),
@@ -105,7 +109,7 @@ pub(super) fn simulation(
         skins: &Skins::new(&model, &history),
         name: "simulation",
         observations: &observed,
-        comparison: None,
+        comparison: earlier.as_ref().map(|e| ("the solution", e)),
         held: None,
         origin: &origin,
         title: "Simulation",
@@ -126,7 +130,7 @@ pub(super) fn simulation(
             summary.seconds.total,
             folder.display()
         ),
-        notes: summary.message.into_iter().collect(),
+        notes,
     })
 }
 
@@ -134,7 +138,7 @@ pub(super) fn simulation(
 fn row(voltages: &Voltages, time: f64) -> &[f64] {
     match voltages {
         Voltages::Constant(row) => row,
-        Voltages::Sampled { ends, rows } => {
+        Voltages::Sampled { ends, rows, .. } => {
             let k = ends.iter().position(|&end| time < end);
             &rows[k.unwrap_or(rows.len() - 1)]
         }

@@ -7,6 +7,7 @@
 
 mod blocks;
 mod check;
+mod comparison;
 mod effects;
 mod error;
 mod fields;

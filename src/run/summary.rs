@@ -4,9 +4,10 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::dynamics::StepperReport;
+use crate::dynamics::History;
 use crate::report::atomic::{self, WriteError};
 use crate::run::blocks::Blocks;
+use crate::run::comparison::Comparison;
 use crate::run::effects::EffectCounts;
 use crate::run::path::Followed;
 use crate::run::request::Request;
@@ -28,6 +29,8 @@ pub(super) struct Summary {
     pub(super) program: Option<Program>,
     #[serde(flatten)]
     pub(super) simulation: Option<Simulation>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) comparison: Option<Comparison>,
     #[serde(flatten)]
     pub(super) rest: Option<Rest>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -80,16 +83,32 @@ pub(super) struct Simulation {
     pub(super) newton_iterations: usize,
     /// Steps that had to be halved.
     pub(super) halved_steps: usize,
+    /// Who factorised the tangents.
+    pub(super) linear_solver: &'static str,
+    /// Factorisations of the tangent.
+    pub(super) factorisations: usize,
+    /// Seconds in rows and tangents.
+    pub(super) assembly_seconds: f64,
+    /// Seconds in factorisations.
+    pub(super) factorisation_seconds: f64,
+    /// Seconds in solutions with them.
+    pub(super) solution_seconds: f64,
 }
 
 impl Simulation {
-    /// Of a motion of `steps` recorded steps and `duration` ms.
-    pub(super) fn new(steps: usize, duration: f64, report: StepperReport) -> Self {
+    /// Of a motion.
+    pub(super) fn new(history: &History) -> Self {
+        let (steps, report) = (history.intervals(), history.report);
         Self {
             steps,
-            duration: duration / 1e3,
+            duration: history.times[steps] / 1e3,
             newton_iterations: report.iterations,
             halved_steps: report.halved,
+            linear_solver: history.solver,
+            factorisations: report.factorisations,
+            assembly_seconds: report.assembly,
+            factorisation_seconds: report.factorisation,
+            solution_seconds: report.solution,
         }
     }
 }
@@ -163,6 +182,7 @@ impl Summary {
             message: None,
             program: None,
             simulation: None,
+            comparison: None,
             rest: None,
             path: None,
             blocks: None,

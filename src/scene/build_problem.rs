@@ -12,7 +12,6 @@ use crate::model::Coordinates;
 use crate::model::system::{Fidelity, Muscle, System};
 use crate::scene::build_limits::limit;
 use crate::scene::build_state::{ELECTRIC_KEYS, goal_state, start_state, voltages};
-use crate::scene::document::Document;
 use crate::scene::error::SceneError;
 use crate::scene::graph::{has_free_part, tree_freedoms};
 use crate::scene::scope::Scope;
@@ -88,7 +87,7 @@ fn simulation(
         VoltagesSpec::Constant(map) => Voltages::Constant(voltages(map, system, &place)?),
         VoltagesSpec::Solution(solution) => {
             let path = existing(&solution.solution, &place.key("solution"))?;
-            sampled_voltages(&Document::read(&path)?, system)?
+            sampled_voltages(&path, system)?
         }
     };
     Ok(Simulation {

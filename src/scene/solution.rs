@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use crate::control::problem::Voltages;
 use crate::model::system::System;
@@ -20,10 +21,8 @@ struct Solution {
 }
 
 /// Voltages of a solution; 0 for sources that it does not know.
-pub(crate) fn sampled_voltages(
-    document: &Document,
-    system: &System,
-) -> Result<Voltages, SceneError> {
+pub(crate) fn sampled_voltages(path: &Path, system: &System) -> Result<Voltages, SceneError> {
+    let document = &Document::read(path)?;
     let solution: Solution = document.parse()?;
     let scope = Scope::of(document);
     let place = scope.key("time");
@@ -50,5 +49,9 @@ pub(crate) fn sampled_voltages(
             row[source] = *voltage;
         }
     }
-    Ok(Voltages::Sampled { ends, rows })
+    Ok(Voltages::Sampled {
+        ends,
+        rows,
+        solution: path.to_owned(),
+    })
 }
