@@ -39,13 +39,12 @@ pub(super) enum Block {
 }
 
 impl Joined {
-    /// Adds a pair in the order of its block; `row_is_articulated` says which of both is first.
+    /// Adds a pair in the order of its block; `row_is_articulated` says which of both vectors is first.
     pub(super) fn add(
         &mut self,
         block: Block,
         [slot, transposed]: [usize; 2],
-        packed: &Packed,
-        parts: &[LinearPart],
+        (packed, parts): (&Packed, &[LinearPart]),
         row_is_articulated: bool,
         layout: &mut Layout,
         site: Site,

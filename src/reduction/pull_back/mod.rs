@@ -95,10 +95,12 @@ impl PullBack {
                 Block::Isotropic => self.linear.add_isotropic(slot, [s, t], layout, site),
             },
             (Articulated(a), Linear { parts, .. }) => {
-                self.joined.add(block, slots, a, parts, true, layout, site);
+                self.joined
+                    .add(block, slots, (a, parts), true, layout, site);
             }
             (Linear { parts, .. }, Articulated(b)) => {
-                self.joined.add(block, slots, b, parts, false, layout, site);
+                self.joined
+                    .add(block, slots, (b, parts), false, layout, site);
             }
         }
     }
