@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::cases::{BRANCHED_VOLTAGES, branched, control, hold, joints};
+use common::cases::{BRANCHED_VOLTAGES, blocks, branched, control, hold, joints};
 use common::random::Random;
 use common::trunk;
 use proboscis::control::problem::{Duration, State};
@@ -28,7 +28,7 @@ fn law(
 ) {
     let mut control = control(system, INTERVALS);
     control.coordinates = Some(coordinates);
-    control.start = State::RestAtVoltages(vec![0.0; system.muscles.len()]);
+    control.start = State::RestAtVoltages(vec![0.0; system.sources().len()]);
     control.goal = joints(&[]);
     let duration = STEP * INTERVALS as f64;
     control.duration = if free {
@@ -141,6 +141,14 @@ fn simulated_motions_are_feasible() {
                 free,
                 random_voltages(4, 2),
             );
+            let of_blocks = |v: Vec<f64>| [v, vec![8e4]].concat();
+            law("blocks, constant", &blocks(), coordinates, free, |_| {
+                of_blocks(hold(2))
+            });
+            let random = random_voltages(4, 3);
+            law("blocks, random", &blocks(), coordinates, free, |k| {
+                of_blocks(random(k))
+            });
         }
     }
 }
