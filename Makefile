@@ -36,6 +36,7 @@ check: install-deps
 bench: install-deps
 	@$(CARGO) bench --locked --bench transcription --bench step
 	@$(CARGO) bench --locked --bench solve -- --write
+	@$(CARGO) bench --locked --bench block -- 8 16 --write
 
 studies: build
 	@for study in $(STUDIES); do $(PROBOSCIS) solve $$study || exit; done

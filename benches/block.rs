@@ -1,10 +1,11 @@
 //! A dielectric block of finite elements: what one Newton iteration and one step cost, against the bare factorisation.
 //!
 //! `cargo bench --bench block` measures 8 × 8 × 32 elements; other sizes are given as the number n of n × n × 4n elements,
-//! `cargo bench --bench block -- 16`. Numbers of one run are compared with each other, never with those of another.
+//! `cargo bench --bench block -- 16`; `--write` puts the tables into `benches/README.md`. Numbers of one run are compared with each other, never with those of another.
 
 use nalgebra::Vector3;
 use proboscis::dynamics::{Newton, Solving, Start, Stepper};
+use proboscis::element::{Dielectric, Elastomer, Local, Passive, Shape, Volume};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
 use proboscis::model::system::{
@@ -12,8 +13,15 @@ use proboscis::model::system::{
     VACUUM_PERMITTIVITY,
 };
 use proboscis::sparse::Backend;
+use std::hint::black_box;
 use std::time::Instant;
 
+/// Calls in a round, and rounds, of the measurement of one element.
+const CALLS: u32 = 2000;
+const ROUNDS: usize = 60;
+/// Where the tables stand in `benches/README.md`.
+const FROM: &str = "<!-- blocks -->";
+const TO: &str = "<!-- end of blocks -->";
 /// Step in ms.
 const STEP: f64 = 0.5;
 /// Voltage in V, over layers of 10 mm.
@@ -77,21 +85,137 @@ fn block(n: usize, viscosity: Option<f64>) -> System {
 }
 
 fn main() {
-    let given: Vec<usize> = std::env::args().filter_map(|a| a.parse().ok()).collect();
+    let arguments: Vec<String> = std::env::args().collect();
+    let given: Vec<usize> = arguments.iter().filter_map(|a| a.parse().ok()).collect();
     let sizes = if given.is_empty() { vec![8] } else { given };
-    println!(
-        "| elements | unknowns | viscous | solver | set-up, s | assembly, s | factorisation, s | by MUMPS, s | solution, s | iteration / (factorisation + solution) | full Newton step, s | reused: s a step | reused step / factorisation, / that of MUMPS | factorisations, iterations of {STEPS} steps |"
+    let mut text = element();
+    text.push_str(
+        "\n| elements | unknowns | viscous | solver | set-up, s | assembly, s | factorisation, s | by MUMPS, s | solution, s | iteration / (factorisation + solution) | full Newton step, s | reused: s a step | / factorisation, / that of MUMPS | factorisations, iterations in 20 steps |\n\
+         |:--|--:|:--|:--|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for n in sizes {
-        row(n, None);
+        text.push_str(&row(n, None));
         if n < LARGE {
-            row(n, Some(1.0));
+            text.push_str(&row(n, Some(1.0)));
         }
+    }
+    println!("{text}");
+    if arguments.iter().any(|a| a == "--write") {
+        write(&text);
     }
 }
 
-fn row(n: usize, viscosity: Option<f64>) {
+/// Puts the tables into `benches/README.md`.
+fn write(text: &str) {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/README.md");
+    let old = std::fs::read_to_string(path).unwrap();
+    let (before, rest) = old.split_once(FROM).unwrap();
+    let (_, after) = rest.split_once(TO).unwrap();
+    std::fs::write(path, format!("{before}{FROM}\n\n{text}\n{TO}{after}")).unwrap();
+}
+
+/// Least time of one call in µs.
+fn least(mut call: impl FnMut()) -> f64 {
+    let round = |call: &mut dyn FnMut()| {
+        let began = Instant::now();
+        for _ in 0..CALLS {
+            call();
+        }
+        began.elapsed().as_secs_f64() / f64::from(CALLS)
+    };
+    (0..ROUNDS)
+        .map(|_| round(&mut call))
+        .fold(f64::INFINITY, f64::min)
+        * 1e6
+}
+
+/// One hexahedron on one core.
+fn element() -> String {
+    let places: [Vector3<f64>; 8] = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [1.0, 0.0, 1.0],
+        [1.0, 1.0, 1.0],
+        [0.0, 1.0, 1.0],
+    ]
+    .map(Vector3::from);
+    let shape = Shape::new(&places).unwrap();
+    let x = places.map(|p| p + Vector3::new(0.03 * p.y * p.z, 0.02 * p.x, -0.05 * p.z));
+    let potentials = places.map(|p| 2e4 * p.z);
+    let mut rows = String::from(
+        "| one hexahedron, one core, µs | residual | residual and tangent | with contracted third derivatives |\n|:--|--:|--:|--:|\n",
+    );
+    let mut passive = Local::default();
+    let mut passive_along = Local::default();
+    let mut dielectric = Local::default();
+    let mut along = Local::default();
+    for volume in [Volume::Pointwise, Volume::Mean] {
+        let name = match volume {
+            Volume::Pointwise => "hex8",
+            Volume::Mean => "hex8_q1p0",
+        };
+        let law = Elastomer {
+            shear_modulus: 0.1,
+            lame_lambda: 0.4,
+            volume,
+            field: Passive,
+        };
+        let times = [
+            least(|| law.gradient(black_box(&shape), black_box(&x), &(), &mut passive)),
+            least(|| law.tangent(black_box(&shape), black_box(&x), &(), &mut passive)),
+            least(|| {
+                law.third(
+                    &shape,
+                    black_box(&x),
+                    &(),
+                    &places,
+                    &(),
+                    &mut passive,
+                    &mut passive_along,
+                );
+            }),
+        ];
+        rows.push_str(&line(&format!("elastic {name}"), times));
+        let law = Elastomer {
+            shear_modulus: 0.1,
+            lame_lambda: 0.4,
+            volume,
+            field: Dielectric {
+                c1: -2.0 * VACUUM_PERMITTIVITY,
+                c2: VACUUM_PERMITTIVITY,
+                permittivity: VACUUM_PERMITTIVITY,
+            },
+        };
+        let p = &potentials;
+        let times = [
+            least(|| law.gradient(black_box(&shape), black_box(&x), p, &mut dielectric)),
+            least(|| law.tangent(black_box(&shape), black_box(&x), p, &mut dielectric)),
+            least(|| {
+                law.third(
+                    &shape,
+                    black_box(&x),
+                    p,
+                    &places,
+                    p,
+                    &mut dielectric,
+                    &mut along,
+                );
+            }),
+        ];
+        rows.push_str(&line(&format!("dielectric {name}"), times));
+    }
+    rows.push_str("| target, dielectric | 1 | 5 | |\n");
+    rows
+}
+
+fn line(name: &str, [a, b, c]: [f64; 3]) -> String {
+    format!("| {name} | {a:.2} | {b:.2} | {c:.2} |\n")
+}
+
+fn row(n: usize, viscosity: Option<f64>) -> String {
     let began = Instant::now();
     let model = Model::new(block(n, viscosity), None, STEP, &[]).unwrap();
     let start = Start::at_rest(&model, model.coordinates_at(&[]));
@@ -130,8 +254,8 @@ fn row(n: usize, viscosity: Option<f64>) {
     }
     let average = began.elapsed().as_secs_f64() / STEPS as f64;
     let report = reused.report();
-    println!(
-        "| {n} × {n} × {} | {} | {} | {} | {setup:.2} | {assembly:.3} | {factorisation:.3} | {mumps:.3} | {solution:.3} | {ratio:.2} | {step:.2} | {average:.3} | {:.2}, {:.2} | {}, {} |",
+    format!(
+        "| {n} × {n} × {} | {} | {} | {} | {setup:.2} | {assembly:.3} | {factorisation:.3} | {mumps:.3} | {solution:.3} | {ratio:.2} | {step:.2} | {average:.3} | {:.2}, {:.2} | {}, {} |\n",
         4 * n,
         model.action.motion.unknowns() + model.potentials,
         if viscosity.is_some() { "yes" } else { "no" },
@@ -140,5 +264,5 @@ fn row(n: usize, viscosity: Option<f64>) {
         average / mumps,
         report.factorisations,
         report.iterations,
-    );
+    )
 }
