@@ -75,6 +75,7 @@ fn counts(system: &System, intervals: usize) -> Counts {
     control.goal = State::Markers {
         places: BTreeMap::new(),
         rest: Rest::Markers,
+        hold: None,
     };
     let (model, boundary) = Boundary::resolve(system, &control, 10.0).unwrap();
     let initial = guess(&model, &boundary, &control, 10.0, None);

@@ -1,7 +1,7 @@
 //! Which vectors and scalars meet in second derivatives, and the blocks they meet in.
 
 use crate::math::{Matrix, Vector};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// The pairs that couple at one site; laid down once by the effects, the same for every interval.
 ///
@@ -16,20 +16,21 @@ pub struct Couplings {
     pub mixed: Vec<(usize, usize)>,
     /// Scalar pairs, row ≥ column.
     pub scalars: Vec<(usize, usize)>,
-    slots: HashMap<(u8, usize, usize), usize>,
+    slots: FxHashMap<(u8, u32, u32), u32>,
 }
 
 impl Couplings {
     fn slot(
-        slots: &mut HashMap<(u8, usize, usize), usize>,
+        slots: &mut FxHashMap<(u8, u32, u32), u32>,
         list: &mut Vec<(usize, usize)>,
         kind: u8,
         pair: (usize, usize),
     ) -> usize {
-        *slots.entry((kind, pair.0, pair.1)).or_insert_with(|| {
+        let slot = slots.entry((kind, pair.0 as u32, pair.1 as u32));
+        *slot.or_insert_with(|| {
             list.push(pair);
-            list.len() - 1
-        })
+            list.len() as u32 - 1
+        }) as usize
     }
 
     /// Slot of a full block of the vectors a, b.
@@ -57,13 +58,13 @@ impl Couplings {
     /// Slot of the transposed full pair.
     pub fn transposed_full(&self, slot: usize) -> usize {
         let (a, b) = self.full[slot];
-        self.slots[&(0, b, a)]
+        self.slots[&(0, b as u32, a as u32)] as usize
     }
 
     /// Slot of the transposed isotropic pair.
     pub fn transposed_isotropic(&self, slot: usize) -> usize {
         let (a, b) = self.isotropic[slot];
-        self.slots[&(1, b, a)]
+        self.slots[&(1, b as u32, a as u32)] as usize
     }
 }
 

@@ -4,27 +4,30 @@
 //! over a horizon exist only at (z_k, z_k), (z_{k+1}, z_k), (z_k, z_{k+1}), (z_k, s_k), (z_{k+1}, s_k), (s_k, s_k), and
 //! at the interval length against all of these. One table of slots serves every interval.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Places of the entries of one kind of block, in the order in which they were asked for.
 #[derive(Clone, Debug, Default)]
 pub struct Pattern {
     entries: Vec<(usize, usize)>,
-    slots: HashMap<(usize, usize), usize>,
+    slots: FxHashMap<(u32, u32), u32>,
 }
 
 impl Pattern {
     /// Slot of an entry, which joins the pattern if it is new.
     pub fn slot(&mut self, row: usize, col: usize) -> usize {
-        *self.slots.entry((row, col)).or_insert_with(|| {
-            self.entries.push((row, col));
-            self.entries.len() - 1
-        })
+        let entries = &mut self.entries;
+        let slot = self.slots.entry((row as u32, col as u32));
+        *slot.or_insert_with(|| {
+            entries.push((row, col));
+            entries.len() as u32 - 1
+        }) as usize
     }
 
     /// Slot of an entry of the pattern.
     pub fn find(&self, row: usize, col: usize) -> Option<usize> {
-        self.slots.get(&(row, col)).copied()
+        let slot = self.slots.get(&(row as u32, col as u32));
+        slot.map(|&slot| slot as usize)
     }
 
     /// All entries, by slot.
