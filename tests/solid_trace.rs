@@ -176,8 +176,8 @@ fn inner_nodes_of_dielectric_elements_have_a_potential() {
     // An electrode takes the potentials of its nodes away; floating ones keep one.
     let middle = |potential| {
         move |s: &mut Solid| {
-            s.electrodes
-                .push(electrode(&s.mesh, "middle", 10.0, potential))
+            let middle = electrode(&s.mesh, "middle", 10.0, potential);
+            s.electrodes.push(middle);
         }
     };
     assert_eq!(with(&middle(Potential::Given(0.0))), (18, 1));
