@@ -3,10 +3,9 @@
 mod common;
 mod solid;
 
-use common::cases::{blocks, control};
+use common::cases::{blocks, control, open_end};
 use common::random::Random;
 use nalgebra::Vector3;
-use proboscis::control::problem::{Rest, State};
 use proboscis::control::{Boundary, Transcription, guess};
 use proboscis::functional::{Kind, Level};
 use proboscis::mesh::grid::Grid;
@@ -15,7 +14,7 @@ use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::Nlp;
 use proboscis::reduction::Interval;
 use solid::{DRIVEN, block, electrode, held, system};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 fn rubber() -> Material {
     let material = blocks().muscles[0].material;
@@ -71,12 +70,7 @@ struct Counts {
 
 fn counts(system: &System, intervals: usize) -> Counts {
     let mut control = control(system, intervals);
-    // Nothing is asked of the end: all instants but the first are free, and no balance closes the last one.
-    control.goal = State::Markers {
-        places: BTreeMap::new(),
-        rest: Rest::Markers,
-        hold: None,
-    };
+    control.goal = open_end();
     let (model, boundary) = Boundary::resolve(system, &control, 10.0).unwrap();
     let initial = guess(&model, &boundary, &control, 10.0, None);
     let program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
@@ -182,8 +176,8 @@ fn inner_nodes_of_dielectric_elements_have_a_potential() {
     // An electrode takes the potentials of its nodes away; floating ones keep one.
     let middle = |potential| {
         move |s: &mut Solid| {
-            s.electrodes
-                .push(electrode(&s.mesh, "middle", 10.0, potential))
+            let middle = electrode(&s.mesh, "middle", 10.0, potential);
+            s.electrodes.push(middle);
         }
     };
     assert_eq!(with(&middle(Potential::Given(0.0))), (18, 1));

@@ -21,6 +21,8 @@ const LARGEST: f64 = 0.1;
 const SMALLEST: f64 = 1e-7;
 /// Limit of steps in the search of a limit point.
 const STEPS: usize = 200;
+/// How often the step over a branching point is halved.
+const HALVINGS: usize = 24;
 /// Slope ḟ that counts as zero; the fraction is then exact to its square.
 const FLAT: f64 = 1e-6;
 
@@ -163,6 +165,25 @@ impl Path<'_, '_> {
     }
 }
 
+impl Path<'_, '_> {
+    /// The last stable point between a stable point and the unstable one a step later.
+    fn switch(&mut self, before: &Point, step: f64) -> Point {
+        let (mut low, mut high) = (0.0, step);
+        let mut best = before.clone();
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            match self.advance(before, middle) {
+                Some(point) if point.unstable == Some(0) => {
+                    low = middle;
+                    best = point;
+                }
+                _ => high = middle,
+            }
+        }
+        best
+    }
+}
+
 fn path<'s, 'm>(statics: &'s mut Statics<'m>, voltages: &'s [f64]) -> Path<'s, 'm> {
     let weights = statics.weights();
     Path {
@@ -199,10 +220,11 @@ pub(super) fn limit_point(
             });
         }
         if let (Some(0), Some(1..)) = (here.unstable, next.unstable) {
+            let found = path.switch(&here, step);
             return Some(LimitPoint {
-                fraction: next.fraction,
+                fraction: found.fraction,
                 kind: Instability::Buckling,
-                state: next.state,
+                state: found.state,
             });
         }
         here = next;
@@ -261,7 +283,9 @@ pub fn continuation(
             let turn = path.turn(&here, step, &next);
             out.lost.push((index, turn.fraction, Instability::PullIn));
         } else if let (Some(0), Some(1..)) = (here.unstable, next.unstable) {
-            out.lost.push((index, next.fraction, Instability::Buckling));
+            let found = path.switch(&here, step);
+            out.lost
+                .push((index, found.fraction, Instability::Buckling));
         }
         let loaded: Vec<f64> = voltages.iter().map(|v| v * next.fraction).collect();
         out.fractions.push(next.fraction);

@@ -381,6 +381,15 @@ fn corner_goal() -> State {
     }
 }
 
+/// Nothing is asked of the nodes at the end: all their coordinates are free, and no balance closes the last instant.
+pub fn open_end() -> State {
+    State::Markers {
+        places: BTreeMap::new(),
+        rest: Rest::Markers,
+        hold: None,
+    }
+}
+
 /// The list.
 pub fn cases() -> Vec<Case> {
     let case = |name, system: System, change: &dyn Fn(&mut Control)| {
