@@ -6,7 +6,7 @@ use crate::energy::{
 use crate::functional::{Effect, Element, Group, Inertia, Mass, Stencil, VectorArg};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
-use crate::model::continuum::Continua;
+use crate::model::continua::Continua;
 use crate::model::joints::{JointGauge, Measure};
 use crate::model::system::{Attachment, Fidelity, Muscle, System};
 

@@ -2,17 +2,21 @@
 
 mod blocks;
 mod constraints;
+mod continua;
 mod continuum;
 mod effects;
 mod error;
+mod floating;
 mod graph;
 mod joints;
 mod quantity;
+mod reach;
 mod solid_effects;
 pub mod system;
 
-pub use continuum::{Continuum, Floating};
+pub use continuum::Continuum;
 pub use error::ModelError;
+pub use floating::Floating;
 pub use graph::Graph;
 pub use joints::JointGauge;
 pub use quantity::{Quantity, Region};
@@ -23,7 +27,7 @@ use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::reduction::{Instant, Motion, NodePlace, Reduced};
 use crate::sparse::Symmetry;
-use continuum::Continua;
+use continua::Continua;
 use system::{Attachment, Source};
 
 /// Coordinates in which a problem is solved.
@@ -103,7 +107,7 @@ impl Model {
         let reference: Vec<Pose> = system.bodies.iter().map(system::Body::pose).collect();
         let mut vectors = Vectors::default();
         let solids = blocks::blocks(&system);
-        let voltages = continuum::voltages(&system, &solids);
+        let voltages = reach::voltages(&system, &solids);
         let ties = coordinates == Coordinates::Redundant;
         let scene = system.solids.len();
         let continua = Continua::new(solids, scene, &reference, &voltages, ties, &mut vectors)?;
@@ -322,7 +326,7 @@ impl Model {
 
     /// The part of a block that nothing holds, if there is one.
     pub fn floating(&self) -> Option<Floating> {
-        continuum::floating(&self.continua, &self.vectors, &self.nodes)
+        floating::floating(&self.continua, &self.vectors, &self.nodes)
     }
 
     /// Joint coordinates (rad or mm, zero where a joint has none) at poses, angles in the branch nearest to `near`.

@@ -2,7 +2,8 @@
 
 use crate::element::Viscosity;
 use crate::functional::{Effect, Hexahedra, Hexahedron, Mass, ViscousHexahedra, ViscousHexahedron};
-use crate::model::continuum::{Continua, Continuum};
+use crate::model::Continuum;
+use crate::model::continua::Continua;
 use crate::model::effects::Effects;
 use std::collections::BTreeMap;
 
