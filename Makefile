@@ -7,10 +7,14 @@ PROBOSCIS := target/release/proboscis
 TRUNKS := elephant_trunk elephant_trunk_smooth
 STUDIES := $(wildcard problems/studies/*.json)
 
-.PHONY: help trunk build test check bench studies install-deps clean
+BLOCKS := bending_actuator clamped_stack pull_in fe_bending_control
+MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight
+
+.PHONY: help trunk blocks build test check bench studies install-deps clean
 
 help:
 	@echo 'make trunk         solve the elephant trunk and say where the pictures are'
+	@echo 'make blocks        run the problems of finite elements, but the block of 16384'
 	@echo 'make test          run the tests'
 	@echo 'make check         formatting, lints, documentation'
 	@echo 'make bench         measure; rewrite the tables of benches/README.md'
@@ -21,6 +25,10 @@ help:
 trunk: build
 	@for problem in $(TRUNKS); do $(PROBOSCIS) solve problems/$$problem.json || exit; done
 	@echo; echo 'Pictures:'; for problem in $(TRUNKS); do ls results/$$problem/*.svg results/$$problem/report.html; done
+
+blocks: build
+	@for problem in $(BLOCKS); do $(PROBOSCIS) solve problems/$$problem.json || exit; done
+	@for problem in $(MOTIONS); do $(PROBOSCIS) simulate problems/$$problem.json || exit; done
 
 build: install-deps
 	@$(CARGO) build --release --locked --quiet

@@ -3,11 +3,12 @@
 mod solid;
 
 use nalgebra::Vector3;
-use proboscis::dynamics::{History, Start, observations, simulate};
+use proboscis::dynamics::{History, Newton, Solving, Start, observations, simulate, simulate_by};
 use proboscis::functional::Level;
 use proboscis::model::Model;
 use proboscis::model::system::System;
 use proboscis::reduction::Interval;
+use proboscis::sparse::Backend;
 use serde_json::Value;
 use solid::{block, material, mesh, numbers, reference, stack, system};
 use std::ops::ControlFlow;
@@ -153,4 +154,42 @@ fn gauss_holds_in_every_interval_and_the_balance_closes() {
     let dissipated = column("dissipated_energy");
     assert!(dissipated[60] > 1.0);
     assert!(dissipated.windows(2).all(|pair| pair[1] >= pair[0]));
+}
+
+#[test]
+fn reused_tangents_and_other_solvers_give_the_same_motion() {
+    let case = reference("caseD");
+    for entry in case["dynamic"].as_array().unwrap() {
+        if numbers(&entry["mesh"]["elements"])[0] > 2.0 {
+            continue;
+        }
+        let steps = 20;
+        let motion = |solving: Solving| {
+            let model = Model::new(stack(entry), None, 0.5, &[]).unwrap();
+            let start = Start::at_rest(&model, model.coordinates_at(&[]));
+            let constant = |_: f64, _: f64| vec![3e5];
+            let observer = |_: usize| ControlFlow::Continue(());
+            let (history, failure) =
+                simulate_by(solving, &model, &start, 0.5, steps, constant, observer);
+            assert_eq!(failure, None);
+            history
+        };
+        let full = motion(Solving::default());
+        let moved = full.z[steps].iter().zip(&full.z[0]);
+        assert!(moved.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) > 0.5);
+        for (newton, backend) in [
+            (Newton::Reused, None),
+            (Newton::Full, Some(Backend::Mumps)),
+            (Newton::Reused, Some(Backend::Mumps)),
+        ] {
+            let other = motion(Solving { newton, backend });
+            let apart = full.z[steps].iter().zip(&other.z[steps]);
+            let apart = apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-6, "{newton:?} {backend:?}: {apart:e} mm");
+            if newton == Newton::Reused {
+                assert!(other.report.factorisations < full.report.factorisations / 3);
+                assert!(other.report.iterations > full.report.iterations);
+            }
+        }
+    }
 }

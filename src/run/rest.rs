@@ -251,6 +251,7 @@ fn describe(model: &Model, state: &History, motion: &Trajectory, found: &Equilib
             false => found.stiffness.clone(),
         },
         is_stable: found.is_stable(),
+        unstable_directions: found.unstable,
         newton_iterations: found.iterations,
     }
 }
@@ -283,7 +284,12 @@ fn text(model: &Model, rest: &Rest) -> String {
     text.push_str(match rest.is_stable {
         Some(true) => "stable equilibrium",
         Some(false) => "unstable equilibrium",
-        None => "equilibrium; its stability is not known in redundant coordinates",
+        None => "equilibrium; its stability is not known",
     });
+    if let (Some(false), Some(count @ 1..)) = (rest.is_stable, rest.unstable_directions) {
+        text.push_str(&format!(
+            ": the potential energy falls in {count} directions (buckling)"
+        ));
+    }
     text
 }

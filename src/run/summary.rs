@@ -130,8 +130,10 @@ pub(super) struct Rest {
     pub(super) markers: std::collections::BTreeMap<String, [f64; 3]>,
     /// Eigenvalues of the stiffness in joint coordinates, N m/rad for angles, N/m for displacements.
     pub(super) stiffness: Vec<f64>,
-    /// Whether all of them are positive; nothing where they are not known.
+    /// Whether the equilibrium is stable, by them or by the inertia of the tangent; nothing where that is not known.
     pub(super) is_stable: Option<bool>,
+    /// Number of directions in which the potential energy falls, by the inertia of the tangent.
+    pub(super) unstable_directions: Option<usize>,
     /// Newton iterations.
     pub(super) newton_iterations: usize,
 }
