@@ -8,7 +8,8 @@ use thiserror::Error;
 pub enum StepError {
     /// Newton's method did not converge, although the step was halved.
     #[error(
-        "no convergence of the step from t = {time} ms, even with a step of {step} ms; last residuals relative to the first: {residuals:?}"
+        "no convergence of the step from t = {time} ms, even with a step of {step} ms; last residuals relative to the first: {residuals:?}{}",
+        hint(residuals)
     )]
     NoConvergence {
         /// Start of the step in ms.
@@ -69,6 +70,16 @@ pub enum EquilibriumError {
         /// The unknown whose pivot vanished.
         name: String,
     },
+}
+
+/// What residuals that are not finite mean.
+fn hint(residuals: &[f64]) -> &'static str {
+    match residuals.iter().any(|r| !r.is_finite()) {
+        true => {
+            "; an element is turned inside out there (J ≤ 0): take shorter steps from further back"
+        }
+        false => "",
+    }
 }
 
 fn why(kind: Option<Instability>) -> &'static str {
