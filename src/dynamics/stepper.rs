@@ -87,8 +87,10 @@ pub struct Stepper<'m> {
     tangent: Tangent,
     newton: Newton,
     anderson: Anderson,
-    /// Step and voltages of the tangent that is factorised.
+    /// Step of the tangent that is factorised.
     factored: Option<f64>,
+    /// Whether the last attempt began with the tangent of a step before.
+    stale: bool,
     /// Voltages and potentials of the interval.
     scalars: Vec<f64>,
     residual: Vec<f64>,
@@ -139,6 +141,7 @@ impl<'m> Stepper<'m> {
             newton: solving.newton,
             anderson: Anderson::default(),
             factored: None,
+            stale: false,
             scalars: vec![0.0; layout.interval_scalars],
             residual: vec![0.0; size],
             scales: (0..size).map(scale).collect(),
@@ -198,6 +201,8 @@ impl<'m> Stepper<'m> {
                     done += part;
                     multipliers.get_or_insert_with(|| self.next.z[n..].to_vec());
                 }
+                // What an old tangent could not do, a new one may.
+                Err(_) if std::mem::take(&mut self.stale) => self.factored = None,
                 Err(error) if halvings == HALVINGS => return Err(error),
                 Err(_) => {
                     halvings += 1;
@@ -275,6 +280,7 @@ impl<'m> Stepper<'m> {
         let mut residuals = Vec::with_capacity(ITERATIONS);
         // A tangent of another step length is another matrix.
         let mut reused = self.newton == Newton::Reused && self.factored == Some(h);
+        self.stale = reused;
         let mut last = f64::INFINITY;
         self.anderson.start();
         let limit = match self.newton {
