@@ -27,7 +27,7 @@ const STEP: f64 = 0.5;
 /// Voltage in V, over layers of 10 mm.
 const VOLTAGE: f64 = 3e5;
 /// From this size on only the symmetric tangent is measured.
-const LARGE: usize = 12;
+const LARGE: usize = 20;
 /// Steps that are averaged.
 const STEPS: usize = 20;
 
