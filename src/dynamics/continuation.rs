@@ -35,6 +35,16 @@ pub enum Instability {
     Buckling,
 }
 
+impl Instability {
+    /// The word in files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::PullIn => "pull_in",
+            Self::Buckling => "buckling",
+        }
+    }
+}
+
 /// Where an equilibrium is lost.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LimitPoint {

@@ -1,19 +1,8 @@
 //! The trilinear hexahedron in its reference configuration: gradients of the shape functions and weights.
 
 use crate::math::{Matrix, Vector};
+use crate::mesh::CORNERS;
 use thiserror::Error;
-
-/// Nodes of the hexahedron in the parent cube [−1, 1]³, and signs of the Gauss points: point g lies towards node g.
-pub(super) const CORNERS: [[f64; 3]; 8] = [
-    [-1.0, -1.0, -1.0],
-    [1.0, -1.0, -1.0],
-    [1.0, 1.0, -1.0],
-    [-1.0, 1.0, -1.0],
-    [-1.0, -1.0, 1.0],
-    [1.0, -1.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [-1.0, 1.0, 1.0],
-];
 
 /// 1/√3, the place of the Gauss points; their weights are 1.
 const POINT: f64 = 0.577_350_269_189_625_8;

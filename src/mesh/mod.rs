@@ -12,6 +12,18 @@ pub mod topology;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
+/// Nodes of a hexahedron in the parent cube [−1, 1]³; also the signs of the Gauss points, of which each lies towards a node.
+pub const CORNERS: [[f64; 3]; 8] = [
+    [-1.0, -1.0, -1.0],
+    [1.0, -1.0, -1.0],
+    [1.0, 1.0, -1.0],
+    [-1.0, 1.0, -1.0],
+    [-1.0, -1.0, 1.0],
+    [1.0, -1.0, 1.0],
+    [1.0, 1.0, 1.0],
+    [-1.0, 1.0, 1.0],
+];
+
 /// Trilinear hexahedra over shared nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {

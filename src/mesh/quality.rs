@@ -4,26 +4,14 @@
 //! columns of `∂x/∂ξ` there: the ratio is 1 for bricks of any proportions, 0 for a flat corner, −1 for a brick turned
 //! inside out.
 
-use super::Mesh;
 use super::error::{ElementName, MeshError};
+use super::{CORNERS, Mesh};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashMap;
 
 /// Ratio below which an element counts as degenerate. It is also the part of the element's size that the length of a
 /// column is at least taken for, so that an element whose thickness is rounding counts as flat.
 const LIMIT: f64 = 1e-6;
-
-/// Corners ξ of the reference element [−1, 1]³ in the order of the nodes.
-const CORNERS: [[f64; 3]; 8] = [
-    [-1.0, -1.0, -1.0],
-    [1.0, -1.0, -1.0],
-    [1.0, 1.0, -1.0],
-    [-1.0, 1.0, -1.0],
-    [-1.0, -1.0, 1.0],
-    [1.0, -1.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [-1.0, 1.0, 1.0],
-];
 
 impl Mesh {
     /// Checks that there is an element, that each one has eight nodes that exist, differ, are finite and are those of no

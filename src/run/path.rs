@@ -5,7 +5,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
-use crate::dynamics::{Continuation, EquilibriumError, History, Instability, continuation};
+use crate::dynamics::{Continuation, History, Instability, continuation};
 use crate::model::Model;
 use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Mark, Series};
@@ -15,7 +15,7 @@ use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::request::{Request, Told};
-use crate::run::rest::Asked;
+use crate::run::rest::{Asked, refused};
 use crate::run::solve::{counted, make_folder};
 use crate::run::summary::{Seconds, Summary};
 
@@ -53,20 +53,7 @@ pub(super) fn follow(
     let start = model.coordinates_at(&vec![0.0; model.gauges.len()]);
     let found = match continuation(&model, &start, &model.scalars(asked.voltages), points) {
         Ok(found) => found,
-        Err(error @ EquilibriumError::Floating { .. }) => {
-            return Err(RunError::Problem {
-                file: request.input.clone(),
-                place: "equilibrium".to_owned(),
-                reason: error.to_string(),
-            });
-        }
-        Err(error) => {
-            return Ok(Told {
-                is_solved: false,
-                result: "no equilibrium to start from".to_owned(),
-                notes: vec![error.to_string()],
-            });
-        }
+        Err(error) => return refused(request, &error, "no equilibrium to start from"),
     };
     let notes = found.lost.iter().map(loss).map(|l| {
         let what = if l.kind == "pull_in" {
@@ -124,10 +111,7 @@ pub(super) fn follow(
 fn loss(&(_, fraction, kind): &(usize, f64, Instability)) -> Loss {
     Loss {
         fraction,
-        kind: match kind {
-            Instability::PullIn => "pull_in",
-            Instability::Buckling => "buckling",
-        },
+        kind: kind.key(),
     }
 }
 

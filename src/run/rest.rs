@@ -105,20 +105,7 @@ pub(super) fn at(request: &Request, asked: &Asked<'_>, began: Instant) -> Result
             };
             (end.status(), *last, Some(end))
         }
-        Err(error @ EquilibriumError::Floating { .. }) => {
-            return Err(RunError::Problem {
-                file: request.input.clone(),
-                place: "equilibrium".to_owned(),
-                reason: error.to_string(),
-            });
-        }
-        Err(error) => {
-            return Ok(Told {
-                is_solved: false,
-                result: "no equilibrium".to_owned(),
-                notes: vec![error.to_string()],
-            });
-        }
+        Err(error) => return refused(request, &error, "no equilibrium"),
     };
     let n = model.coordinate_count();
     let state = History {
@@ -176,6 +163,26 @@ pub(super) fn at(request: &Request, asked: &Asked<'_>, began: Instant) -> Result
     Ok(told)
 }
 
+/// Why there is no equilibrium at all: a floating block is wrong input, anything else a result without files.
+pub(super) fn refused(
+    request: &Request,
+    error: &EquilibriumError,
+    result: &str,
+) -> Result<Told, RunError> {
+    if let EquilibriumError::Floating { .. } = error {
+        return Err(RunError::Problem {
+            file: request.input.clone(),
+            place: "equilibrium".to_owned(),
+            reason: error.to_string(),
+        });
+    }
+    Ok(Told {
+        is_solved: false,
+        result: result.to_owned(),
+        notes: vec![error.to_string()],
+    })
+}
+
 /// Where the equilibria under growing voltages end.
 #[derive(Clone, Copy, Debug)]
 struct End {
@@ -189,11 +196,7 @@ struct End {
 impl End {
     /// The word in files.
     fn status(&self) -> &'static str {
-        match self.kind {
-            Some(Instability::PullIn) => "pull_in",
-            Some(Instability::Buckling) => "buckling",
-            None => "limit_point",
-        }
+        self.kind.map_or("limit_point", Instability::key)
     }
 
     /// One line: what is lost, at which voltages, and where the last state is.
