@@ -21,7 +21,8 @@ pub struct Initial {
     pub costates: Option<Costates>,
 }
 
-/// The guess of a control problem on `control.intervals` intervals of about `h` ms; `earlier` is the solution it names.
+/// The guess of a control problem on `control.intervals` intervals of about `h` ms; `earlier` is the solution it
+/// names, or one that comes before it.
 pub fn guess(
     model: &Model,
     boundary: &Boundary,
@@ -31,7 +32,7 @@ pub fn guess(
 ) -> Initial {
     let intervals = control.intervals;
     match (&control.guess, earlier) {
-        (Guess::Solution(_), Some(solved)) => from_solution(model, boundary, solved, intervals, h),
+        (_, Some(solved)) => from_solution(model, boundary, solved, intervals, h),
         (Guess::Simulate(voltages), _) => {
             let scalars = model.scalars(voltages);
             let start = &boundary.start;

@@ -10,8 +10,8 @@ use crate::model::{Coordinates, Model};
 use crate::nlp::{Nlp, differences};
 use crate::run::effects;
 use crate::run::error::RunError;
+use crate::run::optimise::{Prepared, prepare, resolve};
 use crate::run::request::{Request, Told};
-use crate::run::solve::{Prepared, prepare, resolve};
 use crate::scene::read_problem;
 
 /// Noise on each variable as the solver sees it.
@@ -34,7 +34,7 @@ pub fn check(request: &Request) -> Result<Told, RunError> {
     let (model, boundary) = resolve(&request.input, &loaded.system, &control)?;
     let Prepared {
         mut program, point, ..
-    } = prepare(&request.input, &model, &boundary, &control)?;
+    } = prepare(&request.input, &model, &boundary, &control, None)?;
     let mut noise = Noise(SEED);
     let x: Vec<f64> = point.x.iter().map(|x| x + NOISE * noise.next()).collect();
     let report = differences::check(&mut program, &x, SEED);

@@ -1,12 +1,12 @@
 //! A simulation from file to folder.
 
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::time::Instant;
 
 use crate::control::problem::{Simulation, Voltages};
 use crate::control::resolve_start;
-use crate::dynamics::observations;
-use crate::dynamics::simulate_by;
+use crate::dynamics::{History, StepError, observations, simulate_by};
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::report::skins::Skins;
@@ -23,42 +23,100 @@ use crate::run::solution_file;
 use crate::run::solve::{counted, make_folder};
 use crate::run::summary::{self, Seconds, Summary};
 
-/// Simulates and writes the folder; a motion that ends early is kept as far as it went.
+/// A simulation and how it ended.
+#[derive(Debug)]
+pub struct Simulated {
+    /// The model that moved.
+    pub model: Model,
+    /// The motion as far as it went.
+    pub history: History,
+    /// Why it ended early.
+    pub failure: Option<StepError>,
+    /// Seconds before the first step.
+    pub setup: f64,
+    /// Seconds in the steps.
+    pub seconds: f64,
+}
+
+/// Number of steps of a simulation, and their length in ms.
 ///
 /// The steps are equal: as long as asked for, or a little shorter where they do not fit the duration.
+pub fn grid(task: &Simulation) -> (usize, f64) {
+    let steps = (task.duration / task.step - 1e-9).ceil().max(1.0) as usize;
+    (steps, task.duration / steps as f64)
+}
+
+/// Simulates what a file asks for in memory; `observer` sees the number of every step and may end the motion.
+///
+/// # Errors
+/// The model or the start does not exist. A step that fails is no error: see the failure.
+pub fn integrate(
+    file: &Path,
+    system: &System,
+    task: &Simulation,
+    observer: impl FnMut(usize) -> ControlFlow<()>,
+) -> Result<Simulated, RunError> {
+    let began = Instant::now();
+    let (steps, h) = grid(task);
+    let wrong = |error| RunError::boundary(file, "simulate", &error);
+    let model = Model::new(system.clone(), task.coordinates, h, &[])
+        .map_err(|error| wrong(error.into()))?;
+    let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;
+    let setup = began.elapsed().as_secs_f64();
+    let scalars = |from: f64, to: f64| model.scalars(row(&task.voltages, 0.5 * (from + to)));
+    let (history, failure) = simulate_by(task.solving, &model, &start, h, steps, scalars, observer);
+    let seconds = began.elapsed().as_secs_f64() - setup;
+    Ok(Simulated {
+        model,
+        history,
+        failure,
+        setup,
+        seconds,
+    })
+}
+
+/// Simulates and writes the folder; a motion that ends early is kept as far as it went.
 pub(super) fn simulation(
     request: &Request,
     system: &System,
     task: &Simulation,
     began: Instant,
 ) -> Result<Told, RunError> {
-    let steps = (task.duration / task.step - 1e-9).ceil().max(1.0) as usize;
-    let h = task.duration / steps as f64;
-    let wrong = |error| RunError::boundary(&request.input, "simulate", &error);
-    let model = Model::new(system.clone(), task.coordinates, h, &[])
-        .map_err(|error| wrong(error.into()))?;
-    let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;
-    let effects = effect_counts(&model).map_err(|error| wrong(error.into()))?;
+    let (steps, _) = grid(task);
     let folder = request.folder();
-    make_folder(&folder)?;
-
-    let setup = began.elapsed().as_secs_f64();
-    let scalars = |from: f64, to: f64| model.scalars(row(&task.voltages, 0.5 * (from + to)));
+    let read = began.elapsed().as_secs_f64();
     let mut stopped = None;
-    let (history, failure) = {
+    let mut unwritable = None;
+    let Simulated {
+        model,
+        history,
+        failure,
+        setup,
+        seconds: spent,
+    } = {
         let progress = Progress::of_steps(request.progress, steps);
-        simulate_by(task.solving, &model, &start, h, steps, scalars, |step| {
+        integrate(&request.input, system, task, |step| {
             progress.step(step);
+            // A folder that cannot be made is told before a long run, not after it.
+            if step == 1 {
+                unwritable = make_folder(&folder).err();
+            }
             let late = |limit: f64| began.elapsed().as_secs_f64() > limit;
             stopped = match step < steps {
+                _ if unwritable.is_some() => Some("unwritable"),
                 true if interrupt::requested() => Some("interrupted"),
                 true if request.max_seconds.is_some_and(late) => Some("time_limit"),
                 _ => return ControlFlow::Continue(()),
             };
             ControlFlow::Break(())
-        })
+        })?
     };
-    let spent = began.elapsed().as_secs_f64() - setup;
+    if let Some(error) = unwritable {
+        return Err(error.into());
+    }
+    make_folder(&folder)?;
+    let effects = effect_counts(&model)
+        .map_err(|error| RunError::boundary(&request.input, "simulate", &error.into()))?;
     let reached = history.times[history.intervals()];
     let status = match (&failure, stopped) {
         (Some(_), _) => "step_failed",
@@ -80,7 +138,7 @@ pub(super) fn simulation(
     summary.blocks = Blocks::of(&model).map(|b| b.after(&model, &observed, written));
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),
-        setup,
+        setup: read + setup,
         solver: spent,
         ..Seconds::default()
     };

@@ -10,8 +10,9 @@ use crate::report::table;
 use crate::run::blocks::Blocks;
 use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
+use crate::run::optimise::{Prepared, prepare, resolve};
 use crate::run::request::{Request, Told};
-use crate::run::solve::{Prepared, make_folder, prepare, resolve};
+use crate::run::solve::make_folder;
 use crate::run::spy;
 use crate::scene::read_problem;
 
@@ -109,7 +110,8 @@ fn of_model(file: &Path, model: &Model) -> Result<String, RunError> {
 
 fn of_control(request: &Request, system: &System, control: &Control) -> Result<String, RunError> {
     let (model, boundary) = resolve(&request.input, system, control)?;
-    let Prepared { program, start, .. } = prepare(&request.input, &model, &boundary, control)?;
+    let Prepared { program, start, .. } =
+        prepare(&request.input, &model, &boundary, control, None)?;
     let (jacobian, hessian) = (program.jacobian_structure(), program.hessian_structure());
     let rows = program.constraints();
     let equalities = rows.lower.iter().zip(&rows.upper).filter(|(l, u)| l == u);

@@ -1,17 +1,15 @@
-//! A control problem from file to folder: boundary, guess, program, solve, and all that is told of it.
+//! A control problem from file to folder: solved, re-simulated, and all that is told of it.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use crate::control::problem::{Control, Duration, Guess};
-use crate::control::{Boundary, Solved, Transcription, guess};
+use crate::control::problem::Control;
+use crate::control::{Boundary, Solved};
 use crate::dynamics::observations;
-use crate::ipopt::{self, OptionValue, Options, Start, Status};
-use crate::model::{Coordinates, Model, System};
-use crate::nlp::Nlp;
+use crate::ipopt::Status;
+use crate::model::{Model, System};
 use crate::report::atomic::WriteError;
 use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
@@ -20,82 +18,16 @@ use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::motion::{history, solved, trajectory};
+use crate::run::optimise::{Allowed, Optimum, optimise};
 use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
 use crate::run::resimulate::{resimulate, under_constant_voltages};
 use crate::run::solution_file;
 use crate::run::summary::{PerInterval, Program, Seconds, Summary};
-use crate::run::violations::{Violation, violations};
+use crate::run::violations::Violation;
 
-/// Rows named when a problem has no solution.
-const NAMED: usize = 5;
-/// A row that the solver could not make smaller than this does not hold.
-const HOLDS: f64 = 1e-6;
 /// Length of the motion under constant voltages that is drawn beside the optimal one, in durations.
 const COMPARED: usize = 3;
-/// First barrier parameter from an earlier solution that was resampled.
-const RESAMPLED: Start = Start::Primal { mu_init: 1e-2 };
-
-/// The program of a control problem with the point to start from and what that point is worth.
-pub(super) struct Prepared<'m> {
-    pub(super) program: Transcription<'m>,
-    pub(super) point: ipopt::Point,
-    pub(super) start: Start,
-}
-
-/// Model and boundary of a control problem.
-pub(super) fn resolve(
-    file: &Path,
-    system: &System,
-    control: &Control,
-) -> Result<(Model, Boundary), RunError> {
-    Boundary::resolve(system, control, interval(control))
-        .map_err(|error| RunError::boundary(file, "control", &error))
-}
-
-/// Interval length in ms, or its guess.
-fn interval(control: &Control) -> f64 {
-    let (Duration::Given(duration)
-    | Duration::Free {
-        guess: duration, ..
-    }) = control.duration;
-    duration / control.intervals as f64
-}
-
-/// Guess and program.
-pub(super) fn prepare<'m>(
-    file: &Path,
-    model: &'m Model,
-    boundary: &Boundary,
-    control: &Control,
-) -> Result<Prepared<'m>, RunError> {
-    let earlier = match &control.guess {
-        Guess::Solution(path) => Some(solution_file::read(path, model)?),
-        Guess::Interpolate | Guess::Simulate(_) => None,
-    };
-    let initial = guess(
-        model,
-        boundary,
-        control,
-        interval(control),
-        earlier.as_ref(),
-    );
-    let program = Transcription::new(model, boundary, control, &initial)
-        .map_err(|error| RunError::boundary(file, "control", &error))?;
-    let point = program.start(&initial);
-    let start = match &earlier {
-        None => Start::Cold,
-        Some(_) if point.costates.is_some() => Start::PRIMAL_DUAL,
-        Some(earlier) if earlier.intervals() == control.intervals => Start::PRIMAL,
-        Some(_) => RESAMPLED,
-    };
-    Ok(Prepared {
-        program,
-        point,
-        start,
-    })
-}
-
 /// Solves a control problem and writes its folder, solved or not.
 pub(super) fn control(
     request: &Request,
@@ -103,58 +35,49 @@ pub(super) fn control(
     control: &Control,
     began: Instant,
 ) -> Result<Told, RunError> {
-    let (model, boundary) = resolve(&request.input, system, control)?;
-    let Prepared {
-        mut program,
-        point,
-        start,
-    } = prepare(&request.input, &model, &boundary, control)?;
-    let setup = began.elapsed().as_secs_f64();
-    let options = Options {
-        tolerance: control.solver.tolerance,
-        max_iterations: request
-            .max_iterations
-            .unwrap_or(control.solver.max_iterations),
-        max_seconds: request.max_seconds.map(|s| (s - setup).max(0.0)),
-        start,
-        extra: linear_solver(&model, control),
-    };
-    tracing::info!(?start, variables = point.x.len(), "solve");
     let folder = request.folder();
     let mut unwritable = None;
-    let solution = {
+    let read = began.elapsed().as_secs_f64();
+    let allowed = Allowed {
+        iterations: request.max_iterations,
+        seconds: request.max_seconds.map(|s| (s - read).max(0.0)),
+    };
+    let optimum = {
         let progress = Progress::of_solve(request.progress);
-        ipopt::solve(&mut program, &point, &options, &mut |iteration| {
-            progress.iteration(iteration);
-            // A folder that cannot be made is told before a long solve, not after it.
-            if iteration.iteration == 0 {
-                unwritable = make_folder(&folder).err();
-            }
-            match unwritable {
-                Some(_) => ControlFlow::Break(()),
-                None => ControlFlow::Continue(()),
-            }
-        })
-        .map_err(|error| RunError::ipopt(&request.input, &error))?
+        optimise(
+            &request.input,
+            system,
+            control,
+            None,
+            allowed,
+            &mut |iteration| {
+                progress.iteration(iteration);
+                // A folder that cannot be made is told before a long solve, not after it.
+                if iteration.iteration == 0 {
+                    unwritable = make_folder(&folder).err();
+                }
+                match unwritable {
+                    Some(_) => ControlFlow::Break(()),
+                    None => ControlFlow::Continue(()),
+                }
+            },
+        )?
     };
     if let Some(error) = unwritable {
         return Err(error.into());
     }
     make_folder(&folder)?;
 
+    let Optimum {
+        model,
+        boundary,
+        motion: kept,
+        solution,
+        violated,
+        ..
+    } = &optimum;
     let is_solved = solution.status.is_solved();
-    let history = program.decode(&solution.x);
-    let kept = solved(&model, &history, Some(program.costates(&solution.costates)));
-    let violated = match is_solved {
-        true => Vec::new(),
-        false => violations(&mut program, &solution.x, HOLDS, NAMED),
-    };
-    let resimulation = is_solved.then(|| resimulate(&model, &boundary, &kept));
-    let sizes = [
-        program.constraints().lower.len(),
-        program.jacobian_structure().rows.len(),
-        program.hessian_structure().rows.len(),
-    ];
+    let resimulation = is_solved.then(|| resimulate(model, boundary, kept));
     let per_interval = |seconds: f64, evaluations: usize| {
         (evaluations > 0).then(|| 1e6 * seconds / (evaluations * control.intervals) as f64)
     };
@@ -165,24 +88,24 @@ pub(super) fn control(
         objective: solution.objective,
         iterations: solution.iterations.len().saturating_sub(1),
         intervals: control.intervals,
-        duration: history.times[control.intervals] / 1e3,
+        duration: kept.times[control.intervals] / 1e3,
         variables: solution.x.len(),
-        constraints: sizes[0],
-        jacobian_nonzeros: sizes[1],
-        hessian_nonzeros: sizes[2],
+        constraints: optimum.constraints,
+        jacobian_nonzeros: optimum.jacobian_nonzeros,
+        hessian_nonzeros: optimum.hessian_nonzeros,
         interval_microseconds: PerInterval {
             jacobian: per_interval(seconds.jacobian, solution.evaluations.jacobian),
             hessian: per_interval(seconds.hessian, solution.evaluations.hessian),
         },
-        infeasibility: program.violation(&solution.x),
+        infeasibility: optimum.infeasibility,
         violations: violated.clone(),
         resimulation,
     });
-    summary.effects = effect_counts(&model)
+    summary.effects = effect_counts(model)
         .map_err(|error| RunError::boundary(&request.input, "control", &error.into()))?;
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),
-        setup,
+        setup: read + optimum.setup,
         solver: seconds.solver,
         objective: seconds.objective,
         gradient: seconds.gradient,
@@ -190,8 +113,8 @@ pub(super) fn control(
         jacobian: seconds.jacobian,
         hessian: seconds.hessian,
     };
-    write_files(request, &folder, &model, &boundary, &kept, &mut summary)?;
-    Ok(told(&summary, solution.status, &violated, &folder))
+    write_files(request, &folder, model, boundary, kept, &mut summary)?;
+    Ok(told(&summary, solution.status, violated, &folder))
 }
 
 /// Makes the folder of the results.
@@ -241,27 +164,6 @@ fn write_files(
         summary: &rows,
     };
     write_run(folder, &run).map(|_| ())
-}
-
-/// Options of the linear solver: the ordering that was fastest for the kind of program, unless the problem names one.
-///
-/// Approximate minimum degree (0) where each instant is a small dense block or the duration is given; minimum fill (2)
-/// where a free duration couples all instants of a redundant program; nested dissection of SCOTCH (3) for the meshes of elastic
-/// blocks. Measurements: `benches/README.md`.
-fn linear_solver(model: &Model, control: &Control) -> BTreeMap<String, OptionValue> {
-    let free = matches!(control.duration, Duration::Free { .. });
-    let ordering = if !model.action.motion.of_nodes.is_empty() {
-        3
-    } else if free && model.coordinates == Coordinates::Redundant {
-        2
-    } else {
-        0
-    };
-    let mut options = control.solver.ipopt.clone();
-    options
-        .entry("mumps_pivot_order".to_owned())
-        .or_insert(OptionValue::Integer(ordering));
-    options
 }
 
 /// Rows of the table of the page.

@@ -1,0 +1,189 @@
+//! A control problem solved in memory: boundary, guess, program, solver.
+
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::Instant;
+
+use crate::control::problem::{Control, Duration, Guess};
+use crate::control::{Boundary, Solved, Transcription, guess};
+use crate::ipopt::{self, Iteration, OptionValue, Options, Solution, Start};
+use crate::model::{Coordinates, Model, System};
+use crate::nlp::Nlp;
+use crate::run::error::RunError;
+use crate::run::motion::solved;
+use crate::run::solution_file;
+use crate::run::violations::{Violation, violations};
+
+/// Rows named when a problem has no solution.
+const NAMED: usize = 5;
+/// A row that the solver could not make smaller than this does not hold.
+const HOLDS: f64 = 1e-6;
+/// First barrier parameter from an earlier solution that was resampled.
+const RESAMPLED: Start = Start::Primal { mu_init: 1e-2 };
+
+/// What a solve may take, in place of what its problem says.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Allowed {
+    /// Iterations of the solver.
+    pub iterations: Option<usize>,
+    /// Seconds, set-up included.
+    pub seconds: Option<f64>,
+}
+
+/// A control problem and how its solve ended.
+#[derive(Debug)]
+pub struct Optimum {
+    /// The model it was solved in.
+    pub model: Model,
+    /// Start and goal.
+    pub boundary: Boundary,
+    /// The motion: the optimal one, or the last iterate.
+    pub motion: Solved,
+    /// What the solver returned.
+    pub solution: Solution,
+    /// The worst rows that do not hold; none of a solution.
+    pub violated: Vec<Violation>,
+    /// Greatest violation of an equation or limit, as the solver measures it.
+    pub infeasibility: f64,
+    /// Number of equations and limits.
+    pub constraints: usize,
+    /// Nonzeros of the Jacobian.
+    pub jacobian_nonzeros: usize,
+    /// Nonzeros of the lower triangle of the Hessian.
+    pub hessian_nonzeros: usize,
+    /// Seconds before the solver began.
+    pub setup: f64,
+}
+
+/// Solves a control problem of a file, from an `earlier` solution where one is given; `observer` sees every iteration.
+///
+/// # Errors
+/// Start, goal, guess or an option of the solver is wrong. A problem without a solution is no error: see the status.
+pub fn optimise(
+    file: &Path,
+    system: &System,
+    control: &Control,
+    earlier: Option<&Solved>,
+    allowed: Allowed,
+    observer: &mut dyn FnMut(&Iteration) -> ControlFlow<()>,
+) -> Result<Optimum, RunError> {
+    let began = Instant::now();
+    let (model, boundary) = resolve(file, system, control)?;
+    let Prepared {
+        mut program,
+        point,
+        start,
+    } = prepare(file, &model, &boundary, control, earlier)?;
+    let setup = began.elapsed().as_secs_f64();
+    let options = Options {
+        tolerance: control.solver.tolerance,
+        max_iterations: allowed.iterations.unwrap_or(control.solver.max_iterations),
+        max_seconds: allowed.seconds.map(|s| (s - setup).max(0.0)),
+        start,
+        extra: linear_solver(&model, control),
+    };
+    tracing::info!(?start, variables = point.x.len(), "solve");
+    let solution = ipopt::solve(&mut program, &point, &options, observer)
+        .map_err(|error| RunError::ipopt(file, &error))?;
+    let history = program.decode(&solution.x);
+    let motion = solved(&model, &history, Some(program.costates(&solution.costates)));
+    let violated = match solution.status.is_solved() {
+        true => Vec::new(),
+        false => violations(&mut program, &solution.x, HOLDS, NAMED),
+    };
+    let infeasibility = program.violation(&solution.x);
+    let constraints = program.constraints().lower.len();
+    let jacobian_nonzeros = program.jacobian_structure().rows.len();
+    let hessian_nonzeros = program.hessian_structure().rows.len();
+    drop(program);
+    Ok(Optimum {
+        model,
+        boundary,
+        motion,
+        solution,
+        violated,
+        infeasibility,
+        constraints,
+        jacobian_nonzeros,
+        hessian_nonzeros,
+        setup,
+    })
+}
+
+/// The program of a control problem with the point to start from and what that point is worth.
+pub(super) struct Prepared<'m> {
+    pub(super) program: Transcription<'m>,
+    pub(super) point: ipopt::Point,
+    pub(super) start: Start,
+}
+
+/// Model and boundary of a control problem.
+pub(super) fn resolve(
+    file: &Path,
+    system: &System,
+    control: &Control,
+) -> Result<(Model, Boundary), RunError> {
+    Boundary::resolve(system, control, interval(control))
+        .map_err(|error| RunError::boundary(file, "control", &error))
+}
+
+/// Interval length in ms, or its guess.
+fn interval(control: &Control) -> f64 {
+    let (Duration::Given(duration)
+    | Duration::Free {
+        guess: duration, ..
+    }) = control.duration;
+    duration / control.intervals as f64
+}
+
+/// Guess and program; an `earlier` solution in memory comes before the guess of the problem.
+pub(super) fn prepare<'m>(
+    file: &Path,
+    model: &'m Model,
+    boundary: &Boundary,
+    control: &Control,
+    earlier: Option<&Solved>,
+) -> Result<Prepared<'m>, RunError> {
+    let named = match (&control.guess, earlier) {
+        (Guess::Solution(path), None) => Some(solution_file::read(path, model)?),
+        _ => None,
+    };
+    let earlier = earlier.or(named.as_ref());
+    let initial = guess(model, boundary, control, interval(control), earlier);
+    let program = Transcription::new(model, boundary, control, &initial)
+        .map_err(|error| RunError::boundary(file, "control", &error))?;
+    let point = program.start(&initial);
+    let start = match earlier {
+        None => Start::Cold,
+        Some(_) if point.costates.is_some() => Start::PRIMAL_DUAL,
+        Some(earlier) if earlier.intervals() == control.intervals => Start::PRIMAL,
+        Some(_) => RESAMPLED,
+    };
+    Ok(Prepared {
+        program,
+        point,
+        start,
+    })
+}
+
+/// Options of the linear solver: the ordering that was fastest for the kind of program, unless the problem names one.
+///
+/// Approximate minimum degree (0) where each instant is a small dense block or the duration is given; minimum fill (2)
+/// where a free duration couples all instants of a redundant program; nested dissection of SCOTCH (3) for the meshes of elastic
+/// blocks. Measurements: `benches/README.md`.
+fn linear_solver(model: &Model, control: &Control) -> BTreeMap<String, OptionValue> {
+    let free = matches!(control.duration, Duration::Free { .. });
+    let ordering = if !model.action.motion.of_nodes.is_empty() {
+        3
+    } else if free && model.coordinates == Coordinates::Redundant {
+        2
+    } else {
+        0
+    };
+    let mut options = control.solver.ipopt.clone();
+    options
+        .entry("mumps_pivot_order".to_owned())
+        .or_insert(OptionValue::Integer(ordering));
+    options
+}
