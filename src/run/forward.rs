@@ -130,7 +130,7 @@ pub(super) fn simulation(
     }
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = failure.as_ref().map(ToString::to_string);
-    summary.simulation = Some(summary::Simulation::new(&history));
+    summary.simulation = Some(summary::Simulation::new(&history, task.solving.integrator));
     summary.effects = effects;
     let observed = observations(&model, &history);
     let origin = request.origin(false);
@@ -155,6 +155,7 @@ pub(super) fn simulation(
         ("status".to_owned(), status.replace('_', " ")),
         ("steps".to_owned(), history.intervals().to_string()),
         ("duration".to_owned(), format!("{} s", reached / 1e3)),
+        ("method".to_owned(), task.solving.integrator.name()),
         (
             "coordinates".to_owned(),
             model.coordinates.name().to_owned(),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::dynamics::History;
+use crate::dynamics::{History, Integrator};
 use crate::report::atomic::{self, WriteError};
 use crate::run::blocks::Blocks;
 use crate::run::comparison::Comparison;
@@ -79,6 +79,8 @@ pub(super) struct Simulation {
     pub(super) steps: usize,
     /// Length of the motion in s.
     pub(super) duration: f64,
+    /// The method.
+    pub(super) integrator: String,
     /// Newton iterations.
     pub(super) newton_iterations: usize,
     /// Steps that had to be halved.
@@ -97,11 +99,12 @@ pub(super) struct Simulation {
 
 impl Simulation {
     /// Of a motion.
-    pub(super) fn new(history: &History) -> Self {
+    pub(super) fn new(history: &History, integrator: Integrator) -> Self {
         let (steps, report) = (history.intervals(), history.report);
         Self {
             steps,
             duration: history.times[steps] / 1e3,
+            integrator: integrator.name(),
             newton_iterations: report.iterations,
             halved_steps: report.halved,
             linear_solver: history.solver,

@@ -16,6 +16,7 @@ use crate::scene::error::SceneError;
 use crate::scene::graph::{has_free_part, tree_freedoms};
 use crate::scene::scope::Scope;
 use crate::scene::solution::sampled_voltages;
+use crate::scene::spec_integrator::integrator;
 use crate::scene::spec_problem::{
     ControlSpec, CoordinatesSpec, DurationSpec, GuessObjectSpec, GuessSpec, ObjectiveSpec,
     OptionSpec, ProblemSpec, SimulateSpec, SolverSpec, VoltagesSpec,
@@ -97,6 +98,7 @@ fn simulation(
         voltages,
         coordinates: coordinates(spec.coordinates, system, scope)?,
         solving: Solving {
+            integrator: integrator(spec.integrator.as_ref(), system, &scope.key("integrator"))?,
             newton: spec.newton.unwrap_or_default().into(),
             backend: spec.linear_solver.map(Into::into),
         },

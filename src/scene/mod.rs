@@ -1,7 +1,7 @@
 //! Scene and problem files: what is written, read with units, checked, and turned into what it means.
 //!
 //! - `quantity`, `unit`: numbers with units, converted once to g, mm, ms, N, MPa, V.
-//! - `spec_scene`, `spec_solids`, `spec_problem`, `spec_limits`, `either`: the serde types of the two files; `expand`: the chain shorthand.
+//! - `spec_scene`, `spec_solids`, `spec_problem`, `spec_integrator`, `spec_limits`, `either`: the serde types of the two files; `expand`: the chain shorthand.
 //! - `document`, `locate`, `wording`, `error`, `set`: text, places in it, mistakes, overrides.
 //! - `build_*`, `graph`, `scope`, `solution`: from what is written to [`System`] and [`Task`].
 
@@ -28,6 +28,7 @@ pub mod quantity;
 mod scope;
 mod set;
 mod solution;
+pub mod spec_integrator;
 pub mod spec_limits;
 pub mod spec_problem;
 pub mod spec_scene;

@@ -11,6 +11,7 @@ use crate::control::problem::Rest;
 use crate::dynamics::Newton;
 use crate::scene::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::scene::quantity::{JointCoordinate, JointRate, Quantity, Time, Voltage};
+use crate::scene::spec_integrator::IntegratorSpec;
 use crate::scene::spec_limits::LimitSpec;
 use crate::scene::spec_scene::{Point, SceneSpec};
 use crate::sparse::Backend;
@@ -66,6 +67,9 @@ pub struct SimulateSpec {
     /// Coordinates.
     #[serde(default)]
     pub coordinates: Option<CoordinatesSpec>,
+    /// The method; the midpoint variational integrator where not written.
+    #[serde(default)]
+    pub integrator: Option<IntegratorSpec>,
     /// When the tangent of a step is factorised; `full` where not written.
     #[serde(default)]
     pub newton: Option<NewtonSpec>,
