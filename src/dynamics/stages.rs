@@ -52,6 +52,7 @@ pub struct Stages<'m> {
     combined: Part,
     /// Second derivatives of the kinetic energy at h = 1.
     masses: Blocks,
+    accelerations: Vec<Vector>,
     /// Multipliers of the rows of each point, in the order of the points ν.
     multipliers: Vec<Vec<f64>>,
     /// Multipliers and potentials before an attempt.
@@ -119,6 +120,7 @@ impl<'m> Steps<Stages<'m>> {
             scratch: action.scratch(Level::Hessian),
             values: vec![0.0; places.values],
             masses: masses(model, &points[0].x),
+            accelerations: vec![Vector::zeros(); points[0].x.len()],
             saved: (
                 multipliers.clone(),
                 vec![vec![0.0; model.potentials]; samples.len()],
@@ -231,13 +233,12 @@ impl Stages<'_> {
                 }
             }
             Rule::Alpha(alpha) => {
-                let ways = end.x.iter().zip(&start.x).enumerate();
-                let a: Vec<Vector> = ways
-                    .map(|(i, (y, x))| alpha.acceleration(i, h, y - x))
-                    .collect();
-                let inertia = vector_momenta(self.model, &end.x, &a);
-                for (force, inertia) in end.forces.iter_mut().zip(&inertia) {
-                    *force -= inertia * h;
+                // Masses are linear in what they multiply: −h a in place of rates gives −h M a.
+                for (i, a) in self.accelerations.iter_mut().enumerate() {
+                    *a = alpha.acceleration(i, h, end.x[i] - start.x[i]) * -h;
+                }
+                for effect in &self.model.action.intervals.effects {
+                    effect.momentum(&end.x, &self.accelerations, &mut end.forces);
                 }
             }
         }
