@@ -10,6 +10,7 @@
 
 use crate::dynamics::StepError;
 use crate::dynamics::anderson::Anderson;
+use crate::dynamics::spans;
 use crate::dynamics::tangent::{Entries, Tangent};
 use crate::functional::{Level, Sides};
 use crate::math::Vector;
@@ -346,8 +347,12 @@ impl<'m> Stepper<'m> {
                 Newton::Reused => size * (rate / (1.0 - rate)).max(size) < LEFT,
             };
             if is_close && (rate < 1.0 || size < UPDATE) {
-                self.accept(h);
-                return Ok(());
+                let accepted = self.accept(h);
+                if accepted.is_err() {
+                    self.here.z[n..].copy_from_slice(&saved);
+                    self.scalars[driven..].copy_from_slice(&potentials);
+                }
+                return accepted;
             }
             reused = self.newton == Newton::Reused && (rate < SLOW || last == f64::INFINITY);
             last = size;
@@ -366,11 +371,26 @@ impl<'m> Stepper<'m> {
             time: self.time,
             step: h,
             residuals,
+            muscle: self.short_muscle(),
         })
     }
 
-    fn accept(&mut self, h: f64) {
+    /// The muscle that a failure at this instant is laid to: its name and stretch.
+    fn short_muscle(&self) -> Option<(String, f64)> {
+        let (muscle, stretch) = spans::shortest(self.model, &self.here)?;
+        Some((self.model.system.muscles[muscle].name.clone(), stretch))
+    }
+
+    /// Makes a solution the instant now, unless a muscle passed through no length on the way.
+    fn accept(&mut self, h: f64) -> Result<(), StepError> {
         self.evaluate(Level::Gradient, h);
+        if let Some(muscle) = spans::reversed(self.model, &self.here, &self.next) {
+            return Err(StepError::Reversed {
+                time: self.time,
+                step: h,
+                muscle: self.model.system.muscles[muscle].name.clone(),
+            });
+        }
         let motion = &self.model.action.motion;
         self.momentum.fill(0.0);
         motion.pull_back(
@@ -391,5 +411,6 @@ impl<'m> Stepper<'m> {
         std::mem::swap(&mut self.here, &mut self.next);
         self.time += h;
         self.report.steps += 1;
+        Ok(())
     }
 }

@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use crate::control::problem::{Control, Duration, Guess};
 use crate::control::{Boundary, Solved, Transcription, guess};
-use crate::dynamics::observations;
+use crate::dynamics::{observations, reversed_muscle};
 use crate::ipopt::{self, OptionValue, Options, Start, Status};
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
@@ -142,8 +142,12 @@ pub(super) fn control(
     }
     make_folder(&folder)?;
 
-    let is_solved = solution.status.is_solved();
     let history = program.decode(&solution.x);
+    let unresolved = match solution.status.is_solved() {
+        true => reversed_muscle(&model, &history).map(|(k, m)| unresolved(&model, k, m)),
+        false => None,
+    };
+    let is_solved = solution.status.is_solved() && unresolved.is_none();
     let kept = solved(&model, &history, Some(program.costates(&solution.costates)));
     let violated = match is_solved {
         true => Vec::new(),
@@ -159,8 +163,13 @@ pub(super) fn control(
         (evaluations > 0).then(|| 1e6 * seconds / (evaluations * control.intervals) as f64)
     };
     let seconds = &solution.seconds;
-    let mut summary = Summary::new(request, solution.status.word(), model.coordinates.name());
-    summary.message = (!is_solved).then(|| meaning(solution.status).to_owned());
+    let word = match unresolved {
+        Some(_) => "unresolved",
+        None => solution.status.word(),
+    };
+    let mut summary = Summary::new(request, word, model.coordinates.name());
+    summary.message =
+        unresolved.or_else(|| (!is_solved).then(|| meaning(solution.status).to_owned()));
     summary.program = Some(Program {
         objective: solution.objective,
         iterations: solution.iterations.len().saturating_sub(1),
@@ -191,7 +200,7 @@ pub(super) fn control(
         hessian: seconds.hessian,
     };
     write_files(request, &folder, &model, &boundary, &kept, &mut summary)?;
-    Ok(told(&summary, solution.status, &violated, &folder))
+    Ok(told(&summary, &violated, &folder))
 }
 
 /// Makes the folder of the results.
@@ -301,23 +310,17 @@ fn describe(violation: &Violation) -> String {
     )
 }
 
-fn told(summary: &Summary, status: Status, violated: &[Violation], folder: &Path) -> Told {
+fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> Told {
     let program = summary.program.as_ref();
     let (objective, iterations) = program.map_or((f64::NAN, 0), |p| (p.objective, p.iterations));
-    let is_solved = status.is_solved();
-    let word = match status {
-        Status::Solved => "solved".to_owned(),
-        status => format!(
-            "{} ({})",
-            if is_solved { "solved" } else { "not solved" },
-            status.word().replace('_', " ")
-        ),
+    let is_solved = summary.message.is_none();
+    let solved = if is_solved { "solved" } else { "not solved" };
+    let word = match summary.status.as_str() {
+        "solved" => solved.to_owned(),
+        word => format!("{solved} ({})", word.replace('_', " ")),
     };
-    let mut notes = Vec::new();
-    if !is_solved {
-        notes.push(meaning(status).to_owned());
-        notes.extend(violated.iter().map(describe));
-    }
+    let mut notes: Vec<String> = summary.message.iter().cloned().collect();
+    notes.extend(violated.iter().map(describe));
     Told {
         is_solved,
         result: format!(
@@ -333,6 +336,15 @@ fn told(summary: &Summary, status: Status, violated: &[Violation], folder: &Path
 /// A number with its noun.
 pub(super) fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Why an optimum of the discrete equations is none of the system.
+fn unresolved(model: &Model, interval: usize, muscle: usize) -> String {
+    format!(
+        "muscle \"{}\" turns by a right angle or more in interval {interval}: its ends meet on the way, or the intervals are \
+         too long for the motion; take more intervals or another guess",
+        model.system.muscles[muscle].name
+    )
 }
 
 /// What a status means for the problem.
