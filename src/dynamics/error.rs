@@ -38,7 +38,8 @@ pub enum StepError {
     },
     /// The tangent is singular.
     #[error(
-        "singular tangent at t = {time} ms with a step of {step} ms: {name} is not determined; constraints are redundant, or the configuration is singular"
+        "singular tangent at t = {time} ms with a step of {step} ms: {name} is not determined{}",
+        redundancy(redundant, "constraints are redundant, or the configuration is singular")
     )]
     Singular {
         /// Start of the step in ms.
@@ -47,6 +48,8 @@ pub enum StepError {
         step: f64,
         /// The unknown whose pivot vanished.
         name: String,
+        /// Constraints that follow from the others.
+        redundant: Vec<String>,
     },
 }
 
@@ -81,12 +84,27 @@ pub enum EquilibriumError {
     },
     /// Nothing holds the system.
     #[error(
-        "no unique equilibrium: {name} is not determined; nothing holds it, or constraints are redundant"
+        "no unique equilibrium: {name} is not determined{}",
+        redundancy(redundant, "nothing holds it, or constraints are redundant")
     )]
     Singular {
         /// The unknown whose pivot vanished.
         name: String,
+        /// Constraints that follow from the others.
+        redundant: Vec<String>,
     },
+}
+
+/// Which constraints are redundant, or else what may be the matter.
+fn redundancy(redundant: &[String], otherwise: &str) -> String {
+    match redundant {
+        [] => format!("; {otherwise}"),
+        [one] => format!("; constraints are redundant: {one} follows from the others"),
+        many => format!(
+            "; constraints are redundant: {} follow from the others",
+            many.join(", ")
+        ),
+    }
 }
 
 /// What a short muscle or residuals that are not finite mean.

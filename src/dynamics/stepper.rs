@@ -310,10 +310,12 @@ impl<'m> Stepper<'m> {
                 self.here.z[n..].copy_from_slice(&saved);
                 self.scalars[driven..].copy_from_slice(&potentials);
                 let name = self.model.unknown_name(singular.column);
+                let redundant = self.model.redundant_constraints(&self.here.z);
                 return Err(StepError::Singular {
                     time: self.time,
                     step: h,
                     name,
+                    redundant,
                 });
             }
             let began = Instant::now();

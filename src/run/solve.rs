@@ -170,6 +170,9 @@ pub(super) fn control(
     let mut summary = Summary::new(request, word, model.coordinates.name());
     summary.message =
         unresolved.or_else(|| (!is_solved).then(|| meaning(solution.status).to_owned()));
+    if let Some(message) = &mut summary.message {
+        message.push_str(&redundancy(&model.redundant_constraints(&boundary.start.z)));
+    }
     summary.program = Some(Program {
         objective: solution.objective,
         iterations: solution.iterations.len().saturating_sub(1),
@@ -345,6 +348,18 @@ fn unresolved(model: &Model, interval: usize, muscle: usize) -> String {
          too long for the motion; take more intervals or another guess",
         model.system.muscles[muscle].name
     )
+}
+
+/// A further reason why a solve failed, where there is one.
+fn redundancy(redundant: &[String]) -> String {
+    match redundant {
+        [] => String::new(),
+        names => format!(
+            "; constraints are redundant at the start: {} more than is needed, such as {}",
+            names.len(),
+            names.join(", ")
+        ),
+    }
 }
 
 /// What a status means for the problem.
