@@ -7,8 +7,8 @@ use crate::dynamics::{History, simulate};
 use crate::model::{Coordinates, Model};
 use std::ops::ControlFlow;
 
-/// Volts added to the rest voltages: at zero the motion does not depend on a voltage to first order.
-const LIFT: f64 = 100.0;
+/// Added to the rest voltages, in their unit: at zero the motion does not depend on a voltage to first order.
+const LIFT: f64 = 0.1;
 
 /// A start of the solver: a motion, an interval length, and costates where they are known.
 #[derive(Clone, Debug)]
@@ -53,12 +53,14 @@ pub fn guess(
                 costates: None,
             }
         }
-        _ => interpolate(model, boundary, intervals, h),
+        _ => interpolate(model, boundary, control, h),
     }
 }
 
-/// 3s² − 2s³ between start and goal; rest voltages of the goal lifted by 100 V.
-fn interpolate(model: &Model, boundary: &Boundary, intervals: usize, h: f64) -> Initial {
+/// 3s² − 2s³ between start and goal; rest voltages of the goal lifted a little.
+fn interpolate(model: &Model, boundary: &Boundary, control: &Control, h: f64) -> Initial {
+    let intervals = control.intervals;
+    let lift = LIFT * control.voltage_unit(&model.system);
     let n = model.coordinate_count();
     let start = &boundary.start.z;
     let mut end = start.clone();
@@ -87,7 +89,7 @@ fn interpolate(model: &Model, boundary: &Boundary, intervals: usize, h: f64) -> 
     });
     let rest = boundary.rest[1].as_ref().or(boundary.rest[0].as_ref());
     let held: Vec<f64> = rest.map_or_else(|| vec![0.0; model.sources.len()], Clone::clone);
-    let scalars: Vec<f64> = model.scalars(&held).iter().map(|v| v + LIFT).collect();
+    let scalars: Vec<f64> = model.scalars(&held).iter().map(|v| v + lift).collect();
     let history = History {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),
         z: z.collect(),

@@ -180,6 +180,18 @@ impl Equations for Midpoint<'_> {
         self.scalars[self.model.voltages.len()..].copy_from_slice(potentials);
     }
 
+    fn model(&self) -> &Model {
+        self.model
+    }
+
+    fn place_end(&mut self) {
+        self.model.action.motion.place(&mut self.next);
+    }
+
+    fn ends(&self) -> [&Place; 2] {
+        [&self.here, &self.next]
+    }
+
     fn accept(&mut self, h: f64) {
         let action = &self.model.action;
         let Self {
@@ -189,7 +201,6 @@ impl Equations for Midpoint<'_> {
             scalars,
             ..
         } = self;
-        action.motion.place(next);
         let interval = Interval {
             sides: Sides::FORWARD,
             ..Interval::given(scalars, h)

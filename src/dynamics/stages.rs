@@ -462,6 +462,20 @@ impl Equations for Stages<'_> {
         }
     }
 
+    fn model(&self) -> &Model {
+        self.model
+    }
+
+    fn place_end(&mut self) {
+        if let Some(end) = self.points.last_mut() {
+            self.model.action.motion.place(end);
+        }
+    }
+
+    fn ends(&self) -> [&Instant; 2] {
+        [&self.points[0], &self.points[self.points.len() - 1]]
+    }
+
     fn accept(&mut self, h: f64) {
         self.sample(Level::Gradient, h);
         let model = self.model;

@@ -3,8 +3,11 @@
 use crate::dynamics::StepError;
 use crate::dynamics::anderson::Anderson;
 use crate::dynamics::solving::Newton;
+use crate::dynamics::spans;
 use crate::dynamics::tangent::Tangent;
 use crate::functional::Level;
+use crate::model::Model;
+use crate::reduction::Instant as Place;
 use std::time::Instant;
 
 /// Limit of Newton iterations in one step.
@@ -59,6 +62,15 @@ pub trait Equations {
 
     /// Undoes what a failed attempt changed in the state.
     fn restore(&mut self);
+
+    /// The model.
+    fn model(&self) -> &Model;
+
+    /// Places the end of the step where the last update put it.
+    fn place_end(&mut self);
+
+    /// The start and the end of the step.
+    fn ends(&self) -> [&Place; 2];
 
     /// Makes the end of the step the state.
     fn accept(&mut self, h: f64);
@@ -234,9 +246,7 @@ impl<E: Equations> Steps<E> {
                 Newton::Reused => size * (rate / (1.0 - rate)).max(size) < LEFT,
             };
             if is_close && (rate < 1.0 || size < UPDATE) {
-                self.equations.accept(h);
-                self.report.steps += 1;
-                return Ok(());
+                return self.accept(h);
             }
             reused = self.newton == Newton::Reused && (rate < SLOW || last == f64::INFINITY);
             last = size;
@@ -254,7 +264,37 @@ impl<E: Equations> Steps<E> {
             time: self.equations.time(),
             step: h,
             residuals,
+            muscle: self.short_muscle(),
         })
+    }
+
+    /// Makes a solution the instant now, unless a muscle passed through no length on the way.
+    fn accept(&mut self, h: f64) -> Result<(), StepError> {
+        self.equations.place_end();
+        let [start, end] = self.equations.ends();
+        if let Some(muscle) = spans::reversed(self.equations.model(), start, end) {
+            let reversed = StepError::Reversed {
+                time: self.equations.time(),
+                step: h,
+                muscle: self.muscle_name(muscle),
+            };
+            self.equations.restore();
+            return Err(reversed);
+        }
+        self.equations.accept(h);
+        self.report.steps += 1;
+        Ok(())
+    }
+
+    /// The muscle that a failure at this instant is laid to: its name and stretch.
+    fn short_muscle(&self) -> Option<(String, f64)> {
+        let [start, _] = self.equations.ends();
+        let (muscle, stretch) = spans::shortest(self.equations.model(), start)?;
+        Some((self.muscle_name(muscle), stretch))
+    }
+
+    fn muscle_name(&self, muscle: usize) -> String {
+        self.equations.model().system.muscles[muscle].name.clone()
     }
 
     /// Factorises the tangent evaluated last.
@@ -266,10 +306,12 @@ impl<E: Equations> Steps<E> {
         self.factored = done.is_ok().then_some(h);
         done.map_err(|singular| {
             self.equations.restore();
+            let [start, _] = self.equations.ends();
             StepError::Singular {
                 time: self.equations.time(),
                 step: h,
                 name: self.equations.unknown_name(singular.column),
+                redundant: self.equations.model().redundant_constraints(&start.z),
             }
         })
     }

@@ -91,6 +91,9 @@ pub fn solve(
     );
     let mut x = start.x.clone();
     let mut costates = starting_costates(start, options.start, n, m);
+    let scale = nlp.objective_scale();
+    assert!(scale > 0.0, "a positive scale of the objective");
+    costates.scale(scale);
 
     let entries = jacobian.rows.len();
     let mut problem = ffi::Problem::new(&variables, &constraints, entries, hessian.rows.len())
@@ -130,15 +133,7 @@ pub fn solve(
             end = latest;
         }
     }
-    for values in [
-        &mut costates.constraints,
-        &mut costates.lower,
-        &mut costates.upper,
-    ] {
-        for value in values.iter_mut().filter(|value| !value.is_finite()) {
-            *value = 0.0;
-        }
-    }
+    costates.scale(scale.recip());
     Ok(Solution {
         status,
         x: end.x,

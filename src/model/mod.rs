@@ -11,6 +11,7 @@ mod graph;
 mod joints;
 mod quantity;
 mod reach;
+mod redundancy;
 mod solid_effects;
 pub mod system;
 

@@ -76,14 +76,23 @@ pub(super) fn control(
         violated,
         ..
     } = &optimum;
-    let is_solved = solution.status.is_solved();
+    let unresolved = optimum.reversed.map(|(k, m)| unresolved(model, k, m));
+    let is_solved = optimum.is_solved();
     let resimulation = is_solved.then(|| resimulate(model, boundary, kept));
     let per_interval = |seconds: f64, evaluations: usize| {
         (evaluations > 0).then(|| 1e6 * seconds / (evaluations * control.intervals) as f64)
     };
     let seconds = &solution.seconds;
-    let mut summary = Summary::new(request, solution.status.word(), model.coordinates.name());
-    summary.message = (!is_solved).then(|| meaning(solution.status).to_owned());
+    let word = match unresolved {
+        Some(_) => "unresolved",
+        None => solution.status.word(),
+    };
+    let mut summary = Summary::new(request, word, model.coordinates.name());
+    summary.message =
+        unresolved.or_else(|| (!is_solved).then(|| meaning(solution.status).to_owned()));
+    if let Some(message) = &mut summary.message {
+        message.push_str(&redundancy(&model.redundant_constraints(&boundary.start.z)));
+    }
     summary.program = Some(Program {
         objective: solution.objective,
         iterations: solution.iterations.len().saturating_sub(1),
@@ -114,7 +123,7 @@ pub(super) fn control(
         hessian: seconds.hessian,
     };
     write_files(request, &folder, model, boundary, kept, &mut summary)?;
-    Ok(told(&summary, solution.status, violated, &folder))
+    Ok(told(&summary, violated, &folder))
 }
 
 /// Makes the folder of the results.
@@ -203,23 +212,17 @@ fn describe(violation: &Violation) -> String {
     )
 }
 
-fn told(summary: &Summary, status: Status, violated: &[Violation], folder: &Path) -> Told {
+fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> Told {
     let program = summary.program.as_ref();
     let (objective, iterations) = program.map_or((f64::NAN, 0), |p| (p.objective, p.iterations));
-    let is_solved = status.is_solved();
-    let word = match status {
-        Status::Solved => "solved".to_owned(),
-        status => format!(
-            "{} ({})",
-            if is_solved { "solved" } else { "not solved" },
-            status.word().replace('_', " ")
-        ),
+    let is_solved = summary.message.is_none();
+    let solved = if is_solved { "solved" } else { "not solved" };
+    let word = match summary.status.as_str() {
+        "solved" => solved.to_owned(),
+        word => format!("{solved} ({})", word.replace('_', " ")),
     };
-    let mut notes = Vec::new();
-    if !is_solved {
-        notes.push(meaning(status).to_owned());
-        notes.extend(violated.iter().map(describe));
-    }
+    let mut notes: Vec<String> = summary.message.iter().cloned().collect();
+    notes.extend(violated.iter().map(describe));
     Told {
         is_solved,
         result: format!(
@@ -235,6 +238,27 @@ fn told(summary: &Summary, status: Status, violated: &[Violation], folder: &Path
 /// A number with its noun.
 pub(super) fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Why an optimum of the discrete equations is none of the system.
+fn unresolved(model: &Model, interval: usize, muscle: usize) -> String {
+    format!(
+        "muscle \"{}\" turns by a right angle or more in interval {interval}: its ends meet on the way, or the intervals are \
+         too long for the motion; take more intervals or another guess",
+        model.system.muscles[muscle].name
+    )
+}
+
+/// A further reason why a solve failed, where there is one.
+fn redundancy(redundant: &[String]) -> String {
+    match redundant {
+        [] => String::new(),
+        names => format!(
+            "; constraints are redundant at the start: {} more than is needed, such as {}",
+            names.len(),
+            names.join(", ")
+        ),
+    }
 }
 
 /// What a status means for the problem.

@@ -4,8 +4,9 @@
 //! momentum of the start in row 0 and rest at the goal in row N, constraints where coordinates leave any, then limits.
 //! The Jacobian is ∇²Ŝ, the Hessian of the Lagrangian ∇³Ŝ along the costates plus objective and limits, both exact.
 //!
-//! Rows and multipliers are scaled by magnitudes taken from the Jacobian at the guess, voltages are in kV, lengths in
-//! the length of the system, the interval length in its guess, so that one tolerance means the same everywhere.
+//! Rows and multipliers are scaled by magnitudes taken from the Jacobian at the guess, voltages are in V, kV or MV as their
+//! bounds suggest, lengths in the length of the system, the interval length in its guess, the objective by a power of a
+//! thousand, so that one tolerance means the same everywhere.
 
 mod limit_rows;
 mod point;
@@ -27,9 +28,10 @@ use crate::model::Model;
 use crate::nlp::{Bounds, Entries, Nlp};
 use crate::reduction::Instant;
 use limit_rows::{LimitRow, limit_rows};
+use scaling::objective_scale;
 use stretch::Bench;
 
-/// V in a kV, the unit of voltages in the program and in objectives.
+/// V in a kV, the unit of voltages in objectives.
 const KILOVOLT: f64 = 1000.0;
 /// s in a ms.
 const MILLISECOND: f64 = 1e-3;
@@ -65,6 +67,9 @@ pub struct Transcription<'m> {
     /// First row, instant or interval, of each stretch of limit rows.
     limit_rows: Vec<(usize, usize)>,
     cost: Cost,
+    objective_scale: f64,
+    /// Unit of voltages in kV.
+    kilovolt: f64,
     momentum: Vec<f64>,
     bounds: Bounds,
     // The point.
@@ -157,11 +162,12 @@ impl<'m> Transcription<'m> {
         let cost = Cost::new(control.objective, driven, intervals, ends);
         let layout = model.action.layout();
         let length = model.length();
+        let volts = control.voltage_unit(&model.system);
         let scale = |variable: &Variable| match *variable {
             Variable::Unknown { i, .. } if i < n && model.is_length(i) => length,
             Variable::Unknown { .. } => 1.0,
-            Variable::Scalar { s, .. } if s < driven => KILOVOLT,
-            Variable::Scalar { .. } => KILOVOLT / model.potential_unit,
+            Variable::Scalar { s, .. } if s < driven => volts,
+            Variable::Scalar { .. } => volts / model.potential_unit,
             Variable::Horizon => initial.h,
         };
         let variable_scales = unknowns.variables.iter().map(scale).collect();
@@ -173,6 +179,12 @@ impl<'m> Transcription<'m> {
             horizon,
             limits,
             limit_rows: limit_at,
+            objective_scale: objective_scale(
+                &control.objective,
+                volts / KILOVOLT,
+                intervals as f64 * initial.h * MILLISECOND,
+            ),
+            kilovolt: volts / KILOVOLT,
             cost,
             momentum: boundary.start.momentum.clone(),
             bounds: Bounds::default(),
