@@ -346,8 +346,11 @@ impl<'m> Stepper<'m> {
                 Newton::Reused => size * (rate / (1.0 - rate)).max(size) < LEFT,
             };
             if is_close && (rate < 1.0 || size < UPDATE) {
-                self.accept(h);
-                return Ok(());
+                if self.accept(h) {
+                    return Ok(());
+                }
+                residuals.push(f64::NAN);
+                break;
             }
             reused = self.newton == Newton::Reused && (rate < SLOW || last == f64::INFINITY);
             last = size;
@@ -369,15 +372,21 @@ impl<'m> Stepper<'m> {
         })
     }
 
-    fn accept(&mut self, h: f64) {
+    /// Goes to the next instant, unless the momentum does not exist there.
+    fn accept(&mut self, h: f64) -> bool {
         self.evaluate(Level::Gradient, h);
         let motion = &self.model.action.motion;
-        self.momentum.fill(0.0);
+        let momentum = &mut self.residual[..motion.coordinates];
+        momentum.fill(0.0);
         motion.pull_back(
             &self.next.columns,
             &self.scratch.interval.plain.forces[1],
-            &mut self.momentum,
+            momentum,
         );
+        if !momentum.iter().all(|p| p.is_finite()) {
+            return false;
+        }
+        self.momentum.copy_from_slice(momentum);
         for (i, rate) in self.rates.iter_mut().enumerate() {
             let new = (self.next.z[i] - self.here.z[i]) / h;
             // In the first step nothing is known of the change.
@@ -391,5 +400,6 @@ impl<'m> Stepper<'m> {
         std::mem::swap(&mut self.here, &mut self.next);
         self.time += h;
         self.report.steps += 1;
+        true
     }
 }
