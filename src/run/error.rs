@@ -38,6 +38,14 @@ pub enum RunError {
         /// Why.
         reason: String,
     },
+    /// One of several starts finds the input wrong.
+    #[error("start {start}: {message}")]
+    Start {
+        /// Its number.
+        start: usize,
+        /// What it said.
+        message: String,
+    },
     /// A file stands where a new one was to be written.
     #[error("{} exists already and is left as it is; choose another folder", .0.display())]
     Exists(PathBuf),
