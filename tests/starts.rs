@@ -181,13 +181,15 @@ fn ctrl_c_ends_all_starts_and_keeps_the_best() {
     let folder = tempdir().unwrap();
     let path = folder.path();
     let trunk = problem("elephant_trunk");
+    let cores = std::thread::available_parallelism().unwrap().get();
+    let starts = (cores + 3).to_string();
     let mut child = Command::new(assert_cmd::cargo::cargo_bin("proboscis"))
         .current_dir(path)
         .args([
             "solve",
             &trunk,
             "--starts",
-            "6",
+            &starts,
             "-o",
             "out",
             "--set",
@@ -216,7 +218,7 @@ fn ctrl_c_ends_all_starts_and_keeps_the_best() {
     assert_eq!(summary["status"], "interrupted");
     let each = summary["starts"]["each"].as_array().unwrap();
     let ended = |word: &str| each.iter().filter(|one| one["status"] == word).count();
-    assert_eq!(each.len(), 6);
+    assert_eq!(each.len(), cores + 3);
     assert!(
         ended("interrupted") >= 1 && ended("not_started") >= 1,
         "{each:?}"
