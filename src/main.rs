@@ -23,7 +23,16 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Solve a problem: find optimal voltages, or do what else its file asks.
-    Solve(Problem),
+    Solve {
+        #[command(flatten)]
+        problem: Problem,
+        /// Solve from so many starting points, its own guess and random ones, and keep the best.
+        #[arg(long, value_name = "N")]
+        starts: Option<usize>,
+        /// Seed of the random starting points.
+        #[arg(long, value_name = "SEED", default_value_t = 1, requires = "starts")]
+        seed: u64,
+    },
     /// Simulate a problem forward in time, or do what else its file asks.
     Simulate(Problem),
     /// Find the static equilibrium of a problem, or of any scene under given voltages.
@@ -158,7 +167,18 @@ fn answer(command: Command) -> Result<Told, RunError> {
         notes: Vec::new(),
     };
     match command {
-        Command::Solve(problem) | Command::Simulate(problem) => {
+        Command::Solve {
+            problem,
+            starts,
+            seed,
+        } => {
+            interrupt::install();
+            match starts {
+                Some(starts) => run::solve_from_starts(&problem.request(), starts, seed),
+                None => run::run(&problem.request()),
+            }
+        }
+        Command::Simulate(problem) => {
             interrupt::install();
             run::run(&problem.request())
         }

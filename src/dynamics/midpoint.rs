@@ -27,6 +27,7 @@ pub struct Midpoint<'m> {
     next: Place,
     /// Momentum P_kᵀ p_k by coordinate, in the units of an action per coordinate.
     momentum: Vec<f64>,
+    momentum_next: Vec<f64>,
     /// Rates of the coordinates over the last step, and how they changed, for the first guess.
     rates: Vec<f64>,
     changes: Vec<f64>,
@@ -67,6 +68,7 @@ impl<'m> Stepper<'m> {
             here,
             next,
             momentum: momentum.to_vec(),
+            momentum_next: momentum.to_vec(),
             rates: vec![0.0; n],
             changes: vec![0.0; n],
             is_first: true,
@@ -192,7 +194,7 @@ impl Equations for Midpoint<'_> {
         [&self.here, &self.next]
     }
 
-    fn accept(&mut self, h: f64) {
+    fn accept(&mut self, h: f64) -> bool {
         let action = &self.model.action;
         let Self {
             here,
@@ -206,10 +208,14 @@ impl Equations for Midpoint<'_> {
             ..Interval::given(scalars, h)
         };
         action.evaluate_interval(Level::Gradient, [here, next], &interval, scratch);
-        self.momentum.fill(0.0);
+        self.momentum_next.fill(0.0);
         let forces = &scratch.interval.plain.forces[1];
         let motion = &action.motion;
-        motion.pull_back(&next.columns, forces, &mut self.momentum);
+        motion.pull_back(&next.columns, forces, &mut self.momentum_next);
+        if !self.momentum_next.iter().all(|p| p.is_finite()) {
+            return false;
+        }
+        std::mem::swap(&mut self.momentum, &mut self.momentum_next);
         for (i, rate) in self.rates.iter_mut().enumerate() {
             let new = (next.z[i] - here.z[i]) / h;
             // In the first step nothing is known of the change.
@@ -221,6 +227,7 @@ impl Equations for Midpoint<'_> {
         here.z[n..].copy_from_slice(&next.z[n..]);
         std::mem::swap(&mut self.here, &mut self.next);
         self.time += h;
+        true
     }
 
     fn unknown_name(&self, unknown: usize) -> String {

@@ -476,10 +476,18 @@ impl Equations for Stages<'_> {
         [&self.points[0], &self.points[self.points.len() - 1]]
     }
 
-    fn accept(&mut self, h: f64) {
+    fn accept(&mut self, h: f64) -> bool {
         self.sample(Level::Gradient, h);
         let model = self.model;
         let last = self.points.len() - 1;
+        let forces = self
+            .samples
+            .iter()
+            .flat_map(|s| &s.out.plain.forces)
+            .flatten();
+        if !forces.into_iter().all(|f| f.iter().all(|c| c.is_finite())) {
+            return false;
+        }
         if self.dissipates {
             let effects = model.action.intervals.effects.iter();
             let forces: Vec<_> = effects.filter(|e| e.kind() == Kind::VirtualWork).collect();
@@ -520,6 +528,7 @@ impl Equations for Stages<'_> {
         }
         self.points.swap(0, last);
         self.time += h;
+        true
     }
 
     fn unknown_name(&self, unknown: usize) -> String {

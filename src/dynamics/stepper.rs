@@ -72,8 +72,8 @@ pub trait Equations {
     /// The start and the end of the step.
     fn ends(&self) -> [&Place; 2];
 
-    /// Makes the end of the step the state.
-    fn accept(&mut self, h: f64);
+    /// Makes the end of the step the state, unless the momentum does not exist there.
+    fn accept(&mut self, h: f64) -> bool;
 
     /// Name of an unknown.
     fn unknown_name(&self, unknown: usize) -> String;
@@ -246,7 +246,11 @@ impl<E: Equations> Steps<E> {
                 Newton::Reused => size * (rate / (1.0 - rate)).max(size) < LEFT,
             };
             if is_close && (rate < 1.0 || size < UPDATE) {
-                return self.accept(h);
+                if self.accept(h)? {
+                    return Ok(());
+                }
+                residuals.push(f64::NAN);
+                break;
             }
             reused = self.newton == Newton::Reused && (rate < SLOW || last == f64::INFINITY);
             last = size;
@@ -268,8 +272,9 @@ impl<E: Equations> Steps<E> {
         })
     }
 
-    /// Makes a solution the instant now, unless a muscle passed through no length on the way.
-    fn accept(&mut self, h: f64) -> Result<(), StepError> {
+    /// Makes a solution the instant now; not where the momentum does not exist, nor where a muscle passed through no length on
+    /// the way.
+    fn accept(&mut self, h: f64) -> Result<bool, StepError> {
         self.equations.place_end();
         let [start, end] = self.equations.ends();
         if let Some(muscle) = spans::reversed(self.equations.model(), start, end) {
@@ -281,9 +286,9 @@ impl<E: Equations> Steps<E> {
             self.equations.restore();
             return Err(reversed);
         }
-        self.equations.accept(h);
-        self.report.steps += 1;
-        Ok(())
+        let accepted = self.equations.accept(h);
+        self.report.steps += usize::from(accepted);
+        Ok(accepted)
     }
 
     /// The muscle that a failure at this instant is laid to: its name and stretch.

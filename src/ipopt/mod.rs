@@ -116,12 +116,15 @@ pub fn solve(
     let mut evaluator = Evaluator::new(nlp, observer, jacobian, hessian, &x, options.max_seconds);
     let code = problem.solve(&mut evaluator, &mut x, &mut costates);
     let record = evaluator.into_record();
-    let status = match Status::from_code(code) {
+    let mut status = match Status::from_code(code) {
         status if status.is_solved() => status,
         status => record.stopped.unwrap_or(status),
     };
 
     let mut end = Ending::at(nlp, &variables, &constraints, x);
+    if status.is_solved() && end.violation == f64::INFINITY {
+        status = Status::InvalidNumber;
+    }
     if !status.is_solved() {
         // Iterates may leave the bounds by 1e-8 (`bound_relax_factor`); the point that Ipopt returns does not.
         let mut x = record.latest;

@@ -1,6 +1,7 @@
-//! Numbers that carry their derivatives.
+//! Numbers that carry their derivatives, and numbers drawn at random.
 
 mod jet;
+pub mod random;
 
 pub use jet::Jet;
 

@@ -44,6 +44,13 @@ impl System {
         solid.supports.iter().any(holds)
     }
 
+    /// Number of finite elements of muscles and blocks.
+    pub fn elements(&self) -> usize {
+        let of_muscles = self.muscles.iter().map(|muscle| muscle.fidelity.elements());
+        let of_blocks = self.solids.iter().map(|solid| solid.mesh.hexahedra.len());
+        of_muscles.chain(of_blocks).sum()
+    }
+
     /// All that voltages are named for, one voltage each: the muscles, then the driven electrodes of blocks by
     /// `block.electrode`, in the order of the scene. Electrodes of one name in a block share one voltage.
     pub fn sources(&self) -> Vec<Source> {
@@ -183,6 +190,16 @@ pub enum Fidelity {
     Lumped,
     /// Finite elements, glued to both bodies with its end faces.
     FiniteElements(Discretisation),
+}
+
+impl Fidelity {
+    /// Number of finite elements.
+    pub fn elements(&self) -> usize {
+        match self {
+            Self::Lumped => 0,
+            Self::FiniteElements(discretisation) => discretisation.elements.iter().product(),
+        }
+    }
 }
 
 /// The finite elements of a muscle.

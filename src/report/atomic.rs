@@ -1,8 +1,15 @@
 //! Writing a file whole or not at all.
 
-use std::fs::File;
+use std::ffi::OsString;
+use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// End of the name of a file that is being written: `.summary.json.Xy3fA9.partial`.
+const PARTIAL: &str = ".partial";
+/// A partial file that nobody wrote to for so long was left by a run that was killed.
+const ABANDONED: Duration = Duration::from_secs(600);
 
 /// A file that could not be written, and why.
 #[derive(Debug, thiserror::Error)]
@@ -16,8 +23,9 @@ pub struct WriteError {
 
 /// Replaces `path` by `bytes` in one step: a reader sees the old file or the new one, never a part.
 ///
-/// The bytes go to a temporary file of the same folder, reach the disk, and take the name at last.
-/// After a failure the old file is intact and the temporary one gone.
+/// The bytes go to a partial file of the same folder, reach the disk, and take the name at last.
+/// After a failure the old file is intact and the partial one gone. Only a process that is killed leaves it behind:
+/// see [`tidy`].
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     replace(path, bytes).map_err(|cause| WriteError {
         path: path.to_owned(),
@@ -30,12 +38,16 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
+    let mut hidden = OsString::from(".");
+    hidden.push(path.file_name().unwrap_or_default());
+    hidden.push(".");
     let mut builder = tempfile::Builder::new();
+    builder.prefix(&hidden).suffix(PARTIAL);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
         // As for any new file: the umask of the process narrows this down.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
+        builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let mut file = builder.tempfile_in(folder)?;
     file.write_all(bytes)?;
@@ -46,4 +58,23 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         folder.sync_all().ok();
     }
     Ok(())
+}
+
+/// Removes partial files that killed runs left in a folder more than ten minutes ago; younger ones may still be written.
+pub fn tidy(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return;
+    };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let age = entry
+            .metadata()
+            .and_then(|metadata| metadata.modified())
+            .map(|written| written.elapsed().unwrap_or_default());
+        let is_abandoned = age.is_ok_and(|age| age > ABANDONED);
+        if name.starts_with('.') && name.ends_with(PARTIAL) && is_abandoned {
+            fs::remove_file(entry.path()).ok();
+        }
+    }
 }

@@ -129,7 +129,10 @@ impl<'a> Series<'a> {
     /// The same with the instants in a folder of their own, which is made where it is missing.
     pub fn within(self, folder: &str) -> Result<Self, WriteError> {
         let path = self.folder.join(folder);
-        std::fs::create_dir_all(&path).map_err(|cause| WriteError { path, cause })?;
+        if let Err(cause) = std::fs::create_dir_all(&path) {
+            return Err(WriteError { path, cause });
+        }
+        atomic::tidy(&path);
         Ok(Self {
             within: Some(folder.to_owned()),
             ..self

@@ -11,6 +11,12 @@ use crate::report::atomic::WriteError;
 use crate::run::solution_file::SolutionError;
 use crate::scene::SceneError;
 
+/// Bytes of the longest line that is shown; beyond 65 535 columns nothing could be marked any more.
+const LONGEST_LINE: usize = 2000;
+
+/// Lines shown before and after a mistake.
+const CONTEXT: usize = 1;
+
 /// A command ends without an answer.
 #[derive(Debug, Error)]
 pub enum RunError {
@@ -38,6 +44,14 @@ pub enum RunError {
         /// Why.
         reason: String,
     },
+    /// One of several starts finds the input wrong.
+    #[error("start {start}: {message}")]
+    Start {
+        /// Its number.
+        start: usize,
+        /// What it said.
+        message: String,
+    },
     /// A file stands where a new one was to be written.
     #[error("{} exists already and is left as it is; choose another folder", .0.display())]
     Exists(PathBuf),
@@ -60,9 +74,15 @@ impl RunError {
         let Self::Scene(mistake) = self else {
             return None;
         };
-        mistake.source_code()?;
+        let around = mistake.source_code()?;
+        let span = mistake.span()?.into();
+        let shown = around.read_span(&span, CONTEXT, CONTEXT).ok()?;
+        let mut lines = shown.data().split(|&byte| byte == b'\n');
+        if lines.any(|line| line.len() > LONGEST_LINE) {
+            return None;
+        }
         let mut text = String::new();
-        let handler = GraphicalReportHandler::new();
+        let handler = GraphicalReportHandler::new().with_context_lines(CONTEXT);
         handler.render_report(&mut text, &Excerpt(mistake)).ok()?;
         Some(text)
     }

@@ -16,6 +16,7 @@ use crate::run::comparison::{self, Comparison};
 use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
 use crate::run::fields;
+use crate::run::memory;
 use crate::run::motion::{solved, trajectory};
 use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
@@ -61,6 +62,7 @@ pub fn integrate(
     let wrong = |error| RunError::boundary(file, "simulate", &error);
     let model = Model::new(system.clone(), task.coordinates, h, &[])
         .map_err(|error| wrong(error.into()))?;
+    memory::of_motion(file, &model, steps)?;
     let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;
     let setup = began.elapsed().as_secs_f64();
     let scalars = |from: f64, to: f64| model.scalars(row(&task.voltages, 0.5 * (from + to)));

@@ -10,6 +10,7 @@ use crate::report::table;
 use crate::run::blocks::Blocks;
 use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
+use crate::run::memory;
 use crate::run::optimise::{Prepared, prepare, resolve};
 use crate::run::request::{Request, Told};
 use crate::run::solve::make_folder;
@@ -23,6 +24,7 @@ use crate::scene::read_problem;
 pub fn inspect(request: &Request) -> Result<Told, RunError> {
     let loaded = read_problem(&request.input, &request.set)?;
     let system = &loaded.system;
+    memory::of_elements(&request.input, system)?;
     let wrong = |error| RunError::boundary(&request.input, key(&loaded.task), &error);
     let result = match &loaded.task {
         Task::Control(control) => of_control(request, system, control)?,

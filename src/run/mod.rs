@@ -1,6 +1,7 @@
 //! What the program does with a problem file: solve, simulate, rest, inspect, check, and the files it leaves.
 //!
 //! - `solve`, `forward`, `rest`: the three tasks; `task` chooses what a file asks for.
+//! - `starts`: a control problem from several guesses, each in a process of its own; `memory`: what is more than the machine has.
 //! - `motion`, `resimulate`, `violations`, `effects`, `blocks`: what is read from a scene or a result.
 //! - `solution_file`, `summary`: the two JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
 //! - `inspect`, `spy`, `check`, `starter`: the other commands.
@@ -13,6 +14,7 @@ mod error;
 mod fields;
 mod forward;
 mod inspect;
+mod memory;
 mod motion;
 mod optimise;
 mod path;
@@ -24,6 +26,7 @@ pub mod solution_file;
 mod solve;
 mod spy;
 mod starter;
+mod starts;
 mod summary;
 mod task;
 mod violations;
@@ -40,5 +43,6 @@ pub use progress::Shown;
 pub use request::{Request, Told};
 pub use rest::equilibrium_of_file;
 pub use starter::{expand, new_trunk, schema};
+pub use starts::solve_from_starts;
 pub use task::run;
 pub use violations::{Violation, violations};

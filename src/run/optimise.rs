@@ -12,6 +12,7 @@ use crate::ipopt::{self, Iteration, OptionValue, Options, Solution, Start};
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
 use crate::run::error::RunError;
+use crate::run::memory;
 use crate::run::motion::solved;
 use crate::run::solution_file;
 use crate::run::violations::{Violation, violations};
@@ -161,6 +162,7 @@ pub(super) fn prepare<'m>(
     control: &Control,
     earlier: Option<&Solved>,
 ) -> Result<Prepared<'m>, RunError> {
+    memory::of_program(file, model, control.intervals)?;
     let named = match (&control.guess, earlier) {
         (Guess::Solution(path), None) => Some(solution_file::read(path, model)?),
         _ => None,

@@ -40,6 +40,16 @@ impl Progress {
         Self::starting(bar)
     }
 
+    /// A solve from `starts` starting points.
+    pub(super) fn of_starts(shown: Shown, starts: usize) -> Self {
+        let bar = target(ProgressBar::new(starts as u64), shown);
+        bar.set_style(style(
+            "{elapsed_precise} {wide_bar} start {pos} of {len} {msg}",
+        ));
+        bar.enable_steady_tick(Duration::from_millis(120));
+        Self::starting(bar)
+    }
+
     fn starting(bar: ProgressBar) -> Self {
         let began = Instant::now();
         Self { bar, began }
@@ -55,6 +65,13 @@ impl Progress {
             at.dual_infeasibility,
             if at.restoration { "  restoration" } else { "" }
         ));
+    }
+
+    /// So many starts have ended, some of them solved, with this objective at best.
+    pub(super) fn start(&self, ended: usize, solved: usize, best: Option<f64>) {
+        self.bar.set_position(ended as u64);
+        let best = best.map_or_else(String::new, |best| format!(", best objective {best:.6e}"));
+        self.bar.set_message(format!("({solved} solved{best})"));
     }
 
     /// Step `step` is done.

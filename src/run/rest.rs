@@ -19,6 +19,7 @@ use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::inspect::key;
+use crate::run::memory;
 use crate::run::motion::{has_coordinate, solved};
 use crate::run::path;
 use crate::run::request::{Request, Told};
@@ -38,6 +39,7 @@ pub fn equilibrium_of_file(
     let began = Instant::now();
     if let Some(voltages) = voltages {
         let system = read_system(&request.input, &request.set)?;
+        memory::of_elements(&request.input, &system)?;
         let voltages = driven_voltages(voltages, &system)?;
         let asked = Asked {
             system: &system,
@@ -49,6 +51,7 @@ pub fn equilibrium_of_file(
         return at(request, &asked, began);
     }
     let loaded = read_problem(&request.input, &request.set)?;
+    memory::of_elements(&request.input, &loaded.system)?;
     match &loaded.task {
         Task::Equilibrium(task) => {
             let asked = Asked {

@@ -10,7 +10,7 @@ use crate::control::{Boundary, Solved};
 use crate::dynamics::observations;
 use crate::ipopt::Status;
 use crate::model::{Model, System};
-use crate::report::atomic::WriteError;
+use crate::report::atomic::{self, WriteError};
 use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::run::blocks::Blocks;
@@ -126,12 +126,14 @@ pub(super) fn control(
     Ok(told(&summary, violated, &folder))
 }
 
-/// Makes the folder of the results.
+/// Makes the folder of the results, or clears it of what killed runs left half written.
 pub(super) fn make_folder(folder: &Path) -> Result<(), WriteError> {
     fs::create_dir_all(folder).map_err(|cause| WriteError {
         path: folder.to_owned(),
         cause,
-    })
+    })?;
+    atomic::tidy(folder);
+    Ok(())
 }
 
 fn write_files(
@@ -272,6 +274,9 @@ fn meaning(status: Status) -> &'static str {
         }
         Status::TimeLimit => "the time allowed was used up; the files hold the last iterate",
         Status::Interrupted => "interrupted; the files hold the last iterate",
+        Status::InvalidNumber => {
+            "the motion or a derivative of it does not exist where the solver went; the files hold the last iterate"
+        }
         Status::TooFewDegreesOfFreedom => "there are more equations than unknowns",
         _ => "the solver stopped short; the files hold the last iterate",
     }

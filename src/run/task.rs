@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use crate::control::problem::Task;
 use crate::run::error::RunError;
+use crate::run::memory;
 use crate::run::request::{Request, Told};
 use crate::run::{forward, rest, solve};
 use crate::scene::read_problem;
@@ -15,6 +16,7 @@ use crate::scene::read_problem;
 pub fn run(request: &Request) -> Result<Told, RunError> {
     let began = Instant::now();
     let loaded = read_problem(&request.input, &request.set)?;
+    memory::of_elements(&request.input, &loaded.system)?;
     match loaded.task {
         Task::Control(control) => solve::control(request, &loaded.system, &control, began),
         Task::Simulate(simulation) => {

@@ -8,8 +8,9 @@ use crate::control::problem::{
 };
 use crate::dynamics::Solving;
 use crate::ipopt::OptionValue;
+use crate::math::random::Random;
 use crate::model::Coordinates;
-use crate::model::system::{Fidelity, Muscle, System};
+use crate::model::system::{Fidelity, Muscle, Source, System};
 use crate::scene::build_limits::limit;
 use crate::scene::build_state::{ELECTRIC_KEYS, goal_state, start_state, voltages};
 use crate::scene::error::SceneError;
@@ -18,9 +19,16 @@ use crate::scene::scope::Scope;
 use crate::scene::solution::sampled_voltages;
 use crate::scene::spec_integrator::integrator;
 use crate::scene::spec_problem::{
-    ControlSpec, CoordinatesSpec, DurationSpec, GuessObjectSpec, GuessSpec, ObjectiveSpec,
-    OptionSpec, ProblemSpec, SimulateSpec, SolverSpec, VoltagesSpec,
+    ControlSpec, CoordinatesSpec, DurationSpec, GuessSpec, ObjectiveSpec, OptionSpec, ProblemSpec,
+    SimulateSpec, SolverSpec, VoltagesSpec,
 };
+
+/// Most intervals of a control problem; a slip of the pen asks for more.
+const MOST_INTERVALS: usize = 1_000_000;
+/// Most steps of a simulation.
+const MOST_STEPS: f64 = 1e8;
+/// Most equilibria of a path.
+const MOST_POINTS: usize = 1_000_000;
 
 /// The task that a problem asks of a system.
 pub(crate) fn build_problem(
@@ -37,8 +45,8 @@ pub(crate) fn build_problem(
             let scope = scope.key("equilibrium");
             let voltages = voltages(&spec.voltages, system, &scope.key("voltages"))?;
             let coordinates = coordinates(spec.coordinates, system, &scope)?;
-            if spec.path == Some(0) {
-                return Err(scope.key("path").wrong("0", "1 point or more"));
+            if let Some(points) = spec.path {
+                count(points, "point", MOST_POINTS, &scope.key("path"))?;
             }
             Ok(Task::Equilibrium(AtRest {
                 voltages,
@@ -76,6 +84,10 @@ fn simulation(
         );
         return Err(place.wrong(spec.step.to_string(), expected));
     }
+    if duration / step > MOST_STEPS {
+        let found = format!("{}, which makes {:.0e} steps", spec.step, duration / step);
+        return Err(place.wrong(found, format!("no more than {MOST_STEPS:.0e} steps")));
+    }
     let start = match &spec.start {
         Some(start) => start_state(start, system, &scope.key("start"))?,
         None => State::JointAngles {
@@ -107,9 +119,8 @@ fn simulation(
 
 fn control(spec: &ControlSpec, system: &System, scope: &Scope<'_>) -> Result<Control, SceneError> {
     let duration = duration(&spec.duration, &scope.key("duration"))?;
-    if spec.intervals == 0 {
-        return Err(scope.key("intervals").wrong("0", "1 interval or more"));
-    }
+    let place = scope.key("intervals");
+    count(spec.intervals, "interval", MOST_INTERVALS, &place)?;
     if !system.sources().iter().any(|source| source.takes_voltage) {
         let found = "a scene without any muscle or electrode that takes a voltage";
         let expected = format!("a muscle of {ELECTRIC_KEYS}, or a driven electrode");
@@ -135,9 +146,19 @@ fn control(spec: &ControlSpec, system: &System, scope: &Scope<'_>) -> Result<Con
         objective: objective(&spec.objective, &scope.key("objective"))?,
         limits,
         coordinates: coordinates(spec.coordinates, system, scope)?,
-        guess: guess(&spec.guess, system, &scope.key("guess"))?,
+        guess: guess(&spec.guess, system, voltage_bounds, &scope.key("guess"))?,
         solver: solver(&spec.solver, &scope.key("solver"))?,
     })
+}
+
+/// A number of things from one to a limit.
+fn count(value: usize, noun: &str, most: usize, scope: &Scope<'_>) -> Result<(), SceneError> {
+    let expected = match value {
+        0 => format!("1 {noun} or more"),
+        _ if value > most => format!("no more than {most} {noun}s"),
+        _ => return Ok(()),
+    };
+    Err(scope.wrong(value.to_string(), expected))
 }
 
 fn duration(spec: &DurationSpec, scope: &Scope<'_>) -> Result<Duration, SceneError> {
@@ -266,24 +287,43 @@ fn objective(spec: &ObjectiveSpec, scope: &Scope<'_>) -> Result<Objective, Scene
     })
 }
 
-fn guess(spec: &GuessSpec, system: &System, scope: &Scope<'_>) -> Result<Guess, SceneError> {
-    let GuessSpec::Object(GuessObjectSpec { simulate, solution }) = spec else {
+fn guess(
+    spec: &GuessSpec,
+    system: &System,
+    bounds: [f64; 2],
+    scope: &Scope<'_>,
+) -> Result<Guess, SceneError> {
+    let GuessSpec::Object(spec) = spec else {
         return Ok(Guess::Interpolate);
     };
-    match (simulate, solution) {
-        (Some(simulate), None) => {
-            let scope = scope.key("simulate").key("voltages");
-            voltages(&simulate.voltages, system, &scope).map(Guess::Simulate)
-        }
-        (None, Some(solution)) => existing(solution, &scope.key("solution")).map(Guess::Solution),
-        (simulate, solution) => {
-            let there = [
-                ("simulate", simulate.as_ref().map(|_| ())),
-                ("solution", solution.as_ref().map(|_| ())),
-            ];
-            scope.exactly_one(there).map(|()| Guess::Interpolate)
-        }
-    }
+    type Build<'a> = Box<dyn FnOnce() -> Result<Guess, SceneError> + 'a>;
+    let simulate = spec.simulate.as_ref().map(|simulate| -> Build<'_> {
+        let scope = scope.key("simulate").key("voltages");
+        Box::new(move || voltages(&simulate.voltages, system, &scope).map(Guess::Simulate))
+    });
+    let solution = spec.solution.as_ref().map(|solution| -> Build<'_> {
+        let scope = scope.key("solution");
+        Box::new(move || existing(solution, &scope).map(Guess::Solution))
+    });
+    let random = spec.random.as_ref().map(|random| -> Build<'_> {
+        Box::new(|| Ok(Guess::Simulate(drawn(random.seed, system, bounds))))
+    });
+    let build = scope.exactly_one([
+        ("simulate", simulate),
+        ("solution", solution),
+        ("random", random),
+    ])?;
+    build()
+}
+
+/// A voltage within the bounds for each source that takes one, drawn at random.
+fn drawn(seed: u64, system: &System, [lower, upper]: [f64; 2]) -> Vec<f64> {
+    let mut random = Random::new(seed);
+    let draw = |source: &Source| match source.takes_voltage {
+        true => random.between(lower, upper),
+        false => 0.0,
+    };
+    system.sources().iter().map(draw).collect()
 }
 
 fn solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<Solver, SceneError> {

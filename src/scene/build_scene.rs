@@ -1,13 +1,14 @@
 //! From a scene as written to the system it means: names resolved and everything checked.
 
 use nalgebra::Vector3;
+use std::cell::Cell;
 
 use crate::model::system::{Attachment, Joint, JointKind, Material, System};
 use crate::scene::build_body::{body, unit_axis};
 use crate::scene::build_electrodes::number_sources;
 use crate::scene::build_marker::marker;
 use crate::scene::build_material::materials;
-use crate::scene::build_muscle::{ModelSpec, fidelity, muscle, positive_sides};
+use crate::scene::build_muscle::{MOST_ELEMENTS, ModelSpec, fidelity, muscle, positive_sides};
 use crate::scene::build_solid::solid;
 use crate::scene::error::SceneError;
 use crate::scene::expand::expanded;
@@ -44,11 +45,16 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     scope.unique(&all, &[], |index| place(index).key("name"))?;
     markers.unique(&names(&scene.markers, |marker| &marker.name), &[])?;
 
+    let elements = Elements::default();
     let muscles = muscles.build(&scene.muscles, |spec, scope| {
-        muscle(spec, &body_names, &materials, scope)
+        let muscle = muscle(spec, &body_names, &materials, scope)?;
+        elements.add(muscle.fidelity.elements(), scope)?;
+        Ok(muscle)
     })?;
     let mut blocks = solids.build(&scene.solids, |spec, scope| {
-        solid(spec, &body_names, &materials, scope)
+        let solid = solid(spec, &body_names, &materials, scope)?;
+        elements.add(solid.mesh.hexahedra.len(), scope)?;
+        Ok(solid)
     })?;
     number_sources(&mut blocks, muscles.len());
     let system = System {
@@ -70,6 +76,26 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     let sources = names(&system.sources(), |source| &source.name);
     scope.unique(&sources, &[], |_| scope.key("solids"))?;
     Ok(system)
+}
+
+/// Elements counted while a scene is built.
+#[derive(Default)]
+struct Elements(Cell<usize>);
+
+impl Elements {
+    /// Adds those of a muscle or block, unless they are too many in all.
+    fn add(&self, count: usize, scope: &Scope<'_>) -> Result<(), SceneError> {
+        let total = self.0.get() + count;
+        self.0.set(total);
+        if total <= MOST_ELEMENTS {
+            return Ok(());
+        }
+        let found = format!("{total} elements with those before");
+        Err(scope.wrong(
+            found,
+            format!("no more than {MOST_ELEMENTS} elements in all"),
+        ))
+    }
 }
 
 /// One list of the scene; entries beyond the written ones come from the chain.

@@ -3,7 +3,6 @@
 use miette::NamedSource;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use std::collections::HashSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -154,7 +153,7 @@ impl Document {
         let mut place = place.clone();
         let mut at_key = at_key;
         loop {
-            if let Some(found) = all.iter().find(|found| found.place == place) {
+            if let Some(found) = all.find(&place) {
                 return match &found.key {
                     Some(key) if at_key => Some(key.clone()),
                     _ => Some(found.value.clone()),
@@ -178,11 +177,10 @@ impl Document {
             at -= 1;
         }
         if error.to_string().starts_with("number out of range") {
-            let number = |range: &Range<usize>| range.start <= at && at <= range.end;
-            if let Some(found) = locate(&self.text).iter().find(|found| number(&found.value)) {
-                let written = &self.text[found.value.clone()];
+            if let Some((place, range)) = locate(&self.text).around(at) {
+                let written = &self.text[range];
                 return self.mistake(
-                    &found.place,
+                    &place,
                     format!("{written}, which is not finite"),
                     "a finite number",
                 );
@@ -205,17 +203,12 @@ impl Document {
 
     /// JSON readers keep the last of two equal keys without a word; here that is a mistake.
     fn refuse_repeated_keys(&self) -> Result<(), SceneError> {
-        let mut all = locate(&self.text);
-        all.sort_by_key(|found| found.value.start);
-        let mut seen = HashSet::new();
-        for found in all {
-            if !seen.insert(found.place.clone()) {
-                let key = found.place.last_key().unwrap_or_default();
-                let what = format!("the key {key:?} twice");
-                let (path, span) = (found.place.to_string(), found.key.unwrap_or(found.value));
-                let expected = "each key once".into();
-                return Err(self.error(path, what, expected, None, Some(span), false));
-            }
+        let all = locate(&self.text);
+        if let Some((place, found)) = all.repeated() {
+            let what = format!("the key {:?} twice", place.last_key().unwrap_or_default());
+            let span = found.key.clone().unwrap_or(found.value.clone());
+            let expected = "each key once".into();
+            return Err(self.error(place.to_string(), what, expected, None, Some(span), false));
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! What is wrong with a scene or a problem: the place, what was found, what is expected, and the nearest name.
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 
@@ -72,9 +73,9 @@ impl fmt::Display for SceneError {
         } = self.0.as_ref();
         write!(f, "{file}: ")?;
         if !path.is_empty() {
-            write!(f, "{path}: ")?;
+            write!(f, "{}: ", shortened(path))?;
         }
-        write!(f, "found {found}")?;
+        write!(f, "found {}", shortened(found))?;
         if *overridden {
             f.write_str(" (set on the command line)")?;
         }
@@ -103,6 +104,17 @@ impl Diagnostic for SceneError {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
         let nearest = self.0.nearest.as_ref()?;
         Some(Box::new(format!("did you mean {nearest:?}?")))
+    }
+}
+
+/// Characters of a path or of what was found that are told.
+const TOLD: usize = 300;
+
+/// A text of the file that is told in a line: its beginning, where it is long.
+fn shortened(text: &str) -> Cow<'_, str> {
+    match text.char_indices().nth(TOLD) {
+        Some((end, _)) => Cow::Owned(format!("{}…", &text[..end])),
+        None => Cow::Borrowed(text),
     }
 }
 

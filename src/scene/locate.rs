@@ -1,5 +1,6 @@
 //! Places in a JSON document: paths such as `muscles[1].from.body`, and the bytes where their values stand.
 
+use std::collections::HashSet;
 use std::fmt;
 use std::ops::Range;
 
@@ -84,26 +85,90 @@ impl fmt::Display for Place {
 /// Where one value stands in the text.
 #[derive(Clone, Debug)]
 pub(crate) struct Found {
-    pub(crate) place: Place,
+    /// Index of the value that contains this one.
+    parent: Option<usize>,
+    /// The step from there to here.
+    step: Option<Step>,
     /// Bytes of the key in front of the value, quotes included.
     pub(crate) key: Option<Range<usize>>,
     /// Bytes of the value.
     pub(crate) value: Range<usize>,
 }
 
-/// All values of a JSON text in the order of their ends; of a text that is no JSON, those before the mistake.
-pub(crate) fn locate(text: &str) -> Vec<Found> {
+/// All values of a JSON text in the order of their starts; of a text that is no JSON, those that end before the mistake.
+///
+/// Each knows what contains it, so that long keys of deep values are held once.
+#[derive(Debug, Default)]
+pub(crate) struct Located(Vec<Found>);
+
+/// Reads where the values of a text stand.
+pub(crate) fn locate(text: &str) -> Located {
     let mut scanner = Scanner {
         text,
         at: 0,
         found: Vec::new(),
     };
-    scanner.value(&Place::default(), None, 0);
-    scanner.found
+    scanner.value(None, None, None, 0);
+    Located(scanner.found)
+}
+
+impl Located {
+    /// The value at a place.
+    pub(crate) fn find(&self, place: &Place) -> Option<&Found> {
+        let mut here = self.of(None, None, 0)?;
+        for step in &place.0 {
+            here = self.of(Some(here), Some(step), here + 1)?;
+        }
+        self.ended(here)
+    }
+
+    /// The innermost value around a byte of the text, with its place.
+    pub(crate) fn around(&self, at: usize) -> Option<(Place, Range<usize>)> {
+        let is_around = |&i: &usize| {
+            let value = self.ended(i).map(|found| &found.value);
+            value.is_some_and(|value| value.start <= at && at <= value.end)
+        };
+        let index = (0..self.0.len()).rev().find(is_around)?;
+        Some((self.place(index), self.0[index].value.clone()))
+    }
+
+    /// The first value under a key that stood in the same object before, with its place.
+    pub(crate) fn repeated(&self) -> Option<(Place, &Found)> {
+        let mut seen = HashSet::new();
+        let mut all = self.0.iter();
+        let index = all.position(|found| !seen.insert((found.parent, found.step.as_ref())))?;
+        Some((self.place(index), &self.0[index]))
+    }
+
+    /// Index of the value one step inside another, looked for from an index on.
+    fn of(&self, parent: Option<usize>, step: Option<&Step>, from: usize) -> Option<usize> {
+        let matches = |found: &Found| (found.parent, found.step.as_ref()) == (parent, step);
+        let inside = self.0.get(from..)?;
+        Some(from + inside.iter().position(matches)?)
+    }
+
+    /// A value whose end was seen.
+    fn ended(&self, index: usize) -> Option<&Found> {
+        self.0.get(index).filter(|found| found.value.end != OPEN)
+    }
+
+    fn place(&self, index: usize) -> Place {
+        let mut steps = Vec::new();
+        let mut next = Some(index);
+        while let Some(found) = next.map(|index| &self.0[index]) {
+            steps.extend(found.step.clone());
+            next = found.parent;
+        }
+        steps.reverse();
+        Place(steps)
+    }
 }
 
 /// Nesting that is followed, as deep as serde_json reads.
 const DEEPEST: usize = 128;
+
+/// End of a value whose end is not known yet.
+const OPEN: usize = usize::MAX;
 
 struct Scanner<'a> {
     text: &'a str,
@@ -113,11 +178,26 @@ struct Scanner<'a> {
 
 impl Scanner<'_> {
     /// Moves past one value; `None` where the text is no JSON.
-    fn value(&mut self, place: &Place, key: Option<Range<usize>>, depth: usize) -> Option<()> {
+    fn value(
+        &mut self,
+        parent: Option<usize>,
+        step: Option<Step>,
+        key: Option<Range<usize>>,
+        depth: usize,
+    ) -> Option<()> {
         self.blanks();
-        let start = self.at;
-        match self.peek()? {
-            _ if depth > DEEPEST => return None,
+        let first = self.peek()?;
+        if depth > DEEPEST {
+            return None;
+        }
+        let here = self.found.len();
+        self.found.push(Found {
+            parent,
+            step,
+            key,
+            value: self.at..OPEN,
+        });
+        match first {
             b'{' => self.list(b'}', |scanner, _| {
                 scanner.blanks();
                 let start = scanner.at;
@@ -125,21 +205,17 @@ impl Scanner<'_> {
                 let key = start..scanner.at;
                 scanner.blanks();
                 scanner.expect(b':')?;
-                scanner.value(&place.key(&name), Some(key), depth + 1)
+                scanner.value(Some(here), Some(Step::Key(name)), Some(key), depth + 1)
             })?,
             b'[' => self.list(b']', |scanner, index| {
-                scanner.value(&place.index(index), None, depth + 1)
+                scanner.value(Some(here), Some(Step::Index(index)), None, depth + 1)
             })?,
             b'"' => {
                 self.string()?;
             }
             _ => self.skip(|byte| !b",]}: \t\r\n".contains(&byte)),
         }
-        self.found.push(Found {
-            place: place.clone(),
-            key,
-            value: start..self.at,
-        });
+        self.found[here].value.end = self.at;
         Some(())
     }
 

@@ -6,6 +6,9 @@ use crate::scene::document::Document;
 use crate::scene::error::{Mistake, SceneError};
 use crate::scene::locate::{Place, Step};
 
+/// Longest path of an override; files are not nested deeper.
+const DEEPEST: usize = 64;
+
 /// An override: a place and the value to put there.
 #[derive(Clone, Debug)]
 pub(crate) struct Override {
@@ -19,8 +22,9 @@ impl Override {
     pub(crate) fn parse(written: &str) -> Result<Self, SceneError> {
         let parts = written.split_once('=');
         let read = |(path, value): (&str, &str)| {
+            let place = Place::parse(path.trim()).filter(|place| place.0.len() <= DEEPEST)?;
             Some(Self {
-                place: Place::parse(path.trim())?,
+                place,
                 value: serde_json::from_str(value).unwrap_or_else(|_| value.trim().into()),
                 written: written.to_owned(),
             })

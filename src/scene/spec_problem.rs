@@ -285,7 +285,15 @@ pub struct GuessSimulationSpec {
     pub voltages: VoltageMap,
 }
 
-/// An object of a guess: exactly one of the two.
+/// A random guess.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RandomGuessSpec {
+    /// Equal seeds give equal guesses.
+    pub seed: u64,
+}
+
+/// An object of a guess: exactly one of the three.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GuessObjectSpec {
@@ -295,6 +303,9 @@ pub struct GuessObjectSpec {
     /// Path of a `solution.json`, relative to this file or to the current folder.
     #[serde(default)]
     pub solution: Option<String>,
+    /// A simulation under constant voltages drawn at random within the bounds.
+    #[serde(default)]
+    pub random: Option<RandomGuessSpec>,
 }
 
 /// A word of a guess.
@@ -370,7 +381,7 @@ scalar_or_object! {
     DurationSpec: Quantity<Time> = Self::Given, FreeDurationSpec = Self::Free,
         "a time, such as \"0.6 s\", or an object with \"min\", \"max\" and \"guess\"";
     GuessSpec: GuessWord = Self::Word, GuessObjectSpec = Self::Object,
-        "\"interpolate\" or an object with \"simulate\" or \"solution\"";
+        "\"interpolate\" or an object with \"simulate\", \"solution\" or \"random\"";
 }
 
 impl<'de> Deserialize<'de> for VoltagesSpec {

@@ -1,0 +1,34 @@
+//! Bytes as an earlier `solution.json` from which a problem starts.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use proboscis::control::problem::Task;
+use proboscis::control::{Boundary, Transcription, guess};
+use proboscis::run::solution_file;
+use proboscis::scene::read_problem;
+use proboscis_fuzz::{PROBLEM, check, with};
+use std::fs;
+
+fuzz_target!(|bytes: &[u8]| {
+    with("solution.json", bytes, |folder, path| {
+        let problem = folder.join("problem.json");
+        if !problem.exists() {
+            fs::write(&problem, PROBLEM).expect("a problem");
+        }
+        let loaded = read_problem(&problem, &[]).expect("a kept problem");
+        let Task::Control(control) = loaded.task else {
+            unreachable!("the kept problem is one of control");
+        };
+        let (model, boundary) =
+            Boundary::resolve(&loaded.system, &control, 10.0).expect("a kept problem");
+        match solution_file::read(&path, &model) {
+            Ok(earlier) => {
+                let initial = guess(&model, &boundary, &control, 10.0, Some(&earlier));
+                let program = Transcription::new(&model, &boundary, &control, &initial);
+                let point = program.expect("a kept problem").start(&initial);
+                assert!(!point.x.is_empty());
+            }
+            Err(error) => check("solution.json", error),
+        }
+    });
+});

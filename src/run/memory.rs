@@ -1,0 +1,92 @@
+//! What a run is sure to need of the machine's memory, told before it begins to fill it.
+
+use std::fs;
+use std::path::Path;
+
+use crate::model::{Model, System};
+use crate::run::error::RunError;
+
+/// Bytes of an element with its share of nodes, couplings and tangent: 100 000 were measured, 170 000 with the first step.
+const OF_ELEMENT: f64 = 8e4;
+/// Bytes of a second derivative of an interval in a program and in the solver: 300 were measured without fill-in.
+const OF_DERIVATIVE: f64 = 200.0;
+/// Bytes of an instant in tables and figures.
+const OF_INSTANT: f64 = 1e3;
+/// Bytes of a body at an instant: its pose, in the motion and in what is drawn.
+const OF_POSE: f64 = 192.0;
+
+/// Refuses a scene whose elements need more than there is.
+///
+/// # Errors
+/// They do.
+pub(super) fn of_elements(file: &Path, system: &System) -> Result<(), RunError> {
+    let elements = system.elements();
+    let what = format!("{elements} elements");
+    enough(file, "scene", &what, elements as f64 * OF_ELEMENT)
+}
+
+/// Refuses a motion of too many steps.
+///
+/// # Errors
+/// Its instants need more than there is.
+pub(super) fn of_motion(file: &Path, model: &Model, steps: usize) -> Result<(), RunError> {
+    let motion = &model.action.motion;
+    let scalars = model.voltages.len() + model.potentials;
+    let numbers = 3 * motion.unknowns() + 2 * motion.coordinates + 2 * scalars;
+    let instant = 8.0 * numbers as f64 + OF_POSE * model.system.bodies.len() as f64 + OF_INSTANT;
+    let what = format!("a motion of {steps} steps");
+    enough(file, "simulate.step", &what, steps as f64 * instant)
+}
+
+/// Refuses a program of too many intervals.
+///
+/// # Errors
+/// Its derivatives need more than there is.
+pub(super) fn of_program(file: &Path, model: &Model, intervals: usize) -> Result<(), RunError> {
+    let derivatives = model.action.layout().values(1) as f64;
+    let what = format!("a program of {intervals} intervals");
+    let bytes = intervals as f64 * derivatives * OF_DERIVATIVE;
+    enough(file, "control.intervals", &what, bytes)
+}
+
+fn enough(file: &Path, place: &str, what: &str, bytes: f64) -> Result<(), RunError> {
+    match available() {
+        Some(available) if bytes > available => Err(RunError::Problem {
+            file: file.to_owned(),
+            place: place.to_owned(),
+            reason: format!(
+                "{what} needs {} of memory or more, and {} are free",
+                readable(bytes),
+                readable(available)
+            ),
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn readable(bytes: f64) -> String {
+    format!("{:.1} GB", bytes / 1e9)
+}
+
+/// Bytes that the machine and the group of this process leave; `None` where that is not known.
+fn available() -> Option<f64> {
+    let machine = fs::read_to_string("/proc/meminfo").ok();
+    let machine = machine.as_deref().and_then(of_machine);
+    let of_group = |name: &str| -> Option<f64> {
+        let text = fs::read_to_string(format!("/sys/fs/cgroup/{name}")).ok()?;
+        text.trim().parse().ok()
+    };
+    let group = of_group("memory.max").zip(of_group("memory.current"));
+    // What is cached is given back when it is needed.
+    let group = group.map(|(limit, used)| (limit - used).max(0.5 * limit));
+    [machine, group].into_iter().flatten().reduce(f64::min)
+}
+
+/// What `/proc/meminfo` says is available, in bytes.
+fn of_machine(text: &str) -> Option<f64> {
+    let line = text
+        .lines()
+        .find(|line| line.starts_with("MemAvailable:"))?;
+    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(1024.0 * kilobytes)
+}
