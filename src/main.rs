@@ -4,9 +4,10 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use proboscis::ipopt::interrupt;
 use proboscis::run::{self, Request, RunError, Shown, Told};
+use proboscis::study::{StudyRequest, study};
 use tracing_subscriber::EnvFilter;
 
 /// Simulation and optimal control of robots driven by dielectric elastomer muscles.
@@ -47,6 +48,8 @@ enum Command {
     Inspect(Problem),
     /// Compare the derivatives of a problem with differences.
     Check(Problem),
+    /// Run variants of a problem, to see what accuracy costs in time.
+    Study(Variants),
     /// Print a scene without shorthand.
     Expand {
         /// The scene file.
@@ -84,6 +87,35 @@ enum File {
     Scene,
     /// What is asked.
     Problem,
+    /// Which variants of it are compared.
+    Study,
+}
+
+#[derive(Args, Debug)]
+struct Variants {
+    /// The study file.
+    study: PathBuf,
+    /// Folder for the results [default: results/studies/<name of the study>].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Time each point so many times, in place of what the study says.
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..))]
+    runs: Option<u16>,
+    /// Show no progress.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+impl Variants {
+    fn request(self) -> StudyRequest {
+        StudyRequest {
+            command: typed(),
+            input: self.study,
+            output: self.output,
+            runs: self.runs.map(usize::from),
+            progress: shown(self.quiet),
+        }
+    }
 }
 
 #[derive(Args, Debug)]
@@ -109,22 +141,30 @@ struct Problem {
 
 impl Problem {
     fn request(self) -> Request {
-        let typed = std::env::args_os().skip(1);
-        let typed = typed.map(|word| word.to_string_lossy().into_owned());
-        let command = ["proboscis".to_owned()].into_iter().chain(typed);
         Request {
-            command: command.collect::<Vec<_>>().join(" "),
+            command: typed(),
             input: self.problem,
             set: self.set,
             output: self.output,
             max_seconds: self.max_seconds,
             max_iterations: self.max_iterations,
-            progress: if self.quiet {
-                Shown::Never
-            } else {
-                Shown::OnTerminal
-            },
+            progress: shown(self.quiet),
         }
+    }
+}
+
+/// The command as typed.
+fn typed() -> String {
+    let words = std::env::args_os().skip(1);
+    let words = words.map(|word| word.to_string_lossy().into_owned());
+    let command = ["proboscis".to_owned()].into_iter().chain(words);
+    command.collect::<Vec<_>>().join(" ")
+}
+
+fn shown(quiet: bool) -> Shown {
+    match quiet {
+        true => Shown::Never,
+        false => Shown::OnTerminal,
     }
 }
 
@@ -187,12 +227,17 @@ fn answer(command: Command) -> Result<Told, RunError> {
         }
         Command::Inspect(problem) => run::inspect(&problem.request()),
         Command::Check(problem) => run::check(&problem.request()),
+        Command::Study(variants) => {
+            interrupt::install();
+            study(&variants.request())
+        }
         Command::Expand { scene } => run::expand(&scene).map(text),
         Command::Schema { file } => {
             let (scene, problem) = run::schema();
             Ok(text(match file {
                 File::Scene => scene,
                 File::Problem => problem,
+                File::Study => run::study_schema(),
             }))
         }
         Command::New {

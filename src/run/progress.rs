@@ -85,6 +85,13 @@ impl Progress {
     }
 }
 
+/// A bar of another command: `length` steps, shown by a template of indicatif.
+pub(crate) fn progress_bar(shown: Shown, length: u64, template: &str) -> ProgressBar {
+    let bar = target(ProgressBar::new(length), shown);
+    bar.set_style(style(template));
+    bar
+}
+
 impl Drop for Progress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();

@@ -127,7 +127,7 @@ pub(super) fn control(
 }
 
 /// Makes the folder of the results, or clears it of what killed runs left half written.
-pub(super) fn make_folder(folder: &Path) -> Result<(), WriteError> {
+pub(crate) fn make_folder(folder: &Path) -> Result<(), WriteError> {
     fs::create_dir_all(folder).map_err(|cause| WriteError {
         path: folder.to_owned(),
         cause,
