@@ -113,7 +113,7 @@ impl Diagnostic for SceneError {
 }
 
 /// Characters of a path or of what was found that are told.
-const TOLD: usize = 300;
+const TOLD: usize = 400;
 
 /// A text of the file that is told in a line: its beginning, where it is long.
 fn shortened(text: &str) -> Cow<'_, str> {

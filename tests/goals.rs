@@ -1,0 +1,110 @@
+//! Random goals: each ends solved or with a word, and voltages that solve it lead there.
+
+mod random_goals;
+
+use proboscis::control::problem::Task;
+use proboscis::dynamics::simulate;
+use proboscis::ipopt::Status;
+use proboscis::run::{Allowed, optimise};
+use proboscis::scene::read_problem;
+use random_goals::{Goal, Goals, Kind, trunk};
+use std::ops::ControlFlow;
+
+/// What a solve of a well-posed problem may end with.
+const CLASSIFIED: [Status; 7] = [
+    Status::Solved,
+    Status::Acceptable,
+    Status::Infeasible,
+    Status::IterationLimit,
+    Status::RestorationFailed,
+    Status::SearchDirectionTooSmall,
+    Status::InvalidNumber,
+];
+
+/// Solves a goal; whether it was solved.
+fn solve(goal: &Goal, kind: Kind) -> bool {
+    let goal_is = format!("control.goal={}", goal.json);
+    let loaded = read_problem(&trunk(), &[goal_is]).expect("a goal");
+    let Task::Control(control) = loaded.task else {
+        panic!("a problem of control");
+    };
+    let mut go_on = |_: &_| ControlFlow::Continue(());
+    let allowed = Allowed {
+        iterations: Some(200),
+        seconds: None,
+    };
+    let optimum = optimise(
+        &trunk(),
+        &loaded.system,
+        &control,
+        None,
+        allowed,
+        &mut go_on,
+    );
+    let optimum = optimum.expect("a reachable goal");
+    let status = optimum.solution.status;
+    assert!(CLASSIFIED.contains(&status), "{status} for {}", goal.json);
+    if !status.is_solved() {
+        assert!(!optimum.violated.is_empty() || optimum.infeasibility < 1e-6);
+        return false;
+    }
+    let (model, motion) = (&optimum.model, &optimum.motion);
+    let steps = motion.intervals();
+    let h = motion.times[steps] / steps as f64;
+    let voltages = |from: f64, _: f64| model.scalars(&motion.voltages[(from / h).round() as usize]);
+    let start = &optimum.boundary.start;
+    let (history, failure) = simulate(model, start, h, steps, voltages, |_| {
+        ControlFlow::Continue(())
+    });
+    assert_eq!(failure, None);
+    let mut end = model.action.motion.instant();
+    end.z.copy_from_slice(&history.z[steps]);
+    model.action.motion.place(&mut end);
+    let far = (end.x[model.markers[0]] - goal.tip).norm();
+    assert!(far < 1e-4, "{far} mm from {}", goal.json);
+    let momentum = history.momenta[steps]
+        .iter()
+        .fold(0.0, |m: f64, p| m.max(p.abs()));
+    let largest = history
+        .momenta
+        .iter()
+        .flatten()
+        .fold(0.0, |m: f64, p| m.max(p.abs()));
+    assert!(momentum < 1e-5 * largest, "{momentum} of {largest} is left");
+    if kind == Kind::Rest {
+        for (angle, expected) in model.joints(&end, &goal.angles).iter().zip(&goal.angles) {
+            assert!((angle - expected).abs() < 1e-6, "{angle}, not {expected}");
+        }
+    }
+    assert!(
+        motion
+            .voltages
+            .iter()
+            .flatten()
+            .all(|v| (-1e-3..3000.001).contains(v))
+    );
+    true
+}
+
+#[test]
+fn random_goals_are_reached_or_refused_with_a_word() {
+    let mut goals = Goals::new(1);
+    let mut solved = 0;
+    for kind in [Kind::Rest, Kind::Tip] {
+        for _ in 0..3 {
+            let goal = goals.draw(kind);
+            // The trunk is 300 mm long.
+            assert!(goal.tip.norm() < 300.1, "{}", goal.tip);
+            assert!(goal.angles.iter().any(|angle| angle.abs() > 0.02));
+            solved += usize::from(solve(&goal, kind));
+        }
+    }
+    assert!(solved >= 3, "{solved} of 6 are solved");
+}
+
+#[test]
+fn equal_seeds_draw_equal_goals() {
+    let draw = |seed| Goals::new(seed).draw(Kind::Rest).json;
+    assert_eq!(draw(5), draw(5));
+    assert_ne!(draw(5), draw(6));
+}
