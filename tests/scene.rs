@@ -826,7 +826,8 @@ fn every_kept_problem_is_right() {
 #[test]
 fn kept_schemas_are_current() {
     let (scene, problem) = schema();
-    for (name, schema) in [("scene", scene), ("problem", problem)] {
+    let study = proboscis::scene::study_schema();
+    for (name, schema) in [("scene", scene), ("problem", problem), ("study", study)] {
         let path = format!("problems/{name}.schema.json");
         let text = serde_json::to_string_pretty(&schema).expect("a schema is JSON") + "\n";
         if std::env::var_os("PROBOSCIS_WRITE_SCHEMA").is_some() {

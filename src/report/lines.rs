@@ -20,7 +20,7 @@ pub struct Series {
     pub width: f64,
     /// Mark at each point.
     pub mark: Mark,
-    /// Labels above the points, as far as there are any; an empty one is none.
+    /// Labels above the points, or below where the curve comes down to one, as far as there are any; an empty one is none.
     pub labels: Vec<String>,
 }
 
@@ -62,7 +62,7 @@ impl Series {
         Self { mark, ..self }
     }
 
-    /// The same with labels above its points.
+    /// The same with labels at its points.
     pub fn labelled(self, labels: Vec<String>) -> Self {
         Self { labels, ..self }
     }

@@ -156,7 +156,7 @@ fn alone(results: &Results<'_>, measure: Measure) -> Judged {
         .map(|points| points.iter().map(error).collect())
         .collect();
     let orders = (results.methods.iter().zip(&errors))
-        .map(|(points, errors)| order(points, errors, 0.0))
+        .map(|(points, errors)| order(points, errors, 0.0).filter(|_| measure.has_order()))
         .collect();
     let none = |errors: &Vec<Option<f64>>| vec![None; errors.len()];
     Judged {

@@ -56,6 +56,8 @@ pub struct Limit {
     /// How far the limit moved with the last value, where it could be extrapolated before; otherwise how far the finest value
     /// is from it, or the one before from the finest. None of a single value.
     pub uncertainty: Option<f64>,
+    /// Differences that are no larger are rounding.
+    pub rounding: f64,
 }
 
 impl Limit {
@@ -64,8 +66,8 @@ impl Limit {
         let is_confirmed = matches!(self.orders.as_slice(), [.., Some(_), Some(_)]);
         match (self.how, is_confirmed) {
             // The last error is how far the limit was extrapolated, by construction.
-            (How::Extrapolated, false) => 0.0,
-            _ => self.uncertainty.unwrap_or(0.0),
+            (How::Extrapolated, false) => self.rounding,
+            _ => self.uncertainty.unwrap_or(0.0).max(self.rounding),
         }
     }
 }
@@ -112,6 +114,7 @@ pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<Limit> 
             value: finest.clone(),
             how: How::TooFew,
             orders,
+            rounding,
         });
     };
     let apart = distance(&values[values.len() - 2], finest, width);
@@ -124,6 +127,7 @@ pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<Limit> 
                 how: How::Extrapolated,
                 orders,
                 uncertainty: Some(uncertainty),
+                rounding,
             }
         }
         None => Limit {
@@ -134,6 +138,7 @@ pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<Limit> 
             },
             orders,
             uncertainty: Some(apart),
+            rounding,
         },
     };
     Some(found)

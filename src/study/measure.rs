@@ -167,6 +167,11 @@ impl Measure {
         matches!(self, Self::End | Self::Path | Self::Place | Self::Objective)
     }
 
+    /// Whether it falls with a power of what is refined; what a solver left of its equations does not.
+    pub fn has_order(self) -> bool {
+        !matches!(self, Self::ConstraintViolation | Self::Infeasibility)
+    }
+
     /// Numbers that make one place of it.
     pub fn width(self) -> usize {
         match self {

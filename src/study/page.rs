@@ -91,7 +91,11 @@ fn prices(study: &Study, results: &Results<'_>, judged: &[Judged]) -> Option<Str
         for accuracy in ACCURACIES {
             let wanted = accuracy * judged.scale;
             let costs: Vec<Option<f64>> = (0..study.methods.len())
-                .map(|m| cost(&results.methods[m], |k| judged.errors[m][k], wanted))
+                .map(|m| {
+                    // What is below the uncertainty of the reference may be as large as that.
+                    let error = |k: usize| Some(judged.errors[m][k]?.max(judged.floors[m]));
+                    cost(&results.methods[m], error, wanted)
+                })
                 .collect();
             let Some(least) = costs.iter().flatten().copied().reduce(f64::min) else {
                 continue;
@@ -140,6 +144,7 @@ fn cost(points: &[Done<'_>], error: impl Fn(usize) -> Option<f64>, wanted: f64) 
         return Some(known[0][0]);
     };
     let [[fast, rough], [slow, fine]] = [known[before], known[first]];
+    // An error of exactly zero has no place in the diagram.
     if fine <= 0.0 {
         return Some(slow);
     }
@@ -183,12 +188,13 @@ fn section(study: &Study, judged: &Judged, figure: Option<&str>) -> String {
             _ => String::new(),
         };
         let known = match (limit.how, limit.uncertainty) {
-            (How::Extrapolated, Some(apart)) if limit.floor() > 0.0 => {
+            (How::Extrapolated, Some(apart)) if limit.floor() > limit.rounding => {
                 format!("; the limit of the three points before is {apart:.1e}{unit} beside it")
             }
-            (_, Some(apart)) => {
-                format!("; the finest value is {apart:.1e}{unit} from the one it is compared with")
+            (How::Extrapolated, Some(apart)) => {
+                format!("; the finest value is {apart:.1e}{unit} from it")
             }
+            (_, Some(apart)) => format!("; the two finest values are {apart:.1e}{unit} apart"),
             (_, None) => String::new(),
         };
         let seen = match orders.is_empty() {
