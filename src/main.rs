@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use proboscis::ipopt::interrupt;
+use proboscis::run::accuracy::Wanted;
 use proboscis::run::{self, Request, RunError, Shown, Told};
 use proboscis::study::{StudyRequest, study};
 use tracing_subscriber::EnvFilter;
@@ -26,16 +27,16 @@ enum Command {
     /// Solve a problem: find optimal voltages, or do what else its file asks.
     Solve {
         #[command(flatten)]
-        problem: Problem,
+        problem: InTime,
         /// Solve from so many starting points, its own guess and random ones, and keep the best.
-        #[arg(long, value_name = "N")]
+        #[arg(long, value_name = "N", conflicts_with_all = ["accuracy", "estimate_error"])]
         starts: Option<usize>,
         /// Seed of the random starting points.
         #[arg(long, value_name = "SEED", default_value_t = 1, requires = "starts")]
         seed: u64,
     },
     /// Simulate a problem forward in time, or do what else its file asks.
-    Simulate(Problem),
+    Simulate(InTime),
     /// Find the static equilibrium of a problem, or of any scene under given voltages.
     Equilibrium {
         #[command(flatten)]
@@ -139,6 +140,33 @@ struct Problem {
     quiet: bool,
 }
 
+#[derive(Args, Debug)]
+struct InTime {
+    #[command(flatten)]
+    problem: Problem,
+    /// Double the number of intervals until the error of discretisation is estimated below this part of the objective, and
+    /// below this part of the robot's size along the path and at the end.
+    #[arg(long, value_name = "ERROR", value_parser = part)]
+    accuracy: Option<f64>,
+    /// Estimate the error of discretisation by a second run with twice the intervals; what is written stays the same.
+    #[arg(long, conflicts_with = "accuracy")]
+    estimate_error: bool,
+}
+
+impl InTime {
+    fn request(self) -> Request {
+        let wanted = match (self.accuracy, self.estimate_error) {
+            (Some(error), _) => Some(Wanted::Below(error)),
+            (None, true) => Some(Wanted::Estimate),
+            (None, false) => None,
+        };
+        Request {
+            wanted,
+            ..self.problem.request()
+        }
+    }
+}
+
 impl Problem {
     fn request(self) -> Request {
         Request {
@@ -148,6 +176,7 @@ impl Problem {
             output: self.output,
             max_seconds: self.max_seconds,
             max_iterations: self.max_iterations,
+            wanted: None,
             progress: shown(self.quiet),
         }
     }
@@ -172,6 +201,13 @@ fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(value) if value > 0.0 => Ok(value),
         _ => Err("expected a positive number of seconds".to_owned()),
+    }
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
+        _ => Err("expected a number between 0 and 1, such as 1e-3".to_owned()),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::control::boundary::Boundary;
 use crate::control::problem::{Control, Guess};
+use crate::control::resample::{self, Grids};
 use crate::control::solution::{Costates, Solved};
 use crate::dynamics::{History, simulate};
 use crate::model::{Coordinates, Model};
@@ -32,7 +33,7 @@ pub fn guess(
 ) -> Initial {
     let intervals = control.intervals;
     match (&control.guess, earlier) {
-        (_, Some(solved)) => from_solution(model, boundary, solved, intervals, h),
+        (_, Some(solved)) => from_solution(model, boundary, control, solved, h),
         (Guess::Simulate(voltages), _) => {
             let scalars = model.scalars(voltages);
             let start = &boundary.start;
@@ -118,22 +119,26 @@ fn joints_of(model: &Model, z: &[f64]) -> Option<Vec<f64>> {
     Some(model.joints(&instant, &vec![0.0; model.gauges.len()]))
 }
 
-/// An earlier solution: as it is on the same grid in the same coordinates, resampled otherwise.
+/// An earlier solution: as it is on the same grid, carried over from another one; from other coordinates only the joints.
 fn from_solution(
     model: &Model,
     boundary: &Boundary,
+    control: &Control,
     solved: &Solved,
-    intervals: usize,
     h: f64,
 ) -> Initial {
-    let same_grid = solved.intervals() == intervals;
+    let intervals = control.intervals;
     let duration = solved.times[solved.intervals()];
     let h = if duration > 0.0 {
         duration / intervals as f64
     } else {
         h
     };
-    let resample = |k: usize| {
+    let grids = Grids::new(solved.intervals(), intervals);
+    let same_coordinates = solved.coordinates == model.coordinates
+        && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
+    let n = model.coordinate_count();
+    let along_joints = |k: usize| {
         let s = k as f64 / intervals as f64 * solved.intervals() as f64;
         let i = (s.floor() as usize).min(solved.intervals() - 1);
         let f = s - i as f64;
@@ -141,47 +146,32 @@ fn from_solution(
         let joints: Vec<f64> = a.iter().zip(b).map(|(a, b)| a + f * (b - a)).collect();
         model.coordinates_at(&joints)
     };
-    let exact = same_grid
-        && solved.coordinates == model.coordinates
-        && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
-    let n = model.coordinate_count();
-    let restated = |z: &Vec<f64>| {
-        let mut z = z.clone();
-        for multiplier in &mut z[n..] {
-            *multiplier *= solved.multiplier_time / model.multiplier_time;
-        }
-        z
+    let z = match same_coordinates {
+        true => resample::coordinates(solved, grids, n, model.multiplier_time),
+        false => (0..=intervals).map(along_joints).collect(),
     };
-    let z = (0..=intervals)
-        .map(|k| {
-            if exact {
-                restated(&solved.z[k])
-            } else {
-                resample(k)
-            }
-        })
-        .collect();
-    let voltages = (0..intervals).map(|k| {
-        let s = (k as f64 + 0.5) / intervals as f64 * solved.intervals() as f64;
-        let i = (s as usize).min(solved.intervals() - 1);
-        let mut scalars = model.scalars(&solved.voltages[i]);
-        match solved.potentials.get(i) {
-            Some(potentials) if potentials.len() == model.potentials => {
-                scalars.extend_from_slice(potentials);
-                scalars
-            }
-            _ => with_potentials(model, scalars),
+    let has_potentials = solved
+        .potentials
+        .iter()
+        .all(|row| row.len() == model.potentials);
+    let scalars = |k: usize| {
+        let scalars = model.scalars(&grids.mean(&solved.voltages, k));
+        match has_potentials && !solved.potentials.is_empty() {
+            true => [scalars, grids.mean(&solved.potentials, k)].concat(),
+            false => with_potentials(model, scalars),
         }
-    });
+    };
     let history = History {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),
         z,
-        scalars: voltages.collect(),
+        scalars: (0..intervals).map(scalars).collect(),
         ..History::default()
     };
     Initial {
         history,
         h,
-        costates: if exact { solved.costates.clone() } else { None },
+        costates: same_coordinates
+            .then(|| resample::costates(model, boundary, control, solved, grids))
+            .flatten(),
     }
 }

@@ -6,6 +6,7 @@ mod guess;
 mod limits;
 mod objective;
 pub mod problem;
+mod resample;
 mod solution;
 mod transcription;
 mod unknowns;

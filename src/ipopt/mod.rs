@@ -68,8 +68,8 @@ fn hint(nearest: Option<&str>) -> String {
 ///
 /// # Panics
 ///
-/// If the lengths of bounds, structures and starting point contradict each other, or if [`Start::PrimalDual`] is asked for
-/// without multipliers.
+/// If the lengths of bounds, structures and starting point contradict each other, or if a start with multipliers is asked for
+/// without any.
 pub fn solve(
     nlp: &mut dyn Nlp,
     start: &Point,
@@ -202,7 +202,7 @@ fn starting_costates(start: &Point, kind: Start, n: usize, m: usize) -> Costates
             lower: vec![0.0; n],
             upper: vec![0.0; n],
         },
-        Start::PrimalDual { .. } => start
+        Start::PrimalDual { .. } | Start::Carried { .. } => start
             .costates
             .clone()
             .expect("a primal-dual start has multipliers"),

@@ -34,7 +34,7 @@ impl Costates {
 pub struct Point {
     /// The variables.
     pub x: Vec<f64>,
-    /// Their multipliers, read by [`Start::PrimalDual`](crate::ipopt::Start::PrimalDual) alone.
+    /// Their multipliers, read by the starts of [`Start`](crate::ipopt::Start) that keep them.
     pub costates: Option<Costates>,
 }
 

@@ -174,8 +174,11 @@ pub(super) fn prepare<'m>(
     let point = program.start(&initial);
     let start = match earlier {
         None => Start::Cold,
-        Some(_) if point.costates.is_some() => Start::PRIMAL_DUAL,
-        Some(earlier) if earlier.intervals() == control.intervals => Start::PRIMAL,
+        Some(earlier) if earlier.intervals() == control.intervals => match point.costates {
+            Some(_) => Start::PRIMAL_DUAL,
+            None => Start::PRIMAL,
+        },
+        Some(_) if point.costates.is_some() => Start::CARRIED,
         Some(_) => RESAMPLED,
     };
     Ok(Prepared {

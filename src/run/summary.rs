@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::dynamics::{History, Integrator};
 use crate::report::atomic::{self, WriteError};
+use crate::run::accuracy::Accuracy;
 use crate::run::blocks::Blocks;
 use crate::run::comparison::Comparison;
 use crate::run::effects::EffectCounts;
@@ -29,6 +30,8 @@ pub(super) struct Summary {
     pub(super) program: Option<Program>,
     #[serde(flatten)]
     pub(super) simulation: Option<Simulation>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) accuracy: Option<Accuracy>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) comparison: Option<Comparison>,
     #[serde(flatten)]
@@ -187,6 +190,7 @@ impl Summary {
             message: None,
             program: None,
             simulation: None,
+            accuracy: None,
             comparison: None,
             rest: None,
             path: None,

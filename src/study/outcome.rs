@@ -81,7 +81,7 @@ fn control(
         Err(error) => return (refused(&error, seconds), None),
     };
     let status = optimum.solution.status;
-    let is_solved = status.is_solved();
+    let is_solved = optimum.is_solved();
     let ended = Ended {
         status: status.word(),
         message: (!is_solved).then(|| "the solver found no solution".to_owned()),

@@ -8,6 +8,7 @@
 //! bounds suggest, lengths in the length of the system, the interval length in its guess, the objective by a power of a
 //! thousand, so that one tolerance means the same everywhere.
 
+mod layout;
 mod limit_rows;
 mod point;
 mod program;
@@ -22,12 +23,13 @@ use crate::control::guess::Initial;
 use crate::control::limits::{Bounded, Place};
 use crate::control::objective::Cost;
 use crate::control::problem::{Control, Duration};
-use crate::control::unknowns::{Counts, Row, Unknowns, Variable};
+use crate::control::unknowns::{Row, Unknowns, Variable};
 use crate::functional::{Horizon, Part};
 use crate::model::Model;
 use crate::nlp::{Bounds, Entries, Nlp};
 use crate::reduction::Instant;
-use limit_rows::{LimitRow, limit_rows};
+pub(super) use layout::Layout;
+use limit_rows::LimitRow;
 use scaling::objective_scale;
 use stretch::Bench;
 
@@ -122,31 +124,15 @@ impl<'m> Transcription<'m> {
             Duration::Free { .. } => Horizon::Free,
         };
         let goal = &boundary.goal.coordinates;
-        let given = |k: usize, i: usize| k == 0 || (k == intervals && goal[i].is_some());
-        let free = horizon == Horizon::Free;
-        let counts = Counts {
-            intervals,
-            coordinates: n,
-            unknowns: unknown_count,
-            voltages: driven,
-            scalars: scalar_count,
-        };
-        let at_rest = boundary.goal.nodes_rest;
-        let balanced = |k: usize, i: usize| k < intervals || i < motion.of_bodies || at_rest;
-        let mut unknowns = Unknowns::new(counts, free, given, balanced);
+        let Layout {
+            unknowns,
+            limits,
+            limit_rows: limit_at,
+        } = Layout::new(model, boundary, control, intervals);
         let mut instants = vec![motion.instant(); intervals + 1];
         instants[0].z.copy_from_slice(&boundary.start.z);
         for (value, goal) in instants[intervals].z.iter_mut().zip(goal) {
             *value = goal.unwrap_or(*value);
-        }
-        let final_is_given = goal.iter().all(Option::is_some);
-        let limits = limit_rows(model, &boundary.limits.list, intervals, final_is_given);
-        let mut limit_at = Vec::new();
-        for (index, limit) in limits.iter().enumerate() {
-            for k in limit.at.clone() {
-                unknowns.rows.push(Row::Limit { limit: index, k });
-                limit_at.push((index, k));
-            }
         }
         let kilo = |v: &Vec<f64>| {
             model
