@@ -19,7 +19,7 @@ use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::inspect::key;
-use crate::run::motion::{has_coordinate, solved};
+use crate::run::motion::solved;
 use crate::run::path;
 use crate::run::request::{Request, Told};
 use crate::run::solve::make_folder;
@@ -239,7 +239,7 @@ fn describe(model: &Model, state: &History, motion: &Trajectory, found: &Equilib
         fraction: None,
         largest_nominal_field: None,
         joints: joints
-            .filter(|(joint, _)| has_coordinate(joint))
+            .filter(|(joint, _)| joint.has_coordinate())
             .map(|(joint, &value)| {
                 let unit = if prismatic(joint) { 1e3 } else { 1.0 };
                 (joint.name.clone(), value / unit)
@@ -262,7 +262,7 @@ fn describe(model: &Model, state: &History, motion: &Trajectory, found: &Equilib
 /// The equilibrium as lines of a table.
 fn text(model: &Model, rest: &Rest) -> String {
     let mut rows = Vec::new();
-    for joint in model.system.joints.iter().filter(|j| has_coordinate(j)) {
+    for joint in model.system.joints.iter().filter(|j| j.has_coordinate()) {
         // What rounds to zero has no sign.
         let value = rest.joints[&joint.name];
         let value = if value.abs() < 5e-10 { 0.0 } else { value };
