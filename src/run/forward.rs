@@ -35,7 +35,7 @@ pub(super) fn simulation(
     let steps = (task.duration / task.step - 1e-9).ceil().max(1.0) as usize;
     let h = task.duration / steps as f64;
     let wrong = |error| RunError::boundary(&request.input, "simulate", &error);
-    let model = Model::new(system.clone(), task.coordinates, h, &[])
+    let model = Model::answering(system.clone(), task.question(system, h))
         .map_err(|error| wrong(error.into()))?;
     let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;
     let effects = effect_counts(&model).map_err(|error| wrong(error.into()))?;

@@ -23,9 +23,7 @@ pub fn run(request: &Request) -> Result<Told, RunError> {
         Task::Equilibrium(task) => {
             let asked = rest::Asked {
                 system: &loaded.system,
-                voltages: &task.voltages,
-                coordinates: task.coordinates,
-                path: task.path,
+                task: &task,
                 folder: Some(request.folder()),
             };
             rest::at(request, &asked, began)
