@@ -35,7 +35,11 @@ pub fn guess(
     match (&control.guess, earlier) {
         (_, Some(solved)) => from_solution(model, boundary, control, solved, h),
         (Guess::Simulate(voltages), _) => {
-            let scalars = model.scalars(voltages);
+            let mut voltages = voltages.clone();
+            for (&source, &voltage) in &control.given {
+                voltages[source] = voltage;
+            }
+            let scalars = model.scalars(&voltages);
             let start = &boundary.start;
             let constant = |_: f64, _: f64| scalars.clone();
             let (mut history, _) = simulate(model, start, h, intervals, constant, |_| {

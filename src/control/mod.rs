@@ -1,6 +1,7 @@
 //! Optimal control: direct transcription of the discrete action (DMOCC).
 
 mod boundary;
+mod calls;
 mod error;
 mod guess;
 mod limits;

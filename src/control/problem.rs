@@ -134,8 +134,10 @@ pub struct Control {
     pub start: State,
     /// Final state, at rest.
     pub goal: State,
-    /// Bounds of all voltages in V.
+    /// Bounds of the voltages that are looked for in V.
     pub voltage_bounds: [f64; 2],
+    /// Voltages that are given for all the time (V, by source): no unknowns.
+    pub given: BTreeMap<usize, f64>,
     /// What is minimised.
     pub objective: Objective,
     /// Path limits.

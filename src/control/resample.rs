@@ -133,7 +133,10 @@ pub(super) fn costates(
             let place = from.unknowns.unknown(grids.nearest(k), i);
             ratio * place.map_or(0.0, |v| list[v])
         }
-        Variable::Scalar { k, s } => ratio * list[from.unknowns.scalar(grids.interval(k), s)],
+        Variable::Scalar { k, s } => {
+            let place = from.unknowns.scalar(grids.interval(k), s);
+            ratio * place.map_or(0.0, |v| list[v])
+        }
         // The duration is so many times the interval length.
         Variable::Horizon => from.unknowns.horizon().map_or(0.0, |v| list[v]) / ratio,
     };

@@ -196,7 +196,7 @@ impl<'m> Observer<'m> {
         if self.has(Kind::VirtualWork) {
             row.push(self.dissipated);
         }
-        let poses = model.poses(&self.here);
+        let poses = model.condensed_poses(&self.here);
         let places = Places {
             poses: &poses,
             x: &self.here.x,

@@ -64,7 +64,7 @@ impl Sample {
             .system
             .joints
             .iter()
-            .filter(|joint| crate::run::motion::has_coordinate(joint));
+            .filter(|joint| joint.has_coordinate());
         let joints = motion.joints[last]
             .iter()
             .zip(kinds)

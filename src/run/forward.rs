@@ -61,7 +61,7 @@ pub fn integrate(
     let began = Instant::now();
     let (steps, h) = grid(task);
     let wrong = |error| RunError::boundary(file, "simulate", &error);
-    let model = Model::new(system.clone(), task.coordinates, h, &[])
+    let model = Model::answering(system.clone(), task.question(system, h))
         .map_err(|error| wrong(error.into()))?;
     memory::of_motion(file, &model, steps)?;
     let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;

@@ -27,9 +27,7 @@ pub fn run(request: &Request) -> Result<Told, RunError> {
             refuse_wanted(request)?;
             let asked = rest::Asked {
                 system: &loaded.system,
-                voltages: &task.voltages,
-                coordinates: task.coordinates,
-                path: task.path,
+                task: &task,
                 folder: Some(request.folder()),
             };
             rest::at(request, &asked, began)

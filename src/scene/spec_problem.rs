@@ -144,8 +144,12 @@ pub struct ControlSpec {
     pub start: StartSpec,
     /// Final state, at rest.
     pub goal: GoalSpec,
-    /// Lower and upper bound of every voltage, SI unit V.
+    /// Lower and upper bound of every voltage that is looked for, SI unit V.
     pub voltage_bounds: [Quantity<Voltage>; 2],
+    /// Voltages that are given for all the time, by the names of muscles and driven electrodes (`block.electrode`), SI unit V:
+    /// they are no unknowns, and one of 0 leaves no electric term at all.
+    #[serde(default)]
+    pub voltages: VoltageMap,
     /// What is minimised.
     pub objective: ObjectiveSpec,
     /// Path limits.

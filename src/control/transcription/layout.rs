@@ -39,7 +39,11 @@ impl Layout {
         let at_rest = boundary.goal.nodes_rest;
         let balanced = |k: usize, i: usize| k < intervals || i < motion.of_bodies || at_rest;
         let free = matches!(control.duration, Duration::Free { .. });
-        let mut unknowns = Unknowns::new(counts, free, given, balanced);
+        let prescribed = |s: usize| {
+            let source = model.voltages.get(s);
+            source.is_some_and(|source| control.given.contains_key(source))
+        };
+        let mut unknowns = Unknowns::new(counts, free, given, balanced, prescribed);
         let final_is_given = goal.iter().all(Option::is_some);
         let limits = limit_rows(model, &boundary.limits.list, intervals, final_is_given);
         let mut limit_rows = Vec::new();

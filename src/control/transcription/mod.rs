@@ -129,6 +129,11 @@ impl<'m> Transcription<'m> {
             limits,
             limit_rows: limit_at,
         } = Layout::new(model, boundary, control, intervals);
+        let held = |s: usize| control.given.get(model.voltages.get(s)?);
+        let row: Vec<f64> = (0..scalar_count)
+            .map(|s| held(s).copied().unwrap_or(0.0))
+            .collect();
+        let kilovolts: Vec<f64> = row[..driven].iter().map(|v| v / KILOVOLT).collect();
         let mut instants = vec![motion.instant(); intervals + 1];
         instants[0].z.copy_from_slice(&boundary.start.z);
         for (value, goal) in instants[intervals].z.iter_mut().zip(goal) {
@@ -177,9 +182,9 @@ impl<'m> Transcription<'m> {
             point: vec![f64::NAN; unknowns.variables.len()],
             instants,
             placed: Placed::Nothing,
-            scalars: vec![0.0; intervals * scalar_count],
+            scalars: row.repeat(intervals),
             scalars_along: vec![0.0; intervals * scalar_count],
-            kilovolts: vec![0.0; intervals * driven],
+            kilovolts: kilovolts.repeat(intervals),
             h: initial.h,
             variable_scales,
             row_scales: vec![1.0; unknowns.rows.len()],
