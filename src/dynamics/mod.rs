@@ -21,5 +21,5 @@ pub use error::{EquilibriumError, StepError};
 pub use history::History;
 pub use observe::{Energies, energies, observations};
 pub use simulate::{Start, simulate, simulate_by};
-pub use spans::reversed_muscle;
+pub use spans::{muscle_without_length, reversed_muscle};
 pub use stepper::{Newton, Solving, Stepper, StepperReport};

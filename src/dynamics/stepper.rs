@@ -383,7 +383,7 @@ impl<'m> Stepper<'m> {
         Some((self.model.system.muscles[muscle].name.clone(), stretch))
     }
 
-    /// Makes a solution the instant now, unless a muscle passed through no length on the way.
+    /// Makes a solution the instant now, unless a muscle passed through no length on the way, or an element is crushed there.
     fn accept(&mut self, h: f64) -> Result<(), StepError> {
         self.evaluate(Level::Gradient, h);
         if let Some(muscle) = spans::reversed(self.model, &self.here, &self.next) {
@@ -391,6 +391,12 @@ impl<'m> Stepper<'m> {
                 time: self.time,
                 step: h,
                 muscle: self.model.system.muscles[muscle].name.clone(),
+            });
+        }
+        if spans::is_inverted(self.model, &self.next, &self.scalars) {
+            return Err(StepError::Inverted {
+                time: self.time,
+                step: h,
             });
         }
         let motion = &self.model.action.motion;
