@@ -3,7 +3,7 @@
 use crate::control::error::BoundaryError;
 use crate::control::limits::Limits;
 use crate::control::problem::{Control, Rest, State};
-use crate::dynamics::{Start, equilibrium};
+use crate::dynamics::{Start, equilibrium, muscle_without_length};
 use crate::functional::Level;
 use crate::model::{Condensed, Coordinates, Model, Quantity, Question, System};
 
@@ -103,6 +103,9 @@ impl Boundary {
             }
             _ => {}
         }
+        if let Some(z) = given.iter().copied().collect::<Option<Vec<f64>>>() {
+            check_muscles(&model, &z, "goal")?;
+        }
         let voltages = |state: &State| match state {
             State::RestAtVoltages(v) => Some(v.clone()),
             State::Markers { hold, .. } => hold.clone(),
@@ -182,6 +185,7 @@ pub fn resolve_start(
             };
             let z = model.coordinates_at(&joints(angles));
             check_constraints(model, &z, place)?;
+            check_muscles(model, &z, place)?;
             let n = model.coordinate_count();
             // Rates of redundant coordinates are those of the poses a short time away, linear in the joint rates.
             let rates = match model.coordinates {
@@ -208,6 +212,17 @@ fn with_nodes(model: &Model, mut rates: Vec<f64>) -> Vec<f64> {
             rates.resize(model.coordinate_count(), 0.0);
             rates
         }
+    }
+}
+
+/// Checks that no muscle has lost its length at coordinates.
+fn check_muscles(model: &Model, z: &[f64], place: &'static str) -> Result<(), BoundaryError> {
+    match muscle_without_length(model, z) {
+        None => Ok(()),
+        Some(muscle) => Err(BoundaryError::NoLength {
+            place,
+            muscle: model.system.muscles[muscle].name.clone(),
+        }),
     }
 }
 

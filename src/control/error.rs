@@ -30,6 +30,14 @@ pub enum BoundaryError {
         /// Its value.
         value: f64,
     },
+    /// The ends of a muscle meet in a given configuration.
+    #[error("{place}: the ends of muscle \"{muscle}\" meet there, where it has no energy")]
+    NoLength {
+        /// `start` or `goal`.
+        place: &'static str,
+        /// The muscle.
+        muscle: String,
+    },
     /// More equations than unknowns.
     #[error(
         "the problem is overdetermined: {equations} equations (of them {goals} of the goal) for {unknowns} unknowns; \

@@ -1,18 +1,16 @@
 //! Why a step or an equilibrium was not found.
 
+use crate::dynamics::spans::NOTHING;
 use crate::dynamics::{Equilibrium, Instability};
 use thiserror::Error;
-
-/// Stretch that counts as none.
-const NOTHING: f64 = 1e-9;
 
 /// A step forward in time failed and was not accepted.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum StepError {
     /// Newton's method did not converge, although the step was halved.
     #[error(
-        "no convergence of the step from t = {time} ms, even with a step of {step} ms; last residuals relative to the first: {residuals:?}{}",
-        hint(residuals, muscle.as_ref())
+        "no convergence of the step from t = {time} ms, even with a step of {step} ms; last residuals relative to the first: {}{}",
+        short(residuals), hint(residuals, muscle.as_ref())
     )]
     NoConvergence {
         /// Start of the step in ms.
@@ -35,6 +33,16 @@ pub enum StepError {
         step: f64,
         /// The muscle.
         muscle: String,
+    },
+    /// An element of a block is turned inside out at the end of the step, although it was halved.
+    #[error(
+        "the step from t = {time} ms turns an element inside out (J ≤ 0), even with a step of {step} ms: it is crushed, as in pull-in, or the motion is too fast for the step"
+    )]
+    Inverted {
+        /// Start of the step in ms.
+        time: f64,
+        /// Smallest step that was tried in ms.
+        step: f64,
     },
     /// The tangent is singular.
     #[error(
@@ -108,6 +116,16 @@ fn redundancy(redundant: &[String], otherwise: &str) -> String {
             many.join(", ")
         ),
     }
+}
+
+/// Numbers in two digits, those that do not exist in words.
+fn short(residuals: &[f64]) -> String {
+    let digits = |r: &f64| match r.is_finite() {
+        true => format!("{r:.1e}"),
+        false => "undefined".to_owned(),
+    };
+    let list: Vec<String> = residuals.iter().map(digits).collect();
+    list.join(", ")
 }
 
 /// What a short muscle or residuals that are not finite mean.

@@ -35,6 +35,6 @@ pub use midpoint::{Midpoint, Stepper};
 pub use observe::{Energies, energies, observations};
 pub use simulate::{Start, simulate, simulate_by};
 pub use solving::{Integrator, Newton, Solving};
-pub use spans::reversed_muscle;
+pub use spans::{muscle_without_length, reversed_muscle};
 pub use stages::Stages;
 pub use stepper::{Equations, StepperReport, Steps};

@@ -1,15 +1,20 @@
-//! Lumped muscles on their way to no length, where their energy has no value: steps must not jump over it.
+//! Where energy has no value: lumped muscles of no length, elements turned inside out. Steps must neither jump over such
+//! places nor end there.
 //!
-//! Forces are those at the middle of a step, which says nothing of an end on the other side: a span that turns by a right
-//! angle or more within a step may have passed through zero.
+//! Forces are those at the middle of a step, which says nothing of its end: a span that turns by a right angle or more within
+//! a step may have passed through zero, and an element that is sound in the middle may be crushed.
 
 use crate::dynamics::History;
+use crate::functional::Kind;
 use crate::model::Model;
 use crate::model::system::Fidelity;
-use crate::reduction::Instant;
+use crate::reduction::{Instant, Interval};
 
 /// Below this stretch a muscle is named where a step fails; pull-in of an ideal dielectric is at 0.63.
 const SHORT: f64 = 0.5;
+
+/// Stretch that counts as no length.
+pub(super) const NOTHING: f64 = 1e-9;
 
 /// The lumped muscles: index, and vector of the span.
 fn lumped(model: &Model) -> impl Iterator<Item = (usize, usize)> + '_ {
@@ -35,6 +40,26 @@ pub(super) fn shortest(model: &Model, at: &Instant) -> Option<(usize, f64)> {
     };
     let short = lumped(model).map(stretch).filter(|(_, s)| *s < SHORT);
     short.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// The first lumped muscle whose ends meet at coordinates.
+pub fn muscle_without_length(model: &Model, coordinates: &[f64]) -> Option<usize> {
+    let mut instant = model.action.motion.instant();
+    instant.z[..coordinates.len()].copy_from_slice(coordinates);
+    model.action.motion.place(&mut instant);
+    let (muscle, stretch) = shortest(model, &instant)?;
+    (stretch < NOTHING).then_some(muscle)
+}
+
+/// Whether an elastic block has no energy at a placed instant: an element is turned inside out.
+pub(super) fn is_inverted(model: &Model, at: &Instant, scalars: &[f64]) -> bool {
+    if model.continua.is_empty() {
+        return false;
+    }
+    let interval = Interval::given(scalars, 1.0);
+    let frame = interval.frame([at, at]);
+    let mut effects = model.action.intervals.effects.iter();
+    effects.any(|e| e.kind() == Kind::Potential && !e.energy(&frame).is_finite())
 }
 
 /// The first interval of a motion in which the span of a lumped muscle turns by a right angle or more, and the muscle.

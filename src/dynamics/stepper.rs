@@ -273,7 +273,7 @@ impl<E: Equations> Steps<E> {
     }
 
     /// Makes a solution the instant now; not where the momentum does not exist, nor where a muscle passed through no length on
-    /// the way.
+    /// the way or an element is crushed.
     fn accept(&mut self, h: f64) -> Result<bool, StepError> {
         self.equations.place_end();
         let [start, end] = self.equations.ends();
@@ -285,6 +285,13 @@ impl<E: Equations> Steps<E> {
             };
             self.equations.restore();
             return Err(reversed);
+        }
+        if spans::is_inverted(self.equations.model(), end, self.equations.scalars()) {
+            self.equations.restore();
+            return Err(StepError::Inverted {
+                time: self.equations.time(),
+                step: h,
+            });
         }
         let accepted = self.equations.accept(h);
         self.report.steps += usize::from(accepted);

@@ -85,6 +85,8 @@ pub enum Aspect {
 /// Curves over a pair of axes, legend to the right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinePlot {
+    /// What stands above the frame; empty for nothing.
+    pub title: String,
     /// Horizontal axis.
     pub x: Axis,
     /// Vertical axis.
@@ -99,6 +101,8 @@ pub struct LinePlot {
 
 /// Margins in pt around the frame: left, top, bottom.
 const MARGIN: [f64; 3] = [62.0, 14.0, 44.0];
+/// Height of a title in pt.
+const TITLE: f64 = 18.0;
 /// Height of a legend entry in pt.
 const ENTRY: f64 = 16.0;
 /// Length of a line sample in the legend in pt.
@@ -108,6 +112,7 @@ impl LinePlot {
     /// A plot with free units and the usual frame.
     pub fn new(x: Axis, y: Axis, series: Vec<Series>) -> Self {
         Self {
+            title: String::new(),
             x,
             y,
             series,
@@ -128,14 +133,18 @@ impl LinePlot {
             + SAMPLE
             + 22.0;
         let columns = entries.len().div_ceil(rows) as f64;
+        let top = match self.title.is_empty() {
+            true => MARGIN[1],
+            false => MARGIN[1] + TITLE,
+        };
         let size = [
             MARGIN[0] + frame[0] + 18.0 + columns * column,
-            MARGIN[1] + frame[1] + MARGIN[2],
+            top + frame[1] + MARGIN[2],
         ];
         canvas::svg(size, origin, |canvas| {
             let plot = Frame {
                 canvas,
-                corner: [MARGIN[0], MARGIN[1]],
+                corner: [MARGIN[0], top],
                 size: frame,
                 ranges,
             };
@@ -144,11 +153,13 @@ impl LinePlot {
                 plot.series(series, &self.x, &self.y);
             }
             plot.border();
+            let (place, size) = ([MARGIN[0], MARGIN[1] + 0.3 * TITLE], style::LABEL_SIZE);
+            canvas.text(place, &self.title, size, style::INK, Align::Left);
             let left = MARGIN[0] + frame[0] + 18.0;
             for (i, series) in entries.iter().enumerate() {
                 let place = [
                     left + (i / rows) as f64 * column,
-                    MARGIN[1] + ENTRY * ((i % rows) as f64 + 0.5),
+                    top + ENTRY * ((i % rows) as f64 + 0.5),
                 ];
                 legend_entry(canvas, place, series);
             }

@@ -6,7 +6,8 @@ use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::model::system::System;
 use crate::report::origin::Origin;
 
-/// `trajectory.csv`: one row per instant, headers `name [unit]`; each number reads back identical.
+/// `trajectory.csv`: one row per instant, headers `name [unit]`; each number reads back identical, and where there is none
+/// the cell is empty.
 pub fn trajectory_csv(observations: &Observations, origin: &Origin) -> String {
     let columns = &observations.columns;
     let header = columns.iter().map(|c| match c.unit {
@@ -91,7 +92,11 @@ where
     let mut text = format!("# {}\n{}\n", origin.line(), header.join(","));
     for row in rows {
         // The shortest decimal that reads back as the same number.
-        let cells: Vec<_> = row.map(|value| format!("{value:?}")).collect();
+        let cell = |value: f64| match value.is_finite() {
+            true => format!("{value:?}"),
+            false => String::new(),
+        };
+        let cells: Vec<_> = row.map(cell).collect();
         text.push_str(&cells.join(","));
         text.push('\n');
     }

@@ -92,7 +92,7 @@ impl RunError {
         let (key, reason) = match error {
             BoundaryError::Model(source) => ("coordinates", source.to_string()),
             BoundaryError::NoEquilibrium { place, source } => (*place, source.to_string()),
-            BoundaryError::Inconsistent { place, .. } => {
+            BoundaryError::Inconsistent { place, .. } | BoundaryError::NoLength { place, .. } => {
                 let text = error.to_string();
                 let reason = text.strip_prefix(&format!("{place}: ")).unwrap_or(&text);
                 (*place, reason.to_owned())

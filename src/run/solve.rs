@@ -255,10 +255,13 @@ fn rows(summary: &Summary) -> Vec<(String, String)> {
 
 /// A violated row in words.
 fn describe(violation: &Violation) -> String {
-    format!(
-        "{}: violated by {:.4e} ({:.1e} as the solver measures it)",
-        violation.row, violation.violation, violation.scaled
-    )
+    match (violation.violation, violation.scaled) {
+        (Some(distance), Some(scaled)) => format!(
+            "{}: violated by {distance:.4e} ({scaled:.1e} as the solver measures it)",
+            violation.row
+        ),
+        _ => format!("{}: has no value there", violation.row),
+    }
 }
 
 fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> Told {

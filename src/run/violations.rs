@@ -10,10 +10,12 @@ use crate::nlp::Nlp;
 pub struct Violation {
     /// What the row says.
     pub row: String,
-    /// Distance to its bounds in the units of the row (g, mm, ms).
-    pub violation: f64,
+    /// Distance to its bounds in the units of the row (g, mm, ms); absent where the row has no value.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub violation: Option<f64>,
     /// The same as the solver measures it.
-    pub scaled: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scaled: Option<f64>,
 }
 
 /// The worst `count` rows that are violated by more than `tolerance` in the measure of the solver.
@@ -27,7 +29,7 @@ pub fn violations(
     let mut g = vec![0.0; bounds.lower.len()];
     program.constraint(x, &mut g);
     let excess = |row: usize| match g[row] {
-        value if value.is_nan() => f64::INFINITY,
+        value if !value.is_finite() => f64::INFINITY,
         value => (bounds.lower[row] - value)
             .max(value - bounds.upper[row])
             .max(0.0),
@@ -35,10 +37,13 @@ pub fn violations(
     let mut rows: Vec<usize> = (0..g.len()).filter(|&r| excess(r) > tolerance).collect();
     rows.sort_by(|&a, &b| excess(b).total_cmp(&excess(a)));
     rows.truncate(count);
-    let describe = |row: usize| Violation {
-        row: program.constraint_name(row),
-        violation: excess(row) / program.row_scale(row),
-        scaled: excess(row),
+    let describe = |row: usize| {
+        let scaled = Some(excess(row)).filter(|excess| excess.is_finite());
+        Violation {
+            row: program.constraint_name(row),
+            violation: scaled.map(|excess| excess / program.row_scale(row)),
+            scaled,
+        }
     };
     rows.into_iter().map(describe).collect()
 }

@@ -6,5 +6,16 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod blocks;
+mod goals;
+mod horizons;
+mod joints;
+mod loops;
+mod muscles;
 mod page;
 mod program;
+mod ratios;
+mod repeat;
+mod scenes;
+mod steps;
+mod units;
