@@ -36,6 +36,7 @@
 //! | [`dynamics`] | simulation, equilibrium, observations |
 //! | [`control`] | the transcription of a control problem (DMOCC) |
 //! | [`scene`], [`report`] | files in and files out |
+//! | [`run`], [`study`] | what the commands do with one problem, and with many variants of it |
 
 pub mod control;
 pub mod dynamics;
@@ -53,3 +54,4 @@ pub mod report;
 pub mod run;
 pub mod scene;
 pub mod sparse;
+pub mod study;

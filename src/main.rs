@@ -4,9 +4,11 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use proboscis::ipopt::interrupt;
+use proboscis::run::accuracy::Wanted;
 use proboscis::run::{self, Request, RunError, Shown, Told};
+use proboscis::study::{StudyRequest, study};
 use tracing_subscriber::EnvFilter;
 
 /// Simulation and optimal control of robots driven by dielectric elastomer muscles.
@@ -25,16 +27,16 @@ enum Command {
     /// Solve a problem: find optimal voltages, or do what else its file asks.
     Solve {
         #[command(flatten)]
-        problem: Problem,
+        problem: InTime,
         /// Solve from so many starting points, its own guess and random ones, and keep the best.
-        #[arg(long, value_name = "N")]
+        #[arg(long, value_name = "N", conflicts_with_all = ["accuracy", "estimate_error"])]
         starts: Option<usize>,
         /// Seed of the random starting points.
         #[arg(long, value_name = "SEED", default_value_t = 1, requires = "starts")]
         seed: u64,
     },
     /// Simulate a problem forward in time, or do what else its file asks.
-    Simulate(Problem),
+    Simulate(InTime),
     /// Find the static equilibrium of a problem, or of any scene under given voltages.
     Equilibrium {
         #[command(flatten)]
@@ -47,6 +49,8 @@ enum Command {
     Inspect(Problem),
     /// Compare the derivatives of a problem with differences.
     Check(Problem),
+    /// Run variants of a problem, to see what accuracy costs in time.
+    Study(Variants),
     /// Print a scene without shorthand.
     Expand {
         /// The scene file.
@@ -84,6 +88,35 @@ enum File {
     Scene,
     /// What is asked.
     Problem,
+    /// Which variants of it are compared.
+    Study,
+}
+
+#[derive(Args, Debug)]
+struct Variants {
+    /// The study file.
+    study: PathBuf,
+    /// Folder for the results [default: results/studies/<name of the study>].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Time each point so many times, in place of what the study says.
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..))]
+    runs: Option<u16>,
+    /// Show no progress.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+impl Variants {
+    fn request(self) -> StudyRequest {
+        StudyRequest {
+            command: typed(),
+            input: self.study,
+            output: self.output,
+            runs: self.runs.map(usize::from),
+            progress: shown(self.quiet),
+        }
+    }
 }
 
 #[derive(Args, Debug)]
@@ -107,24 +140,60 @@ struct Problem {
     quiet: bool,
 }
 
+#[derive(Args, Debug)]
+struct InTime {
+    #[command(flatten)]
+    problem: Problem,
+    /// Double the number of intervals until the error of discretisation is estimated below this part of the objective, and
+    /// below this part of the robot's size along the path and at the end.
+    #[arg(long, value_name = "ERROR", value_parser = part)]
+    accuracy: Option<f64>,
+    /// Estimate the error of discretisation by a second run with twice the intervals; what is written stays the same.
+    #[arg(long, conflicts_with = "accuracy")]
+    estimate_error: bool,
+}
+
+impl InTime {
+    fn request(self) -> Request {
+        let wanted = match (self.accuracy, self.estimate_error) {
+            (Some(error), _) => Some(Wanted::Below(error)),
+            (None, true) => Some(Wanted::Estimate),
+            (None, false) => None,
+        };
+        Request {
+            wanted,
+            ..self.problem.request()
+        }
+    }
+}
+
 impl Problem {
     fn request(self) -> Request {
-        let typed = std::env::args_os().skip(1);
-        let typed = typed.map(|word| word.to_string_lossy().into_owned());
-        let command = ["proboscis".to_owned()].into_iter().chain(typed);
         Request {
-            command: command.collect::<Vec<_>>().join(" "),
+            command: typed(),
             input: self.problem,
             set: self.set,
             output: self.output,
             max_seconds: self.max_seconds,
             max_iterations: self.max_iterations,
-            progress: if self.quiet {
-                Shown::Never
-            } else {
-                Shown::OnTerminal
-            },
+            wanted: None,
+            progress: shown(self.quiet),
         }
+    }
+}
+
+/// The command as typed.
+fn typed() -> String {
+    let words = std::env::args_os().skip(1);
+    let words = words.map(|word| word.to_string_lossy().into_owned());
+    let command = ["proboscis".to_owned()].into_iter().chain(words);
+    command.collect::<Vec<_>>().join(" ")
+}
+
+fn shown(quiet: bool) -> Shown {
+    match quiet {
+        true => Shown::Never,
+        false => Shown::OnTerminal,
     }
 }
 
@@ -132,6 +201,13 @@ fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(value) if value > 0.0 => Ok(value),
         _ => Err("expected a positive number of seconds".to_owned()),
+    }
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
+        _ => Err("expected a number between 0 and 1, such as 1e-3".to_owned()),
     }
 }
 
@@ -187,12 +263,17 @@ fn answer(command: Command) -> Result<Told, RunError> {
         }
         Command::Inspect(problem) => run::inspect(&problem.request()),
         Command::Check(problem) => run::check(&problem.request()),
+        Command::Study(variants) => {
+            interrupt::install();
+            study(&variants.request())
+        }
         Command::Expand { scene } => run::expand(&scene).map(text),
         Command::Schema { file } => {
             let (scene, problem) = run::schema();
             Ok(text(match file {
                 File::Scene => scene,
                 File::Problem => problem,
+                File::Study => run::study_schema(),
             }))
         }
         Command::New {

@@ -102,6 +102,7 @@ fn optimum(
         start: rest_at(0.0),
         goal: rest_at(goal),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
+        given: BTreeMap::new(),
         // h is in ms and the effort in s.
         objective: Objective {
             effort: 1e3,

@@ -36,6 +36,7 @@ fn problem(name: &str, coordinates: Coordinates) -> Control {
         start: State::RestAtVoltages(vec![0.0; hold.len()]),
         goal: State::RestAtVoltages(hold),
         voltage_bounds: [0.0, 3000.0],
+        given: BTreeMap::new(),
         objective,
         limits: Vec::new(),
         coordinates: Some(coordinates),

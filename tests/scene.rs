@@ -1,6 +1,7 @@
 //! Scene and problem files: every mistake is answered with its place, what was found and what is expected.
 
 use proboscis::control::problem::{Duration, Limit, State, Task, Voltages};
+use proboscis::dynamics::Integrator;
 use proboscis::model::system::{
     Discretisation, ElementKind, Fidelity, JointKind, Potential, Shape, System, VACUUM_PERMITTIVITY,
 };
@@ -290,6 +291,38 @@ fn overrides_change_problem_and_scene_and_answer_for_mistakes() {
         assert_eq!(error.path(), path, "{error}");
         assert!(error.to_string().contains(part), "{part} in {error}");
         assert_eq!(error.span(), None);
+    }
+}
+
+#[test]
+fn the_method_of_a_simulation_is_read_and_checked() {
+    const SIMULATE: &str = r#"{ "scene": "scene.json", "simulate": { "duration": "1 s", "step": "10 ms", "integrator": "midpoint" } }"#;
+    #[rustfmt::skip]
+    let cases: &[Case] = &[
+        ("\"midpoint\"", "\"midpont\"", "simulate.integrator", "\"midpont\"", "\"midpoint\"", "midpont"),
+        ("\"midpoint\"", "{ \"galerkin\": 0 }", "simulate.integrator.galerkin", "0", "a degree from 1 to 8", "0"),
+        ("\"midpoint\"", "{ \"galerkin\": 9 }", "simulate.integrator.galerkin", "9", "a degree from 1 to 8", "9"),
+        ("\"midpoint\"", "{ \"generalised_alpha\": 1.5 }", "simulate.integrator.generalised_alpha", "1.5", "from 0 to 1", "1.5"),
+        ("\"midpoint\"", "{}", "simulate.integrator", "none of them", "exactly one of", "{}"),
+        ("\"midpoint\"", "{ \"runge_kutta\": 4 }", "simulate.integrator.runge_kutta", "the key \"runge_kutta\"", "\"galerkin\"", "runge_kutta"),
+    ];
+    check(cases, SIMULATE, |problem| mistake(SCENE, problem, &[]));
+    let method = |text: &str| {
+        let (_folder, path) = folder(SCENE, &SIMULATE.replace("\"midpoint\"", text));
+        let Task::Simulate(task) = read_problem(&path, &[]).expect("a problem").task else {
+            panic!("a simulation")
+        };
+        task.solving.integrator
+    };
+    let alpha = |spectral_radius| Integrator::GeneralisedAlpha { spectral_radius };
+    for (text, expected) in [
+        ("\"midpoint\"", Integrator::Midpoint),
+        ("\"implicit_euler\"", Integrator::ImplicitEuler),
+        ("\"generalised_alpha\"", alpha(0.8)),
+        ("{ \"generalised_alpha\": 0.5 }", alpha(0.5)),
+        ("{ \"galerkin\": 3 }", Integrator::Galerkin { degree: 3 }),
+    ] {
+        assert_eq!(method(text), expected, "{text}");
     }
 }
 
@@ -793,7 +826,8 @@ fn every_kept_problem_is_right() {
 #[test]
 fn kept_schemas_are_current() {
     let (scene, problem) = schema();
-    for (name, schema) in [("scene", scene), ("problem", problem)] {
+    let study = proboscis::scene::study_schema();
+    for (name, schema) in [("scene", scene), ("problem", problem), ("study", study)] {
         let path = format!("problems/{name}.schema.json");
         let text = serde_json::to_string_pretty(&schema).expect("a schema is JSON") + "\n";
         if std::env::var_os("PROBOSCIS_WRITE_SCHEMA").is_some() {

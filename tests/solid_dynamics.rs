@@ -182,7 +182,11 @@ fn reused_tangents_and_other_solvers_give_the_same_motion() {
             (Newton::Full, Some(Backend::Mumps)),
             (Newton::Reused, Some(Backend::Mumps)),
         ] {
-            let other = motion(Solving { newton, backend });
+            let other = motion(Solving {
+                newton,
+                backend,
+                ..Solving::default()
+            });
             let apart = full.z[steps].iter().zip(&other.z[steps]);
             let apart = apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(apart < 1e-6, "{newton:?} {backend:?}: {apart:e} mm");

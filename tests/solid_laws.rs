@@ -5,61 +5,10 @@ mod solid;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use proboscis::dynamics::{History, Start, Stepper, energies, observations, simulate};
 use proboscis::mesh::Mesh;
-use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
-use proboscis::model::system::{
-    Electric, Electrode, Material, Potential, Solid, VACUUM_PERMITTIVITY,
-};
-use solid::{DRIVEN, block, dielectric, electrode, held, placed, system};
+use proboscis::model::system::{Electric, Electrode, Solid};
+use solid::{VOLTAGE, clamped, crooked, placed, system};
 use std::ops::ControlFlow;
-
-/// A voltage whose mean field over the block is about 0.4 √(μ/ε_r ε₀).
-const VOLTAGE: f64 = 4.9e5;
-
-fn silicone(viscosity: Option<f64>) -> Material {
-    let electric = Electric {
-        c1: -2.0 * VACUUM_PERMITTIVITY,
-        c2: VACUUM_PERMITTIVITY,
-        permittivity: VACUUM_PERMITTIVITY,
-    };
-    Material {
-        density: Some(1e-3),
-        viscosity,
-        ..dielectric(0.1, 0.5, electric)
-    }
-}
-
-/// A crooked block of 2 × 2 × 4 elements under a voltage along z, with a floating electrode inside.
-fn crooked(viscosity: Option<f64>) -> Solid {
-    let size = Vector3::new(10.0, 10.0, 20.0);
-    let mesh = Grid::uniform(Vector3::zeros(), size, [2, 2, 4]).mesh();
-    let mut solid = block(mesh, silicone(viscosity));
-    let mesh = &solid.mesh;
-    let mut island = mesh.nodes_on_plane(2, 10.0, 1e-9);
-    island.retain(|&n| mesh.nodes[n].x < 6.0);
-    solid.electrodes = vec![
-        electrode(mesh, "bottom", 0.0, Potential::Given(0.0)),
-        Electrode {
-            name: "island".into(),
-            nodes: island,
-            potential: Potential::Floating,
-        },
-        electrode(mesh, "top", 20.0, DRIVEN),
-    ];
-    let bent = |x: Vector3<f64>| {
-        let (s, c) = (0.2 * x.z + 0.3 * x.x).sin_cos();
-        x + Vector3::new(0.5 * s, 0.6 * c, 0.4 * s * c)
-    };
-    solid.mesh = solid.mesh.transformed(bent);
-    solid
-}
-
-/// The same, clamped below.
-fn clamped(viscosity: Option<f64>) -> Solid {
-    let mut solid = crooked(viscosity);
-    solid.supports = vec![held(&solid.mesh, "z_min", [true; 3])];
-    solid
-}
 
 fn run(solid: Solid, h: f64, steps: usize, voltage: f64) -> (Model, History) {
     let model = Model::new(system(vec![solid]), None, h, &[]).unwrap();

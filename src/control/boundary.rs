@@ -5,7 +5,7 @@ use crate::control::limits::Limits;
 use crate::control::problem::{Control, Rest, State};
 use crate::dynamics::{Start, equilibrium};
 use crate::functional::Level;
-use crate::model::{Coordinates, Model, Quantity, System};
+use crate::model::{Condensed, Coordinates, Model, Quantity, Question, System};
 
 /// A control problem's model with its start and goal.
 #[derive(Debug)]
@@ -39,9 +39,11 @@ impl Boundary {
         control: &Control,
         h0: f64,
     ) -> Result<(Model, Self), BoundaryError> {
-        let coordinates = Model::choose(system, control.coordinates)?;
+        let question = control.question(system, h0);
+        let remaining = Condensed::new(system, &question).system;
+        let coordinates = Model::choose(&remaining, control.coordinates)?;
         let redundant = coordinates == Coordinates::Redundant;
-        let mut limits = Limits::new(&control.limits, system, redundant);
+        let mut limits = Limits::new(&control.limits, system, &question.silent, redundant);
         let all_joints = all_joints_given(system, &control.goal);
         match &control.goal {
             State::Markers { places, rest, .. } => {
@@ -71,7 +73,12 @@ impl Boundary {
             }
             _ => {}
         }
-        let model = Model::new(system.clone(), Some(coordinates), h0, &limits.quantities())?;
+        let question = Question {
+            coordinates: Some(coordinates),
+            quantities: limits.quantities(),
+            ..question
+        };
+        let model = Model::answering(system.clone(), question)?;
         let start = resolve_start(&model, &control.start, "start")?;
         let n = model.coordinate_count();
         let mut given = vec![None; n];

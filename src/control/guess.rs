@@ -2,13 +2,14 @@
 
 use crate::control::boundary::Boundary;
 use crate::control::problem::{Control, Guess};
+use crate::control::resample::{self, Grids};
 use crate::control::solution::{Costates, Solved};
 use crate::dynamics::{History, simulate};
 use crate::model::{Coordinates, Model};
 use std::ops::ControlFlow;
 
-/// Volts added to the rest voltages: at zero the motion does not depend on a voltage to first order.
-const LIFT: f64 = 100.0;
+/// Added to the rest voltages, in their unit: at zero the motion does not depend on a voltage to first order.
+const LIFT: f64 = 0.1;
 
 /// A start of the solver: a motion, an interval length, and costates where they are known.
 #[derive(Clone, Debug)]
@@ -32,9 +33,13 @@ pub fn guess(
 ) -> Initial {
     let intervals = control.intervals;
     match (&control.guess, earlier) {
-        (_, Some(solved)) => from_solution(model, boundary, solved, intervals, h),
+        (_, Some(solved)) => from_solution(model, boundary, control, solved, h),
         (Guess::Simulate(voltages), _) => {
-            let scalars = model.scalars(voltages);
+            let mut voltages = voltages.clone();
+            for (&source, &voltage) in &control.given {
+                voltages[source] = voltage;
+            }
+            let scalars = model.scalars(&voltages);
             let start = &boundary.start;
             let constant = |_: f64, _: f64| scalars.clone();
             let (mut history, _) = simulate(model, start, h, intervals, constant, |_| {
@@ -53,12 +58,14 @@ pub fn guess(
                 costates: None,
             }
         }
-        _ => interpolate(model, boundary, intervals, h),
+        _ => interpolate(model, boundary, control, h),
     }
 }
 
-/// 3s² − 2s³ between start and goal; rest voltages of the goal lifted by 100 V.
-fn interpolate(model: &Model, boundary: &Boundary, intervals: usize, h: f64) -> Initial {
+/// 3s² − 2s³ between start and goal; rest voltages of the goal lifted a little.
+fn interpolate(model: &Model, boundary: &Boundary, control: &Control, h: f64) -> Initial {
+    let intervals = control.intervals;
+    let lift = LIFT * control.voltage_unit(&model.system);
     let n = model.coordinate_count();
     let start = &boundary.start.z;
     let mut end = start.clone();
@@ -87,7 +94,7 @@ fn interpolate(model: &Model, boundary: &Boundary, intervals: usize, h: f64) -> 
     });
     let rest = boundary.rest[1].as_ref().or(boundary.rest[0].as_ref());
     let held: Vec<f64> = rest.map_or_else(|| vec![0.0; model.sources.len()], Clone::clone);
-    let scalars: Vec<f64> = model.scalars(&held).iter().map(|v| v + LIFT).collect();
+    let scalars: Vec<f64> = model.scalars(&held).iter().map(|v| v + lift).collect();
     let history = History {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),
         z: z.collect(),
@@ -116,22 +123,26 @@ fn joints_of(model: &Model, z: &[f64]) -> Option<Vec<f64>> {
     Some(model.joints(&instant, &vec![0.0; model.gauges.len()]))
 }
 
-/// An earlier solution: as it is on the same grid in the same coordinates, resampled otherwise.
+/// An earlier solution: as it is on the same grid, carried over from another one; from other coordinates only the joints.
 fn from_solution(
     model: &Model,
     boundary: &Boundary,
+    control: &Control,
     solved: &Solved,
-    intervals: usize,
     h: f64,
 ) -> Initial {
-    let same_grid = solved.intervals() == intervals;
+    let intervals = control.intervals;
     let duration = solved.times[solved.intervals()];
     let h = if duration > 0.0 {
         duration / intervals as f64
     } else {
         h
     };
-    let resample = |k: usize| {
+    let grids = Grids::new(solved.intervals(), intervals);
+    let same_coordinates = solved.coordinates == model.coordinates
+        && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
+    let n = model.coordinate_count();
+    let along_joints = |k: usize| {
         let s = k as f64 / intervals as f64 * solved.intervals() as f64;
         let i = (s.floor() as usize).min(solved.intervals() - 1);
         let f = s - i as f64;
@@ -139,47 +150,32 @@ fn from_solution(
         let joints: Vec<f64> = a.iter().zip(b).map(|(a, b)| a + f * (b - a)).collect();
         model.coordinates_at(&joints)
     };
-    let exact = same_grid
-        && solved.coordinates == model.coordinates
-        && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
-    let n = model.coordinate_count();
-    let restated = |z: &Vec<f64>| {
-        let mut z = z.clone();
-        for multiplier in &mut z[n..] {
-            *multiplier *= solved.multiplier_time / model.multiplier_time;
-        }
-        z
+    let z = match same_coordinates {
+        true => resample::coordinates(solved, grids, n, model.multiplier_time),
+        false => (0..=intervals).map(along_joints).collect(),
     };
-    let z = (0..=intervals)
-        .map(|k| {
-            if exact {
-                restated(&solved.z[k])
-            } else {
-                resample(k)
-            }
-        })
-        .collect();
-    let voltages = (0..intervals).map(|k| {
-        let s = (k as f64 + 0.5) / intervals as f64 * solved.intervals() as f64;
-        let i = (s as usize).min(solved.intervals() - 1);
-        let mut scalars = model.scalars(&solved.voltages[i]);
-        match solved.potentials.get(i) {
-            Some(potentials) if potentials.len() == model.potentials => {
-                scalars.extend_from_slice(potentials);
-                scalars
-            }
-            _ => with_potentials(model, scalars),
+    let has_potentials = solved
+        .potentials
+        .iter()
+        .all(|row| row.len() == model.potentials);
+    let scalars = |k: usize| {
+        let scalars = model.scalars(&grids.mean(&solved.voltages, k));
+        match has_potentials && !solved.potentials.is_empty() {
+            true => [scalars, grids.mean(&solved.potentials, k)].concat(),
+            false => with_potentials(model, scalars),
         }
-    });
+    };
     let history = History {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),
         z,
-        scalars: voltages.collect(),
+        scalars: (0..intervals).map(scalars).collect(),
         ..History::default()
     };
     Initial {
         history,
         h,
-        costates: if exact { solved.costates.clone() } else { None },
+        costates: same_coordinates
+            .then(|| resample::costates(model, boundary, control, solved, grids))
+            .flatten(),
     }
 }

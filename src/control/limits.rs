@@ -2,6 +2,7 @@
 
 use crate::control::problem::{Limit, Side};
 use crate::model::{Quantity, Region, System};
+use std::collections::BTreeSet;
 
 /// A quantity with bounds at some instants or intervals.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,8 +40,13 @@ const OUTSIDE_BOX: f64 = 3.0;
 
 impl Limits {
     /// The path limits of a problem. Joint limits become measures only where `measure_joints`; in joint coordinates
-    /// they are bounds of variables.
-    pub fn new(limits: &[Limit], system: &System, measure_joints: bool) -> Self {
+    /// they are bounds of variables. A source that is silent has no field.
+    pub fn new(
+        limits: &[Limit],
+        system: &System,
+        silent: &BTreeSet<usize>,
+        measure_joints: bool,
+    ) -> Self {
         let mut list = Vec::new();
         for limit in limits {
             let mut add = |quantity, lower, upper, name| {
@@ -73,7 +79,8 @@ impl Limits {
                     );
                 }
                 Limit::ElectricField { muscle, max } => {
-                    if system.muscles[muscle].material.electric.is_some() {
+                    let takes_voltage = system.muscles[muscle].material.electric.is_some();
+                    if takes_voltage && !silent.contains(&muscle) {
                         let name = format!("electric field of {}", system.muscles[muscle].name);
                         add(
                             Quantity::SquaredField { muscle, limit: max },

@@ -1,11 +1,13 @@
 //! Optimal control: direct transcription of the discrete action (DMOCC).
 
 mod boundary;
+mod calls;
 mod error;
 mod guess;
 mod limits;
 mod objective;
 pub mod problem;
+mod resample;
 mod solution;
 mod transcription;
 mod unknowns;

@@ -2,7 +2,8 @@
 
 use crate::dynamics::Solving;
 use crate::ipopt::OptionValue;
-use crate::model::{Coordinates, Region};
+use crate::model::system::{Electric, Muscle};
+use crate::model::{Coordinates, Region, System};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -133,8 +134,10 @@ pub struct Control {
     pub start: State,
     /// Final state, at rest.
     pub goal: State,
-    /// Bounds of all voltages in V.
+    /// Bounds of the voltages that are looked for in V.
     pub voltage_bounds: [f64; 2],
+    /// Voltages that are given for all the time (V, by source): no unknowns.
+    pub given: BTreeMap<usize, f64>,
     /// What is minimised.
     pub objective: Objective,
     /// Path limits.
@@ -145,6 +148,34 @@ pub struct Control {
     pub guess: Guess,
     /// Options of the solver.
     pub solver: Solver,
+}
+
+impl Control {
+    /// Unit of voltages in V that suits their bounds and what moves a muscle much, t √(μ/ε): V, kV, MV, or another power of
+    /// a thousand.
+    pub fn voltage_unit(&self, system: &System) -> f64 {
+        let [low, high] = self.voltage_bounds.map(f64::abs);
+        let large = |muscle: &Muscle| {
+            let material = &muscle.material;
+            let Electric {
+                c1,
+                c2,
+                permittivity,
+            } = material.electric?;
+            let permittivity = permittivity - 2.0 * (c1 + c2);
+            Some(muscle.layer_thickness * (material.shear_modulus / permittivity.abs()).sqrt())
+        };
+        let voltages = system.muscles.iter().filter_map(large);
+        nearest_thousand(voltages.fold(low.max(high), f64::min))
+    }
+}
+
+/// The power of a thousand nearest to a positive size; 1 where there is no size.
+pub fn nearest_thousand(size: f64) -> f64 {
+    if !size.is_finite() || size <= 0.0 {
+        return 1.0;
+    }
+    1e3_f64.powf((size.log10() / 3.0).round())
 }
 
 /// Weights of the objective; a weight of zero leaves no trace.

@@ -1,7 +1,7 @@
 //! Which unknowns and equations a horizon has: the one place that drops what is given.
 //!
 //! Interleaved step by step: coordinates and multipliers of instant k, then the scalars of interval k; the interval
-//! length last. Given coordinates are no variables; the constraints of an instant are equations only where one of its
+//! length last. Given coordinates and voltages are no variables; the constraints of an instant are equations only where one of its
 //! coordinates is a variable.
 
 /// A variable.
@@ -74,7 +74,7 @@ pub struct Unknowns {
     /// All equations, in order; limits follow where they are added.
     pub rows: Vec<Row>,
     of_unknown: Vec<Option<usize>>,
-    of_scalar: Vec<usize>,
+    of_scalar: Vec<Option<usize>>,
     row_of_scalar: Vec<Option<usize>>,
     of_horizon: Option<usize>,
     row_of: Vec<Option<usize>>,
@@ -84,12 +84,13 @@ pub struct Unknowns {
 
 impl Unknowns {
     /// `given(k, i)` says whether coordinate i of instant k is given, `balanced(k, i)` whether its momentum balance is an
-    /// equation.
+    /// equation, `prescribed(s)` whether voltage s is given.
     pub fn new(
         counts: Counts,
         free_horizon: bool,
         given: impl Fn(usize, usize) -> bool,
         balanced: impl Fn(usize, usize) -> bool,
+        prescribed: impl Fn(usize) -> bool,
     ) -> Self {
         let Counts {
             intervals,
@@ -102,7 +103,7 @@ impl Unknowns {
             variables: Vec::new(),
             rows: Vec::new(),
             of_unknown: vec![None; (intervals + 1) * unknowns],
-            of_scalar: vec![0; intervals * scalars],
+            of_scalar: vec![None; intervals * scalars],
             row_of_scalar: vec![None; intervals * scalars],
             of_horizon: None,
             row_of: vec![None; (intervals + 1) * unknowns],
@@ -127,8 +128,8 @@ impl Unknowns {
                 }
             }
             if k < intervals {
-                for s in 0..scalars {
-                    out.of_scalar[k * scalars + s] = out.variables.len();
+                for s in (0..scalars).filter(|&s| !prescribed(s)) {
+                    out.of_scalar[k * scalars + s] = Some(out.variables.len());
                     out.variables.push(Variable::Scalar { k, s });
                     if s >= voltages {
                         out.row_of_scalar[k * scalars + s] = Some(out.rows.len());
@@ -149,8 +150,8 @@ impl Unknowns {
         self.of_unknown[k * self.unknowns + i]
     }
 
-    /// Variable of scalar s of interval k.
-    pub fn scalar(&self, k: usize, s: usize) -> usize {
+    /// Variable of scalar s of interval k; a given voltage is none.
+    pub fn scalar(&self, k: usize, s: usize) -> Option<usize> {
         self.of_scalar[k * self.scalars + s]
     }
 

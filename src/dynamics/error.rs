@@ -3,13 +3,16 @@
 use crate::dynamics::{Equilibrium, Instability};
 use thiserror::Error;
 
+/// Stretch that counts as none.
+const NOTHING: f64 = 1e-9;
+
 /// A step forward in time failed and was not accepted.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum StepError {
     /// Newton's method did not converge, although the step was halved.
     #[error(
         "no convergence of the step from t = {time} ms, even with a step of {step} ms; last residuals relative to the first: {residuals:?}{}",
-        hint(residuals)
+        hint(residuals, muscle.as_ref())
     )]
     NoConvergence {
         /// Start of the step in ms.
@@ -18,10 +21,28 @@ pub enum StepError {
         step: f64,
         /// Residual norms of the last attempt, relative to the first.
         residuals: Vec<f64>,
+        /// Shortest lumped muscle at the start of the step and its stretch, if it is rather short.
+        muscle: Option<(String, f64)>,
+    },
+    /// The span of a lumped muscle turned by a right angle or more, although the step was halved.
+    #[error(
+        "the step from t = {time} ms turns muscle \"{muscle}\" by more than a right angle, even with a step of {step} ms: its ends meet, or the motion is too fast for the step"
+    )]
+    Reversed {
+        /// Start of the step in ms.
+        time: f64,
+        /// Smallest step that was tried in ms.
+        step: f64,
+        /// The muscle.
+        muscle: String,
     },
     /// The tangent is singular.
     #[error(
-        "singular tangent at t = {time} ms with a step of {step} ms: {name} is not determined; constraints are redundant, or the configuration is singular"
+        "singular tangent at t = {time} ms with a step of {step} ms: {name} is not determined{}",
+        redundancy(
+            redundant,
+            "constraints are redundant, or the configuration is singular"
+        )
     )]
     Singular {
         /// Start of the step in ms.
@@ -30,6 +51,8 @@ pub enum StepError {
         step: f64,
         /// The unknown whose pivot vanished.
         name: String,
+        /// Constraints that follow from the others.
+        redundant: Vec<String>,
     },
 }
 
@@ -64,21 +87,44 @@ pub enum EquilibriumError {
     },
     /// Nothing holds the system.
     #[error(
-        "no unique equilibrium: {name} is not determined; nothing holds it, or constraints are redundant"
+        "no unique equilibrium: {name} is not determined{}",
+        redundancy(redundant, "nothing holds it, or constraints are redundant")
     )]
     Singular {
         /// The unknown whose pivot vanished.
         name: String,
+        /// Constraints that follow from the others.
+        redundant: Vec<String>,
     },
 }
 
-/// What residuals that are not finite mean.
-fn hint(residuals: &[f64]) -> &'static str {
-    match residuals.iter().any(|r| !r.is_finite()) {
-        true => {
-            "; an element is turned inside out there (J ≤ 0): take shorter steps from further back"
+/// Which constraints are redundant, or else what may be the matter.
+fn redundancy(redundant: &[String], otherwise: &str) -> String {
+    match redundant {
+        [] => format!("; {otherwise}"),
+        [one] => format!("; constraints are redundant: {one} follows from the others"),
+        many => format!(
+            "; constraints are redundant: {} follow from the others",
+            many.join(", ")
+        ),
+    }
+}
+
+/// What a short muscle or residuals that are not finite mean.
+fn hint(residuals: &[f64], muscle: Option<&(String, f64)>) -> String {
+    let is_finite = residuals.iter().all(|r| r.is_finite());
+    match muscle {
+        Some((name, stretch)) if *stretch < NOTHING => {
+            format!("; muscle \"{name}\" has no length there")
         }
-        false => "",
+        Some((name, stretch)) => format!(
+            "; muscle \"{name}\" is compressed to {stretch:.3} of its length there, as in pull-in"
+        ),
+        None if is_finite => String::new(),
+        None => {
+            "; an element is turned inside out there (J ≤ 0): take shorter steps from further back"
+                .to_owned()
+        }
     }
 }
 

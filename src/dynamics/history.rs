@@ -15,10 +15,24 @@ pub struct History {
     pub rates: Option<Vec<f64>>,
     /// Voltages of each interval in V and potentials in their unit, by scalar of the interval.
     pub scalars: Vec<Vec<f64>>,
+    /// Where energies and momenta are read.
+    pub reading: Reading,
+    /// Work in mJ of forces without a potential in each interval, where instants alone do not tell it.
+    pub works: Vec<f64>,
     /// The method that factorised the tangents of the steps.
     pub solver: &'static str,
     /// What it cost.
     pub report: StepperReport,
+}
+
+/// Where a method means its energies and momenta.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reading {
+    /// At the midpoints of intervals, where the midpoint rule sees energies.
+    #[default]
+    Intervals,
+    /// At instants, by their momenta.
+    Instants,
 }
 
 impl History {

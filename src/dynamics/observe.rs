@@ -1,10 +1,12 @@
 //! What is observed along a motion: stretches, charges, energies, momenta and constraints, one row per instant.
 //!
 //! Charges, energies and momenta belong to intervals; the row of instant k holds those of the interval that ends
-//! there, row 0 those of the start, at q₀ with the rates of its momenta. The momenta are the momentum maps of
+//! there, row 0 those of the start, at q₀ with the rates of its momenta; where a method means them at instants
+//! ([`Reading::Instants`]), every row is read like that. The momenta are the momentum maps of
 //! p⁺ = D₂L_d + f⁺, which an invariant motion conserves exactly; reactions of joints enter with the next interval.
 
-use crate::dynamics::History;
+use crate::dynamics::history::{History, Reading};
+use crate::dynamics::kinetic::Kinetic;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Kind, Level};
 use crate::kinematics::{Carrier, MaterialVector, Pose};
@@ -71,6 +73,8 @@ struct Observer<'m> {
     before: Instant,
     here: Instant,
     scratch: Scratch,
+    /// Made where momenta are read at instants.
+    kinetic: Option<Kinetic<'m>>,
     dissipated: f64,
 }
 
@@ -81,6 +85,7 @@ impl<'m> Observer<'m> {
             before: model.action.motion.instant(),
             here: model.action.motion.instant(),
             scratch: model.action.scratch(Level::Gradient),
+            kinetic: None,
             dissipated: 0.0,
         }
     }
@@ -143,18 +148,22 @@ impl<'m> Observer<'m> {
         let scalars = history.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
         self.here.z.copy_from_slice(&history.z[k]);
         model.action.motion.place(&mut self.here);
-        let (h, at_start) = if k == 0 {
+        let by_momentum = k == 0 || history.reading == Reading::Instants;
+        let (h, at_instant) = if by_momentum {
             self.before = self.here.clone();
-            (1.0, Some(self.start_momentum(history)))
+            (1.0, Some(self.momentum(history, k)))
         } else {
             (history.times[k] - history.times[k - 1], None)
         };
         let mut energies = energies(model, &self.before, &self.here, scalars, h);
+        if history.reading == Reading::Instants {
+            let works = k.checked_sub(1).and_then(|k| history.works.get(k));
+            energies.work = works.copied().unwrap_or_default();
+        }
         let (charges, forces) = self.interval(scalars, h);
-        let (momenta, impulses) = match at_start {
+        let (momenta, impulses) = match at_instant {
             Some(momentum) => {
-                let known = history.rates.clone();
-                let rates = known.unwrap_or_else(|| rates(model, &mut self.here, &momentum));
+                let rates = self.rates(history, k, &momentum);
                 let products = momentum.iter().zip(&rates).map(|(p, v)| p * v);
                 energies.kinetic = 0.5 * products.sum::<f64>();
                 let momenta = moving(model, &mut self.here, &rates);
@@ -187,7 +196,7 @@ impl<'m> Observer<'m> {
         if self.has(Kind::VirtualWork) {
             row.push(self.dissipated);
         }
-        let poses = model.poses(&self.here);
+        let poses = model.condensed_poses(&self.here);
         let places = Places {
             poses: &poses,
             x: &self.here.x,
@@ -221,10 +230,25 @@ impl<'m> Observer<'m> {
         (charges.collect(), here.forces.clone())
     }
 
-    /// Momentum of each coordinate at the start: as recorded, or as the first interval asks for it.
-    fn start_momentum(&mut self, history: &History) -> Vec<f64> {
+    /// Rates of the coordinates at instant k: as recorded at the start, or those of the momentum.
+    fn rates(&mut self, history: &History, k: usize, momentum: &[f64]) -> Vec<f64> {
         let model = self.model;
-        if let Some(momentum) = history.momenta.first() {
+        if let (0, Some(known)) = (k, &history.rates) {
+            return known.clone();
+        }
+        if history.reading == Reading::Instants {
+            let kinetic = self.kinetic.get_or_insert_with(|| Kinetic::new(model));
+            if let Some(rates) = kinetic.rates(&mut self.here, momentum) {
+                return rates;
+            }
+        }
+        rates(model, &mut self.here, momentum)
+    }
+
+    /// Momentum of each coordinate at instant k: as recorded, or at the start as the first interval asks for it.
+    fn momentum(&mut self, history: &History, k: usize) -> Vec<f64> {
+        let model = self.model;
+        if let Some(momentum) = history.momenta.get(k) {
             return momentum.clone();
         }
         let n = model.coordinate_count();
@@ -261,7 +285,7 @@ impl<'m> Observer<'m> {
 }
 
 /// Rates of the coordinates with given momenta at a placed instant; coordinates without inertia rest.
-fn rates(model: &Model, instant: &mut Instant, momentum: &[f64]) -> Vec<f64> {
+pub(super) fn rates(model: &Model, instant: &mut Instant, momentum: &[f64]) -> Vec<f64> {
     let n = momentum.len();
     if momentum.iter().all(|&p| p == 0.0) {
         return vec![0.0; n];
@@ -296,7 +320,7 @@ fn moving(model: &Model, instant: &mut Instant, rates: &[f64]) -> Vec<Vector> {
 }
 
 /// Momenta ∂T/∂ẋ of vectors x with rates v.
-fn vector_momenta(model: &Model, x: &[Vector], v: &[Vector]) -> Vec<Vector> {
+pub(super) fn vector_momenta(model: &Model, x: &[Vector], v: &[Vector]) -> Vec<Vector> {
     let mut momenta = vec![Vector::zeros(); x.len()];
     for effect in &model.action.intervals.effects {
         effect.momentum(x, v, &mut momenta);

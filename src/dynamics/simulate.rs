@@ -1,6 +1,9 @@
 //! Simulation: step after step, recorded.
 
-use crate::dynamics::{History, Solving, StepError, Stepper};
+use crate::dynamics::history::{History, Reading};
+use crate::dynamics::solving::{Integrator, Solving};
+use crate::dynamics::stepper::{Equations, Steps};
+use crate::dynamics::{StepError, Stepper};
 use crate::model::Model;
 use std::ops::ControlFlow;
 
@@ -63,7 +66,7 @@ pub fn simulate(
     )
 }
 
-/// Integrates like [`simulate`], with the equations of a step solved as `solving` says.
+/// Integrates like [`simulate`], by the method and with the solution of its equations that `solving` names.
 pub fn simulate_by(
     solving: Solving,
     model: &Model,
@@ -71,10 +74,8 @@ pub fn simulate_by(
     h: f64,
     steps: usize,
     voltages: impl Fn(f64, f64) -> Vec<f64>,
-    mut observer: impl FnMut(usize) -> ControlFlow<()>,
+    observer: impl FnMut(usize) -> ControlFlow<()>,
 ) -> (History, Option<StepError>) {
-    let n = model.coordinate_count();
-    let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
     let mut history = History {
         times: vec![0.0],
         z: vec![start.z.clone()],
@@ -82,16 +83,47 @@ pub fn simulate_by(
         rates: start.rates.clone(),
         ..History::default()
     };
+    let grid = Grid { h, steps };
+    let failure = if solving.integrator == Integrator::Midpoint {
+        let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
+        record(&mut stepper, grid, voltages, observer, &mut history)
+    } else {
+        history.reading = Reading::Instants;
+        match Steps::stages(model, start, solving, h, &voltages(0.0, h)) {
+            Ok(mut stages) => record(&mut stages, grid, voltages, observer, &mut history),
+            Err(error) => Some(error),
+        }
+    };
+    (history, failure)
+}
+
+/// So many steps of h ms.
+#[derive(Clone, Copy, Debug)]
+struct Grid {
+    h: f64,
+    steps: usize,
+}
+
+/// Takes the steps and records them; returns why they end early.
+fn record<E: Equations>(
+    stepper: &mut Steps<E>,
+    Grid { h, steps }: Grid,
+    voltages: impl Fn(f64, f64) -> Vec<f64>,
+    mut observer: impl FnMut(usize) -> ControlFlow<()>,
+    history: &mut History,
+) -> Option<StepError> {
+    let n = stepper.momentum().len();
     let mut failure = None;
     for k in 0..steps {
         let (from, to) = (k as f64 * h, (k + 1) as f64 * h);
         match stepper.step(h, &voltages(from, to)) {
             Ok(multipliers) => {
-                history.z[k][n..].copy_from_slice(&multipliers);
+                history.z[k][n..n + multipliers.len()].copy_from_slice(&multipliers);
                 history.times.push(to);
                 history.z.push(stepper.coordinates().to_vec());
                 history.momenta.push(stepper.momentum().to_vec());
                 history.scalars.push(stepper.scalars().to_vec());
+                history.works.extend(stepper.work());
             }
             Err(error) => {
                 failure = Some(error);
@@ -104,5 +136,5 @@ pub fn simulate_by(
     }
     history.report = stepper.report();
     history.solver = stepper.solver();
-    (history, failure)
+    failure
 }

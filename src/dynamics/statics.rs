@@ -176,8 +176,10 @@ impl<'m> Statics<'m> {
                 return Ok(Outcome::Failed);
             }
             if let Err(singular) = self.factor() {
+                let unknowns = self.model.action.motion.unknowns();
                 return Err(EquilibriumError::Singular {
                     name: self.model.unknown_name(singular.column),
+                    redundant: self.model.redundant_constraints(&state[..unknowns]),
                 });
             }
             let mut update = std::mem::take(&mut self.residual);

@@ -1,21 +1,13 @@
-//! One step forward: Newton on the rows of one instant of the discrete Euler–Lagrange equations.
-//!
-//! With the momentum p_k = P_kᵀ (D₂L_d(q_{k−1}, q_k) + f⁺) known, the unknowns u_{k+1} and λ_k solve
-//!
-//! ```text
-//! p_k + P_kᵀ [ D₁L_d(q_k, q_{k+1}) + f⁻ − h₀ G(q_k)ᵀ λ_k ] = 0,     g(q_{k+1}) = 0,     ∂V/∂φ (q_{k+½}, φ_{k+½}) = 0
-//! ```
-//!
-//! with the potentials φ of the interval, which have no inertia, by Gauss's law.
+//! One step forward: Newton on the equations of a method, and halves of the step where it fails.
 
 use crate::dynamics::StepError;
 use crate::dynamics::anderson::Anderson;
-use crate::dynamics::tangent::{Entries, Tangent};
-use crate::functional::{Level, Sides};
-use crate::math::Vector;
+use crate::dynamics::solving::Newton;
+use crate::dynamics::spans;
+use crate::dynamics::tangent::Tangent;
+use crate::functional::Level;
 use crate::model::Model;
-use crate::reduction::{Instant as Place, Interval, Scratch};
-use crate::sparse::{Backend, Singular};
+use crate::reduction::Instant as Place;
 use std::time::Instant;
 
 /// Limit of Newton iterations in one step.
@@ -31,25 +23,6 @@ const LEFT: f64 = 1e-10;
 const SLOW: f64 = 0.75;
 /// Limit of iterations with a reused tangent.
 const REUSED: usize = 40;
-
-/// When the tangent of a step is factorised.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Newton {
-    /// In every iteration: few iterations, each with a factorisation.
-    #[default]
-    Full,
-    /// Only where the last factorisation, of an iteration or of a step before, converges too slowly.
-    Reused,
-}
-
-/// How the equations of a step are solved.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Solving {
-    /// When the tangent is factorised.
-    pub newton: Newton,
-    /// Who factorises it; `None`: whoever is fastest as a rule.
-    pub backend: Option<Backend>,
-}
 
 /// What the steps cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -70,20 +43,66 @@ pub struct StepperReport {
     pub solution: f64,
 }
 
-/// State at one instant and the storage to go on from it.
+/// The equations that lead from one instant to the next.
+pub trait Equations {
+    /// Takes the voltages of a step that begins.
+    fn begin(&mut self, voltages: &[f64]);
+
+    /// First guess of the unknowns of a step of `h` ms.
+    fn guess(&mut self, h: f64);
+
+    /// Writes the residual; at level `Hessian` also the values of the tangent.
+    fn evaluate(&mut self, level: Level, h: f64, residual: &mut [f64]);
+
+    /// Values of the tangent.
+    fn values(&self) -> &[f64];
+
+    /// Subtracts an update from the unknowns.
+    fn update(&mut self, update: &[f64]);
+
+    /// Undoes what a failed attempt changed in the state.
+    fn restore(&mut self);
+
+    /// The model.
+    fn model(&self) -> &Model;
+
+    /// Places the end of the step where the last update put it.
+    fn place_end(&mut self);
+
+    /// The start and the end of the step.
+    fn ends(&self) -> [&Place; 2];
+
+    /// Makes the end of the step the state, unless the momentum does not exist there.
+    fn accept(&mut self, h: f64) -> bool;
+
+    /// Name of an unknown.
+    fn unknown_name(&self, unknown: usize) -> String;
+
+    /// Time in ms.
+    fn time(&self) -> f64;
+
+    /// Coordinates and multipliers now.
+    fn coordinates(&self) -> &[f64];
+
+    /// Momentum of each coordinate now.
+    fn momentum(&self) -> &[f64];
+
+    /// Voltages and potentials of the last interval.
+    fn scalars(&self) -> &[f64];
+
+    /// Multipliers at the start of the step, where the method knows them there.
+    fn multipliers(&self) -> &[f64];
+
+    /// Work in mJ that forces without a potential did over the last step, where its ends alone do not tell.
+    fn work(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// State at one instant and the means to go on from it.
 #[derive(Debug)]
-pub struct Stepper<'m> {
-    model: &'m Model,
-    here: Place,
-    next: Place,
-    /// Momentum P_kᵀ p_k by coordinate, in the units of an action per coordinate.
-    momentum: Vec<f64>,
-    /// Rates of the coordinates over the last step, and how they changed, for the first guess.
-    rates: Vec<f64>,
-    changes: Vec<f64>,
-    time: f64,
-    scratch: Scratch,
-    values: Vec<f64>,
+pub struct Steps<E> {
+    equations: E,
     tangent: Tangent,
     newton: Newton,
     anderson: Anderson,
@@ -91,62 +110,31 @@ pub struct Stepper<'m> {
     factored: Option<f64>,
     /// Whether the last attempt began with the tangent of a step before.
     stale: bool,
-    /// Voltages and potentials of the interval.
-    scalars: Vec<f64>,
     residual: Vec<f64>,
+    /// Size of each unknown; infinite where it says nothing about convergence.
     scales: Vec<f64>,
     report: StepperReport,
 }
 
-impl<'m> Stepper<'m> {
-    /// Starts at coordinates `z` with the momentum of each coordinate at time zero.
-    pub fn new(model: &'m Model, z: &[f64], momentum: &[f64], solving: Solving) -> Self {
-        let motion = &model.action.motion;
-        let (n, layout) = (motion.coordinates, model.action.layout());
-        let mut entries = Entries::default();
-        for (slot, &entry) in layout.cross.entries().iter().enumerate() {
-            entries.add(layout.upper_at(0) + slot, entry);
-        }
-        for (slot, &(row, col)) in layout.same.entries().iter().enumerate() {
-            if row < n && col >= n {
-                entries.add(layout.same_at(0) + slot, (row, col));
-            }
-            if row >= n && col < n {
-                entries.add(layout.same_at(1) + slot, (row, col));
-            }
-        }
-        entries.add_potentials(model, &[[0, 1]]);
-        let size = motion.unknowns() + model.potentials;
-        let (mut here, next) = (motion.instant(), motion.instant());
-        here.z.copy_from_slice(z);
-        motion.place(&mut here);
-        let length = model.length();
-        // Potentials are lengths too; what multipliers do says nothing about convergence.
-        let scale = |i: usize| match i {
-            i if i < n && !model.is_length(i) => 1.0,
-            i if i >= n && i < motion.unknowns() => f64::INFINITY,
-            _ => length,
-        };
+impl<E: Equations> Steps<E> {
+    /// Steps by these equations, with a tangent and a scale for each unknown.
+    pub(super) fn by(equations: E, tangent: Tangent, scales: Vec<f64>, newton: Newton) -> Self {
         Self {
-            model,
-            here,
-            next,
-            momentum: momentum.to_vec(),
-            rates: vec![0.0; n],
-            changes: vec![0.0; n],
-            time: 0.0,
-            scratch: model.action.scratch(Level::Hessian),
-            values: vec![0.0; layout.values(1)],
-            tangent: entries.tangent(size, model.step_symmetry(), solving.backend),
-            newton: solving.newton,
+            equations,
+            tangent,
+            newton,
             anderson: Anderson::default(),
             factored: None,
             stale: false,
-            scalars: vec![0.0; layout.interval_scalars],
-            residual: vec![0.0; size],
-            scales: (0..size).map(scale).collect(),
+            residual: vec![0.0; scales.len()],
+            scales,
             report: StepperReport::default(),
         }
+    }
+
+    /// The equations.
+    pub(super) fn equations(&self) -> &E {
+        &self.equations
     }
 
     /// The method that factorises.
@@ -156,27 +144,27 @@ impl<'m> Stepper<'m> {
 
     /// Time in ms.
     pub fn time(&self) -> f64 {
-        self.time
+        self.equations.time()
     }
 
     /// Coordinates now, and the multipliers of the step that led away from the instant before.
     pub fn coordinates(&self) -> &[f64] {
-        &self.here.z
-    }
-
-    /// The instant now.
-    pub fn instant(&self) -> &Place {
-        &self.here
+        self.equations.coordinates()
     }
 
     /// Voltages and potentials of the last interval.
     pub fn scalars(&self) -> &[f64] {
-        &self.scalars
+        self.equations.scalars()
     }
 
     /// Momentum of each coordinate.
     pub fn momentum(&self) -> &[f64] {
-        &self.momentum
+        self.equations.momentum()
+    }
+
+    /// Work in mJ that forces without a potential did over the last step, where its ends alone do not tell.
+    pub(super) fn work(&self) -> Option<f64> {
+        self.equations.work()
     }
 
     /// What the steps cost so far.
@@ -184,22 +172,21 @@ impl<'m> Stepper<'m> {
         self.report
     }
 
-    /// Goes on by `h` ms under constant voltages; returns the multipliers at the start.
+    /// Goes on by `h` ms under constant voltages; returns the multipliers at the start, where the method knows them there.
     ///
     /// # Errors
     /// The step and its halves fail; the state is then that of the last accepted step.
     pub fn step(&mut self, h: f64, voltages: &[f64]) -> Result<Vec<f64>, StepError> {
-        let n = self.model.action.motion.coordinates;
         let (mut done, mut part) = (0.0, h);
         let mut multipliers = None;
         let mut halvings = 0;
-        self.scalars[..voltages.len()].copy_from_slice(voltages);
+        self.equations.begin(voltages);
         while done < h * (1.0 - 1e-12) {
             part = part.min(h - done);
             match self.attempt(part) {
                 Ok(()) => {
                     done += part;
-                    multipliers.get_or_insert_with(|| self.next.z[n..].to_vec());
+                    multipliers.get_or_insert_with(|| self.equations.multipliers().to_vec());
                 }
                 // What an old tangent could not do, a new one may.
                 Err(_) if std::mem::take(&mut self.stale) => self.factored = None,
@@ -214,69 +201,9 @@ impl<'m> Stepper<'m> {
         Ok(multipliers.unwrap_or_default())
     }
 
-    fn evaluate(&mut self, level: Level, h: f64) {
-        let action = &self.model.action;
-        let (n, m) = (action.motion.coordinates, action.motion.unknowns());
-        let Self {
-            here,
-            next,
-            scratch,
-            values,
-            residual,
-            scalars,
-            ..
-        } = self;
-        action.motion.place(next);
-        for instant in [&mut *here, &mut *next] {
-            instant.forces.fill(Vector::zeros());
-        }
-        if level >= Level::Hessian {
-            values.fill(0.0);
-        }
-        residual[..n].copy_from_slice(&self.momentum);
-        residual[n..].fill(0.0);
-        let interval = Interval {
-            sides: Sides::FORWARD,
-            ..Interval::given(scalars, h)
-        };
-        action.evaluate_interval(level, [here, next], &interval, scratch);
-        action.pull_back_interval(level, [here, next], &interval, 0, scratch, values);
-        let gauss = &scratch.interval.plain.rows[self.model.voltages.len()..];
-        residual[m..].copy_from_slice(gauss);
-        if m > n {
-            // Multipliers of the step act at its start, constraints hold at its end.
-            action.evaluate_instant(level, next, &[], scratch);
-            action.pull_back_instant(level, next, 1, scratch, values);
-            residual[n..m].copy_from_slice(&scratch.instant.plain.rows);
-            here.z[n..].copy_from_slice(&next.z[n..]);
-            action.evaluate_instant(level, here, &[], scratch);
-            action.pull_back_instant(level, here, 0, scratch, values);
-        }
-        action
-            .motion
-            .pull_back(&here.columns, &here.forces, &mut residual[..n]);
-    }
-
-    fn factor(&mut self, h: f64) -> Result<(), Singular> {
-        let began = Instant::now();
-        let done = self.tangent.factor(&self.values);
-        self.report.factorisation += began.elapsed().as_secs_f64();
-        self.report.factorisations += 1;
-        self.factored = done.is_ok().then_some(h);
-        done
-    }
-
     /// One Newton solution; accepted only when it converged.
     fn attempt(&mut self, h: f64) -> Result<(), StepError> {
-        let n = self.model.action.motion.coordinates;
-        let m = self.model.action.motion.unknowns();
-        for i in 0..n {
-            self.next.z[i] = self.here.z[i] + h * (self.rates[i] + self.changes[i]);
-        }
-        let saved: Vec<f64> = self.here.z[n..].to_vec();
-        self.next.z[n..].copy_from_slice(&saved);
-        let driven = self.model.voltages.len();
-        let potentials = self.scalars[driven..].to_vec();
+        self.equations.guess(h);
         let mut residuals = Vec::with_capacity(ITERATIONS);
         // A tangent of another step length is another matrix.
         let mut reused = self.newton == Newton::Reused && self.factored == Some(h);
@@ -295,7 +222,7 @@ impl<'m> Stepper<'m> {
                 Level::Hessian
             };
             let began = Instant::now();
-            self.evaluate(level, h);
+            self.equations.evaluate(level, h, &mut self.residual);
             self.report.assembly += began.elapsed().as_secs_f64();
             let norm = self.residual.iter().map(|r| r * r).sum::<f64>().sqrt();
             residuals.push(norm);
@@ -304,36 +231,9 @@ impl<'m> Stepper<'m> {
             }
             if !reused {
                 self.anderson.start();
+                self.factor(h)?;
             }
-            if !reused && let Err(singular) = self.factor(h) {
-                self.here.z[n..].copy_from_slice(&saved);
-                self.scalars[driven..].copy_from_slice(&potentials);
-                let name = self.model.unknown_name(singular.column);
-                return Err(StepError::Singular {
-                    time: self.time,
-                    step: h,
-                    name,
-                });
-            }
-            let began = Instant::now();
-            match self.newton {
-                Newton::Full => self.tangent.solve(&mut self.residual),
-                Newton::Reused => self.tangent.solve_roughly(&mut self.residual),
-            }
-            self.report.solution += began.elapsed().as_secs_f64();
-            let mut size: f64 = 0.0;
-            for (update, scale) in self.residual.iter().zip(&self.scales) {
-                size = size.max((update / scale).abs());
-            }
-            if self.newton == Newton::Reused {
-                self.anderson.improve(&mut self.residual);
-            }
-            for (z, update) in self.next.z.iter_mut().zip(&self.residual) {
-                *z -= update;
-            }
-            for (potential, update) in self.scalars[driven..].iter_mut().zip(&self.residual[m..]) {
-                *potential -= update;
-            }
+            let size = self.advance();
             // Newton's updates shrink quadratically, those of a reused tangent by a factor.
             // What a tangent of an earlier step does is not known before its second update.
             let rate = match last.is_finite() {
@@ -346,7 +246,7 @@ impl<'m> Stepper<'m> {
                 Newton::Reused => size * (rate / (1.0 - rate)).max(size) < LEFT,
             };
             if is_close && (rate < 1.0 || size < UPDATE) {
-                if self.accept(h) {
+                if self.accept(h)? {
                     return Ok(());
                 }
                 residuals.push(f64::NAN);
@@ -355,8 +255,7 @@ impl<'m> Stepper<'m> {
             reused = self.newton == Newton::Reused && (rate < SLOW || last == f64::INFINITY);
             last = size;
         }
-        self.here.z[n..].copy_from_slice(&saved);
-        self.scalars[driven..].copy_from_slice(&potentials);
+        self.equations.restore();
         let first = residuals.first().copied().unwrap_or(f64::NAN);
         let residuals = residuals
             .iter()
@@ -366,40 +265,78 @@ impl<'m> Stepper<'m> {
             .map(|r| r / first)
             .collect();
         Err(StepError::NoConvergence {
-            time: self.time,
+            time: self.equations.time(),
             step: h,
             residuals,
+            muscle: self.short_muscle(),
         })
     }
 
-    /// Goes to the next instant, unless the momentum does not exist there.
-    fn accept(&mut self, h: f64) -> bool {
-        self.evaluate(Level::Gradient, h);
-        let motion = &self.model.action.motion;
-        let momentum = &mut self.residual[..motion.coordinates];
-        momentum.fill(0.0);
-        motion.pull_back(
-            &self.next.columns,
-            &self.scratch.interval.plain.forces[1],
-            momentum,
-        );
-        if !momentum.iter().all(|p| p.is_finite()) {
-            return false;
-        }
-        self.momentum.copy_from_slice(momentum);
-        for (i, rate) in self.rates.iter_mut().enumerate() {
-            let new = (self.next.z[i] - self.here.z[i]) / h;
-            // In the first step nothing is known of the change.
-            self.changes[i] = if self.report.steps > 0 {
-                new - *rate
-            } else {
-                0.0
+    /// Makes a solution the instant now; not where the momentum does not exist, nor where a muscle passed through no length on
+    /// the way.
+    fn accept(&mut self, h: f64) -> Result<bool, StepError> {
+        self.equations.place_end();
+        let [start, end] = self.equations.ends();
+        if let Some(muscle) = spans::reversed(self.equations.model(), start, end) {
+            let reversed = StepError::Reversed {
+                time: self.equations.time(),
+                step: h,
+                muscle: self.muscle_name(muscle),
             };
-            *rate = new;
+            self.equations.restore();
+            return Err(reversed);
         }
-        std::mem::swap(&mut self.here, &mut self.next);
-        self.time += h;
-        self.report.steps += 1;
-        true
+        let accepted = self.equations.accept(h);
+        self.report.steps += usize::from(accepted);
+        Ok(accepted)
+    }
+
+    /// The muscle that a failure at this instant is laid to: its name and stretch.
+    fn short_muscle(&self) -> Option<(String, f64)> {
+        let [start, _] = self.equations.ends();
+        let (muscle, stretch) = spans::shortest(self.equations.model(), start)?;
+        Some((self.muscle_name(muscle), stretch))
+    }
+
+    fn muscle_name(&self, muscle: usize) -> String {
+        self.equations.model().system.muscles[muscle].name.clone()
+    }
+
+    /// Factorises the tangent evaluated last.
+    fn factor(&mut self, h: f64) -> Result<(), StepError> {
+        let began = Instant::now();
+        let done = self.tangent.factor(self.equations.values());
+        self.report.factorisation += began.elapsed().as_secs_f64();
+        self.report.factorisations += 1;
+        self.factored = done.is_ok().then_some(h);
+        done.map_err(|singular| {
+            self.equations.restore();
+            let [start, _] = self.equations.ends();
+            StepError::Singular {
+                time: self.equations.time(),
+                step: h,
+                name: self.equations.unknown_name(singular.column),
+                redundant: self.equations.model().redundant_constraints(&start.z),
+            }
+        })
+    }
+
+    /// Solves for an update and makes it; returns its size relative to the scales.
+    fn advance(&mut self) -> f64 {
+        let began = Instant::now();
+        match self.newton {
+            Newton::Full => self.tangent.solve(&mut self.residual),
+            Newton::Reused => self.tangent.solve_roughly(&mut self.residual),
+        }
+        self.report.solution += began.elapsed().as_secs_f64();
+        let mut size: f64 = 0.0;
+        for (update, scale) in self.residual.iter().zip(&self.scales) {
+            size = size.max((update / scale).abs());
+        }
+        if self.newton == Newton::Reused {
+            self.anderson.improve(&mut self.residual);
+        }
+        self.equations.update(&self.residual);
+        size
     }
 }

@@ -37,8 +37,8 @@ impl Trajectory {
             near = model.joints(&instant, &near);
             let with_coordinate = near
                 .iter()
-                .zip(&model.gauges)
-                .filter(|(_, gauge)| gauge.coordinate.is_some());
+                .zip(&model.system.joints)
+                .filter(|(_, joint)| joint.has_coordinate());
             trajectory
                 .joints
                 .push(with_coordinate.map(|(&value, _)| value).collect());

@@ -24,6 +24,8 @@ pub(super) struct Evaluator<'a> {
     observer: &'a mut dyn FnMut(&Iteration) -> ControlFlow<()>,
     jacobian: Entries,
     hessian: Entries,
+    /// Factor of f in all that Ipopt sees.
+    scale: f64,
     began: Instant,
     max_seconds: f64,
     derivatives_at: Vec<f64>,
@@ -57,6 +59,7 @@ impl<'a> Evaluator<'a> {
         max_seconds: Option<f64>,
     ) -> Self {
         Self {
+            scale: nlp.objective_scale(),
             nlp,
             observer,
             jacobian,
@@ -75,19 +78,22 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// f(x).
+    /// f(x), scaled.
     pub(super) fn objective(&mut self, x: &[f64]) -> Option<f64> {
         self.record.evaluations.objective += 1;
-        let f = timed(&mut self.record.seconds.objective, || self.nlp.objective(x));
+        let f = timed(&mut self.record.seconds.objective, || {
+            self.scale * self.nlp.objective(x)
+        });
         self.accepts(&[f]).then_some(f)
     }
 
-    /// ∇f(x).
+    /// ∇f(x), scaled.
     pub(super) fn gradient(&mut self, x: &[f64], grad: &mut [f64]) -> bool {
         self.derivatives_at.copy_from_slice(x);
         self.record.evaluations.gradient += 1;
         timed(&mut self.record.seconds.gradient, || {
             self.nlp.gradient(x, grad);
+            grad.iter_mut().for_each(|g| *g *= self.scale);
         });
         self.accepts(grad)
     }
@@ -111,7 +117,7 @@ impl<'a> Evaluator<'a> {
         self.accepts(values)
     }
 
-    /// Values of σ ∇²f(x) + Σ yᵢ ∇²gᵢ(x).
+    /// Values of σ ∇²f(x) + Σ yᵢ ∇²gᵢ(x), with f scaled.
     pub(super) fn hessian(
         &mut self,
         x: &[f64],
@@ -121,7 +127,7 @@ impl<'a> Evaluator<'a> {
     ) -> bool {
         self.record.evaluations.hessian += 1;
         timed(&mut self.record.seconds.hessian, || {
-            self.nlp.hessian(x, sigma, costates, values);
+            self.nlp.hessian(x, sigma * self.scale, costates, values);
         });
         self.accepts(values)
     }
@@ -138,6 +144,11 @@ impl<'a> Evaluator<'a> {
 
     /// Takes note of an accepted iterate and says whether to go on.
     pub(super) fn iteration(&mut self, iteration: &Iteration) -> ControlFlow<()> {
+        let objective = iteration.objective / self.scale;
+        let iteration = &Iteration {
+            objective,
+            ..*iteration
+        };
         self.record.iterations.push(*iteration);
         self.record.latest.copy_from_slice(&self.derivatives_at);
         let verdict = timed(&mut self.record.seconds.observer, || {

@@ -68,8 +68,8 @@ fn hint(nearest: Option<&str>) -> String {
 ///
 /// # Panics
 ///
-/// If the lengths of bounds, structures and starting point contradict each other, or if [`Start::PrimalDual`] is asked for
-/// without multipliers.
+/// If the lengths of bounds, structures and starting point contradict each other, or if a start with multipliers is asked for
+/// without any.
 pub fn solve(
     nlp: &mut dyn Nlp,
     start: &Point,
@@ -91,6 +91,9 @@ pub fn solve(
     );
     let mut x = start.x.clone();
     let mut costates = starting_costates(start, options.start, n, m);
+    let scale = nlp.objective_scale();
+    assert!(scale > 0.0, "a positive scale of the objective");
+    costates.scale(scale);
 
     let entries = jacobian.rows.len();
     let mut problem = ffi::Problem::new(&variables, &constraints, entries, hessian.rows.len())
@@ -133,15 +136,7 @@ pub fn solve(
             end = latest;
         }
     }
-    for values in [
-        &mut costates.constraints,
-        &mut costates.lower,
-        &mut costates.upper,
-    ] {
-        for value in values.iter_mut().filter(|value| !value.is_finite()) {
-            *value = 0.0;
-        }
-    }
+    costates.scale(scale.recip());
     Ok(Solution {
         status,
         x: end.x,
@@ -207,7 +202,7 @@ fn starting_costates(start: &Point, kind: Start, n: usize, m: usize) -> Costates
             lower: vec![0.0; n],
             upper: vec![0.0; n],
         },
-        Start::PrimalDual { .. } => start
+        Start::PrimalDual { .. } | Start::Carried { .. } => start
             .costates
             .clone()
             .expect("a primal-dual start has multipliers"),

@@ -14,12 +14,27 @@ pub struct Costates {
     pub upper: Vec<f64>,
 }
 
+impl Costates {
+    /// Multiplies all by a factor; what is not finite becomes zero.
+    pub(super) fn scale(&mut self, factor: f64) {
+        for values in [&mut self.constraints, &mut self.lower, &mut self.upper] {
+            for value in values {
+                *value = if value.is_finite() {
+                    *value * factor
+                } else {
+                    0.0
+                };
+            }
+        }
+    }
+}
+
 /// A point to start from.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Point {
     /// The variables.
     pub x: Vec<f64>,
-    /// Their multipliers, read by [`Start::PrimalDual`](crate::ipopt::Start::PrimalDual) alone.
+    /// Their multipliers, read by the starts of [`Start`](crate::ipopt::Start) that keep them.
     pub costates: Option<Costates>,
 }
 

@@ -2,18 +2,24 @@
 
 use crate::math::Matrix;
 use crate::mesh::grid::Grid;
+use crate::model::condensed::{Condensed, hold};
 use crate::model::joints::triad;
-use crate::model::system::{
-    Discretisation, Electrode, Fidelity, Glue, Muscle, Potential, Solid, System,
-};
+use crate::model::system::{Discretisation, Electrode, Fidelity, Glue, Muscle, Potential, Solid};
 use nalgebra::Vector3;
 
-/// All blocks.
-pub(super) fn blocks(system: &System) -> Vec<Solid> {
+/// All blocks; every node of a muscle that nothing moves is held.
+pub(super) fn blocks(condensed: &Condensed) -> Vec<Solid> {
+    let (system, still) = (&condensed.system, &condensed.still);
     let muscles = system.muscles.iter().enumerate();
     let of_muscles = muscles.filter_map(|(source, muscle)| match muscle.fidelity {
         Fidelity::Lumped => None,
-        Fidelity::FiniteElements(discretisation) => Some(block(source, muscle, &discretisation)),
+        Fidelity::FiniteElements(discretisation) => {
+            let mut solid = block(source, muscle, &discretisation);
+            if still.muscles[source] {
+                hold(&mut solid);
+            }
+            Some(solid)
+        }
     });
     system.solids.iter().cloned().chain(of_muscles).collect()
 }

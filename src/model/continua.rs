@@ -5,7 +5,7 @@
 
 use crate::element::{Inverted, Shape};
 use crate::functional::Terminal;
-use crate::kinematics::{MaterialVector, Pose, Vectors};
+use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
 use crate::model::system::{Glue, Material, Potential, Solid};
 use crate::model::{Continuum, ModelError, reach};
 use crate::reduction::NodePlace;
@@ -59,6 +59,11 @@ impl Continua {
             let places = out.places(index, &solid, reference, ties, vectors);
             let is_dielectric = reach::dielectric(&solid);
             let terminals = out.terminals(&solid, &is_dielectric, voltages);
+            let on_ground = |&v: &usize| {
+                let mut terms = vectors.list()[v].terms.iter();
+                terms.all(|term| term.carrier == Carrier::Ground)
+            };
+            let is_still = !is_dielectric.contains(&true) && places.iter().all(on_ground);
             out.list.push(Continuum {
                 solid,
                 vectors: places,
@@ -66,6 +71,7 @@ impl Continua {
                 terminals,
                 shapes,
                 is_dielectric,
+                is_still,
             });
         }
         Ok(out)

@@ -20,6 +20,8 @@ pub struct Continuum {
     pub shapes: Vec<Shape>,
     /// Whether a field reaches each element.
     pub is_dielectric: Vec<bool>,
+    /// Whether all nodes rest on the ground, and no field is there.
+    pub is_still: bool,
 }
 
 impl Continuum {

@@ -27,6 +27,12 @@ pub(super) struct Builder<'a> {
     pub(super) spans: Vec<usize>,
 }
 
+/// Whether a muscle is one stretch that may change, or is driven: between two points of the ground nothing is left of it.
+fn is_lumped(muscle: &Muscle) -> bool {
+    let is_still = muscle.from.body.is_none() && muscle.to.body.is_none();
+    muscle.fidelity == Fidelity::Lumped && (!is_still || muscle.material.electric.is_some())
+}
+
 fn mid(vector: usize) -> VectorArg {
     VectorArg {
         vector,
@@ -80,34 +86,21 @@ impl<'a> Builder<'a> {
     }
 
     /// Lumped muscles with their vector of the span.
-    fn lumped(&self) -> impl Iterator<Item = (&Muscle, usize)> + '_ {
+    fn lumped(&self) -> impl Iterator<Item = (&'a Muscle, usize)> + '_ {
         let muscles = self.system.muscles.iter().zip(self.spans.iter().copied());
-        muscles.filter(|(muscle, _)| muscle.fidelity == Fidelity::Lumped)
+        muscles.filter(|(muscle, _)| is_lumped(muscle))
     }
 
     fn point(&self, a: &Attachment) -> MaterialVector {
         MaterialVector::point(a.body, &a.at, self.reference)
     }
 
-    /// Effects of the intervals.
-    pub(super) fn intervals(&mut self) -> Effects {
+    /// Effects of the intervals, of a motion or of a state of rest.
+    pub(super) fn intervals(&mut self, of_motion: bool) -> Effects {
         let mut effects = Effects::new();
-        let inertia = |name: &str, masses: Vec<Mass>, effects: &mut Effects| {
-            if !masses.is_empty() {
-                effects.push(Box::new(Inertia::new(name, masses)));
-            }
-        };
-        inertia("body inertia", self.body_masses(), &mut effects);
-        inertia("muscle inertia", self.muscle_masses(), &mut effects);
-        inertia("block inertia", self.continua.masses(), &mut effects);
-        group!(
-            effects,
-            intervals,
-            6,
-            "section inertia",
-            1.0,
-            self.section_inertia()
-        );
+        if of_motion {
+            self.add_inertia(&mut effects);
+        }
         group!(effects, intervals, 3, "gravity", -1.0, self.gravity());
         self.continua.add_elements(&mut effects);
         group!(
@@ -126,6 +119,35 @@ impl<'a> Builder<'a> {
             -1.0,
             self.dielectric()
         );
+        if of_motion {
+            self.add_friction(&mut effects);
+        }
+        effects
+    }
+
+    /// Kinetic energies.
+    fn add_inertia(&mut self, effects: &mut Effects) {
+        let inertia = |name: &str, masses: Vec<Mass>, effects: &mut Effects| {
+            if !masses.is_empty() {
+                effects.push(Box::new(Inertia::new(name, masses)));
+            }
+        };
+        inertia("body inertia", self.body_masses(), effects);
+        inertia("muscle inertia", self.muscle_masses(), effects);
+        inertia("block inertia", self.continua.masses(), effects);
+        group!(
+            effects,
+            intervals,
+            6,
+            "section inertia",
+            1.0,
+            self.section_inertia()
+        );
+    }
+
+    /// Forces that dissipate.
+    fn add_friction(&mut self, effects: &mut Effects) {
+        self.continua.add_viscosity(effects);
         group!(
             effects,
             intervals,
@@ -150,7 +172,6 @@ impl<'a> Builder<'a> {
             1.0,
             self.linear_dampers()
         );
-        effects
     }
 
     fn angular_dampers(&mut self) -> Vec<Element<AngularDamper, 9, 0>> {
@@ -235,7 +256,7 @@ impl<'a> Builder<'a> {
     fn muscle_masses(&mut self) -> Vec<Mass> {
         let mut masses = Vec::new();
         for (m, muscle) in self.system.muscles.iter().enumerate() {
-            if let (Some(mass), Fidelity::Lumped) = (muscle.mass(), muscle.fidelity) {
+            if let (Some(mass), true) = (muscle.mass(), is_lumped(muscle)) {
                 masses.push(Mass::point(self.middle(muscle), mass));
                 masses.push(Mass::point(self.spans[m], mass / 12.0));
             }
@@ -277,7 +298,7 @@ impl<'a> Builder<'a> {
             add(self.vectors.index(centre), body.mass);
         }
         for muscle in &self.system.muscles {
-            if let (Some(mass), Fidelity::Lumped) = (muscle.mass(), muscle.fidelity) {
+            if let (Some(mass), true) = (muscle.mass(), is_lumped(muscle)) {
                 add(self.middle(muscle), mass);
             }
         }

@@ -98,7 +98,7 @@ impl Graph {
     /// The spanning tree as kinematics; spherical joints and free bodies stay at their reference pose.
     pub fn tree(&self, system: &System, reference: &[Pose], vectors: &[MaterialVector]) -> Tree {
         let pose = |body: Option<usize>| body.map_or(Pose::GROUND, |b| reference[b]);
-        let coordinates = system.joint_coordinates();
+        let coordinates = self.tree_coordinates(system);
         let held = |&(j, direction): &(usize, Direction)| {
             let joint = &system.joints[j];
             let (parent, child) = match direction {
@@ -154,7 +154,7 @@ impl Graph {
     pub fn poses(&self, system: &System, reference: &[Pose], joints: &[f64]) -> Vec<Pose> {
         let tree = self.tree(system, reference, &[]);
         let mut state = tree.state();
-        tree.place(&Self::coordinates(system, joints), &mut state);
+        tree.place(&self.coordinates(system, joints), &mut state);
         state.poses
     }
 
@@ -183,21 +183,30 @@ impl Graph {
             .collect();
         let motion = Motion::articulated(self.tree(system, reference, &vectors), &vectors, &[], 0);
         let mut instant = motion.instant();
-        let (u, l) = (
-            Self::coordinates(system, joints),
-            Self::coordinates(system, rates),
-        );
-        let count = instant.z.len();
-        instant.z.copy_from_slice(&u[..count]);
-        instant.l.copy_from_slice(&l[..count]);
+        instant.z.copy_from_slice(&self.coordinates(system, joints));
+        instant.l.copy_from_slice(&self.coordinates(system, rates));
         motion.place(&mut instant);
         motion.along(&mut instant);
         instant.w.iter().flat_map(|w| [w.x, w.y, w.z]).collect()
     }
 
-    /// Values of the joint coordinates from one value a joint.
-    fn coordinates(system: &System, joints: &[f64]) -> Vec<f64> {
-        let coordinates = system.joint_coordinates();
+    /// Index of the coordinate of each joint of the tree; joints that close loops have none.
+    fn tree_coordinates(&self, system: &System) -> Vec<Option<usize>> {
+        let mut next = 0;
+        let index = |(j, coordinate): (usize, Option<usize>)| {
+            let in_tree = coordinate.is_some() && !self.loops.contains(&j);
+            in_tree.then(|| {
+                next += 1;
+                next - 1
+            })
+        };
+        let all = system.joint_coordinates();
+        all.into_iter().enumerate().map(index).collect()
+    }
+
+    /// Values of the coordinates of the tree from one value a joint.
+    fn coordinates(&self, system: &System, joints: &[f64]) -> Vec<f64> {
+        let coordinates = self.tree_coordinates(system);
         let with_coordinate = coordinates.iter().zip(joints).filter(|(c, _)| c.is_some());
         with_coordinate.map(|(_, &value)| value).collect()
     }

@@ -1,6 +1,7 @@
 //! Where physics meets indices: from a checked system to sums of effects over its coordinates.
 
 mod blocks;
+mod condensed;
 mod constraints;
 mod continua;
 mod continuum;
@@ -10,16 +11,22 @@ mod floating;
 mod graph;
 mod joints;
 mod quantity;
+mod question;
 mod reach;
+mod redundancy;
 mod solid_effects;
+mod still;
 pub mod system;
 
+pub use condensed::{Condensed, Place};
 pub use continuum::Continuum;
 pub use error::ModelError;
 pub use floating::Floating;
 pub use graph::Graph;
 pub use joints::JointGauge;
 pub use quantity::{Quantity, Region};
+pub use question::{Question, Stirred};
+pub use still::Still;
 pub use system::{System, VACUUM_PERMITTIVITY};
 
 use crate::functional::{Kind, Sum};
@@ -28,6 +35,7 @@ use crate::math::Vector;
 use crate::reduction::{Instant, Motion, NodePlace, Reduced};
 use crate::sparse::Symmetry;
 use continua::Continua;
+use std::collections::BTreeSet;
 use system::{Attachment, Source};
 
 /// Coordinates in which a problem is solved.
@@ -54,6 +62,10 @@ impl Coordinates {
 pub struct Model {
     /// What the scene means.
     pub system: System,
+    /// What is asked of it.
+    pub question: Question,
+    /// What remains of it to be solved for.
+    pub condensed: Condensed,
     /// Which coordinates.
     pub coordinates: Coordinates,
     /// The action as a function of coordinates and voltages.
@@ -62,6 +74,8 @@ pub struct Model {
     pub vectors: Vec<MaterialVector>,
     /// Source of each voltage: the first scalars of an interval (see [`System::sources`]).
     pub voltages: Vec<usize>,
+    /// Sources whose voltage does something or would, were it not zero all the time: all that files have voltages of.
+    pub reached: Vec<usize>,
     /// Number of potentials: the other scalars of an interval, in units of `potential_unit`.
     pub potentials: usize,
     /// Unit of the potentials in V: √(μ/ε) times a millimetre.
@@ -90,7 +104,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// Builds the model of a system for intervals of about `h0` ms, in which `quantities` can be measured.
+    /// Builds the model of a system for intervals of about `h0` ms, in which `quantities` can be measured, any voltage may act
+    /// and anything may be set in motion.
     ///
     /// Without a choice the coordinates are reduced where the joints form a tree that the reduction knows.
     ///
@@ -102,25 +117,43 @@ impl Model {
         h0: f64,
         quantities: &[Quantity],
     ) -> Result<Self, ModelError> {
-        let coordinates = Self::choose(&system, coordinates)?;
-        let graph = Graph::new(&system);
-        let reference: Vec<Pose> = system.bodies.iter().map(system::Body::pose).collect();
+        let question = Question {
+            coordinates,
+            quantities: quantities.to_vec(),
+            ..Question::of_motion(h0)
+        };
+        Self::answering(system, question)
+    }
+
+    /// Builds the model of what a question calls for, and of nothing else.
+    ///
+    /// # Errors
+    /// Reduced coordinates were asked for and do not exist.
+    pub fn answering(system: System, question: Question) -> Result<Self, ModelError> {
+        let condensed = Condensed::new(&system, &question);
+        let rest = &condensed.system;
+        let coordinates = Self::choose(rest, question.coordinates)?;
+        let graph = Graph::new(rest);
+        let reference: Vec<Pose> = rest.bodies.iter().map(system::Body::pose).collect();
         let mut vectors = Vectors::default();
-        let solids = blocks::blocks(&system);
-        let voltages = reach::voltages(&system, &solids);
+        let solids = blocks::blocks(&condensed);
+        let voltages = reach::voltages(rest, &solids);
+        let reached = match question.silent.is_empty() {
+            true => voltages.clone(),
+            false => Self::reached(&system, &question),
+        };
         let ties = coordinates == Coordinates::Redundant;
-        let scene = system.solids.len();
+        let scene = rest.solids.len();
         let continua = Continua::new(solids, scene, &reference, &voltages, ties, &mut vectors)?;
-        let mut parts =
-            effects::Builder::new(&system, &reference, &voltages, &continua, &mut vectors);
-        let intervals = parts.intervals();
+        let mut parts = effects::Builder::new(rest, &reference, &voltages, &continua, &mut vectors);
+        let intervals = parts.intervals(question.of_motion);
         let (instants, multiplier_names) = match coordinates {
             Coordinates::Reduced => (Vec::new(), Vec::new()),
-            Coordinates::Redundant => parts.constraints(h0),
+            Coordinates::Redundant => parts.constraints(question.interval),
         };
         let spans = parts.spans;
         let point = |a: &Attachment| MaterialVector::point(a.body, &a.at, &reference);
-        let markers = system
+        let markers = rest
             .markers
             .iter()
             .map(|m| match m.solid {
@@ -130,22 +163,22 @@ impl Model {
             .collect::<Vec<_>>();
         let measures = {
             let known = quantity::Known {
-                system: &system,
+                condensed: &condensed,
                 reference: &reference,
                 voltages: &voltages,
                 markers: &markers,
             };
-            quantity::measures(quantities, &known, &mut vectors)
+            quantity::measures(&question.quantities, &known, &mut vectors)
         };
         let list = vectors.list();
         let multipliers = multiplier_names.len();
         let motion = match coordinates {
             Coordinates::Reduced => {
-                let tree = graph.tree(&system, &reference, list);
+                let tree = graph.tree(rest, &reference, list);
                 Motion::articulated(tree, list, &continua.nodes, multipliers)
             }
             Coordinates::Redundant => {
-                Motion::redundant(system.bodies.len(), list, &continua.nodes, multipliers)
+                Motion::redundant(rest.bodies.len(), list, &continua.nodes, multipliers)
             }
         };
         let intervals = {
@@ -153,18 +186,12 @@ impl Model {
             Sum::new(intervals, measures.intervals, list.len(), scalars)
         };
         let instants = Sum::new(instants, measures.instants, list.len(), multipliers);
-        let gauge = |(joint, coordinate)| JointGauge::new(joint, coordinate, &reference);
-        let gauges = system
-            .joints
-            .iter()
-            .zip(system.joint_coordinates())
-            .map(gauge)
-            .collect();
         Ok(Self {
             coordinates,
             action: Reduced::new(motion, intervals, instants),
             vectors: list.to_vec(),
             voltages,
+            reached,
             potentials: continua.potentials.len(),
             potential_unit: continua.unit,
             potential_names: continua.potentials,
@@ -174,13 +201,37 @@ impl Model {
             node_names: continua.names,
             spans,
             markers,
-            gauges,
+            gauges: Self::gauges(&system, &condensed),
             multiplier_names,
-            multiplier_time: h0,
+            multiplier_time: question.interval,
             graph,
             reference,
             system,
+            question,
+            condensed,
         })
+    }
+
+    /// Sources whose voltage would do something if none were silent.
+    fn reached(system: &System, question: &Question) -> Vec<usize> {
+        let question = Question {
+            silent: BTreeSet::new(),
+            stirred: None,
+            ..question.clone()
+        };
+        let whole = Condensed::new(system, &question);
+        reach::voltages(&whole.system, &blocks::blocks(&whole))
+    }
+
+    /// How the coordinates of the joints of the scene are read from the poses of its bodies.
+    fn gauges(system: &System, condensed: &Condensed) -> Vec<JointGauge> {
+        let reference: Vec<Pose> = system.bodies.iter().map(system::Body::pose).collect();
+        let coordinates = condensed.system.joint_coordinates();
+        let gauge = |(j, joint)| {
+            let coordinate = condensed.joint(j).and_then(|kept| coordinates[kept]);
+            JointGauge::new(joint, coordinate, &reference)
+        };
+        system.joints.iter().enumerate().map(gauge).collect()
     }
 
     /// The coordinates of a system: those asked for, or reduced where the joints form a tree that the reduction knows.
@@ -201,11 +252,12 @@ impl Model {
 
     /// Rates of director coordinates at joint coordinates with given rates.
     pub fn redundant_rates(&self, joints: &[f64], rates: &[f64]) -> Vec<f64> {
+        let [joints, rates] = [joints, rates].map(|values| self.condensed.by_joint(values));
         self.graph
-            .rates(&self.system, &self.reference, joints, rates)
+            .rates(&self.condensed.system, &self.reference, &joints, &rates)
     }
 
-    /// Poses of the reference configuration.
+    /// Poses of the condensed bodies in the reference configuration.
     pub fn reference(&self) -> &[Pose] {
         &self.reference
     }
@@ -240,7 +292,10 @@ impl Model {
             Coordinates::Redundant => {
                 let part = ["centre", "d1", "d2", "d3"][i % 12 / 3];
                 let axis = ["x", "y", "z"][i % 3];
-                format!("{} {part}.{axis}", self.system.bodies[i / 12].name)
+                format!(
+                    "{} {part}.{axis}",
+                    self.condensed.system.bodies[i / 12].name
+                )
             }
         }
     }
@@ -273,7 +328,9 @@ impl Model {
                 z
             }
             Coordinates::Redundant => {
-                self.coordinates_of(&self.graph.poses(&self.system, &self.reference, joints))
+                let joints = self.condensed.by_joint(joints);
+                let system = &self.condensed.system;
+                self.coordinates_of(&self.graph.poses(system, &self.reference, &joints))
             }
         }
     }
@@ -350,9 +407,16 @@ impl Model {
         }
     }
 
-    /// Poses of all bodies at an instant.
+    /// Poses of all bodies of the scene at an instant.
     pub fn poses(&self, instant: &Instant) -> Vec<Pose> {
-        self.action.motion.poses(instant, self.system.bodies.len())
+        let poses = self.condensed_poses(instant);
+        self.condensed.poses(&poses, &self.system.bodies)
+    }
+
+    /// Poses of the condensed bodies at an instant, which carry the vectors.
+    pub fn condensed_poses(&self, instant: &Instant) -> Vec<Pose> {
+        let bodies = self.condensed.system.bodies.len();
+        self.action.motion.poses(instant, bodies)
     }
 
     /// Voltages in the order of the scalars of an interval from one voltage a source.
@@ -366,7 +430,7 @@ impl Model {
         let nodes = self.nodes.iter().map(|n| &n.reference);
         let places = self.reference.iter().map(|p| &p.centre).chain(nodes);
         let length = places
-            .chain(self.system.joints.iter().map(|j| &j.at))
+            .chain(self.condensed.system.joints.iter().map(|j| &j.at))
             .fold(0.0, far);
         if length > 0.0 { length } else { 1.0 }
     }

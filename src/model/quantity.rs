@@ -4,8 +4,8 @@ use crate::energy::{Angle, Energy, OutsideBox, Place, Projection, SquaredDistanc
 use crate::functional::{Element, Group, Measure, Stencil, VectorArg};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
+use crate::model::Condensed;
 use crate::model::joints::{JointGauge, Measure as Gauge};
-use crate::model::system::System;
 
 /// A region of space in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,7 +111,7 @@ fn instant<E: Energy<M> + 'static, const M: usize, const NV: usize>(
 /// What quantities are measured on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known<'a> {
-    pub(super) system: &'a System,
+    pub(super) condensed: &'a Condensed,
     pub(super) reference: &'a [Pose],
     /// Source of each voltage.
     pub(super) voltages: &'a [usize],
@@ -123,13 +123,14 @@ pub(super) struct Known<'a> {
 pub(super) fn measures(
     quantities: &[Quantity],
     &Known {
-        system,
+        condensed,
         reference,
         voltages,
         markers,
     }: &Known<'_>,
     vectors: &mut Vectors,
 ) -> Measures {
+    let system = &condensed.system;
     let mut out = Measures::default();
     let span = |index: usize, vectors: &mut Vectors| {
         let muscle = &system.muscles[index];
@@ -140,6 +141,9 @@ pub(super) fn measures(
     for quantity in quantities {
         let measure = match *quantity {
             Quantity::Joint { joint, near } => {
+                let Some(joint) = condensed.joint(joint) else {
+                    continue;
+                };
                 let gauge = JointGauge::new(&system.joints[joint], None, reference);
                 match gauge.measure {
                     Gauge::Angle { vectors: v } => {

@@ -8,14 +8,15 @@ use crate::model::effects::Effects;
 use std::collections::BTreeMap;
 
 impl Continua {
-    /// Elements of all blocks, as pairs of block and element.
+    /// Elements of all blocks of which anything is unknown, as pairs of block and element.
     fn elements(&self) -> impl Iterator<Item = (&Continuum, usize)> + '_ {
         self.list
             .iter()
+            .filter(|continuum| !continuum.is_still)
             .flat_map(|continuum| (0..continuum.shapes.len()).map(move |e| (continuum, e)))
     }
 
-    /// Elastic, dielectric and viscous elements.
+    /// Elastic and dielectric elements.
     pub(super) fn add_elements(&self, effects: &mut Effects) {
         let passive = self.elements().filter(|(c, e)| !c.is_dielectric[*e]);
         let passive: Vec<_> = passive
@@ -35,15 +36,6 @@ impl Continua {
                 terminals: c.terminals(e),
             })
             .collect();
-        let viscous = |(c, e): (&Continuum, usize)| {
-            let viscosity = c.material(e).viscosity?;
-            Some(ViscousHexahedron {
-                shape: c.shapes[e].clone(),
-                law: Viscosity { viscosity },
-                nodes: c.nodes(e),
-            })
-        };
-        let viscous: Vec<_> = self.elements().filter_map(viscous).collect();
         let mut add = |count: usize, effect: Box<dyn Effect>| {
             if count > 0 {
                 effects.push(effect);
@@ -57,10 +49,22 @@ impl Continua {
             dielectric.len(),
             Box::new(Hexahedra::new("block electroelasticity", dielectric)),
         );
-        add(
-            viscous.len(),
-            Box::new(ViscousHexahedra::new("block viscosity", viscous)),
-        );
+    }
+
+    /// Viscous elements.
+    pub(super) fn add_viscosity(&self, effects: &mut Effects) {
+        let viscous = |(c, e): (&Continuum, usize)| {
+            let viscosity = c.material(e).viscosity?;
+            Some(ViscousHexahedron {
+                shape: c.shapes[e].clone(),
+                law: Viscosity { viscosity },
+                nodes: c.nodes(e),
+            })
+        };
+        let viscous: Vec<_> = self.elements().filter_map(viscous).collect();
+        if !viscous.is_empty() {
+            effects.push(Box::new(ViscousHexahedra::new("block viscosity", viscous)));
+        }
     }
 
     /// The consistent mass matrix of all blocks.

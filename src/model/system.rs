@@ -340,6 +340,16 @@ impl Body {
     }
 }
 
+impl Joint {
+    /// Whether it has one coordinate: revolute and prismatic joints do.
+    pub fn has_coordinate(&self) -> bool {
+        matches!(
+            self.kind,
+            JointKind::Revolute { .. } | JointKind::Prismatic { .. }
+        )
+    }
+}
+
 impl Muscle {
     /// Rest length in mm.
     pub fn length(&self) -> f64 {

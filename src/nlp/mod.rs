@@ -43,6 +43,10 @@ pub trait Nlp {
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]);
     /// Values of σ ∇²f(x) + Σ yᵢ ∇²gᵢ(x) at the places of `hessian_structure`.
     fn hessian(&mut self, x: &[f64], sigma: f64, costates: &[f64], values: &mut [f64]);
+    /// Factor that brings f near 1, so that a tolerance means the same whatever f is measured in.
+    fn objective_scale(&self) -> f64 {
+        1.0
+    }
     /// What variable `i` is, for messages.
     fn variable_name(&self, i: usize) -> String {
         format!("x[{i}]")

@@ -24,5 +24,6 @@ mod tree;
 pub use instant::Instant;
 pub use motion::{Motion, NodePlace};
 pub use pattern::{Layout, Pattern};
+pub use pull_back::Target;
 pub use reduced::{Interval, Reduced, Scratch};
 pub use tree::{Tree, TreeJoint, TreeKind};

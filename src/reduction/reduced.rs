@@ -1,6 +1,6 @@
 //! A functional seen through coordinates.
 
-use crate::functional::{Blocks, Frame, Horizon, Level, Output, Sides, Sum};
+use crate::functional::{Blocks, Frame, Horizon, Level, Output, Part, Sides, Sum};
 use crate::math::{Matrix, Vector};
 use crate::reduction::instant::Instant;
 use crate::reduction::motion::Motion;
@@ -263,6 +263,22 @@ impl Reduced {
                 *value += row;
             }
         }
+    }
+
+    /// Adds Pᵀ B P of the blocks of any part of the sum over intervals, between two instants, to the values at the places
+    /// of a target.
+    pub fn pull_back_part(
+        &self,
+        ends: [&Instant; 2],
+        part: &Part,
+        sides: Sides,
+        target: &Target,
+        scratch: &mut Scratch,
+        values: &mut [f64],
+    ) {
+        let local = &mut scratch.local;
+        self.interval_plan
+            .hessian(ends, part, sides, target, local, values);
     }
 
     /// Pulls back the blocks that the last interval of a sweep carried on to the final instant k.

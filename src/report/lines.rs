@@ -20,6 +20,8 @@ pub struct Series {
     pub width: f64,
     /// Mark at each point.
     pub mark: Mark,
+    /// Labels above the points, or below where the curve comes down to one, as far as there are any; an empty one is none.
+    pub labels: Vec<String>,
 }
 
 /// Mark at a point of a curve.
@@ -43,6 +45,7 @@ impl Series {
             line: Some(Dash::Solid),
             width: style::CURVE,
             mark: Mark::None,
+            labels: Vec::new(),
         }
     }
 
@@ -57,6 +60,11 @@ impl Series {
     /// The same with a mark at each point.
     pub fn marked(self, mark: Mark) -> Self {
         Self { mark, ..self }
+    }
+
+    /// The same with labels at its points.
+    pub fn labelled(self, labels: Vec<String>) -> Self {
+        Self { labels, ..self }
     }
 
     /// Marks alone.
@@ -268,6 +276,17 @@ impl Frame<'_, '_> {
             })
             .collect();
         trace(self.canvas, &places, series);
+        for (place, label) in places.iter().zip(&series.labels) {
+            let above = [place[0], place[1] - 9.0];
+            let colour = series.colour.mix(style::INK, 0.3);
+            self.canvas.text(
+                above,
+                label,
+                style::LABEL_OF_POINT_SIZE,
+                colour,
+                Align::Centre,
+            );
+        }
     }
 
     fn border(&self) {

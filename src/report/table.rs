@@ -44,6 +44,17 @@ pub fn controls_csv(trajectory: &Trajectory, system: &System, origin: &Origin) -
     )
 }
 
+/// Rows of text cells as CSV under a line that names the origin; the first row is the header.
+pub fn cells_csv(rows: &[Vec<String>], origin: &Origin) -> String {
+    let mut text = format!("# {}\n", origin.line());
+    for row in rows {
+        let cells: Vec<_> = row.iter().map(|cell| quoted(cell)).collect();
+        text.push_str(&cells.join(","));
+        text.push('\n');
+    }
+    text
+}
+
 /// Rows of cells as text in columns: the first to the left, the others to the right.
 pub fn aligned(rows: &[Vec<String>]) -> String {
     let width = |column: usize| {

@@ -6,7 +6,7 @@ use crate::control::problem::{
     Control, Duration, Guess, Objective, Simulation, Solver, State, Task, Voltages,
 };
 use crate::control::{Row, Transcription, Variable};
-use crate::model::{Coordinates, Model};
+use crate::model::{Coordinates, Model, System};
 use crate::nlp::{Nlp, differences};
 use crate::run::effects;
 use crate::run::error::RunError;
@@ -29,8 +29,7 @@ const INTERVALS: usize = 6;
 /// The input is wrong.
 pub fn check(request: &Request) -> Result<Told, RunError> {
     let loaded = read_problem(&request.input, &request.set)?;
-    let sources = loaded.system.sources().len();
-    let control = as_control(loaded.task, sources);
+    let control = as_control(loaded.task, &loaded.system);
     let (model, boundary) = resolve(&request.input, &loaded.system, &control)?;
     let Prepared {
         mut program, point, ..
@@ -90,7 +89,7 @@ fn coupling(program: &Transcription<'_>, model: &Model, row: &str, column: &str)
 }
 
 /// The control problem whose program has the derivatives of a task.
-fn as_control(task: Task, sources: usize) -> Control {
+fn as_control(task: Task, system: &System) -> Control {
     let at_reference = || State::JointAngles {
         angles: BTreeMap::new(),
         rates: BTreeMap::new(),
@@ -101,6 +100,7 @@ fn as_control(task: Task, sources: usize) -> Control {
         start,
         goal: at_reference(),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
+        given: BTreeMap::new(),
         objective: Objective {
             effort: 1.0,
             rate: 1.0,
@@ -117,21 +117,26 @@ fn as_control(task: Task, sources: usize) -> Control {
     };
     match task {
         Task::Control(control) => *control,
-        Task::Simulate(Simulation {
-            step,
-            start,
-            voltages,
-            coordinates,
-            ..
-        }) => {
+        Task::Simulate(simulation) => {
+            let silent = simulation.question(system, simulation.step).silent;
+            let Simulation {
+                step,
+                start,
+                voltages,
+                coordinates,
+                ..
+            } = simulation;
             let row = match voltages {
                 Voltages::Constant(row) => row,
                 Voltages::Sampled { rows, .. } => rows
                     .into_iter()
                     .next()
-                    .unwrap_or_else(|| vec![0.0; sources]),
+                    .unwrap_or_else(|| vec![0.0; system.sources().len()]),
             };
-            without_goal(start, step, row, coordinates)
+            Control {
+                given: silent.into_iter().map(|source| (source, 0.0)).collect(),
+                ..without_goal(start, step, row, coordinates)
+            }
         }
         Task::Equilibrium(task) => {
             without_goal(at_reference(), 1.0, task.voltages, task.coordinates)

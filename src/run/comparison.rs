@@ -10,7 +10,6 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::kinematics::Pose;
 use crate::model::Model;
 use crate::model::system::Marker;
-use crate::run::motion::has_coordinate;
 use crate::run::solution_file;
 
 /// How far the markers of two motions are from each other, in m.
@@ -45,7 +44,7 @@ pub(super) fn earlier(model: &Model, path: &Path) -> Option<Trajectory> {
     let joints = |row: &Vec<f64>| {
         let named = row.iter().zip(&model.system.joints);
         named
-            .filter(|(_, joint)| has_coordinate(joint))
+            .filter(|(_, joint)| joint.has_coordinate())
             .map(|(&value, _)| value)
             .collect()
     };

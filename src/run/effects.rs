@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::functional::{Couplings, Effect, Kind};
-use crate::model::{Model, ModelError};
+use crate::model::{Model, ModelError, Question};
 use crate::reduction::Motion;
 
 /// An effect and its size.
@@ -57,12 +57,11 @@ pub(super) fn coupling(model: &Model, i: usize, j: usize) -> Vec<String> {
 
 /// Shows the effects of a model one after the other.
 fn each(model: &Model, mut show: impl FnMut(&Coupled, &Motion)) -> Result<(), ModelError> {
-    let copy = Model::new(
-        model.system.clone(),
-        Some(model.coordinates),
-        model.multiplier_time,
-        &[],
-    )?;
+    let question = Question {
+        coordinates: Some(model.coordinates),
+        ..model.question.clone()
+    };
+    let copy = Model::answering(model.system.clone(), question)?;
     let motion = copy.action.motion;
     let (intervals, instants) = (copy.action.intervals.effects, copy.action.instants.effects);
     for effect in intervals.into_iter().chain(instants) {

@@ -16,6 +16,7 @@ use crate::run::comparison::{self, Comparison};
 use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
 use crate::run::fields;
+use crate::run::grids::integrate_to;
 use crate::run::memory;
 use crate::run::motion::{solved, trajectory};
 use crate::run::progress::Progress;
@@ -60,7 +61,7 @@ pub fn integrate(
     let began = Instant::now();
     let (steps, h) = grid(task);
     let wrong = |error| RunError::boundary(file, "simulate", &error);
-    let model = Model::new(system.clone(), task.coordinates, h, &[])
+    let model = Model::answering(system.clone(), task.question(system, h))
         .map_err(|error| wrong(error.into()))?;
     memory::of_motion(file, &model, steps)?;
     let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;
@@ -89,18 +90,21 @@ pub(super) fn simulation(
     let read = began.elapsed().as_secs_f64();
     let mut stopped = None;
     let mut unwritable = None;
-    let Simulated {
-        model,
-        history,
-        failure,
-        setup,
-        seconds: spent,
-    } = {
+    let (
+        Simulated {
+            model,
+            history,
+            failure,
+            setup,
+            seconds: spent,
+        },
+        accuracy,
+    ) = {
         let progress = Progress::of_steps(request.progress, steps);
-        integrate(&request.input, system, task, |step| {
-            progress.step(step);
+        let mut observer = |steps: usize, step: usize| {
+            progress.step(steps, step);
             // A folder that cannot be made is told before a long run, not after it.
-            if step == 1 {
+            if step == 1 && unwritable.is_none() {
                 unwritable = make_folder(&folder).err();
             }
             let late = |limit: f64| began.elapsed().as_secs_f64() > limit;
@@ -111,8 +115,22 @@ pub(super) fn simulation(
                 _ => return ControlFlow::Continue(()),
             };
             ControlFlow::Break(())
-        })?
+        };
+        let file = &request.input;
+        match request.wanted {
+            None => {
+                let run = integrate(file, system, task, |step| observer(steps, step))?;
+                (run, None)
+            }
+            Some(wanted) => {
+                let left = request.max_seconds.map(|s| s - read);
+                let found = integrate_to(file, system, task, wanted, left, &mut observer)?;
+                (found.run, Some(found.accuracy))
+            }
+        }
     };
+    // A finer grid that was stopped leaves the motion on the one before as it is.
+    let stopped = stopped.filter(|_| history.intervals() < steps);
     if let Some(error) = unwritable {
         return Err(error.into());
     }
@@ -132,7 +150,8 @@ pub(super) fn simulation(
     }
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = failure.as_ref().map(ToString::to_string);
-    summary.simulation = Some(summary::Simulation::new(&history));
+    summary.accuracy = accuracy;
+    summary.simulation = Some(summary::Simulation::new(&history, task.solving.integrator));
     summary.effects = effects;
     let observed = observations(&model, &history);
     let origin = request.origin(false);
@@ -151,12 +170,13 @@ pub(super) fn simulation(
         .zip(earlier.as_ref())
         .map(|(path, earlier)| Comparison::new(&model, path, &motion, earlier));
     let compared = summary.comparison.iter().flat_map(Comparison::notes);
-    let notes = summary.message.iter().cloned().chain(compared).collect();
+    let mut notes: Vec<String> = summary.message.iter().cloned().chain(compared).collect();
     summary.write(&folder)?;
     let rows = [
         ("status".to_owned(), status.replace('_', " ")),
         ("steps".to_owned(), history.intervals().to_string()),
         ("duration".to_owned(), format!("{} s", reached / 1e3)),
+        ("method".to_owned(), task.solving.integrator.name()),
         (
             "coordinates".to_owned(),
             model.coordinates.name().to_owned(),
@@ -176,15 +196,19 @@ pub(super) fn simulation(
         summary: &rows,
     };
     write_run(&folder, &run)?;
-    let is_solved = status == "simulated";
+    let mut is_solved = status == "simulated";
+    let mut word = match is_solved {
+        true => "simulated".to_owned(),
+        false => format!("not simulated to the end ({})", status.replace('_', " ")),
+    };
+    if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
+        notes.extend(accuracy.notes());
+        (word, is_solved) = accuracy.outcome(&word);
+    }
     Ok(Told {
         is_solved,
         result: format!(
-            "{}: {}, {} s of motion, {:.2} s, {}",
-            match is_solved {
-                true => "simulated".to_owned(),
-                false => format!("not simulated to the end ({})", status.replace('_', " ")),
-            },
+            "{word}: {}, {} s of motion, {:.2} s, {}",
             counted(history.intervals(), "step"),
             reached / 1e3,
             summary.seconds.total,

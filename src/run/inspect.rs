@@ -29,12 +29,12 @@ pub fn inspect(request: &Request) -> Result<Told, RunError> {
     let result = match &loaded.task {
         Task::Control(control) => of_control(request, system, control)?,
         Task::Simulate(task) => {
-            let model = Model::new(system.clone(), task.coordinates, task.step, &[])
+            let model = Model::answering(system.clone(), task.question(system, task.step))
                 .map_err(|error| wrong(error.into()))?;
             of_model(&request.input, &model)?
         }
         Task::Equilibrium(task) => {
-            let model = Model::new(system.clone(), task.coordinates, 1.0, &[])
+            let model = Model::answering(system.clone(), task.question(system))
                 .map_err(|error| wrong(error.into()))?;
             of_model(&request.input, &model)?
         }

@@ -2,17 +2,22 @@
 //!
 //! - `solve`, `forward`, `rest`: the three tasks; `task` chooses what a file asks for.
 //! - `starts`: a control problem from several guesses, each in a process of its own; `memory`: what is more than the machine has.
+//! - `grids`: solve and simulate as finely as an accuracy needs; `accuracy`, `estimate`: how that is found, `accuracy_table`: told.
 //! - `motion`, `resimulate`, `violations`, `effects`, `blocks`: what is read from a scene or a result.
 //! - `solution_file`, `summary`: the two JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
 //! - `inspect`, `spy`, `check`, `starter`: the other commands.
 
+pub mod accuracy;
+mod accuracy_table;
 mod blocks;
 mod check;
 mod comparison;
 mod effects;
 mod error;
+pub mod estimate;
 mod fields;
 mod forward;
+mod grids;
 mod inspect;
 mod memory;
 mod motion;
@@ -36,13 +41,16 @@ pub use check::check;
 pub use effects::{EffectCounts, effect_counts};
 pub use error::RunError;
 pub use forward::{Simulated, grid, integrate};
+pub use grids::{integrate_to, optimise_to};
 pub use inspect::inspect;
 pub use motion::{solved, trajectory};
 pub use optimise::{Allowed, Optimum, optimise};
 pub use progress::Shown;
+pub(crate) use progress::progress_bar;
 pub use request::{Request, Told};
 pub use rest::equilibrium_of_file;
-pub use starter::{expand, new_trunk, schema};
+pub(crate) use solve::make_folder;
+pub use starter::{expand, new_trunk, schema, study_schema};
 pub use starts::solve_from_starts;
 pub use task::run;
 pub use violations::{Violation, violations};

@@ -4,16 +4,8 @@ use crate::control::{Costates, Solved};
 use crate::dynamics::History;
 use crate::dynamics::trajectory::Trajectory;
 use crate::math::Vector;
-use crate::model::system::{Joint, JointKind};
-use crate::model::{JointGauge, Model};
-
-/// Whether a joint has one coordinate.
-pub(super) fn has_coordinate(joint: &Joint) -> bool {
-    matches!(
-        joint.kind,
-        JointKind::Revolute { .. } | JointKind::Prismatic { .. }
-    )
-}
+use crate::model::Model;
+use crate::model::system::Joint;
 
 /// What is kept of a motion.
 pub fn solved(model: &Model, history: &History, costates: Option<Costates>) -> Solved {
@@ -21,13 +13,9 @@ pub fn solved(model: &Model, history: &History, costates: Option<Costates>) -> S
     // One value a joint, zero where a joint has no coordinate.
     let by_joint = |row: Vec<f64>| {
         let mut values = row.into_iter();
-        let value = |gauge: &JointGauge| gauge.coordinate.and_then(|_| values.next());
-        model
-            .gauges
-            .iter()
-            .map(value)
-            .map(Option::unwrap_or_default)
-            .collect()
+        let value = |joint: &Joint| joint.has_coordinate().then(|| values.next()).flatten();
+        let joints = model.system.joints.iter();
+        joints.map(value).map(Option::unwrap_or_default).collect()
     };
     Solved {
         coordinates: model.coordinates,
@@ -47,7 +35,7 @@ pub fn trajectory(model: &Model, solved: &Solved) -> Trajectory {
     let shown = |row: &Vec<f64>| {
         let joints = row.iter().zip(&model.system.joints);
         joints
-            .filter(|(_, joint)| has_coordinate(joint))
+            .filter(|(_, joint)| joint.has_coordinate())
             .map(|(&value, _)| value)
             .collect()
     };

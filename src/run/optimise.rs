@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use crate::control::problem::{Control, Duration, Guess};
 use crate::control::{Boundary, Solved, Transcription, guess};
+use crate::dynamics::reversed_muscle;
 use crate::ipopt::{self, Iteration, OptionValue, Options, Solution, Start};
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
@@ -43,6 +44,9 @@ pub struct Optimum {
     pub motion: Solved,
     /// What the solver returned.
     pub solution: Solution,
+    /// Interval in which the span of a muscle turns by a right angle or more, and the muscle: the discrete equations hold, but
+    /// describe no motion.
+    pub reversed: Option<(usize, usize)>,
     /// The worst rows that do not hold; none of a solution.
     pub violated: Vec<Violation>,
     /// Greatest violation of an equation or limit, as the solver measures it.
@@ -55,6 +59,13 @@ pub struct Optimum {
     pub hessian_nonzeros: usize,
     /// Seconds before the solver began.
     pub setup: f64,
+}
+
+impl Optimum {
+    /// Whether it is an optimal motion.
+    pub fn is_solved(&self) -> bool {
+        self.solution.status.is_solved() && self.reversed.is_none()
+    }
 }
 
 /// Solves a control problem of a file, from an `earlier` solution where one is given; `observer` sees every iteration.
@@ -89,6 +100,10 @@ pub fn optimise(
         .map_err(|error| RunError::ipopt(file, &error))?;
     let history = program.decode(&solution.x);
     let motion = solved(&model, &history, Some(program.costates(&solution.costates)));
+    let reversed = match solution.status.is_solved() {
+        true => reversed_muscle(&model, &history),
+        false => None,
+    };
     let violated = match solution.status.is_solved() {
         true => Vec::new(),
         false => violations(&mut program, &solution.x, HOLDS, NAMED),
@@ -103,6 +118,7 @@ pub fn optimise(
         boundary,
         motion,
         solution,
+        reversed,
         violated,
         infeasibility,
         constraints,
@@ -158,8 +174,11 @@ pub(super) fn prepare<'m>(
     let point = program.start(&initial);
     let start = match earlier {
         None => Start::Cold,
-        Some(_) if point.costates.is_some() => Start::PRIMAL_DUAL,
-        Some(earlier) if earlier.intervals() == control.intervals => Start::PRIMAL,
+        Some(earlier) if earlier.intervals() == control.intervals => match point.costates {
+            Some(_) => Start::PRIMAL_DUAL,
+            None => Start::PRIMAL,
+        },
+        Some(_) if point.costates.is_some() => Start::CARRIED,
         Some(_) => RESAMPLED,
     };
     Ok(Prepared {

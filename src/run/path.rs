@@ -47,11 +47,11 @@ pub(super) fn follow(
     began: Instant,
 ) -> Result<Told, RunError> {
     let wrong = |error| RunError::boundary(&request.input, "equilibrium", &error);
-    let model = Model::new(asked.system.clone(), asked.coordinates, 1.0, &[])
+    let model = Model::answering(asked.system.clone(), asked.task.question(asked.system))
         .map_err(|error| wrong(error.into()))?;
     let setup = began.elapsed().as_secs_f64();
     let start = model.coordinates_at(&vec![0.0; model.gauges.len()]);
-    let found = match continuation(&model, &start, &model.scalars(asked.voltages), points) {
+    let found = match continuation(&model, &start, &model.scalars(&asked.task.voltages), points) {
         Ok(found) => found,
         Err(error) => return refused(request, &error, "no equilibrium to start from"),
     };

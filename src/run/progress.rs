@@ -55,10 +55,10 @@ impl Progress {
         Self { bar, began }
     }
 
-    /// An iterate was accepted.
-    pub(super) fn iteration(&self, at: &Iteration) {
+    /// An iterate on so many intervals was accepted.
+    pub(super) fn iteration(&self, intervals: usize, at: &Iteration) {
         self.bar.set_message(format!(
-            "iteration {}  objective {:.6e}  infeasibility {:.1e}  optimality {:.1e}{}",
+            "{intervals} intervals  iteration {}  objective {:.6e}  infeasibility {:.1e}  optimality {:.1e}{}",
             at.iteration,
             at.objective,
             at.primal_infeasibility,
@@ -74,8 +74,9 @@ impl Progress {
         self.bar.set_message(format!("({solved} solved{best})"));
     }
 
-    /// Step `step` is done.
-    pub(super) fn step(&self, step: usize) {
+    /// Step `step` of so many is done.
+    pub(super) fn step(&self, steps: usize, step: usize) {
+        self.bar.set_length(steps as u64);
         self.bar.set_position(step as u64);
         let seconds = self.began.elapsed().as_secs_f64() / step.max(1) as f64;
         // Short steps are too many to watch.
@@ -83,6 +84,13 @@ impl Progress {
             self.bar.set_message(format!("({seconds:.2} s each)"));
         }
     }
+}
+
+/// A bar of another command: `length` steps, shown by a template of indicatif.
+pub(crate) fn progress_bar(shown: Shown, length: u64, template: &str) -> ProgressBar {
+    let bar = target(ProgressBar::new(length), shown);
+    bar.set_style(style(template));
+    bar
 }
 
 impl Drop for Progress {

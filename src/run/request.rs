@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::report::origin::Origin;
+use crate::run::accuracy::Wanted;
 use crate::run::progress::Shown;
 
 /// A command on a problem file.
@@ -20,6 +21,8 @@ pub struct Request {
     pub max_seconds: Option<f64>,
     /// Iterations that the solver may take, in place of those of the file.
     pub max_iterations: Option<usize>,
+    /// What is asked about the error of discretisation.
+    pub wanted: Option<Wanted>,
     /// Whether progress is shown.
     pub progress: Shown,
 }

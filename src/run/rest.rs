@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::control::problem::Task;
+use crate::control::problem::{AtRest, Task};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
     Equilibrium, EquilibriumError, History, Instability, equilibrium, observations,
 };
 use crate::model::system::{Joint, JointKind};
-use crate::model::{Coordinates, Model, System};
+use crate::model::{Model, System};
 use crate::report::atomic;
 use crate::report::skins::Skins;
 use crate::report::{pose, table};
@@ -20,7 +20,7 @@ use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::inspect::key;
 use crate::run::memory;
-use crate::run::motion::{has_coordinate, solved};
+use crate::run::motion::solved;
 use crate::run::path;
 use crate::run::request::{Request, Told};
 use crate::run::solve::make_folder;
@@ -41,11 +41,14 @@ pub fn equilibrium_of_file(
         let system = read_system(&request.input, &request.set)?;
         memory::of_elements(&request.input, &system)?;
         let voltages = driven_voltages(voltages, &system)?;
-        let asked = Asked {
-            system: &system,
-            voltages: &voltages,
+        let task = AtRest {
+            voltages,
             coordinates: None,
             path: None,
+        };
+        let asked = Asked {
+            system: &system,
+            task: &task,
             folder: request.output.clone(),
         };
         return at(request, &asked, began);
@@ -56,9 +59,7 @@ pub fn equilibrium_of_file(
         Task::Equilibrium(task) => {
             let asked = Asked {
                 system: &loaded.system,
-                voltages: &task.voltages,
-                coordinates: task.coordinates,
-                path: task.path,
+                task,
                 folder: request.output.clone(),
             };
             at(request, &asked, began)
@@ -74,42 +75,38 @@ pub fn equilibrium_of_file(
 /// An equilibrium that is looked for.
 pub(super) struct Asked<'a> {
     pub(super) system: &'a System,
-    /// Voltages in V by source.
-    pub(super) voltages: &'a [f64],
-    pub(super) coordinates: Option<Coordinates>,
-    /// How many equilibria of the path are followed, instead of the one under the voltages.
-    pub(super) path: Option<usize>,
+    pub(super) task: &'a AtRest,
     /// Where files go, if anywhere.
     pub(super) folder: Option<PathBuf>,
 }
 
 /// Finds the equilibrium under voltages, or follows the path there; where it is lost on the way there, the last one is kept.
 pub(super) fn at(request: &Request, asked: &Asked<'_>, began: Instant) -> Result<Told, RunError> {
-    if let Some(points) = asked.path {
+    if let Some(points) = asked.task.path {
         return path::follow(request, asked, points, began);
     }
     let wrong = |error| RunError::boundary(&request.input, "equilibrium", &error);
-    let model = Model::new(asked.system.clone(), asked.coordinates, 1.0, &[])
+    let model = Model::answering(asked.system.clone(), asked.task.question(asked.system))
         .map_err(|error| wrong(error.into()))?;
     let setup = began.elapsed().as_secs_f64();
     let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
-    let (status, found, failure) = match equilibrium(&model, &zero, &model.scalars(asked.voltages))
-    {
-        Ok(found) => ("at_rest", found, None),
-        Err(EquilibriumError::LimitPoint {
-            fraction,
-            kind,
-            last,
-        }) => {
-            let end = End {
+    let (status, found, failure) =
+        match equilibrium(&model, &zero, &model.scalars(&asked.task.voltages)) {
+            Ok(found) => ("at_rest", found, None),
+            Err(EquilibriumError::LimitPoint {
                 fraction,
                 kind,
-                field: None,
-            };
-            (end.status(), *last, Some(end))
-        }
-        Err(error) => return refused(request, &error, "no equilibrium"),
-    };
+                last,
+            }) => {
+                let end = End {
+                    fraction,
+                    kind,
+                    field: None,
+                };
+                (end.status(), *last, Some(end))
+            }
+            Err(error) => return refused(request, &error, "no equilibrium"),
+        };
     let n = model.coordinate_count();
     let state = History {
         times: vec![0.0],
@@ -242,7 +239,7 @@ fn describe(model: &Model, state: &History, motion: &Trajectory, found: &Equilib
         fraction: None,
         largest_nominal_field: None,
         joints: joints
-            .filter(|(joint, _)| has_coordinate(joint))
+            .filter(|(joint, _)| joint.has_coordinate())
             .map(|(joint, &value)| {
                 let unit = if prismatic(joint) { 1e3 } else { 1.0 };
                 (joint.name.clone(), value / unit)
@@ -265,7 +262,7 @@ fn describe(model: &Model, state: &History, motion: &Trajectory, found: &Equilib
 /// The equilibrium as lines of a table.
 fn text(model: &Model, rest: &Rest) -> String {
     let mut rows = Vec::new();
-    for joint in model.system.joints.iter().filter(|j| has_coordinate(j)) {
+    for joint in model.system.joints.iter().filter(|j| j.has_coordinate()) {
         // What rounds to zero has no sign.
         let value = rest.joints[&joint.name];
         let value = if value.abs() < 5e-10 { 0.0 } else { value };

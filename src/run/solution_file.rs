@@ -17,7 +17,6 @@ use crate::math::Matrix;
 use crate::model::system::{Joint, JointKind, System};
 use crate::model::{Coordinates, Model};
 use crate::report::atomic::{self, WriteError};
-use crate::run::motion::has_coordinate;
 use crate::scene::lay_out;
 
 /// ms in a s.
@@ -122,7 +121,7 @@ pub fn write(path: &Path, model: &Model, solved: &Solved) -> Result<(), WriteErr
     let columns = |j: usize, unit: f64| solved.joints.iter().map(|row| row[j] / unit).collect();
     let joints = system.joints.iter().enumerate();
     let joints = joints
-        .filter(|(_, joint)| has_coordinate(joint))
+        .filter(|(_, joint)| joint.has_coordinate())
         .map(|(j, joint)| (joint.name.clone(), columns(j, unit(joint))));
     let body = |b: usize| Body {
         centre: solved
@@ -146,7 +145,7 @@ pub fn write(path: &Path, model: &Model, solved: &Solved) -> Result<(), WriteErr
             bodies: bodies.map(|(b, it)| (it.name.clone(), body(b))).collect(),
             joints: joints.collect(),
         }),
-        voltages: model.voltages.iter().map(voltage).collect(),
+        voltages: model.reached.iter().map(voltage).collect(),
         potentials: solved.potentials.clone(),
         coordinates: Some(solved.coordinates.name().to_owned()),
         state: Some(State {
@@ -199,11 +198,11 @@ fn parse(path: &Path, model: &Model) -> Result<Solved, Reason> {
             });
         }
     };
-    let named = |joint: &&Joint| has_coordinate(joint);
+    let named = |joint: &&Joint| joint.has_coordinate();
     let joints = system.joints.iter().filter(named).map(|j| j.name.as_str());
     same_names("joint", by_joint.keys().map(String::as_str), joints)?;
     let sources = system.sources();
-    let driven = model.voltages.iter().map(|&s| sources[s].name.as_str());
+    let driven = model.reached.iter().map(|&s| sources[s].name.as_str());
     let named = file.voltages.keys().map(String::as_str);
     same_names("muscle or electrode", named, driven)?;
     let place_of = |name: &str, system: &System| {
@@ -219,7 +218,7 @@ fn parse(path: &Path, model: &Model) -> Result<Solved, Reason> {
         }
     }
     let mut voltages = vec![vec![0.0; sources.len()]; instants - 1];
-    for &s in &model.voltages {
+    for &s in &model.reached {
         let name = &sources[s].name;
         let column = &file.voltages[name];
         same_length(name, column.len(), instants - 1, "intervals")?;

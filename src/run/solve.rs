@@ -8,15 +8,17 @@ use std::time::Instant;
 use crate::control::problem::Control;
 use crate::control::{Boundary, Solved};
 use crate::dynamics::observations;
-use crate::ipopt::Status;
+use crate::ipopt::{Iteration, Status};
 use crate::model::{Model, System};
 use crate::report::atomic::{self, WriteError};
 use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
+use crate::run::accuracy::{Accuracy, Refined};
 use crate::run::blocks::Blocks;
 use crate::run::effects::effect_counts;
 use crate::run::error::RunError;
 use crate::run::fields;
+use crate::run::grids::optimise_to;
 use crate::run::motion::{history, solved, trajectory};
 use crate::run::optimise::{Allowed, Optimum, optimise};
 use crate::run::progress::Progress;
@@ -42,18 +44,21 @@ pub(super) fn control(
         iterations: request.max_iterations,
         seconds: request.max_seconds.map(|s| (s - read).max(0.0)),
     };
-    let optimum = {
+    let Found {
+        optimum,
+        iterations,
+        accuracy,
+    } = {
         let progress = Progress::of_solve(request.progress);
-        optimise(
-            &request.input,
+        find(
+            request,
             system,
             control,
-            None,
             allowed,
-            &mut |iteration| {
-                progress.iteration(iteration);
+            &mut |intervals, iteration| {
+                progress.iteration(intervals, iteration);
                 // A folder that cannot be made is told before a long solve, not after it.
-                if iteration.iteration == 0 {
+                if iteration.iteration == 0 && unwritable.is_none() {
                     unwritable = make_folder(&folder).err();
                 }
                 match unwritable {
@@ -76,19 +81,29 @@ pub(super) fn control(
         violated,
         ..
     } = &optimum;
-    let is_solved = solution.status.is_solved();
+    let unresolved = optimum.reversed.map(|(k, m)| unresolved(model, k, m));
+    let is_solved = optimum.is_solved();
     let resimulation = is_solved.then(|| resimulate(model, boundary, kept));
+    let intervals = kept.intervals();
     let per_interval = |seconds: f64, evaluations: usize| {
-        (evaluations > 0).then(|| 1e6 * seconds / (evaluations * control.intervals) as f64)
+        (evaluations > 0).then(|| 1e6 * seconds / (evaluations * intervals) as f64)
     };
     let seconds = &solution.seconds;
-    let mut summary = Summary::new(request, solution.status.word(), model.coordinates.name());
-    summary.message = (!is_solved).then(|| meaning(solution.status).to_owned());
+    let word = match unresolved {
+        Some(_) => "unresolved",
+        None => solution.status.word(),
+    };
+    let mut summary = Summary::new(request, word, model.coordinates.name());
+    summary.message =
+        unresolved.or_else(|| (!is_solved).then(|| meaning(solution.status).to_owned()));
+    if let Some(message) = &mut summary.message {
+        message.push_str(&redundancy(&model.redundant_constraints(&boundary.start.z)));
+    }
     summary.program = Some(Program {
         objective: solution.objective,
-        iterations: solution.iterations.len().saturating_sub(1),
-        intervals: control.intervals,
-        duration: kept.times[control.intervals] / 1e3,
+        iterations,
+        intervals,
+        duration: kept.times[intervals] / 1e3,
         variables: solution.x.len(),
         constraints: optimum.constraints,
         jacobian_nonzeros: optimum.jacobian_nonzeros,
@@ -101,6 +116,7 @@ pub(super) fn control(
         violations: violated.clone(),
         resimulation,
     });
+    summary.accuracy = accuracy;
     summary.effects = effect_counts(model)
         .map_err(|error| RunError::boundary(&request.input, "control", &error.into()))?;
     summary.seconds = Seconds {
@@ -114,11 +130,51 @@ pub(super) fn control(
         hessian: seconds.hessian,
     };
     write_files(request, &folder, model, boundary, kept, &mut summary)?;
-    Ok(told(&summary, solution.status, violated, &folder))
+    Ok(told(&summary, violated, &folder))
+}
+
+/// The optimum that is written, and the way to it.
+struct Found {
+    optimum: Optimum,
+    /// Iterations on the grids up to its own.
+    iterations: usize,
+    accuracy: Option<Accuracy>,
+}
+
+/// Solves on the grid of the problem, or on finer ones where an accuracy is asked for.
+fn find(
+    request: &Request,
+    system: &System,
+    control: &Control,
+    allowed: Allowed,
+    observer: &mut dyn FnMut(usize, &Iteration) -> ControlFlow<()>,
+) -> Result<Found, RunError> {
+    let file = &request.input;
+    let Some(wanted) = request.wanted else {
+        let optimum = optimise(file, system, control, None, allowed, &mut |iteration| {
+            observer(control.intervals, iteration)
+        })?;
+        return Ok(Found {
+            iterations: optimum.solution.iterations.len().saturating_sub(1),
+            optimum,
+            accuracy: None,
+        });
+    };
+    let Refined {
+        run: optimum,
+        iterations,
+        accuracy,
+        ..
+    } = optimise_to(file, system, control, wanted, allowed, observer)?;
+    Ok(Found {
+        optimum,
+        iterations,
+        accuracy: Some(accuracy),
+    })
 }
 
 /// Makes the folder of the results, or clears it of what killed runs left half written.
-pub(super) fn make_folder(folder: &Path) -> Result<(), WriteError> {
+pub(crate) fn make_folder(folder: &Path) -> Result<(), WriteError> {
     fs::create_dir_all(folder).map_err(|cause| WriteError {
         path: folder.to_owned(),
         cause,
@@ -205,27 +261,28 @@ fn describe(violation: &Violation) -> String {
     )
 }
 
-fn told(summary: &Summary, status: Status, violated: &[Violation], folder: &Path) -> Told {
+fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> Told {
     let program = summary.program.as_ref();
     let (objective, iterations) = program.map_or((f64::NAN, 0), |p| (p.objective, p.iterations));
-    let is_solved = status.is_solved();
-    let word = match status {
-        Status::Solved => "solved".to_owned(),
-        status => format!(
-            "{} ({})",
-            if is_solved { "solved" } else { "not solved" },
-            status.word().replace('_', " ")
-        ),
+    let mut is_solved = summary.message.is_none();
+    let solved = if is_solved { "solved" } else { "not solved" };
+    let mut word = match summary.status.as_str() {
+        "solved" => solved.to_owned(),
+        word => format!("{solved} ({})", word.replace('_', " ")),
     };
-    let mut notes = Vec::new();
-    if !is_solved {
-        notes.push(meaning(status).to_owned());
-        notes.extend(violated.iter().map(describe));
+    let mut notes: Vec<String> = summary.message.iter().cloned().collect();
+    notes.extend(violated.iter().map(describe));
+    let mut grid = String::new();
+    if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
+        notes.extend(accuracy.notes());
+        (word, is_solved) = accuracy.outcome(&word);
+        let intervals = program.map_or(0, |p| p.intervals);
+        grid = format!(", {}", counted(intervals, "interval"));
     }
     Told {
         is_solved,
         result: format!(
-            "{word}: objective {objective:.7}, {}, {:.2} s, {}",
+            "{word}: objective {objective:.7}{grid}, {}, {:.2} s, {}",
             counted(iterations, "iteration"),
             summary.seconds.total,
             folder.display()
@@ -237,6 +294,27 @@ fn told(summary: &Summary, status: Status, violated: &[Violation], folder: &Path
 /// A number with its noun.
 pub(super) fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Why an optimum of the discrete equations is none of the system.
+fn unresolved(model: &Model, interval: usize, muscle: usize) -> String {
+    format!(
+        "muscle \"{}\" turns by a right angle or more in interval {interval}: its ends meet on the way, or the intervals are \
+         too long for the motion; take more intervals or another guess",
+        model.system.muscles[muscle].name
+    )
+}
+
+/// A further reason why a solve failed, where there is one.
+fn redundancy(redundant: &[String]) -> String {
+    match redundant {
+        [] => String::new(),
+        names => format!(
+            "; constraints are redundant at the start: {} more than is needed, such as {}",
+            names.len(),
+            names.join(", ")
+        ),
+    }
 }
 
 /// What a status means for the problem.

@@ -42,6 +42,14 @@ pub fn expand(path: &Path) -> Result<String, RunError> {
 /// The JSON Schemas of scene and problem as text.
 pub fn schema() -> (String, String) {
     let (scene, problem) = scene::schema();
-    let text = |value| serde_json::to_string_pretty(value).expect("a schema is JSON");
     (text(&scene), text(&problem))
+}
+
+/// The JSON Schema of a study as text.
+pub fn study_schema() -> String {
+    text(&scene::study_schema())
+}
+
+fn text(schema: &serde_json::Value) -> String {
+    serde_json::to_string_pretty(schema).expect("a schema is JSON")
 }

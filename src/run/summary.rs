@@ -4,8 +4,9 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::dynamics::History;
+use crate::dynamics::{History, Integrator};
 use crate::report::atomic::{self, WriteError};
+use crate::run::accuracy::Accuracy;
 use crate::run::blocks::Blocks;
 use crate::run::comparison::Comparison;
 use crate::run::effects::EffectCounts;
@@ -29,6 +30,8 @@ pub(super) struct Summary {
     pub(super) program: Option<Program>,
     #[serde(flatten)]
     pub(super) simulation: Option<Simulation>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) accuracy: Option<Accuracy>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) comparison: Option<Comparison>,
     #[serde(flatten)]
@@ -79,6 +82,8 @@ pub(super) struct Simulation {
     pub(super) steps: usize,
     /// Length of the motion in s.
     pub(super) duration: f64,
+    /// The method.
+    pub(super) integrator: String,
     /// Newton iterations.
     pub(super) newton_iterations: usize,
     /// Steps that had to be halved.
@@ -97,11 +102,12 @@ pub(super) struct Simulation {
 
 impl Simulation {
     /// Of a motion.
-    pub(super) fn new(history: &History) -> Self {
+    pub(super) fn new(history: &History, integrator: Integrator) -> Self {
         let (steps, report) = (history.intervals(), history.report);
         Self {
             steps,
             duration: history.times[steps] / 1e3,
+            integrator: integrator.name(),
             newton_iterations: report.iterations,
             halved_steps: report.halved,
             linear_solver: history.solver,
@@ -184,6 +190,7 @@ impl Summary {
             message: None,
             program: None,
             simulation: None,
+            accuracy: None,
             comparison: None,
             rest: None,
             path: None,

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use crate::control::problem::Task;
+use crate::run::accuracy::Wanted;
 use crate::run::error::RunError;
 use crate::run::memory;
 use crate::run::request::{Request, Told};
@@ -23,14 +24,29 @@ pub fn run(request: &Request) -> Result<Told, RunError> {
             forward::simulation(request, &loaded.system, &simulation, began)
         }
         Task::Equilibrium(task) => {
+            refuse_wanted(request)?;
             let asked = rest::Asked {
                 system: &loaded.system,
-                voltages: &task.voltages,
-                coordinates: task.coordinates,
-                path: task.path,
+                task: &task,
                 folder: Some(request.folder()),
             };
             rest::at(request, &asked, began)
         }
     }
+}
+
+/// An equilibrium has no grid in time.
+fn refuse_wanted(request: &Request) -> Result<(), RunError> {
+    let option = match request.wanted {
+        None => return Ok(()),
+        Some(Wanted::Below(_)) => "--accuracy",
+        Some(Wanted::Estimate) => "--estimate-error",
+    };
+    Err(RunError::Option {
+        option,
+        reason: format!(
+            "{} asks for an equilibrium, which has no steps in time to refine",
+            request.input.display()
+        ),
+    })
 }

@@ -12,11 +12,12 @@ use crate::math::random::Random;
 use crate::model::Coordinates;
 use crate::model::system::{Fidelity, Muscle, Source, System};
 use crate::scene::build_limits::limit;
-use crate::scene::build_state::{ELECTRIC_KEYS, goal_state, start_state, voltages};
+use crate::scene::build_state::{ELECTRIC_KEYS, driven, goal_state, start_state, voltages};
 use crate::scene::error::SceneError;
 use crate::scene::graph::{has_free_part, tree_freedoms};
 use crate::scene::scope::Scope;
 use crate::scene::solution::sampled_voltages;
+use crate::scene::spec_integrator::integrator;
 use crate::scene::spec_problem::{
     ControlSpec, CoordinatesSpec, DurationSpec, GuessSpec, ObjectiveSpec, OptionSpec, ProblemSpec,
     SimulateSpec, SolverSpec, VoltagesSpec,
@@ -109,6 +110,7 @@ fn simulation(
         voltages,
         coordinates: coordinates(spec.coordinates, system, scope)?,
         solving: Solving {
+            integrator: integrator(spec.integrator.as_ref(), system, &scope.key("integrator"))?,
             newton: spec.newton.unwrap_or_default().into(),
             backend: spec.linear_solver.map(Into::into),
         },
@@ -127,8 +129,9 @@ fn control(spec: &ControlSpec, system: &System, scope: &Scope<'_>) -> Result<Con
     let voltage_bounds = voltage_bounds(spec, &scope.key("voltage_bounds"))?;
     let start = start_state(&spec.start, system, &scope.key("start"))?;
     let goal = goal_state(&spec.goal, system, &scope.key("goal"))?;
+    let given = given_voltages(spec, system, &scope.key("voltages"))?;
     for (key, state) in [("start", &start), ("goal", &goal)] {
-        check_rest_voltages(state, system, voltage_bounds, &scope.key(key))?;
+        check_rest_voltages(state, system, &given, voltage_bounds, &scope.key(key))?;
     }
     check_final_conditions(&goal, system, &scope.key("goal"))?;
     let mut limits = Vec::new();
@@ -141,6 +144,7 @@ fn control(spec: &ControlSpec, system: &System, scope: &Scope<'_>) -> Result<Con
         start,
         goal,
         voltage_bounds,
+        given,
         objective: objective(&spec.objective, &scope.key("objective"))?,
         limits,
         coordinates: coordinates(spec.coordinates, system, scope)?,
@@ -193,19 +197,42 @@ fn voltage_bounds(spec: &ControlSpec, scope: &Scope<'_>) -> Result<[f64; 2], Sce
     Ok(bounds)
 }
 
-/// Rest voltages of sources that take one lie in the bounds.
+/// Voltages that are given for all the time; one is left to be looked for.
+fn given_voltages(
+    spec: &ControlSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BTreeMap<usize, f64>, SceneError> {
+    let sources = system.sources();
+    let mut given = BTreeMap::new();
+    for (name, voltage) in &spec.voltages {
+        given.insert(driven(name, &sources, &scope.key(name))?, voltage.value());
+    }
+    let is_sought = |s: usize| sources[s].takes_voltage && !given.contains_key(&s);
+    if (0..sources.len()).any(is_sought) {
+        return Ok(given);
+    }
+    let found = "all voltages";
+    Err(scope.wrong(
+        found,
+        "one voltage or more that is not given, to be looked for",
+    ))
+}
+
+/// Rest voltages of sources that are looked for lie in the bounds.
 fn check_rest_voltages(
     state: &State,
     system: &System,
+    given: &BTreeMap<usize, f64>,
     [lower, upper]: [f64; 2],
     scope: &Scope<'_>,
 ) -> Result<(), SceneError> {
     let State::RestAtVoltages(voltages) = state else {
         return Ok(());
     };
-    for (source, &voltage) in system.sources().iter().zip(voltages) {
+    for (s, (source, &voltage)) in system.sources().iter().zip(voltages).enumerate() {
         let outside = voltage < lower || voltage > upper;
-        if outside && source.takes_voltage {
+        if outside && source.takes_voltage && !given.contains_key(&s) {
             let place = scope.key("rest_at_voltages").key(&source.name);
             let found = format!("{voltage} V");
             let expected = format!("a voltage within the bounds {lower} V to {upper} V");

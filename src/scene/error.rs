@@ -54,6 +54,11 @@ impl SceneError {
         self.0.nearest.as_deref()
     }
 
+    /// Whether the wrong value comes from an override.
+    pub(crate) fn is_overridden(&self) -> bool {
+        self.0.overridden
+    }
+
     /// Bytes of the wrong value in the file.
     pub fn span(&self) -> Option<Range<usize>> {
         self.0.source.as_ref().map(|(_, span)| span.clone())

@@ -1,7 +1,8 @@
 //! Scene and problem files: what is written, read with units, checked, and turned into what it means.
 //!
 //! - `quantity`, `unit`: numbers with units, converted once to g, mm, ms, N, MPa, V.
-//! - `spec_scene`, `spec_solids`, `spec_problem`, `spec_limits`, `either`: the serde types of the two files; `expand`: the chain shorthand.
+//! - `spec_scene`, `spec_solids`, `spec_problem`, `spec_integrator`, `spec_limits`, `either`: the serde types of the two files; `expand`: the chain shorthand.
+//! - `spec_study`: the serde types of a study of variants of a problem.
 //! - `document`, `locate`, `wording`, `error`, `set`: text, places in it, mistakes, overrides.
 //! - `build_*`, `graph`, `scope`, `solution`: from what is written to [`System`] and [`Task`].
 
@@ -28,17 +29,22 @@ pub mod quantity;
 mod scope;
 mod set;
 mod solution;
+pub mod spec_integrator;
 pub mod spec_limits;
 pub mod spec_problem;
 pub mod spec_scene;
 pub mod spec_solids;
+pub mod spec_study;
 mod start;
 mod typed;
 mod unit;
 mod wording;
 
+pub(crate) use document::Document;
 pub use error::SceneError;
 pub(crate) use layout::lay_out;
+pub(crate) use locate::Place;
+pub(crate) use scope::Scope;
 pub use start::new_trunk;
 pub use typed::{driven_voltages, read_system};
 
@@ -49,12 +55,11 @@ use crate::control::problem::Task;
 use crate::model::system::System;
 use crate::scene::build_problem::build_problem;
 use crate::scene::build_scene::build_scene;
-use crate::scene::document::Document;
 use crate::scene::expand::expanded;
-use crate::scene::scope::Scope;
 use crate::scene::set::Override;
 use crate::scene::spec_problem::{ProblemSpec, SceneSource};
 use crate::scene::spec_scene::SceneSpec;
+use crate::scene::spec_study::StudySpec;
 
 /// A problem with its scene, read and checked.
 #[derive(Clone, Debug)]
@@ -140,4 +145,9 @@ pub fn schema() -> (Value, Value) {
     let scene = schemars::schema_for!(SceneSpec);
     let problem = schemars::schema_for!(ProblemSpec);
     (scene.to_value(), problem.to_value())
+}
+
+/// The JSON Schema of the study file.
+pub fn study_schema() -> Value {
+    schemars::schema_for!(StudySpec).to_value()
 }

@@ -11,6 +11,7 @@ use crate::control::problem::Rest;
 use crate::dynamics::Newton;
 use crate::scene::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::scene::quantity::{JointCoordinate, JointRate, Quantity, Time, Voltage};
+use crate::scene::spec_integrator::IntegratorSpec;
 use crate::scene::spec_limits::LimitSpec;
 use crate::scene::spec_scene::{Point, SceneSpec};
 use crate::sparse::Backend;
@@ -66,6 +67,9 @@ pub struct SimulateSpec {
     /// Coordinates.
     #[serde(default)]
     pub coordinates: Option<CoordinatesSpec>,
+    /// The method; the midpoint variational integrator where not written.
+    #[serde(default)]
+    pub integrator: Option<IntegratorSpec>,
     /// When the tangent of a step is factorised; `full` where not written.
     #[serde(default)]
     pub newton: Option<NewtonSpec>,
@@ -140,8 +144,12 @@ pub struct ControlSpec {
     pub start: StartSpec,
     /// Final state, at rest.
     pub goal: GoalSpec,
-    /// Lower and upper bound of every voltage, SI unit V.
+    /// Lower and upper bound of every voltage that is looked for, SI unit V.
     pub voltage_bounds: [Quantity<Voltage>; 2],
+    /// Voltages that are given for all the time, by the names of muscles and driven electrodes (`block.electrode`), SI unit V:
+    /// they are no unknowns, and one of 0 leaves no electric term at all.
+    #[serde(default)]
+    pub voltages: VoltageMap,
     /// What is minimised.
     pub objective: ObjectiveSpec,
     /// Path limits.

@@ -43,6 +43,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
         start: State::RestAtVoltages(vec![0.0; system.sources().len()]),
         goal: joints(&[]),
         voltage_bounds: [0.0, 3000.0],
+        given: BTreeMap::new(),
         objective: Objective {
             effort: 1.0,
             ..Objective::default()

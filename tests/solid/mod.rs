@@ -8,6 +8,7 @@ use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
 use proboscis::model::system::{
     Electric, Electrode, ElementKind, Material, Potential, Solid, Support, System,
+    VACUUM_PERMITTIVITY,
 };
 use serde_json::Value;
 
@@ -182,4 +183,52 @@ pub(crate) fn at_rest(system: System, voltages: &[f64]) -> Vec<Vector3<f64>> {
     let found = equilibrium(&model, &model.coordinates_at(&[]), voltages).unwrap();
     assert_eq!(found.is_stable(), Some(true));
     placed(&model, &found.z)
+}
+
+/// A voltage whose mean field over the block is about 0.4 √(μ/ε_r ε₀).
+pub(crate) const VOLTAGE: f64 = 4.9e5;
+
+fn silicone(viscosity: Option<f64>) -> Material {
+    let electric = Electric {
+        c1: -2.0 * VACUUM_PERMITTIVITY,
+        c2: VACUUM_PERMITTIVITY,
+        permittivity: VACUUM_PERMITTIVITY,
+    };
+    Material {
+        density: Some(1e-3),
+        viscosity,
+        ..dielectric(0.1, 0.5, electric)
+    }
+}
+
+/// A crooked block of 2 × 2 × 4 elements under a voltage along z, with a floating electrode inside.
+pub(crate) fn crooked(viscosity: Option<f64>) -> Solid {
+    let size = Vector3::new(10.0, 10.0, 20.0);
+    let mesh = Grid::uniform(Vector3::zeros(), size, [2, 2, 4]).mesh();
+    let mut solid = block(mesh, silicone(viscosity));
+    let mesh = &solid.mesh;
+    let mut island = mesh.nodes_on_plane(2, 10.0, 1e-9);
+    island.retain(|&n| mesh.nodes[n].x < 6.0);
+    solid.electrodes = vec![
+        electrode(mesh, "bottom", 0.0, Potential::Given(0.0)),
+        Electrode {
+            name: "island".into(),
+            nodes: island,
+            potential: Potential::Floating,
+        },
+        electrode(mesh, "top", 20.0, DRIVEN),
+    ];
+    let bent = |x: Vector3<f64>| {
+        let (s, c) = (0.2 * x.z + 0.3 * x.x).sin_cos();
+        x + Vector3::new(0.5 * s, 0.6 * c, 0.4 * s * c)
+    };
+    solid.mesh = solid.mesh.transformed(bent);
+    solid
+}
+
+/// The same, clamped below.
+pub(crate) fn clamped(viscosity: Option<f64>) -> Solid {
+    let mut solid = crooked(viscosity);
+    solid.supports = vec![held(&solid.mesh, "z_min", [true; 3])];
+    solid
 }

@@ -4,9 +4,11 @@
 //! momentum of the start in row 0 and rest at the goal in row N, constraints where coordinates leave any, then limits.
 //! The Jacobian is ∇²Ŝ, the Hessian of the Lagrangian ∇³Ŝ along the costates plus objective and limits, both exact.
 //!
-//! Rows and multipliers are scaled by magnitudes taken from the Jacobian at the guess, voltages are in kV, lengths in
-//! the length of the system, the interval length in its guess, so that one tolerance means the same everywhere.
+//! Rows and multipliers are scaled by magnitudes taken from the Jacobian at the guess, voltages are in V, kV or MV as their
+//! bounds suggest, lengths in the length of the system, the interval length in its guess, the objective by a power of a
+//! thousand, so that one tolerance means the same everywhere.
 
+mod layout;
 mod limit_rows;
 mod point;
 mod program;
@@ -21,15 +23,17 @@ use crate::control::guess::Initial;
 use crate::control::limits::{Bounded, Place};
 use crate::control::objective::Cost;
 use crate::control::problem::{Control, Duration};
-use crate::control::unknowns::{Counts, Row, Unknowns, Variable};
+use crate::control::unknowns::{Row, Unknowns, Variable};
 use crate::functional::{Horizon, Part};
 use crate::model::Model;
 use crate::nlp::{Bounds, Entries, Nlp};
 use crate::reduction::Instant;
-use limit_rows::{LimitRow, limit_rows};
+pub(super) use layout::Layout;
+use limit_rows::LimitRow;
+use scaling::objective_scale;
 use stretch::Bench;
 
-/// V in a kV, the unit of voltages in the program and in objectives.
+/// V in a kV, the unit of voltages in objectives.
 const KILOVOLT: f64 = 1000.0;
 /// s in a ms.
 const MILLISECOND: f64 = 1e-3;
@@ -65,6 +69,9 @@ pub struct Transcription<'m> {
     /// First row, instant or interval, of each stretch of limit rows.
     limit_rows: Vec<(usize, usize)>,
     cost: Cost,
+    objective_scale: f64,
+    /// Unit of voltages in kV.
+    kilovolt: f64,
     momentum: Vec<f64>,
     bounds: Bounds,
     // The point.
@@ -117,31 +124,20 @@ impl<'m> Transcription<'m> {
             Duration::Free { .. } => Horizon::Free,
         };
         let goal = &boundary.goal.coordinates;
-        let given = |k: usize, i: usize| k == 0 || (k == intervals && goal[i].is_some());
-        let free = horizon == Horizon::Free;
-        let counts = Counts {
-            intervals,
-            coordinates: n,
-            unknowns: unknown_count,
-            voltages: driven,
-            scalars: scalar_count,
-        };
-        let at_rest = boundary.goal.nodes_rest;
-        let balanced = |k: usize, i: usize| k < intervals || i < motion.of_bodies || at_rest;
-        let mut unknowns = Unknowns::new(counts, free, given, balanced);
+        let Layout {
+            unknowns,
+            limits,
+            limit_rows: limit_at,
+        } = Layout::new(model, boundary, control, intervals);
+        let held = |s: usize| control.given.get(model.voltages.get(s)?);
+        let row: Vec<f64> = (0..scalar_count)
+            .map(|s| held(s).copied().unwrap_or(0.0))
+            .collect();
+        let kilovolts: Vec<f64> = row[..driven].iter().map(|v| v / KILOVOLT).collect();
         let mut instants = vec![motion.instant(); intervals + 1];
         instants[0].z.copy_from_slice(&boundary.start.z);
         for (value, goal) in instants[intervals].z.iter_mut().zip(goal) {
             *value = goal.unwrap_or(*value);
-        }
-        let final_is_given = goal.iter().all(Option::is_some);
-        let limits = limit_rows(model, &boundary.limits.list, intervals, final_is_given);
-        let mut limit_at = Vec::new();
-        for (index, limit) in limits.iter().enumerate() {
-            for k in limit.at.clone() {
-                unknowns.rows.push(Row::Limit { limit: index, k });
-                limit_at.push((index, k));
-            }
         }
         let kilo = |v: &Vec<f64>| {
             model
@@ -157,11 +153,12 @@ impl<'m> Transcription<'m> {
         let cost = Cost::new(control.objective, driven, intervals, ends);
         let layout = model.action.layout();
         let length = model.length();
+        let volts = control.voltage_unit(&model.system);
         let scale = |variable: &Variable| match *variable {
             Variable::Unknown { i, .. } if i < n && model.is_length(i) => length,
             Variable::Unknown { .. } => 1.0,
-            Variable::Scalar { s, .. } if s < driven => KILOVOLT,
-            Variable::Scalar { .. } => KILOVOLT / model.potential_unit,
+            Variable::Scalar { s, .. } if s < driven => volts,
+            Variable::Scalar { .. } => volts / model.potential_unit,
             Variable::Horizon => initial.h,
         };
         let variable_scales = unknowns.variables.iter().map(scale).collect();
@@ -173,15 +170,21 @@ impl<'m> Transcription<'m> {
             horizon,
             limits,
             limit_rows: limit_at,
+            objective_scale: objective_scale(
+                &control.objective,
+                volts / KILOVOLT,
+                intervals as f64 * initial.h * MILLISECOND,
+            ),
+            kilovolt: volts / KILOVOLT,
             cost,
             momentum: boundary.start.momentum.clone(),
             bounds: Bounds::default(),
             point: vec![f64::NAN; unknowns.variables.len()],
             instants,
             placed: Placed::Nothing,
-            scalars: vec![0.0; intervals * scalar_count],
+            scalars: row.repeat(intervals),
             scalars_along: vec![0.0; intervals * scalar_count],
-            kilovolts: vec![0.0; intervals * driven],
+            kilovolts: kilovolts.repeat(intervals),
             h: initial.h,
             variable_scales,
             row_scales: vec![1.0; unknowns.rows.len()],

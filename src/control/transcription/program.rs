@@ -37,6 +37,10 @@ impl Nlp for Transcription<'_> {
         self.cost.value(&self.kilovolts, self.h * MILLISECOND)
     }
 
+    fn objective_scale(&self) -> f64 {
+        self.objective_scale
+    }
+
     fn gradient(&mut self, x: &[f64], grad: &mut [f64]) {
         self.load(x);
         let by_horizon =
@@ -122,7 +126,7 @@ impl Nlp for Transcription<'_> {
         for (value, kept) in own.iter_mut().zip(&self.hessian) {
             *value = kept.scale * self.values[kept.place];
         }
-        coupling.fill(sigma * self.cost.coupling(tau));
+        coupling.fill(sigma * self.cost.coupling(tau) * self.kilovolt * self.kilovolt);
     }
 
     fn variable_name(&self, i: usize) -> String {

@@ -27,7 +27,7 @@ impl Transcription<'_> {
                 for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
                     list.push((
                         u.row(k + side, i),
-                        Some(u.scalar(k, s)),
+                        u.scalar(k, s),
                         layout.mixed_at(k, side) + slot,
                     ));
                     list.push((
@@ -39,9 +39,9 @@ impl Transcription<'_> {
             }
             for (slot, &(s, t)) in layout.scalars.entries().iter().enumerate() {
                 let place = layout.scalars_at(k) + slot;
-                list.push((u.row_of_scalar(k, s), Some(u.scalar(k, t)), place));
+                list.push((u.row_of_scalar(k, s), u.scalar(k, t), place));
                 if s != t {
-                    list.push((u.row_of_scalar(k, t), Some(u.scalar(k, s)), place));
+                    list.push((u.row_of_scalar(k, t), u.scalar(k, s), place));
                 }
             }
             for s in 0..layout.interval_scalars {
@@ -57,7 +57,7 @@ impl Transcription<'_> {
         for (r, &(limit, k)) in self.limit_rows.iter().enumerate() {
             for &(side, i) in &self.limits[limit].entries {
                 let col = if side == 2 {
-                    Some(u.scalar(k, i))
+                    u.scalar(k, i)
                 } else {
                     u.unknown(k + side, i)
                 };
@@ -120,23 +120,19 @@ impl Transcription<'_> {
             for side in 0..2 {
                 for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
                     list.push((
-                        Some(u.scalar(k, s)),
+                        u.scalar(k, s),
                         u.unknown(k + side, i),
                         layout.mixed_at(k, side) + slot,
                     ));
                 }
             }
             for (slot, &(s, t)) in layout.scalars.entries().iter().enumerate() {
-                list.push((
-                    Some(u.scalar(k, s)),
-                    Some(u.scalar(k, t)),
-                    layout.scalars_at(k) + slot,
-                ));
+                list.push((u.scalar(k, s), u.scalar(k, t), layout.scalars_at(k) + slot));
             }
             for s in 0..layout.interval_scalars {
                 list.push((
                     u.horizon(),
-                    Some(u.scalar(k, s)),
+                    u.scalar(k, s),
                     layout.horizon_scalars_at(k) + s,
                 ));
             }
@@ -159,8 +155,10 @@ impl Transcription<'_> {
         if self.cost.couples_intervals() {
             for k in 1..self.intervals {
                 for s in 0..self.model.voltages.len() {
-                    entries.rows.push(u.scalar(k, s) as u32);
-                    entries.cols.push(u.scalar(k - 1, s) as u32);
+                    if let (Some(row), Some(col)) = (u.scalar(k, s), u.scalar(k - 1, s)) {
+                        entries.rows.push(row as u32);
+                        entries.cols.push(col as u32);
+                    }
                 }
             }
         }

@@ -26,9 +26,10 @@ pub(super) struct PullBack {
     scalars: Vec<(usize, usize)>,
 }
 
-/// Where the blocks of one interval go in the values: places of the four blocks, of both mixed blocks and of scalars.
+/// Where the blocks of one interval go in the values: places of the four blocks, of both mixed blocks and of scalars;
+/// mixed blocks and scalars without a place (`usize::MAX`) go nowhere.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Target {
+pub struct Target {
     /// (k, k), (k, k+1), (k+1, k), (k+1, k+1).
     pub blocks: [usize; 4],
     /// (z_k, s), (z_{k+1}, s).
@@ -147,8 +148,10 @@ impl PullBack {
         self.joined
             .plain(ends, &blocks.full, &blocks.isotropic, sides, target, values);
         self.mixed.plain(columns, part, target, values);
-        for &(slot, place) in &self.scalars {
-            values[target.scalars + place] += blocks.scalars[slot];
+        if target.scalars != usize::MAX {
+            for &(slot, place) in &self.scalars {
+                values[target.scalars + place] += blocks.scalars[slot];
+            }
         }
     }
 

@@ -1,0 +1,139 @@
+//! What a task calls for: the question that it puts to the model.
+//!
+//! A source is silent where neither the task nor the states at its ends name a voltage other than zero; a body or a block is
+//! stirred where a start, a goal or a limit speaks of it.
+
+use std::collections::BTreeSet;
+
+use crate::control::problem::{AtRest, Control, Limit, Simulation, State, Voltages};
+use crate::model::system::{Attachment, System};
+use crate::model::{Question, Stirred};
+
+impl Simulation {
+    /// The question of a motion in steps of `step` ms.
+    pub fn question(&self, system: &System, step: f64) -> Question {
+        let drives: Vec<&[f64]> = match &self.voltages {
+            Voltages::Constant(row) => vec![row],
+            Voltages::Sampled { rows, .. } => rows.iter().map(Vec::as_slice).collect(),
+        };
+        let is_driven = |s: usize| drives.iter().any(|row| row[s] != 0.0);
+        let mut spoken = Spoken::new(system);
+        spoken.of_start(&self.start);
+        Question {
+            coordinates: self.coordinates,
+            silent: silent(system, is_driven, [&self.start]),
+            stirred: Some(spoken.stirred),
+            ..Question::of_motion(step)
+        }
+    }
+}
+
+impl AtRest {
+    /// The question of a state of rest. Its stability is asked for too, that of unloaded parts included: nothing is taken to
+    /// be still.
+    pub fn question(&self, system: &System) -> Question {
+        Question {
+            coordinates: self.coordinates,
+            silent: silent(system, |s| self.voltages[s] != 0.0, []),
+            ..Question::of_rest()
+        }
+    }
+}
+
+impl Control {
+    /// The question of a horizon of intervals of about `interval` ms, without the quantities that are measured.
+    pub fn question(&self, system: &System, interval: f64) -> Question {
+        let is_sought = |s: usize| self.given.get(&s).is_none_or(|&voltage| voltage != 0.0);
+        let mut spoken = Spoken::new(system);
+        spoken.of_start(&self.start);
+        spoken.of_goal(&self.goal);
+        self.limits.iter().for_each(|limit| spoken.of_limit(limit));
+        Question {
+            coordinates: self.coordinates,
+            silent: silent(system, is_sought, [&self.start, &self.goal]),
+            stirred: Some(spoken.stirred),
+            ..Question::of_motion(interval)
+        }
+    }
+}
+
+/// Sources whose voltage is zero all the time, and at rest before and after.
+fn silent<const N: usize>(
+    system: &System,
+    is_driven: impl Fn(usize) -> bool,
+    ends: [&State; N],
+) -> BTreeSet<usize> {
+    let is_held = |s: usize| {
+        ends.iter().any(|state| match state {
+            State::RestAtVoltages(voltages) => voltages[s] != 0.0,
+            State::Markers { hold, .. } => hold.as_ref().is_some_and(|v| v[s] != 0.0),
+            State::JointAngles { .. } => false,
+        })
+    };
+    let sources = system.sources();
+    let takes = (0..sources.len()).filter(|&s| sources[s].takes_voltage);
+    takes.filter(|&s| !is_driven(s) && !is_held(s)).collect()
+}
+
+/// Bodies and blocks that are spoken of.
+struct Spoken<'a> {
+    system: &'a System,
+    stirred: Stirred,
+}
+
+impl<'a> Spoken<'a> {
+    fn new(system: &'a System) -> Self {
+        Self {
+            system,
+            stirred: Stirred::default(),
+        }
+    }
+
+    /// A start away from the reference configuration, or in motion. Sources that hold a state of rest are not silent, and
+    /// move what they move.
+    fn of_start(&mut self, state: &State) {
+        if let State::JointAngles { angles, rates } = state {
+            let all = angles.iter().chain(rates);
+            let moved = all.filter(|(_, value)| **value != 0.0);
+            moved.for_each(|(&joint, _)| self.of_joint(joint));
+        }
+    }
+
+    fn of_goal(&mut self, state: &State) {
+        match state {
+            State::RestAtVoltages(_) => {}
+            State::JointAngles { angles, .. } => angles.keys().for_each(|&j| self.of_joint(j)),
+            State::Markers { places, .. } => places.keys().for_each(|&m| self.of_marker(m)),
+        }
+    }
+
+    fn of_limit(&mut self, limit: &Limit) {
+        match *limit {
+            Limit::JointAngle { joint, .. } => self.of_joint(joint),
+            Limit::Stretch { muscle, .. } => {
+                let muscle = &self.system.muscles[muscle];
+                self.of_point(&muscle.from);
+                self.of_point(&muscle.to);
+            }
+            // A field without voltage is none.
+            Limit::ElectricField { .. } => {}
+            Limit::Marker { marker, .. } => self.of_marker(marker),
+        }
+    }
+
+    fn of_joint(&mut self, joint: usize) {
+        let joint = &self.system.joints[joint];
+        let bodies = joint.parent.into_iter().chain([joint.child]);
+        self.stirred.bodies.extend(bodies);
+    }
+
+    fn of_marker(&mut self, marker: usize) {
+        let marker = &self.system.markers[marker];
+        self.stirred.solids.extend(marker.solid);
+        self.of_point(&marker.point);
+    }
+
+    fn of_point(&mut self, point: &Attachment) {
+        self.stirred.bodies.extend(point.body);
+    }
+}

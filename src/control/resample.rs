@@ -1,0 +1,175 @@
+//! A solution carried to another number of intervals: coordinates and costates along smooth curves, voltages along lines.
+//!
+//! What belongs to an instant or interval by itself is carried by value: coordinates, voltages, potentials, costates of
+//! momentum balances and of Gauss's laws. What is summed over a step goes with its length: impulses of constraints, costates
+//! of path limits and of bounds. A finer grid has more and smaller ones.
+
+use crate::control::boundary::Boundary;
+use crate::control::problem::Control;
+use crate::control::solution::{Costates, Solved};
+use crate::control::transcription::Layout;
+use crate::control::unknowns::{Row, Variable};
+use crate::model::Model;
+
+/// Instants of the old grid that a curve is led through.
+const THROUGH: usize = 4;
+
+/// Two grids over one duration.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grids {
+    from: usize,
+    to: usize,
+}
+
+/// Instants of the old grid with their weights.
+type Weights = Vec<(usize, f64)>;
+
+impl Grids {
+    /// From a number of intervals to another.
+    pub(super) fn new(from: usize, to: usize) -> Self {
+        Self { from, to }
+    }
+
+    /// New interval length in old ones.
+    fn ratio(self) -> f64 {
+        self.from as f64 / self.to as f64
+    }
+
+    /// Values in the middle of new interval k, on the lines between the middles of the old ones.
+    pub(super) fn mean(self, rows: &[Vec<f64>], k: usize) -> Vec<f64> {
+        let place = ((2 * k + 1) * self.from).saturating_sub(self.to);
+        let i = place / (2 * self.to);
+        let part = (place % (2 * self.to)) as f64 / (2 * self.to) as f64;
+        let next = (i + 1).min(self.from - 1);
+        let value = |(a, b): (&f64, &f64)| a + part * (b - a);
+        rows[i].iter().zip(&rows[next]).map(value).collect()
+    }
+
+    /// Old interval that the middle of new interval k is in.
+    fn interval(self, k: usize) -> usize {
+        ((2 * k + 1) * self.from / (2 * self.to)).min(self.from - 1)
+    }
+
+    /// Old instants around new instant k and the weights of their polynomial there; the instant itself where it is one.
+    fn weights(self, k: usize) -> Weights {
+        let exact = k * self.from;
+        if exact.is_multiple_of(self.to) {
+            return vec![(exact / self.to, 1.0)];
+        }
+        let place = exact as f64 / self.to as f64;
+        let count = THROUGH.min(self.from + 1);
+        let before = (exact / self.to + 1).saturating_sub(count / 2);
+        let first = before.min(self.from + 1 - count);
+        let nodes = first..first + count;
+        let weight = |j: usize| {
+            let factor = |l: usize| (place - l as f64) / (j as f64 - l as f64);
+            nodes.clone().filter(|&l| l != j).map(factor).product()
+        };
+        nodes.clone().map(|j| (j, weight(j))).collect()
+    }
+
+    /// Old instant next to new instant k.
+    fn nearest(self, k: usize) -> usize {
+        (2 * k * self.from + self.to) / (2 * self.to)
+    }
+}
+
+/// Coordinates and impulses of constraints at the new instants, the impulses in units of `unit` ms times a force.
+pub(super) fn coordinates(solved: &Solved, grids: Grids, count: usize, unit: f64) -> Vec<Vec<f64>> {
+    let impulse = grids.ratio() * solved.multiplier_time / unit;
+    let at = |k: usize| {
+        let mut z = vec![0.0; solved.z[0].len()];
+        for (j, weight) in grids.weights(k) {
+            for (value, old) in z.iter_mut().zip(&solved.z[j]) {
+                *value += weight * old;
+            }
+        }
+        for multiplier in &mut z[count..] {
+            *multiplier *= impulse;
+        }
+        z
+    };
+    (0..=grids.to).map(at).collect()
+}
+
+/// Costates on the new grid; `None` where the solution has none of this program.
+pub(super) fn costates(
+    model: &Model,
+    boundary: &Boundary,
+    control: &Control,
+    solved: &Solved,
+    grids: Grids,
+) -> Option<Costates> {
+    let old = solved.costates.as_ref()?;
+    let from = Layout::new(model, boundary, control, grids.from);
+    let to = Layout::new(model, boundary, control, grids.to);
+    let fits = old.rows.len() == from.unknowns.rows.len()
+        && old.lower.len() == from.unknowns.variables.len()
+        && old.upper.len() == from.unknowns.variables.len();
+    if !fits {
+        return None;
+    }
+    let ratio = grids.ratio();
+    let constraint = ratio * model.multiplier_time / solved.multiplier_time;
+    let n = model.coordinate_count();
+    let row = |row: &Row| match *row {
+        Row::Equation { k, i } => {
+            let weights = grids.weights(k);
+            let factor = if i < n { 1.0 } else { constraint };
+            let value =
+                |&(j, weight): &(usize, f64)| Some(weight * old.rows[from.unknowns.row(j, i)?]);
+            let smooth: Option<f64> = weights.iter().map(value).sum();
+            let nearest = || from.unknowns.row(grids.nearest(k), i).map(|r| old.rows[r]);
+            factor * smooth.or_else(nearest).unwrap_or(0.0)
+        }
+        Row::Gauss { k, s } => {
+            let place = from.unknowns.row_of_scalar(grids.interval(k), s);
+            place.map_or(0.0, |r| old.rows[r])
+        }
+        Row::Limit { limit, k } => from.carried(limit, k, grids, &old.rows),
+    };
+    let bound = |list: &[f64], variable: &Variable| match *variable {
+        Variable::Unknown { k, i } => {
+            let place = from.unknowns.unknown(grids.nearest(k), i);
+            ratio * place.map_or(0.0, |v| list[v])
+        }
+        Variable::Scalar { k, s } => {
+            let place = from.unknowns.scalar(grids.interval(k), s);
+            ratio * place.map_or(0.0, |v| list[v])
+        }
+        // The duration is so many times the interval length.
+        Variable::Horizon => from.unknowns.horizon().map_or(0.0, |v| list[v]) / ratio,
+    };
+    let of = |list: &[f64]| {
+        to.unknowns
+            .variables
+            .iter()
+            .map(|v| bound(list, v))
+            .collect()
+    };
+    Some(Costates {
+        rows: to.unknowns.rows.iter().map(row).collect(),
+        lower: of(&old.lower),
+        upper: of(&old.upper),
+    })
+}
+
+impl Layout {
+    /// Costate of a limit or goal at new instant or interval k.
+    fn carried(&self, limit: usize, k: usize, grids: Grids, old: &[f64]) -> f64 {
+        let of = self.limit(limit);
+        let site = match of.is_of_intervals {
+            true => grids.interval(k),
+            false => grids.nearest(k),
+        };
+        let factor = match (of.is_goal, of.is_of_intervals) {
+            // A marker rests at the goal when its last step is nothing; the shorter that step, the dearer its length.
+            (true, true) => 1.0 / grids.ratio(),
+            (true, false) => 1.0,
+            (false, _) => grids.ratio(),
+        };
+        let place = site.clamp(of.at.start, of.at.end.max(1) - 1);
+        let value = old.get(of.first + place - of.at.start);
+        factor * value.copied().unwrap_or(0.0)
+    }
+}

@@ -1,0 +1,86 @@
+//! Unknowns, equations and limits of a horizon, laid out without their values.
+
+use std::ops::Range;
+
+use crate::control::boundary::Boundary;
+use crate::control::limits::Place;
+use crate::control::problem::{Control, Duration};
+use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};
+use crate::control::unknowns::{Counts, Row, Unknowns};
+use crate::model::Model;
+
+/// Which variables and rows the program of a control problem has on a number of intervals.
+#[derive(Clone, Debug)]
+pub(in crate::control) struct Layout {
+    pub(in crate::control) unknowns: Unknowns,
+    pub(super) limits: Vec<LimitRow>,
+    /// Limit, and instant or interval, of each row behind the equations.
+    pub(super) limit_rows: Vec<(usize, usize)>,
+}
+
+impl Layout {
+    /// The layout on `intervals` intervals, whatever number the problem names.
+    pub(in crate::control) fn new(
+        model: &Model,
+        boundary: &Boundary,
+        control: &Control,
+        intervals: usize,
+    ) -> Self {
+        let motion = &model.action.motion;
+        let goal = &boundary.goal.coordinates;
+        let given = |k: usize, i: usize| k == 0 || (k == intervals && goal[i].is_some());
+        let counts = Counts {
+            intervals,
+            coordinates: motion.coordinates,
+            unknowns: motion.unknowns(),
+            voltages: model.voltages.len(),
+            scalars: model.voltages.len() + model.potentials,
+        };
+        let at_rest = boundary.goal.nodes_rest;
+        let balanced = |k: usize, i: usize| k < intervals || i < motion.of_bodies || at_rest;
+        let free = matches!(control.duration, Duration::Free { .. });
+        let prescribed = |s: usize| {
+            let source = model.voltages.get(s);
+            source.is_some_and(|source| control.given.contains_key(source))
+        };
+        let mut unknowns = Unknowns::new(counts, free, given, balanced, prescribed);
+        let final_is_given = goal.iter().all(Option::is_some);
+        let limits = limit_rows(model, &boundary.limits.list, intervals, final_is_given);
+        let mut limit_rows = Vec::new();
+        for (index, limit) in limits.iter().enumerate() {
+            for k in limit.at.clone() {
+                unknowns.rows.push(Row::Limit { limit: index, k });
+                limit_rows.push((index, k));
+            }
+        }
+        Self {
+            unknowns,
+            limits,
+            limit_rows,
+        }
+    }
+
+    /// What a limit or goal is, for those who carry costates from one grid to another.
+    pub(in crate::control) fn limit(&self, index: usize) -> LimitSite {
+        let limit = &self.limits[index];
+        LimitSite {
+            is_goal: limit.place == Place::Goal,
+            is_of_intervals: limit.site == Site::Intervals,
+            at: limit.at.clone(),
+            first: self.unknowns.rows.len() - self.limit_rows.len() + limit.first,
+        }
+    }
+}
+
+/// Where the rows of a limit or goal are.
+#[derive(Clone, Debug)]
+pub(in crate::control) struct LimitSite {
+    /// Whether it holds at the end only.
+    pub(in crate::control) is_goal: bool,
+    /// Whether it is read in intervals, rather than at instants.
+    pub(in crate::control) is_of_intervals: bool,
+    /// Instants or intervals at which it is a row.
+    pub(in crate::control) at: Range<usize>,
+    /// Its first row.
+    pub(in crate::control) first: usize,
+}

@@ -1,0 +1,122 @@
+//! From momenta to rates: the mass matrix of an instant, bordered by its constraints.
+//!
+//! Rates v of momenta p that a step left without the reactions at its end solve
+//!
+//! ```text
+//! M v + Gᵀ μ = p,     G v = 0
+//! ```
+//!
+//! so that they meet the constraints; without constraints this is M v = p.
+
+use crate::dynamics::tangent::{Entries, Tangent};
+use crate::functional::{Blocks, Frame, Horizon, Kind, Level, Part, Sides};
+use crate::math::Vector;
+use crate::model::Model;
+use crate::reduction::{Instant, Scratch, Target};
+use crate::sparse::Symmetry;
+
+/// Storage of the bordered mass matrix.
+#[derive(Debug)]
+pub(super) struct Kinetic<'m> {
+    model: &'m Model,
+    scratch: Scratch,
+    masses: Part,
+    values: Vec<f64>,
+    tangent: Tangent,
+}
+
+impl<'m> Kinetic<'m> {
+    /// Lays the matrix down.
+    pub(super) fn new(model: &'m Model) -> Self {
+        let action = &model.action;
+        let (layout, n) = (action.layout(), action.motion.coordinates);
+        let mut entries = Entries::default();
+        for (slot, &(i, j)) in layout.same.entries().iter().enumerate() {
+            if i < n || j < n {
+                entries.add(slot, (i, j));
+            }
+        }
+        let size = action.motion.unknowns();
+        Self {
+            scratch: action.scratch(Level::Hessian),
+            masses: action.intervals.output(Level::Hessian).plain,
+            values: vec![0.0; layout.values(0)],
+            tangent: entries.tangent(size, Symmetry::Symmetric, None),
+            model,
+        }
+    }
+
+    /// Rates of the coordinates of a placed instant; nothing where masses are missing or constraints are redundant.
+    pub(super) fn rates(&mut self, instant: &mut Instant, momentum: &[f64]) -> Option<Vec<f64>> {
+        let action = &self.model.action;
+        self.values.fill(0.0);
+        // The gradients of the constraints alone: neither forces nor multipliers bend them.
+        let mut bare = instant.clone();
+        bare.z[momentum.len()..].fill(0.0);
+        bare.forces.fill(Vector::zeros());
+        action.evaluate_instant(Level::Hessian, &mut bare, &[], &mut self.scratch);
+        action.pull_back_instant(
+            Level::Hessian,
+            &mut bare,
+            0,
+            &mut self.scratch,
+            &mut self.values,
+        );
+        let blocks = masses(self.model, &instant.x);
+        for (sum, mass) in self
+            .masses
+            .blocks
+            .isotropic
+            .iter_mut()
+            .zip(&blocks.isotropic)
+        {
+            sum[0] = mass[3];
+        }
+        for (sum, mass) in self.masses.blocks.full.iter_mut().zip(&blocks.full) {
+            sum[0] = mass[3];
+        }
+        let target = Target {
+            blocks: [0; 4],
+            mixed: [usize::MAX; 2],
+            scalars: usize::MAX,
+        };
+        action.pull_back_part(
+            [instant, instant],
+            &self.masses,
+            Sides::HERE,
+            &target,
+            &mut self.scratch,
+            &mut self.values,
+        );
+        self.tangent.factor(&self.values).ok()?;
+        let mut rates = momentum.to_vec();
+        rates.resize(action.motion.unknowns(), 0.0);
+        self.tangent.solve(&mut rates);
+        rates.truncate(momentum.len());
+        rates.iter().all(|rate| rate.is_finite()).then_some(rates)
+    }
+}
+
+/// Second derivatives of the kinetic energy by the rates of vectors, at rest at places `x`: the last of the four blocks of an
+/// interval of length 1.
+pub(super) fn masses(model: &Model, x: &[Vector]) -> Blocks {
+    let action = &model.action.intervals;
+    let mut out = action.output(Level::Hessian);
+    let scalars = vec![0.0; action.scalars];
+    let frame = Frame {
+        vectors: [x, x],
+        along: [x, x],
+        scalars: &scalars,
+        scalars_along: &[],
+        h: 1.0,
+        horizon: Horizon::Given,
+        sides: Sides::ALL,
+        weights: &[],
+    };
+    for effect in &action.effects {
+        if effect.kind() == Kind::Kinetic {
+            effect.evaluate(Level::Hessian, &frame, &mut out);
+        }
+    }
+    out.plain.blocks
+}

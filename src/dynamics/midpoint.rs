@@ -1,0 +1,257 @@
+//! The midpoint variational integrator: the rows of one instant of the discrete Euler–Lagrange equations.
+//!
+//! With the momentum p_k = P_kᵀ (D₂L_d(q_{k−1}, q_k) + f⁺) known, the unknowns u_{k+1} and λ_k solve
+//!
+//! ```text
+//! p_k + P_kᵀ [ D₁L_d(q_k, q_{k+1}) + f⁻ − h₀ G(q_k)ᵀ λ_k ] = 0,     g(q_{k+1}) = 0,     ∂V/∂φ (q_{k+½}, φ_{k+½}) = 0
+//! ```
+//!
+//! with the potentials φ of the interval, which have no inertia, by Gauss's law.
+
+use crate::dynamics::solving::Solving;
+use crate::dynamics::stepper::{Equations, Steps};
+use crate::dynamics::tangent::Entries;
+use crate::functional::{Level, Sides};
+use crate::math::Vector;
+use crate::model::Model;
+use crate::reduction::{Instant as Place, Interval, Scratch};
+
+/// Steps of the midpoint rule.
+pub type Stepper<'m> = Steps<Midpoint<'m>>;
+
+/// State at one instant and the storage of the rows of the next.
+#[derive(Debug)]
+pub struct Midpoint<'m> {
+    model: &'m Model,
+    here: Place,
+    next: Place,
+    /// Momentum P_kᵀ p_k by coordinate, in the units of an action per coordinate.
+    momentum: Vec<f64>,
+    momentum_next: Vec<f64>,
+    /// Rates of the coordinates over the last step, and how they changed, for the first guess.
+    rates: Vec<f64>,
+    changes: Vec<f64>,
+    is_first: bool,
+    time: f64,
+    scratch: Scratch,
+    values: Vec<f64>,
+    /// Voltages and potentials of the interval.
+    scalars: Vec<f64>,
+    /// Multipliers and potentials before an attempt.
+    saved: [Vec<f64>; 2],
+}
+
+impl<'m> Stepper<'m> {
+    /// Starts at coordinates `z` with the momentum of each coordinate at time zero.
+    pub fn new(model: &'m Model, z: &[f64], momentum: &[f64], solving: Solving) -> Self {
+        let motion = &model.action.motion;
+        let (n, layout) = (motion.coordinates, model.action.layout());
+        let mut entries = Entries::default();
+        for (slot, &entry) in layout.cross.entries().iter().enumerate() {
+            entries.add(layout.upper_at(0) + slot, entry);
+        }
+        for (slot, &(row, col)) in layout.same.entries().iter().enumerate() {
+            if row < n && col >= n {
+                entries.add(layout.same_at(0) + slot, (row, col));
+            }
+            if row >= n && col < n {
+                entries.add(layout.same_at(1) + slot, (row, col));
+            }
+        }
+        entries.add_potentials(model, &[[0, 1]]);
+        let size = motion.unknowns() + model.potentials;
+        let (mut here, next) = (motion.instant(), motion.instant());
+        here.z.copy_from_slice(z);
+        motion.place(&mut here);
+        let equations = Midpoint {
+            model,
+            here,
+            next,
+            momentum: momentum.to_vec(),
+            momentum_next: momentum.to_vec(),
+            rates: vec![0.0; n],
+            changes: vec![0.0; n],
+            is_first: true,
+            time: 0.0,
+            scratch: model.action.scratch(Level::Hessian),
+            values: vec![0.0; layout.values(1)],
+            scalars: vec![0.0; layout.interval_scalars],
+            saved: [vec![0.0; motion.multipliers], vec![0.0; model.potentials]],
+        };
+        let tangent = entries.tangent(size, model.step_symmetry(), solving.backend);
+        Self::by(equations, tangent, scales(model), solving.newton)
+    }
+
+    /// The instant now.
+    pub fn instant(&self) -> &Place {
+        &self.equations().here
+    }
+}
+
+/// Size of each unknown of a step, by which its updates are measured: coordinates and multipliers, then potentials.
+///
+/// Potentials are lengths too; what multipliers do says nothing about convergence.
+pub(super) fn scales(model: &Model) -> Vec<f64> {
+    let (n, m) = (model.coordinate_count(), model.action.motion.unknowns());
+    let length = model.length();
+    let scale = |i: usize| match i {
+        i if i < n && !model.is_length(i) => 1.0,
+        i if i >= n && i < m => f64::INFINITY,
+        _ => length,
+    };
+    (0..m + model.potentials).map(scale).collect()
+}
+
+impl Equations for Midpoint<'_> {
+    fn begin(&mut self, voltages: &[f64]) {
+        self.scalars[..voltages.len()].copy_from_slice(voltages);
+    }
+
+    fn guess(&mut self, h: f64) {
+        let n = self.model.action.motion.coordinates;
+        for i in 0..n {
+            self.next.z[i] = self.here.z[i] + h * (self.rates[i] + self.changes[i]);
+        }
+        let [multipliers, potentials] = &mut self.saved;
+        multipliers.copy_from_slice(&self.here.z[n..]);
+        potentials.copy_from_slice(&self.scalars[self.model.voltages.len()..]);
+        self.next.z[n..].copy_from_slice(multipliers);
+    }
+
+    fn evaluate(&mut self, level: Level, h: f64, residual: &mut [f64]) {
+        let action = &self.model.action;
+        let (n, m) = (action.motion.coordinates, action.motion.unknowns());
+        let Self {
+            here,
+            next,
+            scratch,
+            values,
+            scalars,
+            ..
+        } = self;
+        action.motion.place(next);
+        for instant in [&mut *here, &mut *next] {
+            instant.forces.fill(Vector::zeros());
+        }
+        if level >= Level::Hessian {
+            values.fill(0.0);
+        }
+        residual[..n].copy_from_slice(&self.momentum);
+        residual[n..].fill(0.0);
+        let interval = Interval {
+            sides: Sides::FORWARD,
+            ..Interval::given(scalars, h)
+        };
+        action.evaluate_interval(level, [here, next], &interval, scratch);
+        action.pull_back_interval(level, [here, next], &interval, 0, scratch, values);
+        let gauss = &scratch.interval.plain.rows[self.model.voltages.len()..];
+        residual[m..].copy_from_slice(gauss);
+        if m > n {
+            // Multipliers of the step act at its start, constraints hold at its end.
+            action.evaluate_instant(level, next, &[], scratch);
+            action.pull_back_instant(level, next, 1, scratch, values);
+            residual[n..m].copy_from_slice(&scratch.instant.plain.rows);
+            here.z[n..].copy_from_slice(&next.z[n..]);
+            action.evaluate_instant(level, here, &[], scratch);
+            action.pull_back_instant(level, here, 0, scratch, values);
+        }
+        action
+            .motion
+            .pull_back(&here.columns, &here.forces, &mut residual[..n]);
+    }
+
+    fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    fn update(&mut self, update: &[f64]) {
+        let m = self.next.z.len();
+        for (z, update) in self.next.z.iter_mut().zip(update) {
+            *z -= update;
+        }
+        let driven = self.model.voltages.len();
+        for (potential, update) in self.scalars[driven..].iter_mut().zip(&update[m..]) {
+            *potential -= update;
+        }
+    }
+
+    fn restore(&mut self) {
+        let n = self.model.action.motion.coordinates;
+        let [multipliers, potentials] = &self.saved;
+        self.here.z[n..].copy_from_slice(multipliers);
+        self.scalars[self.model.voltages.len()..].copy_from_slice(potentials);
+    }
+
+    fn model(&self) -> &Model {
+        self.model
+    }
+
+    fn place_end(&mut self) {
+        self.model.action.motion.place(&mut self.next);
+    }
+
+    fn ends(&self) -> [&Place; 2] {
+        [&self.here, &self.next]
+    }
+
+    fn accept(&mut self, h: f64) -> bool {
+        let action = &self.model.action;
+        let Self {
+            here,
+            next,
+            scratch,
+            scalars,
+            ..
+        } = self;
+        let interval = Interval {
+            sides: Sides::FORWARD,
+            ..Interval::given(scalars, h)
+        };
+        action.evaluate_interval(Level::Gradient, [here, next], &interval, scratch);
+        self.momentum_next.fill(0.0);
+        let forces = &scratch.interval.plain.forces[1];
+        let motion = &action.motion;
+        motion.pull_back(&next.columns, forces, &mut self.momentum_next);
+        if !self.momentum_next.iter().all(|p| p.is_finite()) {
+            return false;
+        }
+        std::mem::swap(&mut self.momentum, &mut self.momentum_next);
+        for (i, rate) in self.rates.iter_mut().enumerate() {
+            let new = (next.z[i] - here.z[i]) / h;
+            // In the first step nothing is known of the change.
+            self.changes[i] = if self.is_first { 0.0 } else { new - *rate };
+            *rate = new;
+        }
+        self.is_first = false;
+        let n = motion.coordinates;
+        here.z[n..].copy_from_slice(&next.z[n..]);
+        std::mem::swap(&mut self.here, &mut self.next);
+        self.time += h;
+        true
+    }
+
+    fn unknown_name(&self, unknown: usize) -> String {
+        self.model.unknown_name(unknown)
+    }
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn coordinates(&self) -> &[f64] {
+        &self.here.z
+    }
+
+    fn momentum(&self) -> &[f64] {
+        &self.momentum
+    }
+
+    fn scalars(&self) -> &[f64] {
+        &self.scalars
+    }
+
+    fn multipliers(&self) -> &[f64] {
+        // Those of the step stay in the list of both of its ends.
+        &self.here.z[self.model.action.motion.coordinates..]
+    }
+}

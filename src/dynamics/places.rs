@@ -1,0 +1,129 @@
+//! Where the derivatives of the equations of a step with several points lie.
+
+use crate::dynamics::tangent::Entries;
+use crate::model::Model;
+
+/// Segments of the values: one of instants for each point, one for each pair of rows and points, those of each sample.
+#[derive(Clone, Debug)]
+pub(super) struct Places {
+    /// Point of the rows that go with each point ν = 1 … s.
+    rows: Vec<usize>,
+    same: usize,
+    cross: usize,
+    mixed: usize,
+    scalars: usize,
+    samples: usize,
+    /// Length of the values.
+    pub(super) values: usize,
+}
+
+impl Places {
+    /// Lays the segments down, and the entries of the matrix that take them.
+    pub(super) fn new(model: &Model, rows: &[usize], samples: usize) -> (Self, Entries) {
+        let layout = model.action.layout();
+        let motion = &model.action.motion;
+        let has_potentials = model.potentials > 0;
+        let [same, cross] = [&layout.same, &layout.cross].map(|p| p.entries().len());
+        let [mixed, scalars] = match has_potentials {
+            true => [&layout.mixed, &layout.scalars].map(|p| p.entries().len()),
+            false => [0, 0],
+        };
+        let degree = rows.len();
+        let mut places = Self {
+            rows: rows.to_vec(),
+            same,
+            cross,
+            mixed,
+            scalars,
+            samples,
+            values: 0,
+        };
+        places.values = places.scalars(samples);
+        let (n, m) = (motion.coordinates, motion.unknowns());
+        let mut entries = Entries::default();
+        let block = |point: usize| (point - 1) * m;
+        for row in 1..=degree {
+            for point in 1..=degree {
+                let pattern = match rows[row - 1] == point {
+                    true => &layout.same,
+                    false => &layout.cross,
+                };
+                let at = places.pair(row, point);
+                for (slot, &(i, j)) in pattern.entries().iter().enumerate() {
+                    if i < n && j < n {
+                        entries.add(at + slot, (block(row) + i, block(point) + j));
+                    }
+                }
+            }
+            let (of_rows, of_point) = (places.same(rows[row - 1]), places.same(row));
+            for (slot, &(i, j)) in layout.same.entries().iter().enumerate() {
+                // Multipliers act where the rows are, constraints hold at the point.
+                if i < n && j >= n {
+                    entries.add(of_rows + slot, (block(row) + i, block(row) + j));
+                }
+                if i >= n && j < n {
+                    entries.add(of_point + slot, (block(row) + i, block(row) + j));
+                }
+            }
+        }
+        if has_potentials {
+            places.add_potentials(model, samples, &mut entries);
+        }
+        (places, entries)
+    }
+
+    /// Potentials of each sample against the points, and against each other.
+    fn add_potentials(&self, model: &Model, samples: usize, entries: &mut Entries) {
+        let layout = model.action.layout();
+        let (m, driven) = (model.action.motion.unknowns(), model.voltages.len());
+        for sample in 0..samples {
+            let first = self.rows.len() * m + sample * model.potentials;
+            for point in 1..=self.rows.len() {
+                let [rows, columns] = self.mixed(sample, point);
+                let block = (point - 1) * m;
+                for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
+                    if let Some(s) = s.checked_sub(driven) {
+                        entries.add(rows + slot, (block + i, first + s));
+                        entries.add(columns + slot, (first + s, block + i));
+                    }
+                }
+            }
+            for (slot, &(s, t)) in layout.scalars.entries().iter().enumerate() {
+                if let (Some(s), Some(t)) = (s.checked_sub(driven), t.checked_sub(driven)) {
+                    let at = self.scalars(sample) + slot;
+                    entries.add(at, (first + s, first + t));
+                    if s != t {
+                        entries.add(at, (first + t, first + s));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Second derivatives at a point.
+    pub(super) fn same(&self, point: usize) -> usize {
+        point * self.same
+    }
+
+    /// Rows that go with one point by the coordinates of another; those of the point itself where the rows are its own.
+    pub(super) fn pair(&self, row: usize, point: usize) -> usize {
+        if self.rows[row - 1] == point {
+            return self.same(point);
+        }
+        let degree = self.rows.len();
+        self.same(degree + 1) + ((row - 1) * degree + point - 1) * self.cross
+    }
+
+    /// Rows that go with a point by the scalars of a sample, and rows of these by the coordinates of the point.
+    pub(super) fn mixed(&self, sample: usize, point: usize) -> [usize; 2] {
+        let degree = self.rows.len();
+        let first = self.same(degree + 1) + degree * degree * self.cross;
+        let at = first + (sample * degree + point - 1) * 2 * self.mixed;
+        [at, at + self.mixed]
+    }
+
+    /// Scalars of a sample against each other.
+    pub(super) fn scalars(&self, sample: usize) -> usize {
+        self.mixed(self.samples, 1)[0] + sample * self.scalars
+    }
+}

@@ -1,0 +1,58 @@
+//! How a motion is integrated: by which method, and how the equations of a step are solved.
+
+use crate::sparse::Backend;
+
+/// The method that leads from one instant to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Integrator {
+    /// The midpoint variational integrator: the equations of the transcription, order 2.
+    #[default]
+    Midpoint,
+    /// A Galerkin variational integrator with Lobatto points, order 2 × degree.
+    Galerkin {
+        /// Degree of the motion within a step, 1 or more.
+        degree: usize,
+    },
+    /// Implicit Euler, order 1; damps.
+    ImplicitEuler,
+    /// The generalised-α method for constrained systems, order 2; damps what is fast.
+    GeneralisedAlpha {
+        /// Factor by which the fastest oscillations shrink in a step, from 0 to 1.
+        spectral_radius: f64,
+    },
+}
+
+impl Integrator {
+    /// The word in files and tables.
+    pub fn name(self) -> String {
+        match self {
+            Self::Midpoint => "midpoint".to_owned(),
+            Self::Galerkin { degree } => format!("galerkin {degree}"),
+            Self::ImplicitEuler => "implicit euler".to_owned(),
+            Self::GeneralisedAlpha { spectral_radius } => {
+                format!("generalised alpha {spectral_radius}")
+            }
+        }
+    }
+}
+
+/// When the tangent of a step is factorised.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Newton {
+    /// In every iteration: few iterations, each with a factorisation.
+    #[default]
+    Full,
+    /// Only where the last factorisation, of an iteration or of a step before, converges too slowly.
+    Reused,
+}
+
+/// The method and how its equations are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Solving {
+    /// The method.
+    pub integrator: Integrator,
+    /// When the tangent is factorised.
+    pub newton: Newton,
+    /// Who factorises it; `None`: whoever is fastest as a rule.
+    pub backend: Option<Backend>,
+}

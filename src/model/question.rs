@@ -1,0 +1,53 @@
+//! What is asked of a system, as far as it decides which effects are called for.
+
+use crate::model::{Coordinates, Quantity};
+use std::collections::BTreeSet;
+
+/// A question to a system.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Question {
+    /// Coordinates; without a choice reduced where the joints form a tree that the reduction knows.
+    pub coordinates: Option<Coordinates>,
+    /// Length of the intervals in ms, about; it scales multipliers.
+    pub interval: f64,
+    /// What can be measured.
+    pub quantities: Vec<Quantity>,
+    /// Whether anything moves: a state of rest has neither inertia nor viscosity.
+    pub of_motion: bool,
+    /// Sources whose voltage is zero all the time.
+    pub silent: BTreeSet<usize>,
+    /// What is spoken of; `None`: anything may be set in motion by hand.
+    pub stirred: Option<Stirred>,
+}
+
+/// Bodies and blocks that a start, a goal or a limit speaks of; all others start at rest in the reference configuration, and
+/// nothing but forces moves them.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Stirred {
+    /// Bodies.
+    pub bodies: BTreeSet<usize>,
+    /// Blocks of the scene.
+    pub solids: BTreeSet<usize>,
+}
+
+impl Question {
+    /// The motion in intervals of about `interval` ms, of which nothing is known: any voltage may act, anything may move.
+    pub fn of_motion(interval: f64) -> Self {
+        Self {
+            coordinates: None,
+            interval,
+            quantities: Vec::new(),
+            of_motion: true,
+            silent: BTreeSet::new(),
+            stirred: None,
+        }
+    }
+
+    /// The state of rest under any voltages.
+    pub fn of_rest() -> Self {
+        Self {
+            of_motion: false,
+            ..Self::of_motion(1.0)
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! Constraints that follow from others: closed loops with more joints than they need, joints written twice.
+
+use crate::functional::Level;
+use crate::model::Model;
+use nalgebra::{DMatrix, DVector};
+
+/// A gradient whose part independent of the others is smaller than this follows from them.
+const DEPENDENT: f64 = 1e-9;
+/// More multipliers than these are not looked at.
+const MANY: usize = 2000;
+
+impl Model {
+    /// Names of constraints whose gradients follow from those before them where z is, in redundant coordinates; the others
+    /// are independent.
+    pub fn redundant_constraints(&self, z: &[f64]) -> Vec<String> {
+        let (action, n) = (&self.action, self.coordinate_count());
+        let m = self.multiplier_names.len();
+        if m == 0 || m > MANY {
+            return Vec::new();
+        }
+        let layout = action.layout();
+        let mut scratch = action.scratch(Level::Hessian);
+        let mut values = vec![0.0; layout.values(1)];
+        let mut instant = action.motion.instant();
+        instant.z.copy_from_slice(z);
+        action.motion.place(&mut instant);
+        action.evaluate_instant(Level::Hessian, &mut instant, &[], &mut scratch);
+        action.pull_back_instant(Level::Hessian, &mut instant, 0, &mut scratch, &mut values);
+        let mut gradients = DMatrix::<f64>::zeros(n, m);
+        for (slot, &(row, col)) in layout.same.entries().iter().enumerate() {
+            if row < n && col >= n {
+                let unit = if self.is_length(row) {
+                    self.length()
+                } else {
+                    1.0
+                };
+                gradients[(row, col - n)] += values[layout.same_at(0) + slot] * unit;
+            }
+        }
+        let names = self.multiplier_names.iter().zip(gradients.column_iter());
+        let mut independent: Vec<DVector<f64>> = Vec::new();
+        let mut redundant = Vec::new();
+        for (name, gradient) in names {
+            let mut rest = gradient.into_owned();
+            rest.try_normalize_mut(0.0);
+            // Once more, for what rounding left of the first time.
+            for _ in 0..2 {
+                for direction in &independent {
+                    let along = direction.dot(&rest);
+                    rest.axpy(-along, direction, 1.0);
+                }
+            }
+            match rest.try_normalize(DEPENDENT) {
+                Some(direction) => independent.push(direction),
+                None => redundant.push(name.clone()),
+            }
+        }
+        redundant
+    }
+}

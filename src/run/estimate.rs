@@ -1,0 +1,194 @@
+//! Errors of discretisation, estimated from what changes when the grid is refined.
+//!
+//! With d the difference between a grid and the one with half its step, errors that fall like hᵖ leave `d/(2ᵖ − 1)` on the
+//! finer grid and `d 2ᵖ/(2ᵖ − 1)` on the coarser one. Three grids show p. The midpoint rule has order two, so a p above two
+//! is chance: a difference counts as no less than a quarter of the one before.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector3;
+
+use crate::dynamics::History;
+use crate::dynamics::trajectory::Trajectory;
+use crate::model::Model;
+use crate::model::system::JointKind;
+
+/// Errors or orders by the name of what is measured.
+pub type Measures = BTreeMap<&'static str, f64>;
+
+/// The measure that a grid has by itself: the motion against the one under the same voltages with half the step.
+pub const RESPONSE: &str = "response";
+
+/// Orders that are believed.
+const ORDERS: [f64; 2] = [0.5, 2.0];
+/// Differences below this are rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// What of a run is compared with the same on another grid, and with the motion at half the step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// The objective; a simulation has none.
+    pub objective: Option<f64>,
+    /// The final time in ms, where it is free.
+    pub duration: Option<f64>,
+    /// Places by instant, in lengths of the system: of the markers, or where there are none of bodies and nodes.
+    pub path: Vec<Vec<Vector3<f64>>>,
+    /// The last instant: joint coordinates (rad, or lengths of the system), directors of bodies.
+    pub end: Vec<f64>,
+    /// Greatest deviation from the motion under the same voltages with half the step; infinite where there is no such motion.
+    pub response: Option<f64>,
+}
+
+impl Sample {
+    /// A motion without objective.
+    pub fn of_motion(model: &Model, history: &History) -> Self {
+        let motion = Trajectory::from_history(model, history);
+        let length = model.length();
+        let of_bodies = model.action.motion.of_bodies;
+        let places = |k: usize| -> Vec<Vector3<f64>> {
+            if !model.markers.is_empty() {
+                return motion.marks[k].iter().map(|x| x / length).collect();
+            }
+            let mut places: Vec<_> = motion.poses[k].iter().map(|p| p.centre / length).collect();
+            let bodies = places.len();
+            let coordinates = history.z[k][of_bodies..].iter();
+            for (value, &(node, axis)) in coordinates.zip(&model.action.motion.of_nodes) {
+                let least = bodies + node + 1;
+                places.resize(least.max(places.len()), Vector3::zeros());
+                places[least - 1][axis] = value / length;
+            }
+            places
+        };
+        let last = history.intervals();
+        let kinds = model
+            .system
+            .joints
+            .iter()
+            .filter(|joint| joint.has_coordinate());
+        let joints = motion.joints[last]
+            .iter()
+            .zip(kinds)
+            .map(|(value, joint)| match joint.kind {
+                JointKind::Prismatic { .. } => value / length,
+                _ => *value,
+            });
+        let directors = motion.poses[last]
+            .iter()
+            .flat_map(|p| p.directors.iter().copied());
+        Self {
+            path: (0..=last).map(places).collect(),
+            end: joints.chain(directors).collect(),
+            ..Self::default()
+        }
+    }
+
+    /// Greatest deviations along the path and at the end from a motion on a grid of so many times the intervals.
+    fn apart(&self, fine: &Self) -> [f64; 2] {
+        let times = (fine.path.len() - 1) / (self.path.len() - 1).max(1);
+        let places = |k: usize| {
+            let both = self.path[k].iter().zip(&fine.path[k * times]);
+            both.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+        };
+        let last = self.path.len() - 1;
+        let end = self.end.iter().zip(&fine.end).map(|(a, b)| (a - b).abs());
+        [
+            (0..=last).map(places).fold(0.0, f64::max),
+            end.fold(places(last), f64::max),
+        ]
+    }
+
+    /// Differences from a finer grid, of objective and duration relative to them.
+    pub fn differences(&self, fine: &Self) -> Measures {
+        let mut out = Measures::new();
+        let relative = |pair: (f64, f64)| match (pair.0 - pair.1).abs() {
+            0.0 => 0.0,
+            apart => apart / pair.0.abs().max(pair.1.abs()),
+        };
+        let objective = self.objective.zip(fine.objective).map(relative);
+        let duration = self.duration.zip(fine.duration).map(relative);
+        let [path, end] = self.apart(fine);
+        out.extend(objective.map(|value| ("objective", value)));
+        out.extend(duration.map(|value| ("duration", value)));
+        out.extend([("path", path), ("end", end)]);
+        out
+    }
+
+    /// Greatest deviation from a motion on a finer grid, along the path and at the end.
+    pub fn deviation(&self, fine: &Self) -> f64 {
+        let [path, end] = self.apart(fine);
+        path.max(end)
+    }
+}
+
+/// Differences from grid to grid, and what they say of the error.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Convergence {
+    /// By grid from the second on, those with the grid before; for [`RESPONSE`] from the first on, its own.
+    differences: BTreeMap<&'static str, Vec<f64>>,
+}
+
+impl Convergence {
+    /// Takes in the next finer grid.
+    pub fn add(&mut self, coarse: Option<&Sample>, fine: &Sample) {
+        let mut new = coarse
+            .map(|coarse| coarse.differences(fine))
+            .unwrap_or_default();
+        new.extend(fine.response.map(|value| (RESPONSE, value)));
+        for (name, value) in new {
+            let list = self.differences.entry(name).or_default();
+            let least = list.last().map_or(0.0, |before| before / 4.0);
+            list.push(if value.is_nan() {
+                f64::INFINITY
+            } else {
+                value.max(least)
+            });
+        }
+    }
+
+    /// Orders that the last three grids show; nothing of a measure that is rounding, or has too few grids.
+    pub fn orders(&self) -> Measures {
+        let order = |list: &Vec<f64>| {
+            let [.., before, last] = list[..] else {
+                return None;
+            };
+            let is_real = before.is_finite() && last.is_finite() && last > ROUNDING;
+            is_real.then(|| (before / last).log2().clamp(ORDERS[0], ORDERS[1]))
+        };
+        let known = self.differences.iter();
+        known
+            .filter_map(|(&name, list)| Some((name, order(list)?)))
+            .collect()
+    }
+
+    /// Errors left on the finest grid, with `assumed` for an order that is not known.
+    pub fn errors(&self, assumed: f64) -> Measures {
+        self.left(assumed, |name, factor| match name {
+            RESPONSE => factor / (factor - 1.0),
+            _ => 1.0 / (factor - 1.0),
+        })
+    }
+
+    /// Errors on the grid before the finest one.
+    pub fn errors_before(&self, assumed: f64) -> Measures {
+        self.left(assumed, |name, factor| match name {
+            RESPONSE => factor * factor / (factor - 1.0),
+            _ => factor / (factor - 1.0),
+        })
+    }
+
+    /// The last differences times `part` of the factor by which errors fall from grid to grid.
+    fn left(&self, assumed: f64, part: impl Fn(&'static str, f64) -> f64) -> Measures {
+        let orders = self.orders();
+        let error = |(&name, list): (&&'static str, &Vec<f64>)| {
+            let order = orders.get(name).copied().unwrap_or(assumed);
+            Some((name, list.last()? * part(name, order.exp2())))
+        };
+        self.differences.iter().filter_map(error).collect()
+    }
+}
+
+/// The measure with the greatest error.
+pub fn greatest(errors: &Measures) -> Option<(&'static str, f64)> {
+    let all = errors.iter().map(|(&name, &value)| (name, value));
+    all.max_by(|a, b| a.1.total_cmp(&b.1))
+}

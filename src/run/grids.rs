@@ -1,0 +1,182 @@
+//! Control problems and simulations on as fine a grid as an accuracy needs.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::Instant;
+
+use crate::control::problem::{Control, Duration, Simulation, Voltages};
+use crate::dynamics::simulate;
+use crate::ipopt::{Iteration, interrupt};
+use crate::model::System;
+use crate::run::accuracy::{Attempt, Refined, Wanted, refine};
+use crate::run::error::RunError;
+use crate::run::estimate::Sample;
+use crate::run::forward::{Simulated, grid, integrate};
+use crate::run::motion;
+use crate::run::optimise::{Allowed, Optimum, optimise};
+
+/// The solver's tolerance as a part of the accuracy asked for, where the problem names no smaller one.
+const SOLVER: f64 = 1e-2;
+/// Order of optimal voltages until three grids show it: switches and the cost of the first and last jump may make it one.
+const OF_CONTROL: f64 = 1.0;
+/// Order of the midpoint rule under voltages that are constant over its steps.
+const OF_MOTION: f64 = 2.0;
+
+/// Solves a control problem on its own grid, then on finer ones, each from the solution before, until every error is
+/// estimated below what is wanted; or estimates the error on its own grid. `observer` sees the number of intervals and every
+/// iteration.
+///
+/// # Errors
+/// As of [`optimise`].
+pub fn optimise_to(
+    file: &Path,
+    system: &System,
+    control: &Control,
+    wanted: Wanted,
+    allowed: Allowed,
+    observer: &mut dyn FnMut(usize, &Iteration) -> ControlFlow<()>,
+) -> Result<Refined<Optimum>, RunError> {
+    let began = Instant::now();
+    let left = || {
+        allowed
+            .seconds
+            .map(|s| (s - began.elapsed().as_secs_f64()).max(0.0))
+    };
+    refine(
+        wanted,
+        OF_CONTROL,
+        || stop(left()),
+        |times, before: Option<&Optimum>| {
+            let mut control = control.clone();
+            control.intervals *= times;
+            if let Wanted::Below(error) = wanted {
+                control.solver.tolerance = control.solver.tolerance.min(SOLVER * error);
+            }
+            let seconds = left();
+            let limits = Allowed { seconds, ..allowed };
+            let earlier = before.map(|optimum| &optimum.motion);
+            let run = optimise(file, system, &control, earlier, limits, &mut |iteration| {
+                observer(control.intervals, iteration)
+            })?;
+            let is_complete = run.is_solved();
+            let sample = match is_complete {
+                true => sample(&run, matches!(control.duration, Duration::Free { .. })),
+                false => Sample::default(),
+            };
+            Ok(Attempt {
+                sample,
+                intervals: control.intervals,
+                iterations: run.solution.iterations.len().saturating_sub(1),
+                variables: run.solution.x.len(),
+                status: run.solution.status.word(),
+                is_complete,
+                run,
+            })
+        },
+    )
+}
+
+/// Simulates with the step of the task, then with half of it and so on, until every error is estimated below what is wanted;
+/// or estimates the error with its own step. `observer` sees the number of steps and each step.
+///
+/// # Errors
+/// As of [`integrate`].
+pub fn integrate_to(
+    file: &Path,
+    system: &System,
+    task: &Simulation,
+    wanted: Wanted,
+    seconds: Option<f64>,
+    observer: &mut dyn FnMut(usize, usize) -> ControlFlow<()>,
+) -> Result<Refined<Simulated>, RunError> {
+    let began = Instant::now();
+    let left = || seconds.map(|s| s - began.elapsed().as_secs_f64());
+    let (first, _) = grid(task);
+    // Sampled voltages may change within a step.
+    let order = match task.voltages {
+        Voltages::Constant(_) => OF_MOTION,
+        Voltages::Sampled { .. } => OF_CONTROL,
+    };
+    refine(
+        wanted,
+        order,
+        || stop(left()),
+        |times, _| {
+            let steps = first * times;
+            let task = Simulation {
+                step: task.duration / steps as f64,
+                ..task.clone()
+            };
+            let run = integrate(file, system, &task, |step| observer(steps, step))?;
+            let is_complete = run.failure.is_none() && run.history.intervals() == steps;
+            let status = match (&run.failure, stop(left())) {
+                _ if is_complete => "simulated",
+                (Some(_), _) => "step_failed",
+                (None, stopped) => stopped.unwrap_or("stopped"),
+            };
+            Ok(Attempt {
+                sample: match is_complete {
+                    true => Sample::of_motion(&run.model, &run.history),
+                    false => Sample::default(),
+                },
+                intervals: run.history.intervals(),
+                iterations: run.history.report.iterations,
+                variables: steps * run.model.action.motion.unknowns(),
+                status,
+                is_complete,
+                run,
+            })
+        },
+    )
+}
+
+/// Why nothing more may be begun.
+fn stop(seconds: Option<f64>) -> Option<&'static str> {
+    match seconds {
+        _ if interrupt::requested() => Some("interrupted"),
+        Some(seconds) if seconds <= 0.0 => Some("time_limit"),
+        _ => None,
+    }
+}
+
+/// What is compared of an optimum.
+fn sample(optimum: &Optimum, is_free: bool) -> Sample {
+    let kept = &optimum.motion;
+    let sample = Sample {
+        objective: Some(optimum.solution.objective),
+        duration: is_free.then(|| kept.times[kept.intervals()]),
+        ..Sample::of_motion(&optimum.model, &motion::history(&optimum.model, kept))
+    };
+    Sample {
+        response: Some(response(optimum, &sample)),
+        ..sample
+    }
+}
+
+/// Deviation of an optimal motion from the one under its voltages with half the step; infinite where that ends early.
+fn response(optimum: &Optimum, optimal: &Sample) -> f64 {
+    let (model, kept) = (&optimum.model, &optimum.motion);
+    let n = kept.intervals();
+    let h = kept.times[n] / n as f64;
+    let scalars = |from: f64, to: f64| {
+        let k = (0.5 * (from + to) / h) as usize;
+        model.scalars(&kept.voltages[k.min(n - 1)])
+    };
+    let start = &optimum.boundary.start;
+    let (history, failure) =
+        simulate(
+            model,
+            start,
+            0.5 * h,
+            2 * n,
+            scalars,
+            |_| match interrupt::requested() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            },
+        );
+    match failure.is_none() && history.intervals() == 2 * n {
+        true => optimal.deviation(&Sample::of_motion(model, &history)),
+        false => f64::INFINITY,
+    }
+}

@@ -1,0 +1,115 @@
+//! A study as it is written: the serde types of the study file.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// Overrides by their place in the problem, or in its scene after `scene.`: `"control.intervals": 80`.
+pub type ChangesSpec = BTreeMap<String, Value>;
+
+/// A study: one question asked in several ways, each ever finer, to see what accuracy costs in time.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StudySpec {
+    /// JSON Schema of this file, for editors.
+    #[serde(rename = "$schema", default)]
+    #[expect(dead_code, reason = "read by editors only")]
+    pub(crate) schema: Option<String>,
+    /// Title of the page.
+    pub title: String,
+    /// What is compared and why, for the page.
+    #[serde(default)]
+    pub about: Option<String>,
+    /// Path of the problem file, relative to this file.
+    pub problem: String,
+    /// Overrides of all points.
+    #[serde(default)]
+    pub set: ChangesSpec,
+    /// The methods that are compared, a curve each.
+    pub methods: Vec<MethodSpec>,
+    /// What is refined from point to point; a method may refine something else.
+    #[serde(default)]
+    pub refine: Option<RefineSpec>,
+    /// Whose limit errors are measured against; each method has its own where not written.
+    #[serde(default)]
+    pub reference: Option<ReferenceSpec>,
+    /// The markers whose places are compared; all of them where not written.
+    #[serde(default)]
+    pub markers: Option<Vec<String>>,
+    /// What is measured; all that there is of the kind of problem where not written.
+    #[serde(default)]
+    pub measures: Option<Vec<MeasureSpec>>,
+    /// How often each point is timed, 5 times or more; 5 where not written.
+    #[serde(default)]
+    pub runs: Option<usize>,
+}
+
+/// A way to answer the question.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MethodSpec {
+    /// Name in legends and tables.
+    pub name: String,
+    /// Path of another problem file, relative to the study.
+    #[serde(default)]
+    pub problem: Option<String>,
+    /// Overrides of its points, after those of all points.
+    #[serde(default)]
+    pub set: ChangesSpec,
+    /// What it refines, in place of what the study refines.
+    #[serde(default)]
+    pub refine: Option<RefineSpec>,
+}
+
+/// What is refined: one value of each override per point, the coarsest first.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RefineSpec {
+    /// What it is called: `intervals`, `step`, `elements across`.
+    pub name: String,
+    /// Lists of values by their place, as long as each other, after all other overrides.
+    pub set: BTreeMap<String, Vec<Value>>,
+    /// Fineness of each point: growing, such as numbers of intervals, or falling, such as steps. Where not written, the
+    /// values of the one place, if these are numbers or quantities of one unit.
+    #[serde(default)]
+    pub sizes: Option<Vec<f64>>,
+}
+
+/// Whose limit errors are measured against.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ReferenceSpec {
+    /// Name of the method.
+    pub method: String,
+    /// Points of the method that are run for the reference alone, and not timed; its points in the study where not written.
+    #[serde(default)]
+    pub refine: Option<RefineSpec>,
+}
+
+/// What is measured of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MeasureSpec {
+    /// Place of the markers at the end of a motion.
+    End,
+    /// Places of the markers at the instants that all points have in common.
+    Path,
+    /// Place of the markers at rest.
+    Place,
+    /// Objective of an optimal control problem.
+    Objective,
+    /// Distance of the markers at the end from where the optimal voltages bring them on a grid 16 times finer.
+    ResimulatedEnd,
+    /// The same at all instants.
+    ResimulatedPath,
+    /// Greatest change of the energy, what was dissipated included, relative to the greatest kinetic energy; under constant
+    /// voltages.
+    EnergyBalance,
+    /// Its mean over the last quarter less that over the first, relative to the greatest kinetic energy.
+    EnergyDrift,
+    /// Greatest violation of a constraint that the coordinates leave open.
+    ConstraintViolation,
+    /// Greatest violation of an equation or limit that the solver left.
+    Infeasibility,
+}

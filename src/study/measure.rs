@@ -1,0 +1,210 @@
+//! What is measured of a point, how it is called, and which points have it.
+
+use serde::Serialize;
+
+use crate::control::problem::{Task, Voltages};
+use crate::model::{Coordinates, Model};
+use crate::scene::Loaded;
+use crate::scene::spec_study::MeasureSpec;
+
+/// What the problems of a study ask.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Asked {
+    /// Optimal voltages.
+    Control,
+    /// A motion under given voltages.
+    Motion,
+    /// A static equilibrium.
+    Rest,
+}
+
+impl Asked {
+    /// In messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Control => "a control problem",
+            Self::Motion => "a simulation",
+            Self::Rest => "an equilibrium",
+        }
+    }
+}
+
+/// What is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Measure {
+    /// Place of the markers at the end, in mm.
+    End,
+    /// Places of the markers at the instants that all points have in common, in mm.
+    Path,
+    /// Place of the markers at rest, in mm.
+    Place,
+    /// Objective.
+    Objective,
+    /// Distance at the end from the motion on a finer grid under the optimal voltages, in mm.
+    ResimulatedEnd,
+    /// The same at all instants, in mm.
+    ResimulatedPath,
+    /// Greatest change of the energy, relative to the greatest kinetic energy.
+    EnergyBalance,
+    /// Trend of the energy, relative to the greatest kinetic energy.
+    EnergyDrift,
+    /// Greatest violation of a constraint that the coordinates leave open.
+    ConstraintViolation,
+    /// Greatest violation that the solver left.
+    Infeasibility,
+}
+
+impl From<MeasureSpec> for Measure {
+    fn from(spec: MeasureSpec) -> Self {
+        match spec {
+            MeasureSpec::End => Self::End,
+            MeasureSpec::Path => Self::Path,
+            MeasureSpec::Place => Self::Place,
+            MeasureSpec::Objective => Self::Objective,
+            MeasureSpec::ResimulatedEnd => Self::ResimulatedEnd,
+            MeasureSpec::ResimulatedPath => Self::ResimulatedPath,
+            MeasureSpec::EnergyBalance => Self::EnergyBalance,
+            MeasureSpec::EnergyDrift => Self::EnergyDrift,
+            MeasureSpec::ConstraintViolation => Self::ConstraintViolation,
+            MeasureSpec::Infeasibility => Self::Infeasibility,
+        }
+    }
+}
+
+/// How an error is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// In mm, and in m in `study.json`.
+    Length,
+    /// As a number.
+    Relative,
+}
+
+impl Unit {
+    /// Behind a name in tables and figures.
+    pub fn suffix(self) -> &'static str {
+        match self {
+            Self::Length => " [mm]",
+            Self::Relative => "",
+        }
+    }
+
+    /// A number of `study.json` for one of tables and figures.
+    pub fn to_si(self, value: f64) -> f64 {
+        match self {
+            Self::Length => value / 1e3,
+            Self::Relative => value,
+        }
+    }
+}
+
+impl Measure {
+    /// All of them, in the order of tables and pages.
+    pub const ALL: [Self; 10] = [
+        Self::End,
+        Self::Path,
+        Self::Place,
+        Self::Objective,
+        Self::ResimulatedEnd,
+        Self::ResimulatedPath,
+        Self::EnergyBalance,
+        Self::EnergyDrift,
+        Self::ConstraintViolation,
+        Self::Infeasibility,
+    ];
+
+    /// Word in files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::End => "end",
+            Self::Path => "path",
+            Self::Place => "place",
+            Self::Objective => "objective",
+            Self::ResimulatedEnd => "resimulated_end",
+            Self::ResimulatedPath => "resimulated_path",
+            Self::EnergyBalance => "energy_balance",
+            Self::EnergyDrift => "energy_drift",
+            Self::ConstraintViolation => "constraint_violation",
+            Self::Infeasibility => "infeasibility",
+        }
+    }
+
+    /// Head of a column.
+    pub fn head(self) -> String {
+        format!("{}{}", self.key().replace('_', " "), self.unit().suffix())
+    }
+
+    /// Label of an axis, without the unit.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::End => "error of the place at the end",
+            Self::Path => "greatest error along the path",
+            Self::Place => "error of the place at rest",
+            Self::Objective => "relative error of the objective",
+            Self::ResimulatedEnd => "distance at the end when simulated 16 times finer",
+            Self::ResimulatedPath => "greatest distance when simulated 16 times finer",
+            Self::EnergyBalance => "greatest change of the energy",
+            Self::EnergyDrift => "drift of the energy",
+            Self::ConstraintViolation => "violation of the constraints",
+            Self::Infeasibility => "violation that the solver left",
+        }
+    }
+
+    /// In what it is told.
+    pub fn unit(self) -> Unit {
+        match self {
+            Self::End | Self::Path | Self::Place | Self::ResimulatedEnd | Self::ResimulatedPath => {
+                Unit::Length
+            }
+            _ => Unit::Relative,
+        }
+    }
+
+    /// Whether it is an error against a reference; the others are errors by themselves.
+    pub fn has_reference(self) -> bool {
+        matches!(self, Self::End | Self::Path | Self::Place | Self::Objective)
+    }
+
+    /// Whether it falls with a power of what is refined; what a solver left of its equations does not.
+    pub fn has_order(self) -> bool {
+        !matches!(self, Self::ConstraintViolation | Self::Infeasibility)
+    }
+
+    /// Numbers that make one place of it.
+    pub fn width(self) -> usize {
+        match self {
+            Self::End | Self::Path | Self::Place => 3,
+            _ => 1,
+        }
+    }
+}
+
+/// What there is to measure of points: a violation needs constraints that are left open, an energy that stays the same
+/// needs constant voltages, a place a marker.
+pub fn available<'a>(
+    asked: Asked,
+    points: impl Iterator<Item = &'a Loaded> + Clone,
+) -> Vec<Measure> {
+    let places = points.clone().all(|point| !point.system.markers.is_empty());
+    let conserved = points.clone().all(|point| match &point.task {
+        Task::Simulate(task) => matches!(task.voltages, Voltages::Constant(_)),
+        _ => false,
+    });
+    let open = points.clone().any(|point| match &point.task {
+        Task::Simulate(task) => {
+            Model::choose(&point.system, task.coordinates) == Ok(Coordinates::Redundant)
+        }
+        _ => false,
+    });
+    let is_there = |measure: &Measure| match measure {
+        Measure::End | Measure::Path => asked != Asked::Rest && places,
+        Measure::Place => asked == Asked::Rest && places,
+        Measure::ResimulatedEnd | Measure::ResimulatedPath => asked == Asked::Control && places,
+        Measure::Objective | Measure::Infeasibility => asked == Asked::Control,
+        Measure::EnergyBalance | Measure::EnergyDrift => conserved,
+        Measure::ConstraintViolation => open,
+    };
+    Measure::ALL.into_iter().filter(is_there).collect()
+}

@@ -1,0 +1,141 @@
+//! What accuracy costs in time: variants of one problem, timed and measured against what ever finer ones converge to.
+//!
+//! - `read`: the study file and all its problems; `measure`: what is measured of them.
+//! - `outcome`, `schedule`: one run, and all of them in rounds.
+//! - `limit`, `compare`: observed orders and Richardson's limits; errors of all points.
+//! - `table`, `diagram`, `record`, `page`: what is told.
+
+pub mod compare;
+mod diagram;
+pub mod limit;
+pub mod measure;
+pub mod outcome;
+mod page;
+pub mod read;
+mod record;
+pub mod schedule;
+mod table;
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use crate::ipopt;
+use crate::report::atomic;
+use crate::report::origin::Origin;
+use crate::run::{RunError, Shown, Told, make_folder};
+use crate::study::compare::{Judged, judge, moved_marker};
+use crate::study::measure::Asked;
+use crate::study::read::{Study, read_study};
+use crate::study::schedule::{Results, run_all};
+
+/// A command on a study file.
+#[derive(Clone, Debug)]
+pub struct StudyRequest {
+    /// The command as typed.
+    pub command: String,
+    /// The study file as typed.
+    pub input: PathBuf,
+    /// Folder for the results; `results/studies/<name of the study>` where not given.
+    pub output: Option<PathBuf>,
+    /// Timed runs of each point, in place of those of the file.
+    pub runs: Option<usize>,
+    /// Whether progress is shown.
+    pub progress: Shown,
+}
+
+impl StudyRequest {
+    /// Folder for the results.
+    pub fn folder(&self) -> PathBuf {
+        self.output.clone().unwrap_or_else(|| {
+            let stem = self.input.file_stem().unwrap_or_default();
+            PathBuf::from("results/studies").join(stem)
+        })
+    }
+}
+
+/// Runs a study and writes its folder; one that Ctrl-C ends early is kept as far as it went.
+///
+/// # Errors
+/// The study or one of its problems is wrong, or the results cannot be written.
+pub fn study(request: &StudyRequest) -> Result<Told, RunError> {
+    let began = Instant::now();
+    let study = read_study(&request.input)?;
+    let folder = request.folder();
+    make_folder(&folder)?;
+    let runs = request.runs.unwrap_or(study.runs);
+    let results = run_all(&study, runs, request.progress);
+    if let Some((name, apart)) = moved_marker(&study, &results) {
+        return Err(RunError::Problem {
+            file: request.input.clone(),
+            place: "markers".to_owned(),
+            reason: format!(
+                "{name:?} is {apart:.3} mm elsewhere in another scene, as the nearest node of a mesh; choose a place that is \
+                 a node of each of them"
+            ),
+        });
+    }
+    let judged = judge(&study, &results);
+    let table = write(&folder, request, &study, &results, &judged)?;
+    Ok(told(&results, &table, &folder, began))
+}
+
+/// Writes all files; the table to read.
+fn write(
+    folder: &Path,
+    request: &StudyRequest,
+    study: &Study,
+    results: &Results<'_>,
+    judged: &[Judged],
+) -> Result<String, RunError> {
+    let origin = Origin {
+        command: request.command.clone(),
+        input: request.input.display().to_string(),
+        version: Origin::program(),
+        ipopt: match study.asked {
+            Asked::Control => ipopt::VERSION.to_owned(),
+            Asked::Motion | Asked::Rest => String::new(),
+        },
+    };
+    let put = |name: &str, text: &str| atomic::write(&folder.join(name), text.as_bytes());
+    let mut figures = Vec::new();
+    for judged in judged {
+        let name = format!("{}.svg", judged.measure.key());
+        let svg = diagram::svg(study, results, judged, &origin);
+        if let Some(svg) = &svg {
+            put(&name, svg)?;
+        }
+        figures.push(svg.map(|_| name));
+    }
+    let text = table::text(study, results, judged);
+    put("table.txt", &text)?;
+    put("table.csv", &table::csv(study, results, judged, &origin))?;
+    let page = page::markdown(study, results, judged, &figures, &text, &origin);
+    put("study.md", &page)?;
+    record::write(&folder.join("study.json"), request, study, results, judged)?;
+    Ok(text)
+}
+
+fn told(results: &Results<'_>, table: &str, folder: &Path, began: Instant) -> Told {
+    let points = || results.methods.iter().flatten();
+    let solved = points().filter(|done| done.first.is_solved).count();
+    let failed = points().filter(|done| !done.first.is_solved);
+    let mut notes: Vec<String> = failed
+        .filter_map(|done| {
+            let why = done.first.message.as_ref()?;
+            Some(format!("{}: {why}", done.point.set.join(", ")))
+        })
+        .collect();
+    if results.is_interrupted {
+        notes.push("interrupted; the files hold the results up to then".to_owned());
+    }
+    Told {
+        is_solved: solved > 0 && !results.is_interrupted,
+        result: format!(
+            "{table}{solved} of {} points solved, {:.1} s, {}",
+            points().count(),
+            began.elapsed().as_secs_f64(),
+            folder.display()
+        ),
+        notes,
+    }
+}

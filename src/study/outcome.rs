@@ -1,0 +1,309 @@
+//! One run of a point: the problem solved in memory, by the clock, and what is seen of the answer.
+
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use nalgebra::Vector3;
+
+use crate::control::problem::{AtRest, Control, Simulation, Task, Voltages};
+use crate::dynamics::trajectory::{Observations, Trajectory};
+use crate::dynamics::{EquilibriumError, equilibrium, observations, simulate};
+use crate::ipopt::interrupt;
+use crate::model::Model;
+use crate::run::{Allowed, Optimum, RunError, Simulated, integrate, optimise, trajectory};
+use crate::study::measure::Measure;
+use crate::study::read::Point;
+
+/// How much finer the grid is on which optimal voltages are put to the test.
+pub const FINER: usize = 16;
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ended {
+    /// A word: `solved`, `simulated`, `at_rest`, or why there is no answer.
+    pub status: &'static str,
+    /// The same in words, where there is no answer.
+    pub message: Option<String>,
+    /// Seconds of set-up and solution, without reading and measuring.
+    pub seconds: f64,
+    /// Whether there is an answer.
+    pub is_solved: bool,
+}
+
+/// What is seen of an answer.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Seen {
+    /// Instants as parts of the duration.
+    pub instants: Vec<f64>,
+    /// Places of the markers of the study at the instants, in mm.
+    pub places: Vec<Vec<Vector3<f64>>>,
+    /// Where the markers are in the reference configuration, in mm.
+    pub reference: Vec<Vector3<f64>>,
+    /// What is one number: the objective, and errors that need no reference.
+    pub numbers: BTreeMap<Measure, f64>,
+    /// Iterations of the solver, or of Newton's method over all steps.
+    pub iterations: usize,
+}
+
+/// The status of a run that Ctrl-C ended.
+pub const INTERRUPTED: &str = "interrupted";
+
+/// Runs a point once; what is seen of an answer is looked at where `markers` are named, after the clock has stopped.
+pub fn run(point: &Point, markers: Option<&[String]>) -> (Ended, Option<Seen>) {
+    let began = Instant::now();
+    match &point.loaded.task {
+        Task::Control(task) => control(point, task, markers, began),
+        Task::Simulate(task) => motion(point, task, markers, began),
+        Task::Equilibrium(task) => rest(point, task, markers, began),
+    }
+}
+
+fn control(
+    point: &Point,
+    task: &Control,
+    markers: Option<&[String]>,
+    began: Instant,
+) -> (Ended, Option<Seen>) {
+    let system = &point.loaded.system;
+    let mut on = |_: &_| ControlFlow::Continue(());
+    let found = optimise(
+        &point.problem,
+        system,
+        task,
+        None,
+        Allowed::default(),
+        &mut on,
+    );
+    let seconds = began.elapsed().as_secs_f64();
+    let optimum = match found {
+        Ok(optimum) => optimum,
+        Err(error) => return (refused(&error, seconds), None),
+    };
+    let status = optimum.solution.status;
+    let is_solved = optimum.is_solved();
+    let ended = Ended {
+        status: status.word(),
+        message: (!is_solved).then(|| "the solver found no solution".to_owned()),
+        seconds,
+        is_solved,
+    };
+    let seen = markers
+        .filter(|_| is_solved)
+        .map(|names| of_optimum(&optimum, names));
+    (ended, seen)
+}
+
+fn of_optimum(optimum: &Optimum, names: &[String]) -> Seen {
+    let Optimum {
+        model,
+        boundary,
+        motion,
+        solution,
+        infeasibility,
+        ..
+    } = optimum;
+    let n = motion.intervals();
+    let h = motion.times[n] / n as f64;
+    let mut seen = Seen {
+        iterations: solution.iterations.len().saturating_sub(1),
+        ..Seen::of(model, &trajectory(model, motion), names)
+    };
+    let mut number = |measure, value| seen.numbers.insert(measure, value);
+    number(Measure::Objective, solution.objective);
+    number(Measure::Infeasibility, *infeasibility);
+    let fine = h / FINER as f64;
+    let scalars = |from: f64, to: f64| {
+        let k = (0.5 * (from + to) / h) as usize;
+        model.scalars(&motion.voltages[k.min(n - 1)])
+    };
+    let (history, failure) = simulate(model, &boundary.start, fine, FINER * n, scalars, |_| {
+        ControlFlow::Continue(())
+    });
+    if failure.is_none() {
+        let again = Seen::of(model, &Trajectory::from_history(model, &history), names);
+        let apart = |k: usize| furthest(&seen.places[k], &again.places[FINER * k]);
+        let distances: Vec<f64> = (0..=n).map(apart).collect();
+        let greatest = distances.iter().fold(0.0_f64, |m, d| m.max(*d));
+        seen.numbers.insert(Measure::ResimulatedEnd, distances[n]);
+        seen.numbers.insert(Measure::ResimulatedPath, greatest);
+    }
+    seen
+}
+
+fn motion(
+    point: &Point,
+    task: &Simulation,
+    markers: Option<&[String]>,
+    began: Instant,
+) -> (Ended, Option<Seen>) {
+    let mut interrupted = false;
+    let found = integrate(&point.problem, &point.loaded.system, task, |_| {
+        interrupted = interrupt::requested();
+        match interrupted {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    });
+    let seconds = began.elapsed().as_secs_f64();
+    let simulated = match found {
+        Ok(simulated) => simulated,
+        Err(error) => return (refused(&error, seconds), None),
+    };
+    let is_solved = simulated.failure.is_none() && !interrupted;
+    let ended = Ended {
+        status: match &simulated.failure {
+            Some(_) => "step_failed",
+            None if interrupted => INTERRUPTED,
+            None => "simulated",
+        },
+        message: simulated.failure.as_ref().map(ToString::to_string),
+        seconds,
+        is_solved,
+    };
+    let conservative = matches!(task.voltages, Voltages::Constant(_));
+    let look = |names: &[String]| of_motion(&simulated, conservative, names);
+    (ended, markers.filter(|_| is_solved).map(look))
+}
+
+fn of_motion(simulated: &Simulated, conservative: bool, names: &[String]) -> Seen {
+    let Simulated { model, history, .. } = simulated;
+    let mut seen = Seen {
+        iterations: history.report.iterations,
+        ..Seen::of(model, &Trajectory::from_history(model, history), names)
+    };
+    let observed = observations(model, history);
+    if let Some(violations) = column(&observed, "constraint_violation") {
+        let greatest = violations.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        seen.numbers.insert(Measure::ConstraintViolation, greatest);
+    }
+    if let Some([balance, drift]) = energy(&observed).filter(|_| conservative) {
+        seen.numbers.insert(Measure::EnergyBalance, balance);
+        seen.numbers.insert(Measure::EnergyDrift, drift);
+    }
+    seen
+}
+
+fn column<'a>(observed: &'a Observations, name: &str) -> Option<&'a [f64]> {
+    let column = observed.columns.iter().find(|c| c.name == name)?;
+    Some(&column.values)
+}
+
+/// Greatest change of the energy with what was dissipated, and how much its mean over the last quarter of the instants differs
+/// from that over the first, both relative to the greatest kinetic energy; none of a system that never moves.
+///
+/// Energies are those in the middle of an interval, so that half of what the interval dissipates belongs to them.
+fn energy(observed: &Observations) -> Option<[f64; 2]> {
+    let total = column(observed, "total_energy")?;
+    let kinetic = column(observed, "kinetic_energy")?;
+    let dissipated = column(observed, "dissipated_energy");
+    let sum = |k: usize| {
+        let until = |k: usize| dissipated.map_or(0.0, |d| d[k]);
+        total[k] + 0.5 * (until(k) + until(k.saturating_sub(1)))
+    };
+    let sums: Vec<f64> = (0..total.len()).map(sum).collect();
+    let scale = kinetic.iter().fold(0.0_f64, |m, e| m.max(*e));
+    let quarter = (sums.len() / 4).max(1);
+    let mean = |part: &[f64]| part.iter().map(|e| e - sums[0]).sum::<f64>() / part.len() as f64;
+    let drift = mean(&sums[sums.len() - quarter..]) - mean(&sums[..quarter]);
+    let change = sums.iter().fold(0.0_f64, |m, e| m.max((e - sums[0]).abs()));
+    (scale > 0.0).then(|| [change / scale, drift.abs() / scale])
+}
+
+fn rest(
+    point: &Point,
+    task: &AtRest,
+    markers: Option<&[String]>,
+    began: Instant,
+) -> (Ended, Option<Seen>) {
+    let system = point.loaded.system.clone();
+    let failed = |status, message, began: Instant| Ended {
+        status,
+        message: Some(message),
+        seconds: began.elapsed().as_secs_f64(),
+        is_solved: false,
+    };
+    let model = match Model::new(system, task.coordinates, 1.0, &[]) {
+        Ok(model) => model,
+        Err(error) => return (failed(REFUSED, error.to_string(), began), None),
+    };
+    let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+    let found = equilibrium(&model, &zero, &model.scalars(&task.voltages));
+    let seconds = began.elapsed().as_secs_f64();
+    let found = match found {
+        Ok(found) => found,
+        Err(error) => {
+            let status = match &error {
+                EquilibriumError::LimitPoint { kind, .. } => {
+                    kind.map_or("limit_point", |kind| kind.key())
+                }
+                _ => "no_equilibrium",
+            };
+            return (failed(status, error.to_string(), began), None);
+        }
+    };
+    let ended = Ended {
+        status: "at_rest",
+        message: None,
+        seconds,
+        is_solved: true,
+    };
+    let look = |names: &[String]| Seen {
+        instants: vec![0.0],
+        places: vec![marks(&model, &found.z, names)],
+        reference: marks(&model, &zero, names),
+        iterations: found.iterations,
+        numbers: BTreeMap::new(),
+    };
+    (ended, markers.map(look))
+}
+
+/// The status of a point whose model, start or goal does not exist.
+const REFUSED: &str = "refused";
+
+fn refused(error: &RunError, seconds: f64) -> Ended {
+    Ended {
+        status: REFUSED,
+        message: Some(error.to_string()),
+        seconds,
+        is_solved: false,
+    }
+}
+
+impl Seen {
+    /// Instants and places of a motion.
+    fn of(model: &Model, motion: &Trajectory, names: &[String]) -> Self {
+        let duration = motion.times[motion.intervals()];
+        let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+        let list = markers(model, names);
+        let of = |row: &Vec<Vector3<f64>>| list.iter().map(|&m| row[m]).collect();
+        Self {
+            instants: motion.times.iter().map(|t| t / duration).collect(),
+            places: motion.marks.iter().map(of).collect(),
+            reference: marks(model, &zero, names),
+            ..Self::default()
+        }
+    }
+}
+
+/// Indices of the markers with these names.
+fn markers(model: &Model, names: &[String]) -> Vec<usize> {
+    let all = &model.system.markers;
+    let index = |name: &String| all.iter().position(|marker| marker.name == *name);
+    names.iter().filter_map(index).collect()
+}
+
+/// Places of the markers with these names at coordinates z.
+fn marks(model: &Model, z: &[f64], names: &[String]) -> Vec<Vector3<f64>> {
+    let mut instant = model.action.motion.instant();
+    instant.z[..z.len()].copy_from_slice(z);
+    model.action.motion.place(&mut instant);
+    let all: Vec<_> = model.markers.iter().map(|&v| instant.x[v]).collect();
+    markers(model, names).into_iter().map(|m| all[m]).collect()
+}
+
+/// Greatest distance of a place from its like.
+fn furthest(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
+    let pairs = a.iter().zip(b);
+    pairs.fold(0.0, |m, (a, b)| m.max((a - b).norm()))
+}

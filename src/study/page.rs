@@ -1,0 +1,248 @@
+//! `study.md`: the figures of a study and what they mean.
+
+use std::fmt::Write;
+
+use crate::report::origin::Origin;
+use crate::study::compare::Judged;
+use crate::study::limit::How;
+use crate::study::measure::Unit;
+use crate::study::read::Study;
+use crate::study::record::{command, machine, of_reference};
+use crate::study::schedule::{Done, Results};
+use crate::study::table::significant;
+
+/// Accuracies that are priced, as parts of the scale of a measure.
+const ACCURACIES: [f64; 3] = [1e-2, 1e-4, 1e-6];
+
+/// The page; `figures` are the names of those written, by measure.
+pub(super) fn markdown(
+    study: &Study,
+    results: &Results<'_>,
+    judged: &[Judged],
+    figures: &[Option<String>],
+    table: &str,
+    origin: &Origin,
+) -> String {
+    let mut page = format!("# {}\n\n", study.title);
+    let mut add = |text: String| {
+        page.push_str(text.trim_end());
+        page.push_str("\n\n");
+    };
+    if let Some(about) = &study.about {
+        add(about.clone());
+    }
+    add(how_it_was_run(results));
+    if let Some(prices) = prices(study, results, judged) {
+        add(prices);
+    }
+    for (judged, figure) in judged.iter().zip(figures) {
+        add(section(study, judged, figure.as_deref()));
+    }
+    add(format!("## All points\n\n```text\n{}```", table));
+    add(
+        "Seconds are the median of the timed runs. An error written `<` is below what the limit itself is known to; `–` is \
+         not known. `table.csv` and `study.json` have the input, the quartiles and every run of each point."
+            .to_owned(),
+    );
+    if let Some(failed) = failed(study, results) {
+        add(failed);
+    }
+    add(again(study, results));
+    add(format!("<sub>{}</sub>", origin.line().replace('<', "&lt;")));
+    format!("{}\n", page.trim_end())
+}
+
+fn how_it_was_run(results: &Results<'_>) -> String {
+    let counts = || {
+        let points = results.methods.iter().flatten();
+        points
+            .filter(|done| done.first.is_solved)
+            .map(|done| done.seconds.len())
+    };
+    let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
+    let runs = match least == most {
+        true => format!("{most}"),
+        false => format!("{least} to {most}"),
+    };
+    let machine = machine();
+    let cores = match machine.cores {
+        1 => "1 core".to_owned(),
+        cores => format!("{cores} cores"),
+    };
+    let on = machine
+        .processor
+        .map_or(cores.clone(), |name| format!("{name}, {cores}"));
+    let early = match results.is_interrupted {
+        true => " Interrupted: these are the results up to then.",
+        false => "",
+    };
+    format!(
+        "{runs} timed runs of each point, round after round, on {on}; reading files and measuring is not timed.{early}"
+    )
+}
+
+/// What each accuracy costs by each method.
+fn prices(study: &Study, results: &Results<'_>, judged: &[Judged]) -> Option<String> {
+    let mut rows = String::new();
+    for judged in judged
+        .iter()
+        .filter(|judged| judged.measure.has_reference())
+    {
+        for accuracy in ACCURACIES {
+            let wanted = accuracy * judged.scale;
+            let costs: Vec<Option<f64>> = (0..study.methods.len())
+                .map(|m| {
+                    // What is below the uncertainty of the reference may be as large as that.
+                    let error = |k: usize| Some(judged.errors[m][k]?.max(judged.floors[m]));
+                    cost(&results.methods[m], error, wanted)
+                })
+                .collect();
+            let Some(least) = costs.iter().flatten().copied().reduce(f64::min) else {
+                continue;
+            };
+            let cells = costs.iter().map(|cost| match cost {
+                None => "–".to_owned(),
+                Some(seconds) if *seconds == least && costs.len() > 1 => {
+                    format!("**{}**", significant(*seconds, 3))
+                }
+                Some(seconds) => significant(*seconds, 3),
+            });
+            let cells: Vec<_> = cells.collect();
+            let told = match judged.measure.unit() {
+                Unit::Length => format!("{accuracy:.0e}, {}", length(wanted)),
+                Unit::Relative => format!("{accuracy:.0e}"),
+            };
+            writeln!(
+                rows,
+                "| {} | {told} | {} |",
+                judged.measure.label(),
+                cells.join(" | ")
+            )
+            .expect("writing to a string does not fail");
+        }
+    }
+    let names: Vec<_> = study.methods.iter().map(|m| m.name.as_str()).collect();
+    (!rows.is_empty()).then(|| {
+        format!(
+            "## What accuracy costs\n\nSeconds, between points by a straight line in the diagram; the cheapest is bold, `–` was not \
+             reached. Accuracies of places are relative to the way of the markers.\n\n| error | at most | {} |\n|:--|:--|{}\n{rows}",
+            names.join(" | "),
+            "--:|".repeat(names.len())
+        )
+    })
+}
+
+/// Seconds until errors are `wanted`: between the first point that is so accurate and the one before; those of the first
+/// point, where it is.
+fn cost(points: &[Done<'_>], error: impl Fn(usize) -> Option<f64>, wanted: f64) -> Option<f64> {
+    let known = points.iter().enumerate();
+    let known: Vec<[f64; 2]> = known
+        .filter_map(|(k, done)| Some([done.median()?, error(k)?]))
+        .collect();
+    let first = known.iter().position(|point| point[1] <= wanted)?;
+    let Some(before) = first.checked_sub(1) else {
+        return Some(known[0][0]);
+    };
+    let [[fast, rough], [slow, fine]] = [known[before], known[first]];
+    // An error of exactly zero has no place in the diagram.
+    if fine <= 0.0 {
+        return Some(slow);
+    }
+    let part = (rough / wanted).ln() / (rough / fine).ln();
+    Some(fast * (slow / fast).powf(part))
+}
+
+/// A length in the unit that suits it.
+fn length(millimetres: f64) -> String {
+    match millimetres {
+        x if x >= 0.1 => format!("{} mm", significant(x, 2)),
+        x if x >= 1e-4 => format!("{} µm", significant(1e3 * x, 2)),
+        x => format!("{} nm", significant(1e6 * x, 2)),
+    }
+}
+
+fn section(study: &Study, judged: &Judged, figure: Option<&str>) -> String {
+    let label = judged.measure.label();
+    let mut capital = label.chars();
+    let first = capital.next().map(|c| c.to_uppercase().to_string());
+    let mut text = format!("## {}{}\n\n", first.unwrap_or_default(), capital.as_str());
+    match figure {
+        Some(name) => text.push_str(&format!("![{label} against seconds]({name})\n\n")),
+        None => text.push_str("No error is above zero, or above what its reference is known to: nothing is drawn.\n\n"),
+    }
+    for (index, limit) in judged.limits.iter().enumerate() {
+        let Some(limit) = limit else { continue };
+        let name = of_reference(study, judged, index);
+        let orders: Vec<_> = (limit.orders.iter())
+            .map(|order| order.map_or("–".to_owned(), |p| format!("{p:.3}")))
+            .collect();
+        let unit = judged.measure.unit().suffix().trim_matches([' ', '[', ']']);
+        let unit = if unit.is_empty() {
+            String::new()
+        } else {
+            format!(" {unit}")
+        };
+        let value = match limit.value.as_slice() {
+            [value] => format!(" {value:.12}"),
+            [x, y, z] => format!(" ({x:.9}, {y:.9}, {z:.9}){unit}"),
+            _ => String::new(),
+        };
+        let known = match (limit.how, limit.uncertainty) {
+            (How::Extrapolated, Some(apart)) if limit.floor() > limit.rounding => {
+                format!("; the limit of the three points before is {apart:.1e}{unit} beside it")
+            }
+            (How::Extrapolated, Some(apart)) => {
+                format!("; the finest value is {apart:.1e}{unit} from it")
+            }
+            (_, Some(apart)) => format!("; the two finest values are {apart:.1e}{unit} apart"),
+            (_, None) => String::new(),
+        };
+        let seen = match orders.is_empty() {
+            true => String::new(),
+            false => format!(
+                "; order observed in every three successive points: {}",
+                orders.join(", ")
+            ),
+        };
+        text.push_str(&format!(
+            "* Reference, {name}:{value} {}{seen}{known}.\n",
+            limit.how.words()
+        ));
+    }
+    text
+}
+
+/// The points without an answer.
+fn failed(study: &Study, results: &Results<'_>) -> Option<String> {
+    let mut text = String::new();
+    for (method, points) in study.methods.iter().zip(&results.methods) {
+        for done in points.iter().filter(|done| !done.first.is_solved) {
+            let why = done
+                .first
+                .message
+                .as_deref()
+                .unwrap_or("it was not run to the end");
+            text.push_str(&format!(
+                "* {}, {} {}: {} ({why})\n",
+                method.name,
+                method.refined,
+                done.point.label,
+                done.first.status.replace('_', " ")
+            ));
+        }
+    }
+    (!text.is_empty()).then(|| format!("## Points without an answer\n\n{text}"))
+}
+
+/// How a user runs one point of each method alone.
+fn again(study: &Study, results: &Results<'_>) -> String {
+    let mut text = "## A point alone\n\nThe coarsest point of each method; the others differ in what is refined.\n\n```sh\n".to_owned();
+    for points in &results.methods {
+        if let Some(done) = points.first() {
+            text.push_str(&command(study.asked, done.point));
+            text.push('\n');
+        }
+    }
+    text.push_str("```");
+    text
+}

@@ -1,0 +1,486 @@
+//! A study file read and checked: every point is a problem with its overrides, read before the first one runs.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::control::problem::{Duration, Task};
+use crate::scene::spec_study::{ChangesSpec, MethodSpec, ReferenceSpec, RefineSpec, StudySpec};
+use crate::scene::{Document, Loaded, Place, SceneError, Scope, read_problem};
+use crate::study::measure::{self, Asked, Measure};
+
+/// Fewest timed runs of a point.
+const RUNS: usize = 5;
+/// Fewest points of a method that is its own reference: those a limit is extrapolated from.
+const POINTS: usize = 3;
+
+/// A study, checked.
+#[derive(Debug)]
+pub struct Study {
+    /// Title of the page.
+    pub title: String,
+    /// What is compared and why.
+    pub about: Option<String>,
+    /// What its problems ask.
+    pub asked: Asked,
+    /// The methods that are compared, in their order.
+    pub methods: Vec<Method>,
+    /// What errors are measured against.
+    pub reference: Reference,
+    /// Names of the markers whose places are compared.
+    pub markers: Vec<String>,
+    /// What is measured.
+    pub measures: Vec<Measure>,
+    /// How often each point is timed.
+    pub runs: usize,
+}
+
+/// A method: one curve.
+#[derive(Debug)]
+pub struct Method {
+    /// Name in legends and tables.
+    pub name: String,
+    /// What is refined.
+    pub refined: String,
+    /// The points, coarsest first.
+    pub points: Vec<Point>,
+}
+
+/// A point: one problem.
+#[derive(Debug)]
+pub struct Point {
+    /// The value that is refined, as it is written.
+    pub label: String,
+    /// Length that goes to zero as the points are refined.
+    pub size: f64,
+    /// The problem file as seen from the current folder.
+    pub problem: PathBuf,
+    /// Overrides `path=value`, as of `--set`.
+    pub set: Vec<String>,
+    /// The problem, read with them.
+    pub loaded: Loaded,
+}
+
+/// What errors are measured against.
+#[derive(Debug)]
+pub enum Reference {
+    /// Each method against its own limit.
+    Own,
+    /// All against the limit of one.
+    Of {
+        /// Index of the method.
+        method: usize,
+        /// Its points that are run for this alone; where there are none, its points in the study.
+        points: Vec<Point>,
+    },
+}
+
+/// Reads a study and all problems it asks for.
+///
+/// # Errors
+/// The study, one of its problems or overrides is wrong.
+pub fn read_study(path: &Path) -> Result<Study, SceneError> {
+    let document = Document::read(path)?;
+    let spec: StudySpec = document.parse()?;
+    let scope = Scope::of(&document);
+    if spec.methods.is_empty() {
+        return Err(scope.key("methods").wrong("no method", "1 method or more"));
+    }
+    let names: Vec<String> = spec.methods.iter().map(|m| m.name.clone()).collect();
+    let place = |index: usize| scope.key("methods").index(index).key("name");
+    scope.unique(&names, &[], place)?;
+    let methods = (0..spec.methods.len())
+        .map(|index| method(&spec, index, &scope))
+        .collect::<Result<Vec<_>, _>>()?;
+    let reference = match &spec.reference {
+        None => own(&methods, &scope)?,
+        Some(reference) => of_one(&spec, reference, &names, &scope.key("reference"))?,
+    };
+    let asked = same_question(&methods, &reference, &scope)?;
+    Ok(Study {
+        markers: markers(&spec, &methods, &scope)?,
+        measures: measures(&spec, asked, &methods, &scope)?,
+        runs: runs(&spec, &scope)?,
+        title: spec.title,
+        about: spec.about,
+        asked,
+        methods,
+        reference,
+    })
+}
+
+fn method(spec: &StudySpec, index: usize, scope: &Scope<'_>) -> Result<Method, SceneError> {
+    let written = &spec.methods[index];
+    let own = scope.key("methods").index(index);
+    let (refine, place) = match (&written.refine, &spec.refine) {
+        (Some(refine), _) => (refine, own.key("refine")),
+        (None, Some(refine)) => (refine, scope.key("refine")),
+        (None, None) => return Err(own.wrong("no key \"refine\"", "it here or in the study")),
+    };
+    Ok(Method {
+        name: written.name.clone(),
+        refined: refine.name.clone(),
+        points: points(spec, index, refine, &place, scope)?,
+    })
+}
+
+/// The points of a method under a list of refinements that stands in a place.
+fn points(
+    spec: &StudySpec,
+    index: usize,
+    refine: &RefineSpec,
+    place: &Scope<'_>,
+    scope: &Scope<'_>,
+) -> Result<Vec<Point>, SceneError> {
+    let MethodSpec { problem, set, .. } = &spec.methods[index];
+    let own = scope.key("methods").index(index);
+    let (written, at) = match problem {
+        Some(path) => (path, own.key("problem")),
+        None => (&spec.problem, scope.key("problem")),
+    };
+    let file = seen_from_here(&scope.document.beside(written));
+    if !file.is_file() {
+        let found = format!("{written:?}, where there is no file");
+        return Err(at.wrong(found, "the path of a problem file"));
+    }
+    let (labels, sizes) = sizes(refine, place)?;
+    let point = |k: usize, (label, size): (String, f64)| {
+        let mut changes = Changes::default();
+        changes.extend(&spec.set, &scope.key("set"))?;
+        changes.extend(set, &own.key("set"))?;
+        for (key, values) in &refine.set {
+            changes.push(key, &values[k], place.key("set").key(key).index(k))?;
+        }
+        let loaded =
+            read_problem(&file, &changes.words).map_err(|error| changes.at_fault(error, &file))?;
+        Ok(Point {
+            label,
+            size,
+            problem: file.clone(),
+            set: changes.words,
+            loaded,
+        })
+    };
+    let each = labels.into_iter().zip(sizes).enumerate();
+    each.map(|(k, of)| point(k, of)).collect()
+}
+
+/// Overrides with the places in the study that they are from.
+#[derive(Default)]
+struct Changes<'a> {
+    words: Vec<String>,
+    from: Vec<(Place, Scope<'a>)>,
+}
+
+impl<'a> Changes<'a> {
+    fn extend(&mut self, set: &ChangesSpec, scope: &Scope<'a>) -> Result<(), SceneError> {
+        let mut each = set.iter();
+        each.try_for_each(|(key, value)| self.push(key, value, scope.key(key)))
+    }
+
+    fn push(&mut self, key: &str, value: &Value, scope: Scope<'a>) -> Result<(), SceneError> {
+        let Some(place) = Place::parse(key) else {
+            let expected = "a place in the problem, such as control.intervals";
+            return Err(scope.wrong(format!("the key {key:?}"), expected));
+        };
+        self.words.push(format!("{key}={}", word(value)));
+        self.from.push((place, scope));
+        Ok(())
+    }
+
+    /// A mistake of an override, told at its place in the study; any other stays where it is.
+    fn at_fault(&self, error: SceneError, file: &Path) -> SceneError {
+        if !error.is_overridden() {
+            return error;
+        }
+        let Some(wrong) = Place::parse(error.path()) else {
+            return error;
+        };
+        let in_scene = Place::parse(&format!("scene.{}", error.path())).unwrap_or_default();
+        let touches = |place: &Place| {
+            [&wrong, &in_scene]
+                .iter()
+                .any(|wrong| wrong.is_within(place) || place.is_within(wrong))
+        };
+        let Some((_, scope)) = self.from.iter().rev().find(|(place, _)| touches(place)) else {
+            return error;
+        };
+        let found = format!(
+            "{} for {} of {}",
+            error.found(),
+            error.path(),
+            file.display()
+        );
+        let nearest = error.nearest();
+        let hint = nearest.map_or_else(String::new, |name| format!("; did you mean {name:?}?"));
+        scope.wrong(found, format!("{}{hint}", error.expected()))
+    }
+}
+
+/// A value as it is typed after `path=`: a text without quotes, where that reads back as the same text.
+fn word(value: &Value) -> String {
+    match value {
+        Value::String(text)
+            if serde_json::from_str::<Value>(text).is_err() && text.trim() == text =>
+        {
+            text.clone()
+        }
+        value => value.to_string(),
+    }
+}
+
+/// What the points of a refinement are called, and lengths that fall towards zero.
+fn sizes(refine: &RefineSpec, scope: &Scope<'_>) -> Result<(Vec<String>, Vec<f64>), SceneError> {
+    let set = scope.key("set");
+    let Some((first, values)) = refine.set.iter().next() else {
+        return Err(set.wrong("no override", "1 override or more"));
+    };
+    if values.is_empty() {
+        return Err(set.key(first).wrong("an empty list", "1 value or more"));
+    }
+    for (key, others) in &refine.set {
+        if others.len() != values.len() {
+            let found = format!("{} values", others.len());
+            let expected = format!("{}, as many as of {first:?}", values.len());
+            return Err(set.key(key).wrong(found, expected));
+        }
+    }
+    let (labels, numbers, place) = match (&refine.sizes, refine.set.len()) {
+        (Some(sizes), _) => {
+            let place = scope.key("sizes");
+            if sizes.len() != values.len() {
+                let found = format!("{} sizes", sizes.len());
+                return Err(place.wrong(found, format!("{}, one per point", values.len())));
+            }
+            let labels = sizes.iter().map(f64::to_string).collect();
+            (labels, sizes.clone(), place)
+        }
+        (None, 1) => {
+            let place = set.key(first);
+            let read = of_one_unit(values);
+            let Some((labels, numbers)) = read else {
+                let found = format!("values of {first:?} that are neither numbers nor of one unit");
+                let expected = "\"sizes\", which tell how fine each point is";
+                return Err(scope.wrong(found, expected));
+            };
+            (labels, numbers, place)
+        }
+        (None, _) => {
+            let expected = "\"sizes\", which tell how fine each point is";
+            return Err(scope.wrong("several overrides that are refined together", expected));
+        }
+    };
+    if let Some(k) = numbers.iter().position(|size| *size <= 0.0) {
+        return Err(place
+            .index(k)
+            .wrong(numbers[k].to_string(), "a positive size"));
+    }
+    let grows = numbers.windows(2).all(|pair| pair[0] < pair[1]);
+    let falls = numbers.windows(2).all(|pair| pair[0] > pair[1]);
+    match (grows, falls) {
+        (true, _) => Ok((labels, numbers.iter().map(|n| n.recip()).collect())),
+        (_, true) => Ok((labels, numbers)),
+        _ => Err(place.wrong(
+            format!("{}", labels.join(", ")),
+            "sizes that only grow, or only fall: the coarsest point first",
+        )),
+    }
+}
+
+/// Values as they are written, and as numbers, where these are of one unit.
+fn of_one_unit(values: &[Value]) -> Option<(Vec<String>, Vec<f64>)> {
+    let split = |value: &Value| -> Option<(String, f64, String)> {
+        let text = match value {
+            Value::Number(number) => number.to_string(),
+            Value::String(text) => text.clone(),
+            _ => return None,
+        };
+        let ends = (1..=text.len()).rev().filter(|&k| text.is_char_boundary(k));
+        let mut heads = ends.filter_map(|k| Some((k, text[..k].trim().parse::<f64>().ok()?)));
+        let (end, number) = heads.next()?;
+        let unit = text[end..].trim().to_owned();
+        Some((text, number, unit))
+    };
+    let parts = values.iter().map(split).collect::<Option<Vec<_>>>()?;
+    let same = parts.iter().all(|(_, _, unit)| *unit == parts[0].2);
+    let pair = |(text, number, _)| (text, number);
+    same.then(|| parts.into_iter().map(pair).unzip())
+}
+
+fn own(methods: &[Method], scope: &Scope<'_>) -> Result<Reference, SceneError> {
+    let few = |method: &Method| method.points.len() < POINTS;
+    if let Some(index) = methods.iter().position(few) {
+        let found = format!("{} points", methods[index].points.len());
+        let expected = format!(
+            "{POINTS} or more, from which a limit is extrapolated, or a \"reference\" in the study"
+        );
+        return Err(scope.key("methods").index(index).wrong(found, expected));
+    }
+    Ok(Reference::Own)
+}
+
+fn of_one(
+    spec: &StudySpec,
+    reference: &ReferenceSpec,
+    names: &[String],
+    scope: &Scope<'_>,
+) -> Result<Reference, SceneError> {
+    let whole = Scope::of(scope.document);
+    let place = scope.key("method");
+    let method = place.find(&reference.method, names, "the name of a method")?;
+    let points = match &reference.refine {
+        None => Vec::new(),
+        Some(refine) => points(spec, method, refine, &scope.key("refine"), &whole)?,
+    };
+    Ok(Reference::Of { method, points })
+}
+
+/// What all points ask: the same kind of problem, and motions of the same length.
+fn same_question(
+    methods: &[Method],
+    reference: &Reference,
+    scope: &Scope<'_>,
+) -> Result<Asked, SceneError> {
+    let extra = match reference {
+        Reference::Own => [].as_slice(),
+        Reference::Of { points, .. } => points.as_slice(),
+    };
+    let key = |index| scope.key("methods").index(index);
+    let each = methods.iter().enumerate();
+    let each = each.flat_map(|(i, method)| method.points.iter().map(move |point| (i, point)));
+    let all = each
+        .map(|(i, point)| (key(i), point))
+        .chain(extra.iter().map(|point| (scope.key("reference"), point)));
+    let mut first: Option<(Asked, Option<f64>)> = None;
+    for (place, point) in all {
+        let (asked, duration) = question(&point.loaded.task);
+        if let Task::Equilibrium(task) = &point.loaded.task
+            && task.path.is_some()
+        {
+            let found = "a path of equilibria";
+            return Err(place.wrong(found, "one equilibrium: no \"path\""));
+        }
+        let &mut (kind, length) = first.get_or_insert((asked, duration));
+        if kind != asked {
+            let (found, expected) = (asked.name(), kind.name());
+            return Err(place.wrong(found, format!("{expected}, as of the first point")));
+        }
+        // The same number, but for the way it is written.
+        let differ = |(a, b): (f64, f64)| (a - b).abs() > 1e-9 * a;
+        if length.zip(duration).is_some_and(differ) {
+            let [found, expected] = [duration, length].map(|d| d.unwrap_or_default() / 1e3);
+            return Err(place.wrong(
+                format!("a duration of {found} s"),
+                format!("{expected} s, as of the first point"),
+            ));
+        }
+    }
+    let (asked, _) = first.expect("there is a method, and each has a point");
+    Ok(asked)
+}
+
+/// The kind of a task, and its length in ms where that is given.
+fn question(task: &Task) -> (Asked, Option<f64>) {
+    match task {
+        Task::Simulate(task) => (Asked::Motion, Some(task.duration)),
+        Task::Equilibrium(_) => (Asked::Rest, None),
+        Task::Control(task) => match task.duration {
+            Duration::Given(duration) => (Asked::Control, Some(duration)),
+            Duration::Free { .. } => (Asked::Control, None),
+        },
+    }
+}
+
+/// Markers that every scene has.
+fn markers(
+    spec: &StudySpec,
+    methods: &[Method],
+    scope: &Scope<'_>,
+) -> Result<Vec<String>, SceneError> {
+    let of = |point: &Point| -> Vec<String> {
+        let markers = point.loaded.system.markers.iter();
+        markers.map(|marker| marker.name.clone()).collect()
+    };
+    let wanted = match &spec.markers {
+        Some(names) => names.clone(),
+        None => of(&methods[0].points[0]),
+    };
+    let place = |index: usize| match &spec.markers {
+        Some(_) => scope.key("markers").index(index),
+        None => scope.clone(),
+    };
+    scope.unique(&wanted, &[], place)?;
+    for point in methods.iter().flat_map(|method| &method.points) {
+        let there = of(point);
+        for (index, name) in wanted.iter().enumerate() {
+            let expected = format!("a marker of each scene, as of {}", point.problem.display());
+            place(index).find(name, &there, &expected)?;
+        }
+    }
+    Ok(wanted)
+}
+
+/// What is measured: what the study names, or what there is.
+fn measures(
+    spec: &StudySpec,
+    asked: Asked,
+    methods: &[Method],
+    scope: &Scope<'_>,
+) -> Result<Vec<Measure>, SceneError> {
+    let points = || methods.iter().flat_map(|method| &method.points);
+    let all = measure::available(asked, points().map(|point| &point.loaded));
+    let Some(named) = &spec.measures else {
+        return Ok(all);
+    };
+    let wanted = named.iter().enumerate().map(|(index, &spec)| {
+        let measure = Measure::from(spec);
+        let place = scope.key("measures").index(index);
+        if named[..index].contains(&spec) {
+            return Err(place.wrong(format!("{:?} again", measure.key()), "each measure once"));
+        }
+        if !all.contains(&measure) {
+            let names: Vec<_> = all.iter().map(|m| format!("{:?}", m.key())).collect();
+            let found = format!("{:?}, which {} does not have", measure.key(), asked.name());
+            return Err(place.wrong(found, format!("one of {}", names.join(", "))));
+        }
+        Ok(measure)
+    });
+    let wanted: Vec<_> = wanted.collect::<Result<_, _>>()?;
+    match wanted.is_empty() {
+        true => Err(scope
+            .key("measures")
+            .wrong("an empty list", "1 measure or more")),
+        false => Ok(wanted),
+    }
+}
+
+fn runs(spec: &StudySpec, scope: &Scope<'_>) -> Result<usize, SceneError> {
+    match spec.runs {
+        None => Ok(RUNS),
+        Some(runs @ RUNS..) => Ok(runs),
+        Some(runs) => Err(scope
+            .key("runs")
+            .wrong(runs.to_string(), format!("{RUNS} runs or more"))),
+    }
+}
+
+/// A path without `..` and `.`, where it leads to the same file.
+fn seen_from_here(path: &Path) -> PathBuf {
+    use std::path::Component;
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir
+                if matches!(plain.components().next_back(), Some(Component::Normal(_))) =>
+            {
+                plain.pop();
+            }
+            part => plain.push(part),
+        }
+    }
+    match (plain.canonicalize(), path.canonicalize()) {
+        (Ok(a), Ok(b)) if a == b => plain,
+        _ => path.to_owned(),
+    }
+}

@@ -1,0 +1,122 @@
+//! `table.csv` with every number in full, and `table.txt` to read.
+
+use crate::report::origin::Origin;
+use crate::report::table::{aligned, cells_csv};
+use crate::study::compare::Judged;
+use crate::study::read::Study;
+use crate::study::schedule::Results;
+
+/// One row per point: its method, its input, how it ended, seconds and errors; each number reads back identical.
+pub(super) fn csv(
+    study: &Study,
+    results: &Results<'_>,
+    judged: &[Judged],
+    origin: &Origin,
+) -> String {
+    let mut header: Vec<String> = [
+        "method",
+        "refined",
+        "value",
+        "problem",
+        "overrides",
+        "status",
+        "runs",
+        "median [s]",
+        "lower quartile [s]",
+        "upper quartile [s]",
+        "least [s]",
+        "iterations",
+    ]
+    .map(str::to_owned)
+    .into();
+    header.extend(judged.iter().map(|judged| judged.measure.head()));
+    let mut rows = vec![header];
+    for (m, (method, points)) in study.methods.iter().zip(&results.methods).enumerate() {
+        for (k, done) in points.iter().enumerate() {
+            let seconds = [0.5, 0.25, 0.75, 0.0].map(|part| full(done.quantile(part)));
+            let iterations = done.seen.as_ref().map(|seen| seen.iterations.to_string());
+            let mut row = vec![
+                method.name.clone(),
+                method.refined.clone(),
+                done.point.label.clone(),
+                done.point.problem.display().to_string(),
+                done.point.set.join("; "),
+                done.first.status.to_owned(),
+                done.seconds.len().to_string(),
+            ];
+            row.extend(seconds);
+            row.push(iterations.unwrap_or_default());
+            row.extend(judged.iter().map(|judged| full(judged.errors[m][k])));
+            rows.push(row);
+        }
+    }
+    cells_csv(&rows, origin)
+}
+
+/// The shortest decimal that reads back as the same number.
+fn full(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| format!("{value:?}"))
+}
+
+/// The same in columns, rounded, with the orders below.
+///
+/// An error that is no larger than the uncertainty of the reference is told as less than that.
+pub(super) fn text(study: &Study, results: &Results<'_>, judged: &[Judged]) -> String {
+    let same = |method: &crate::study::read::Method| method.refined == study.methods[0].refined;
+    let refined = match study.methods.iter().all(same) {
+        true => study.methods[0].refined.clone(),
+        false => "refined".to_owned(),
+    };
+    let mut header: Vec<String> = vec!["method".to_owned(), refined];
+    header.extend(["status", "seconds", "iterations"].map(str::to_owned));
+    header.extend(judged.iter().map(|judged| judged.measure.head()));
+    let mut rows = vec![header];
+    for (m, (method, points)) in study.methods.iter().zip(&results.methods).enumerate() {
+        for (k, done) in points.iter().enumerate() {
+            let iterations = done.seen.as_ref().map(|seen| seen.iterations.to_string());
+            let mut row = vec![
+                method.name.clone(),
+                done.point.label.clone(),
+                done.first.status.replace('_', " "),
+                done.median().map_or_else(dash, |s| significant(s, 3)),
+                iterations.unwrap_or_else(dash),
+            ];
+            row.extend(judged.iter().map(|judged| match judged.errors[m][k] {
+                None => dash(),
+                Some(error) if judged.known(m, k).is_none() && judged.floors[m] > 0.0 => {
+                    format!("<{:.1e}", judged.floors[m].max(error))
+                }
+                Some(0.0) => "0".to_owned(),
+                Some(error) => format!("{error:.2e}"),
+            }));
+            rows.push(row);
+        }
+    }
+    let shows_order = |m: usize| judged.iter().any(|judged| judged.orders[m].is_some());
+    for (m, method) in study
+        .methods
+        .iter()
+        .enumerate()
+        .filter(|(m, _)| shows_order(*m))
+    {
+        let mut row = vec![method.name.clone(), "order".to_owned()];
+        row.extend([String::new(), String::new(), String::new()]);
+        row.extend(judged.iter().map(|judged| match judged.orders[m] {
+            Some(order) => format!("{order:.2}"),
+            None => dash(),
+        }));
+        rows.push(row);
+    }
+    aligned(&rows)
+}
+
+fn dash() -> String {
+    "–".to_owned()
+}
+
+/// A positive number with so many digits that count.
+pub(super) fn significant(value: f64, digits: usize) -> String {
+    let before = value.log10().floor() as i64 + 1;
+    let decimals = usize::try_from(digits as i64 - before).unwrap_or(0);
+    format!("{value:.decimals$}")
+}
