@@ -166,7 +166,7 @@ fn solve(program: &mut Transcription<'_>, start: &Point, faults: &Faults) -> Sol
 fn silence_injected_panics() {
     let told = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        let text = panic.payload_as_str();
+        let text = panic.payload().downcast_ref::<String>();
         if !text.is_some_and(|text| text.contains(INJECTED)) {
             told(panic);
         }

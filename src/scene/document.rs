@@ -176,15 +176,14 @@ impl Document {
         while !self.text.is_char_boundary(at) {
             at -= 1;
         }
-        if error.to_string().starts_with("number out of range") {
-            if let Some((place, range)) = locate(&self.text).around(at) {
-                let written = &self.text[range];
-                return self.mistake(
-                    &place,
-                    format!("{written}, which is not finite"),
-                    "a finite number",
-                );
-            }
+        let is_infinite = error.to_string().starts_with("number out of range");
+        if is_infinite && let Some((place, range)) = locate(&self.text).around(at) {
+            let written = &self.text[range];
+            return self.mistake(
+                &place,
+                format!("{written}, which is not finite"),
+                "a finite number",
+            );
         }
         let end = self.text[at..]
             .chars()
