@@ -730,4 +730,6 @@ fn limits_and_orders_of_made_up_sequences() {
     let flat: Vec<_> = halved.iter().map(|p| [p[0], 0.3]).collect();
     assert_eq!(observed_order(&flat, 0.0), None);
     assert_eq!(observed_order(&[[1.0, 1.0]], 0.0), None);
+    let level = [[8.0, 3.18], [4.0, 1.29], [2.0, 0.684], [1.0, 0.693]];
+    assert_eq!(observed_order(&level, 0.0), None);
 }

@@ -287,16 +287,13 @@ impl Frame<'_, '_> {
             })
             .collect();
         trace(self.canvas, &places, series);
-        for (place, label) in places.iter().zip(&series.labels) {
-            let above = [place[0], place[1] - 9.0];
-            let colour = series.colour.mix(style::INK, 0.3);
-            self.canvas.text(
-                above,
-                label,
-                style::LABEL_OF_POINT_SIZE,
-                colour,
-                Align::Centre,
-            );
+        let colour = series.colour.mix(style::INK, 0.3);
+        for (k, (place, label)) in places.iter().zip(&series.labels).enumerate() {
+            let comes_down = k > 0 && places[k - 1][1] < place[1];
+            let beside = if comes_down { 9.5 } else { -9.0 };
+            let at = [place[0], place[1] + beside];
+            let size = style::LABEL_OF_POINT_SIZE;
+            self.canvas.text(at, label, size, colour, Align::Centre);
         }
     }
 

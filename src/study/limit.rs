@@ -168,8 +168,8 @@ fn order(h: [f64; 3], [coarse, fine]: [f64; 2], rounding: f64) -> Option<f64> {
 
 /// The order that a curve of errors shows: its slope by least squares over its straight part, the fine end of it.
 ///
-/// Points (size, error), coarsest first; errors that are not above `floor` are left out. None where the curve is flat, or has
-/// fewer than two points.
+/// Points (size, error), coarsest first; errors that are not above `floor` are left out. None where the curve is flat or levels
+/// off, or has fewer than two points.
 pub fn observed_order(points: &[[f64; 2]], floor: f64) -> Option<f64> {
     let shown = points
         .iter()
@@ -185,7 +185,9 @@ pub fn observed_order(points: &[[f64; 2]], floor: f64) -> Option<f64> {
         }
         part = &part[1..];
     }
-    slope(part).filter(|p| *p > FLAT)
+    // A curve that levels off at its fine end has met an error that is not refined.
+    let last = slope(&part[part.len().saturating_sub(2)..])?;
+    slope(part).filter(|p| *p > FLAT && (last - p).abs() <= STRAIGHT)
 }
 
 /// Slope of the line of least squares through points.

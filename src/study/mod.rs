@@ -26,7 +26,7 @@ use crate::run::{RunError, Shown, Told, make_folder};
 use crate::study::compare::{Judged, judge, moved_marker};
 use crate::study::measure::Asked;
 use crate::study::read::{Study, read_study};
-use crate::study::schedule::{Results, run_all};
+use crate::study::schedule::{Results, bar, look, time};
 
 /// A command on a study file.
 #[derive(Clone, Debug)]
@@ -63,8 +63,10 @@ pub fn study(request: &StudyRequest) -> Result<Told, RunError> {
     let folder = request.folder();
     make_folder(&folder)?;
     let runs = request.runs.unwrap_or(study.runs);
-    let results = run_all(&study, runs, request.progress);
+    let bar = bar(&study, runs, request.progress);
+    let mut results = look(&study, &bar);
     if let Some((name, apart)) = moved_marker(&study, &results) {
+        bar.finish_and_clear();
         return Err(RunError::Problem {
             file: request.input.clone(),
             place: "markers".to_owned(),
@@ -74,6 +76,8 @@ pub fn study(request: &StudyRequest) -> Result<Told, RunError> {
             ),
         });
     }
+    time(&study, &mut results, runs, &bar);
+    bar.finish_and_clear();
     let judged = judge(&study, &results);
     let table = write(&folder, request, &study, &results, &judged)?;
     Ok(told(&results, &table, &folder, began))

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use crate::report::origin::Origin;
-use crate::study::compare::Judged;
+use crate::study::compare::{Judged, common};
 use crate::study::limit::How;
-use crate::study::measure::Unit;
+use crate::study::measure::{Measure, Unit};
 use crate::study::read::Study;
 use crate::study::record::{command, machine, of_reference};
 use crate::study::schedule::{Done, Results};
@@ -37,6 +37,12 @@ pub(super) fn markdown(
     }
     for (judged, figure) in judged.iter().zip(figures) {
         add(section(study, judged, figure.as_deref()));
+        if judged.measure == Measure::Path {
+            let count = common(results).len();
+            add(format!(
+                "Compared at the {count} instants that all points have."
+            ));
+        }
     }
     add(format!("## All points\n\n```text\n{}```", table));
     add(

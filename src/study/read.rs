@@ -252,7 +252,7 @@ fn sizes(refine: &RefineSpec, scope: &Scope<'_>) -> Result<(Vec<String>, Vec<f64
                 let found = format!("{} sizes", sizes.len());
                 return Err(place.wrong(found, format!("{}, one per point", values.len())));
             }
-            let labels = sizes.iter().map(f64::to_string).collect();
+            let labels = sizes.iter().map(|&size| label(size)).collect();
             (labels, sizes.clone(), place)
         }
         (None, 1) => {
@@ -281,9 +281,17 @@ fn sizes(refine: &RefineSpec, scope: &Scope<'_>) -> Result<(Vec<String>, Vec<f64
         (true, _) => Ok((labels, numbers.iter().map(|n| n.recip()).collect())),
         (_, true) => Ok((labels, numbers)),
         _ => Err(place.wrong(
-            format!("{}", labels.join(", ")),
+            labels.join(", "),
             "sizes that only grow, or only fall: the coarsest point first",
         )),
+    }
+}
+
+/// A number as it is called: `0.001`, `1e-4`.
+fn label(number: f64) -> String {
+    match number.abs() {
+        x if x != 0.0 && !(1e-3..1e6).contains(&x) => format!("{number:e}"),
+        _ => number.to_string(),
     }
 }
 
@@ -291,7 +299,7 @@ fn sizes(refine: &RefineSpec, scope: &Scope<'_>) -> Result<(Vec<String>, Vec<f64
 fn of_one_unit(values: &[Value]) -> Option<(Vec<String>, Vec<f64>)> {
     let split = |value: &Value| -> Option<(String, f64, String)> {
         let text = match value {
-            Value::Number(number) => number.to_string(),
+            Value::Number(number) => label(number.as_f64()?),
             Value::String(text) => text.clone(),
             _ => return None,
         };

@@ -32,56 +32,67 @@ pub struct Results<'a> {
     pub is_interrupted: bool,
 }
 
-/// Runs a study, `runs` times each point, until it is done or Ctrl-C is pressed.
-pub fn run_all(study: &Study, runs: usize, shown: Shown) -> Results<'_> {
-    let extra = match &study.reference {
-        Reference::Own => [].as_slice(),
-        Reference::Of { points, .. } => points.as_slice(),
-    };
-    let count: usize = study.methods.iter().map(|method| method.points.len()).sum();
-    let bar = progress_bar(
+/// A bar as long as all runs of a study.
+pub(super) fn bar(study: &Study, runs: usize, shown: Shown) -> ProgressBar {
+    let count: usize = study.methods.iter().map(|m| m.points.len()).sum();
+    progress_bar(
         shown,
-        (extra.len() + count * (1 + runs)) as u64,
+        (extra(study).len() + count * (1 + runs)) as u64,
         "{elapsed_precise} {wide_bar} run {pos} of {len}  {msg}",
-    );
-    let look = |name: &str, point: &'_ Point| -> (Ended, Option<Seen>) {
+    )
+}
+
+/// Points that are run for the reference alone.
+fn extra(study: &Study) -> &[Point] {
+    match &study.reference {
+        Reference::Own => &[],
+        Reference::Of { points, .. } => points,
+    }
+}
+
+/// Runs every point once and looks at its answer; what Ctrl-C leaves out is told as interrupted.
+pub(super) fn look<'a>(study: &'a Study, bar: &ProgressBar) -> Results<'a> {
+    let look = |name: &str, point: &'a Point| {
         bar.set_message(format!("{name}, {}", point.label));
-        let result = match interrupt::requested() {
+        let (first, seen) = match interrupt::requested() {
             true => (not_run(), None),
             false => run(point, Some(&study.markers)),
         };
         bar.inc(1);
-        result
-    };
-    let mut methods: Vec<Vec<Done<'_>>> = Vec::new();
-    for method in &study.methods {
-        let points = method.points.iter().map(|point| {
-            let (first, seen) = look(&method.name, point);
-            Done::new(point, first, seen)
-        });
-        methods.push(points.collect());
-    }
-    let reference = extra.iter().map(|point| {
-        let (first, seen) = look("reference", point);
-        Done::new(point, first, seen)
-    });
-    let reference = reference.collect();
-    for _ in 0..runs {
-        for (method, points) in study.methods.iter().zip(&mut methods) {
-            for done in points {
-                done.time(&method.name, &bar);
-            }
+        Done {
+            point,
+            first,
+            seen,
+            seconds: Vec::new(),
         }
+    };
+    let mut methods: Vec<Vec<_>> = Vec::new();
+    for method in &study.methods {
+        let points = method.points.iter();
+        methods.push(points.map(|point| look(&method.name, point)).collect());
     }
-    for done in methods.iter_mut().flatten() {
-        done.seconds.sort_by(f64::total_cmp);
-    }
-    bar.finish_and_clear();
+    let reference = extra(study).iter();
+    let reference = reference.map(|point| look("reference", point)).collect();
     Results {
         methods,
         reference,
         is_interrupted: interrupt::requested(),
     }
+}
+
+/// Times every point that has an answer in `runs` rounds, until Ctrl-C.
+pub(super) fn time(study: &Study, results: &mut Results<'_>, runs: usize, bar: &ProgressBar) {
+    for _ in 0..runs {
+        for (method, points) in study.methods.iter().zip(&mut results.methods) {
+            for done in points {
+                done.time(&method.name, bar);
+            }
+        }
+    }
+    for done in results.methods.iter_mut().flatten() {
+        done.seconds.sort_by(f64::total_cmp);
+    }
+    results.is_interrupted = interrupt::requested();
 }
 
 fn not_run() -> Ended {
@@ -93,16 +104,7 @@ fn not_run() -> Ended {
     }
 }
 
-impl<'a> Done<'a> {
-    fn new(point: &'a Point, first: Ended, seen: Option<Seen>) -> Self {
-        Self {
-            point,
-            first,
-            seen,
-            seconds: Vec::new(),
-        }
-    }
-
+impl Done<'_> {
     /// One timed run, of a point that has an answer.
     fn time(&mut self, name: &str, bar: &ProgressBar) {
         if self.first.is_solved && !interrupt::requested() {
