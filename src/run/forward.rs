@@ -13,7 +13,7 @@ use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::run::blocks::Blocks;
 use crate::run::comparison::{self, Comparison};
-use crate::run::effects::effect_counts;
+use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::motion::{solved, trajectory};
@@ -21,7 +21,7 @@ use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
 use crate::run::solution_file;
 use crate::run::solve::{counted, make_folder};
-use crate::run::summary::{self, Seconds, Summary};
+use crate::run::summary::{self, MEASURED, Seconds, Summary};
 
 /// Simulates and writes the folder; a motion that ends early is kept as far as it went.
 ///
@@ -38,7 +38,7 @@ pub(super) fn simulation(
     let model = Model::answering(system.clone(), task.question(system, h))
         .map_err(|error| wrong(error.into()))?;
     let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;
-    let effects = effect_counts(&model).map_err(|error| wrong(error.into()))?;
+    let plan = Plan::of(&model, None, MEASURED).map_err(|error| wrong(error.into()))?;
     let folder = request.folder();
     make_folder(&folder)?;
 
@@ -73,7 +73,7 @@ pub(super) fn simulation(
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = failure.as_ref().map(ToString::to_string);
     summary.simulation = Some(summary::Simulation::new(&history));
-    summary.effects = effects;
+    summary.plan = plan;
     let observed = observations(&model, &history);
     let origin = request.origin(false);
     let written = fields::write(&folder, &model, &history, &origin)?;

@@ -16,7 +16,7 @@ use crate::report::atomic::WriteError;
 use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::run::blocks::Blocks;
-use crate::run::effects::effect_counts;
+use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::motion::{history, solved, trajectory};
@@ -24,7 +24,7 @@ use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
 use crate::run::resimulate::{resimulate, under_constant_voltages};
 use crate::run::solution_file;
-use crate::run::summary::{PerInterval, Program, Seconds, Summary};
+use crate::run::summary::{MEASURED, PerInterval, Program, Seconds, Summary};
 use crate::run::violations::{Violation, violations};
 
 /// Rows named when a problem has no solution.
@@ -178,7 +178,7 @@ pub(super) fn control(
         violations: violated.clone(),
         resimulation,
     });
-    summary.effects = effect_counts(&model)
+    summary.plan = Plan::of(&model, Some(control), MEASURED)
         .map_err(|error| RunError::boundary(&request.input, "control", &error.into()))?;
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),
