@@ -2,17 +2,22 @@
 
 use serde::Serialize;
 
+use crate::control::problem::Control;
 use crate::functional::{Couplings, Effect, Kind};
 use crate::model::{Model, ModelError, Question};
 use crate::reduction::Motion;
+use crate::run::reasons::{self, Absent, absent};
+use crate::run::stopwatch;
 
 /// An effect and its size.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EffectCounts {
     /// Name.
     pub name: String,
     /// `kinetic`, `potential`, `virtual work` or `constraint`.
     pub kind: &'static str,
+    /// What in scene and problem calls for it.
+    pub why: String,
     /// Elements.
     pub elements: usize,
     /// Coordinates of an instant, voltages and potentials that it reads.
@@ -21,6 +26,47 @@ pub struct EffectCounts {
     pub equations: usize,
     /// Pairs of these unknowns that it couples at one instant.
     pub nonzeros: usize,
+    /// Entries that it touches: of the program's Jacobian in an inner interval of a control problem, otherwise of the tangent
+    /// of a step or of a state of rest.
+    pub jacobian: usize,
+    /// Entries of the lower triangle of the program's Hessian that it touches in an inner interval; only of a control problem.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hessian: Option<usize>,
+    /// Time of one evaluation with second derivatives in µs, as measured here.
+    pub microseconds: f64,
+}
+
+/// What a model is made of, and what it does without.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Plan {
+    /// Effects that scene and problem call for.
+    pub effects: Vec<EffectCounts>,
+    /// What they do not call for.
+    pub absent: Vec<Absent>,
+}
+
+impl Plan {
+    /// The plan of a model, each effect measured for `spent` seconds or one evaluation.
+    ///
+    /// # Errors
+    /// None for a model that exists: the effects are made a second time from its system.
+    pub fn of(model: &Model, control: Option<&Control>, spent: f64) -> Result<Self, ModelError> {
+        Ok(Self {
+            effects: effect_counts(model, control, spent)?,
+            absent: absent(model, control),
+        })
+    }
+}
+
+/// Which matrix the pairs of an effect are counted in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Matrix {
+    /// Jacobian and Hessian of a program.
+    Program,
+    /// The tangent of a step.
+    Step,
+    /// The tangent of a state of rest.
+    Rest,
 }
 
 /// An effect with the pairs of unknowns it couples, the smaller of each pair first, sorted; coordinates by entry, scalars
@@ -30,17 +76,45 @@ struct Coupled {
     pairs: Vec<[u32; 2]>,
 }
 
-/// Counts of all effects of a model.
+/// Counts of all effects of a model, each measured for `spent` seconds or one evaluation; of a control problem in its
+/// program, otherwise in the tangent.
 ///
 /// # Errors
 /// None for a model that exists: the effects are made a second time from its system.
-pub fn effect_counts(model: &Model) -> Result<Vec<EffectCounts>, ModelError> {
-    let voltages = model.voltages.len();
+pub fn effect_counts(
+    model: &Model,
+    control: Option<&Control>,
+    spent: f64,
+) -> Result<Vec<EffectCounts>, ModelError> {
+    let matrix = match (control, model.question.of_motion) {
+        (Some(_), _) => Matrix::Program,
+        (None, true) => Matrix::Step,
+        (None, false) => Matrix::Rest,
+    };
+    let given = |source: &usize| control.is_some_and(|c| c.given.contains_key(source));
+    let unknowns = Unknowns {
+        coordinates: model.coordinate_count(),
+        sought: model.voltages.iter().map(|s| !given(s)).collect(),
+        matrix,
+    };
+    let mut times = stopwatch::times(model, spent).into_iter();
     let mut counts = Vec::new();
-    each(model, |coupled, motion| {
-        counts.push(coupled.counts(motion.coordinates, voltages));
+    each(model, |coupled, _| {
+        let mut count = coupled.counts(&unknowns);
+        count.why = reasons::why(&count.name, model);
+        count.microseconds = times.next().unwrap_or(f64::NAN);
+        counts.push(count);
     })?;
     Ok(counts)
+}
+
+/// What is unknown, and where.
+struct Unknowns {
+    /// Number of coordinates.
+    coordinates: usize,
+    /// Whether each voltage is an unknown of a program.
+    sought: Vec<bool>,
+    matrix: Matrix,
 }
 
 /// Names of the effects that couple two unknowns: coordinates by entry, scalars of the site behind them.
@@ -108,27 +182,73 @@ impl Coupled {
         Self { effect, pairs }
     }
 
-    /// Its counts, where so many coordinates and voltages come before multipliers and potentials.
-    fn counts(&self, coordinates: usize, voltages: usize) -> EffectCounts {
+    /// Its counts, without reason and time.
+    fn counts(&self, of: &Unknowns) -> EffectCounts {
         let mut unknowns: Vec<u32> = self.pairs.iter().flatten().copied().collect();
         unknowns.sort_unstable();
         unknowns.dedup();
-        let given = coordinates + voltages;
+        let given = of.coordinates + of.sought.len();
         let (kind, first) = match self.effect.kind() {
             Kind::Kinetic => ("kinetic", given),
             Kind::Potential => ("potential", given),
             Kind::VirtualWork => ("virtual work", given),
-            Kind::Constraint => ("constraint", coordinates),
+            Kind::Constraint => ("constraint", of.coordinates),
         };
         let equations = unknowns.iter().filter(|&&i| i as usize >= first);
         let diagonal = self.pairs.iter().filter(|[i, j]| i == j).count();
+        let touched = self.pairs.iter().map(|pair| self.touched(pair, of));
+        let [jacobian, hessian] = touched.fold([0, 0], |[a, b], [c, d]| [a + c, b + d]);
         EffectCounts {
             name: self.effect.name().to_owned(),
             kind,
+            why: String::new(),
             elements: self.effect.elements(),
             unknowns: unknowns.len(),
             equations: equations.count(),
             nonzeros: 2 * self.pairs.len() - diagonal,
+            jacobian,
+            hessian: (of.matrix == Matrix::Program).then_some(hessian),
+            microseconds: f64::NAN,
+        }
+    }
+
+    /// Entries of Jacobian and Hessian that a pair of unknowns touches in an inner interval, its first instant included.
+    fn touched(&self, &[i, j]: &[u32; 2], of: &Unknowns) -> [usize; 2] {
+        let (i, j) = (i as usize, j as usize);
+        let both_orders = if i == j { 1 } else { 2 };
+        let is_instantaneous = self.effect.kind() == Kind::Constraint;
+        if is_instantaneous {
+            // A multiplier has a column in the balances of its instant, its constraint a row in the coordinates.
+            let is_pair_of_coordinates = j < of.coordinates;
+            return match (is_pair_of_coordinates, of.matrix) {
+                (true, Matrix::Program | Matrix::Rest) => [both_orders, 1],
+                // The curvature of a constraint at the end of a step belongs to the next one.
+                (true, Matrix::Step) => [0, 0],
+                (false, _) => [2, 1],
+            };
+        }
+        let scalar = |i: usize| i.checked_sub(of.coordinates);
+        let is_potential = |s: usize| s >= of.sought.len();
+        let is_variable = |s: usize| match of.matrix {
+            Matrix::Program => is_potential(s) || of.sought[s],
+            Matrix::Step | Matrix::Rest => is_potential(s),
+        };
+        // A program has the balances of an instant with the instants before, here and after, and an interval has two ends.
+        let (balances, ends) = match of.matrix {
+            Matrix::Program => (3, 2),
+            Matrix::Step | Matrix::Rest => (1, 1),
+        };
+        match (scalar(i), scalar(j)) {
+            (None, None) => [balances * both_orders, 1 + both_orders],
+            (None, Some(s)) if is_variable(s) => {
+                let rows = if is_potential(s) { 2 } else { 1 };
+                [ends * rows, 2]
+            }
+            (Some(s), Some(t)) if is_variable(s) && is_variable(t) => {
+                let rows = usize::from(is_potential(s)) + usize::from(i != j && is_potential(t));
+                [rows, 1]
+            }
+            _ => [0, 0],
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::run::blocks::Blocks;
 use crate::run::comparison::{self, Comparison};
-use crate::run::effects::effect_counts;
+use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::grids::integrate_to;
@@ -23,7 +23,7 @@ use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
 use crate::run::solution_file;
 use crate::run::solve::{counted, make_folder};
-use crate::run::summary::{self, Seconds, Summary};
+use crate::run::summary::{self, MEASURED, Seconds, Summary};
 
 /// A simulation and how it ended.
 #[derive(Debug)]
@@ -135,7 +135,7 @@ pub(super) fn simulation(
         return Err(error.into());
     }
     make_folder(&folder)?;
-    let effects = effect_counts(&model)
+    let plan = Plan::of(&model, None, MEASURED)
         .map_err(|error| RunError::boundary(&request.input, "simulate", &error.into()))?;
     let reached = history.times[history.intervals()];
     let status = match (&failure, stopped) {
@@ -152,7 +152,7 @@ pub(super) fn simulation(
     summary.message = failure.as_ref().map(ToString::to_string);
     summary.accuracy = accuracy;
     summary.simulation = Some(summary::Simulation::new(&history, task.solving.integrator));
-    summary.effects = effects;
+    summary.plan = plan;
     let observed = observations(&model, &history);
     let origin = request.origin(false);
     let written = fields::write(&folder, &model, &history, &origin)?;

@@ -8,7 +8,7 @@ use crate::nlp::Nlp;
 use crate::report::atomic;
 use crate::report::table;
 use crate::run::blocks::Blocks;
-use crate::run::effects::effect_counts;
+use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::memory;
 use crate::run::optimise::{Prepared, prepare, resolve};
@@ -16,8 +16,9 @@ use crate::run::request::{Request, Told};
 use crate::run::solve::make_folder;
 use crate::run::spy;
 use crate::scene::read_problem;
+use crate::sparse::Symmetry;
 
-/// Effects, unknowns, equations and nonzeros as a table; with a folder also pictures of Jacobian and Hessian.
+/// The plan: effects in numbers, what calls for them, and what is not there; with sizes; with a folder also pictures of Jacobian and Hessian.
 ///
 /// # Errors
 /// The input is wrong, or a picture cannot be written.
@@ -31,12 +32,12 @@ pub fn inspect(request: &Request) -> Result<Told, RunError> {
         Task::Simulate(task) => {
             let model = Model::answering(system.clone(), task.question(system, task.step))
                 .map_err(|error| wrong(error.into()))?;
-            of_model(&request.input, &model)?
+            of_model(&request.input, &model, None)?
         }
         Task::Equilibrium(task) => {
             let model = Model::answering(system.clone(), task.question(system))
                 .map_err(|error| wrong(error.into()))?;
-            of_model(&request.input, &model)?
+            of_model(&request.input, &model, None)?
         }
     };
     Ok(Told {
@@ -55,32 +56,12 @@ pub(super) fn key(task: &Task) -> &'static str {
     }
 }
 
-fn of_model(file: &Path, model: &Model) -> Result<String, RunError> {
-    let counts =
-        effect_counts(model).map_err(|error| RunError::boundary(file, "scene", &error.into()))?;
-    let mut rows = vec![
-        [
-            "effect",
-            "kind",
-            "elements",
-            "unknowns",
-            "equations",
-            "nonzeros",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-    ];
-    rows.extend(counts.iter().map(|effect| {
-        let mut row = vec![effect.name.clone(), effect.kind.to_owned()];
-        let numbers = [
-            effect.elements,
-            effect.unknowns,
-            effect.equations,
-            effect.nonzeros,
-        ];
-        row.extend(numbers.map(|n| n.to_string()));
-        row
-    }));
+/// Time in s that goes into measuring each effect.
+const MEASURED: f64 = 5e-3;
+
+fn of_model(file: &Path, model: &Model, control: Option<&Control>) -> Result<String, RunError> {
+    let plan = Plan::of(model, control, MEASURED)
+        .map_err(|error| RunError::boundary(file, "scene", &error.into()))?;
     let system = &model.system;
     let mut sizes = vec![
         ("bodies", system.bodies.len()),
@@ -101,13 +82,75 @@ fn of_model(file: &Path, model: &Model) -> Result<String, RunError> {
             ("elements", blocks.elements),
         ]);
     }
+    let tangent = match (model.question.of_motion, control) {
+        (true, None) => factorisation(model),
+        _ => "",
+    };
     Ok(format!(
-        "{}, {} coordinates\n\n{}\n{}",
+        "{}, {} coordinates\n\n{}\n{}\n{}\n{}{tangent}",
         system.name,
         model.coordinates.name(),
-        table::aligned(&rows),
+        active(&plan),
+        reasons(&plan),
+        missing(&plan),
         numbers(&sizes)
     ))
+}
+
+/// How the tangent of a step is factorised.
+fn factorisation(model: &Model) -> &'static str {
+    match model.step_symmetry() {
+        Symmetry::Symmetric => {
+            "tangent of a step: symmetric, LDLᵀ, as every coordinate is a node's and every force has a potential\n"
+        }
+        Symmetry::Unsymmetric => "tangent of a step: not symmetric, LU\n",
+    }
+}
+
+/// The effects in numbers.
+fn active(plan: &Plan) -> String {
+    let has_hessian = plan.effects.iter().any(|e| e.hessian.is_some());
+    let mut header = vec!["effect", "kind", "elements", "unknowns", "equations"];
+    header.push(if has_hessian { "Jacobian" } else { "tangent" });
+    if has_hessian {
+        header.push("Hessian");
+    }
+    header.push("µs");
+    let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
+    for effect in &plan.effects {
+        let mut row = vec![effect.name.clone(), effect.kind.to_owned()];
+        let counts = [effect.elements, effect.unknowns, effect.equations];
+        row.extend(counts.map(|n| n.to_string()));
+        row.push(effect.jacobian.to_string());
+        row.extend(effect.hessian.map(|n| n.to_string()));
+        row.push(format!("{:.2}", effect.microseconds));
+        rows.push(row);
+    }
+    table::aligned(&rows)
+}
+
+/// Why they are there.
+fn reasons(plan: &Plan) -> String {
+    let effects = plan.effects.iter();
+    listed("called for by", effects.map(|e| (&e.name, &e.why)))
+}
+
+/// What is not there.
+fn missing(plan: &Plan) -> String {
+    let absent = plan.absent.iter();
+    listed("not there", absent.map(|a| (&a.name, &a.why)))
+}
+
+/// Names under a heading with what is said of them, in two columns.
+fn listed<'a>(heading: &str, lines: impl Iterator<Item = (&'a String, &'a String)>) -> String {
+    let lines: Vec<_> = lines.collect();
+    let widths = lines.iter().map(|(name, _)| name.chars().count());
+    let width = widths.max().unwrap_or(0);
+    let mut text = format!("{heading}\n");
+    for (name, why) in lines {
+        text.push_str(&format!("  {name:<width$}  {why}\n"));
+    }
+    text
 }
 
 fn of_control(request: &Request, system: &System, control: &Control) -> Result<String, RunError> {
@@ -134,7 +177,7 @@ fn of_control(request: &Request, system: &System, control: &Control) -> Result<S
             hessian.rows.len(),
         ),
     ];
-    let mut text = of_model(&request.input, &model)?;
+    let mut text = of_model(&request.input, &model, Some(control))?;
     text.push_str(&format!(
         "\n{}start of the solver: {start:?}\n",
         numbers(&sizes)

@@ -3,7 +3,7 @@
 //! - `solve`, `forward`, `rest`: the three tasks; `task` chooses what a file asks for.
 //! - `starts`: a control problem from several guesses, each in a process of its own; `memory`: what is more than the machine has.
 //! - `grids`: solve and simulate as finely as an accuracy needs; `accuracy`, `estimate`: how that is found, `accuracy_table`: told.
-//! - `motion`, `resimulate`, `violations`, `effects`, `blocks`: what is read from a scene or a result.
+//! - `motion`, `resimulate`, `violations`, `effects`, `reasons`, `stopwatch`, `blocks`: what is read from a scene or a result.
 //! - `solution_file`, `summary`: the two JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
 //! - `inspect`, `spy`, `check`, `starter`: the other commands.
 
@@ -24,6 +24,7 @@ mod motion;
 mod optimise;
 mod path;
 mod progress;
+mod reasons;
 mod request;
 mod resimulate;
 mod rest;
@@ -32,13 +33,14 @@ mod solve;
 mod spy;
 mod starter;
 mod starts;
+mod stopwatch;
 mod summary;
 mod task;
 mod violations;
 
 pub use blocks::{BlockSize, Blocks};
 pub use check::check;
-pub use effects::{EffectCounts, effect_counts};
+pub use effects::{EffectCounts, Plan, effect_counts};
 pub use error::RunError;
 pub use forward::{Simulated, grid, integrate};
 pub use grids::{integrate_to, optimise_to};
@@ -47,6 +49,7 @@ pub use motion::{solved, trajectory};
 pub use optimise::{Allowed, Optimum, optimise};
 pub use progress::Shown;
 pub(crate) use progress::progress_bar;
+pub use reasons::{Absent, EFFECTS, absent};
 pub use request::{Request, Told};
 pub use rest::equilibrium_of_file;
 pub(crate) use solve::make_folder;

@@ -11,13 +11,13 @@ use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Mark, Series};
 use crate::report::origin::Origin;
 use crate::report::{atomic, style, table};
-use crate::run::effects::effect_counts;
+use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::request::{Request, Told};
 use crate::run::rest::{Asked, refused};
 use crate::run::solve::{counted, make_folder};
-use crate::run::summary::{Seconds, Summary};
+use crate::run::summary::{MEASURED, Seconds, Summary};
 
 /// What `summary.json` says of a path.
 #[derive(Debug, Serialize)]
@@ -92,7 +92,7 @@ pub(super) fn follow(
     atomic::write(&folder.join("path.svg"), svg.as_bytes())?;
     fields::write(&folder, &model, &history, &origin)?;
     let mut summary = Summary::new(request, "path_followed", model.coordinates.name());
-    summary.effects = effect_counts(&model).map_err(|error| wrong(error.into()))?;
+    summary.plan = Plan::of(&model, None, MEASURED).map_err(|error| wrong(error.into()))?;
     summary.path = Some(Followed {
         points: found.points.len(),
         largest_fraction: found.fractions.iter().copied().fold(0.0, f64::max),

@@ -15,7 +15,7 @@ use crate::report::atomic;
 use crate::report::skins::Skins;
 use crate::report::{pose, table};
 use crate::run::blocks::Blocks;
-use crate::run::effects::effect_counts;
+use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::inspect::key;
@@ -24,7 +24,7 @@ use crate::run::motion::solved;
 use crate::run::path;
 use crate::run::request::{Request, Told};
 use crate::run::solve::make_folder;
-use crate::run::summary::{Rest, Seconds, Summary};
+use crate::run::summary::{MEASURED, Rest, Seconds, Summary};
 use crate::scene::{driven_voltages, read_problem, read_system};
 
 /// The equilibrium that a problem asks for; under voltages such as `muscle2=1.7kV` that of a scene, or of the scene of any
@@ -141,7 +141,7 @@ pub(super) fn at(request: &Request, asked: &Asked<'_>, began: Instant) -> Result
         let written = fields::write(folder, &model, &state, &origin)?;
         let mut summary = Summary::new(request, status, model.coordinates.name());
         summary.message = told.notes.first().cloned();
-        summary.effects = effect_counts(&model).map_err(|error| wrong(error.into()))?;
+        summary.plan = Plan::of(&model, None, MEASURED).map_err(|error| wrong(error.into()))?;
         summary.rest = Some(rest);
         let observed = observations(&model, &state);
         summary.blocks = Blocks::of(&model).map(|b| b.after(&model, &observed, written));

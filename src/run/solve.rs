@@ -15,7 +15,7 @@ use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::run::accuracy::{Accuracy, Refined};
 use crate::run::blocks::Blocks;
-use crate::run::effects::effect_counts;
+use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::grids::optimise_to;
@@ -25,7 +25,7 @@ use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
 use crate::run::resimulate::{resimulate, under_constant_voltages};
 use crate::run::solution_file;
-use crate::run::summary::{PerInterval, Program, Seconds, Summary};
+use crate::run::summary::{MEASURED, PerInterval, Program, Seconds, Summary};
 use crate::run::violations::Violation;
 
 /// Length of the motion under constant voltages that is drawn beside the optimal one, in durations.
@@ -117,7 +117,7 @@ pub(super) fn control(
         resimulation,
     });
     summary.accuracy = accuracy;
-    summary.effects = effect_counts(model)
+    summary.plan = Plan::of(model, Some(control), MEASURED)
         .map_err(|error| RunError::boundary(&request.input, "control", &error.into()))?;
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),

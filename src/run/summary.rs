@@ -9,12 +9,15 @@ use crate::report::atomic::{self, WriteError};
 use crate::run::accuracy::Accuracy;
 use crate::run::blocks::Blocks;
 use crate::run::comparison::Comparison;
-use crate::run::effects::EffectCounts;
+use crate::run::effects::Plan;
 use crate::run::path::Followed;
 use crate::run::request::Request;
 use crate::run::resimulate::Resimulation;
 use crate::run::violations::Violation;
 use crate::scene::lay_out;
+
+/// Time in s that goes into measuring each effect for it.
+pub(super) const MEASURED: f64 = 2e-4;
 
 /// The file.
 #[derive(Debug, Serialize)]
@@ -42,7 +45,8 @@ pub(super) struct Summary {
     pub(super) blocks: Option<Blocks>,
     pub(super) coordinates: &'static str,
     pub(super) seconds: Seconds,
-    pub(super) effects: Vec<EffectCounts>,
+    #[serde(flatten)]
+    pub(super) plan: Plan,
     pub(super) versions: Versions,
 }
 
@@ -197,7 +201,7 @@ impl Summary {
             blocks: None,
             coordinates,
             seconds: Seconds::default(),
-            effects: Vec::new(),
+            plan: Plan::default(),
             versions: Versions::new(),
         }
     }

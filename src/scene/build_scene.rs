@@ -248,6 +248,10 @@ fn joint(spec: &JointSpec, bodies: &[String], scope: &Scope<'_>) -> Result<Joint
             Some(value).filter(|&value| value > 0.0)
         }
     };
+    let (kind, damping) = match spec.locked {
+        true => (JointKind::Fixed, None),
+        false => (kind, damping),
+    };
     let parent = find_body(&spec.parent, bodies, &scope.key("parent"))?;
     let place = scope.key("child");
     let child = place.find(&spec.child, bodies, "the name of a body")?;

@@ -167,7 +167,7 @@ pub(crate) fn joint_with_coordinate(
     match system.joints[index].kind {
         JointKind::Revolute { .. } | JointKind::Prismatic { .. } => Ok(index),
         JointKind::Spherical | JointKind::Fixed => {
-            let found = format!("{name:?}, which is neither revolute nor prismatic");
+            let found = format!("{name:?}, which is neither revolute nor prismatic, or locked");
             Err(scope.wrong(found, "a joint with one coordinate"))
         }
     }

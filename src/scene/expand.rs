@@ -93,6 +93,7 @@ impl Link {
             parent: self.parent(),
             child: self.segment(),
             at: point(&self.at),
+            locked: false,
             damping: None,
         }
     }

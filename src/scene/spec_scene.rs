@@ -170,6 +170,10 @@ pub struct JointSpec {
     pub child: String,
     /// Place, SI unit m.
     pub at: Point,
+    /// Whether the joint is locked as it stands in the reference configuration: it is then `fixed`, and what it connects is one
+    /// body.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub locked: bool,
     /// Damping of the joint coordinate, SI unit N m s/rad (revolute) or N s/m (prismatic).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<Quantity<JointDamping>>,

@@ -1,0 +1,60 @@
+//! How long one evaluation of each effect takes.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use crate::functional::{Effect, Frame, Level, Output};
+use crate::model::Model;
+use crate::reduction::Interval;
+
+/// Most evaluations of one effect.
+const MOST: u32 = 10_000;
+/// The least of so many means is told.
+const ROUNDS: u32 = 3;
+
+/// Time in µs of one evaluation with second derivatives of each effect at the reference configuration, those of the intervals
+/// first; about `spent` seconds or one evaluation go into each.
+pub(super) fn times(model: &Model, spent: f64) -> Vec<f64> {
+    let action = &model.action;
+    let mut instant = action.motion.instant();
+    let start = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+    instant.z.copy_from_slice(&start);
+    action.motion.place(&mut instant);
+    let scalars = vec![0.0; action.intervals.scalars];
+    let interval = Interval::given(&scalars, model.question.interval);
+    let of_interval = interval.frame([&instant, &instant]);
+    let multipliers = vec![0.0; model.multiplier_names.len()];
+    let of_instant = Frame {
+        scalars: &multipliers,
+        ..of_interval
+    };
+    let mut times = Vec::new();
+    for (sum, frame) in [
+        (&action.intervals, &of_interval),
+        (&action.instants, &of_instant),
+    ] {
+        let mut output = sum.output(Level::Hessian);
+        let effects = sum.effects.iter();
+        times.extend(effects.map(|e| 1e6 * time(e.as_ref(), frame, &mut output, spent)));
+    }
+    times
+}
+
+/// Time of one evaluation in s.
+fn time(effect: &dyn Effect, frame: &Frame<'_>, output: &mut Output, spent: f64) -> f64 {
+    let mut run = |count: u32| {
+        let began = Instant::now();
+        for _ in 0..count {
+            effect.evaluate(Level::Hessian, black_box(frame), output);
+        }
+        black_box(&output);
+        began.elapsed().as_secs_f64() / f64::from(count)
+    };
+    let once = run(1);
+    if once > spent {
+        return once;
+    }
+    let rounds = f64::from(ROUNDS) * once.max(1e-9);
+    let count = ((spent / rounds) as u32).clamp(1, MOST);
+    (0..ROUNDS).map(|_| run(count)).fold(once, f64::min)
+}
