@@ -18,7 +18,7 @@ help:
 	@echo 'make test          run the tests'
 	@echo 'make check         formatting, lints, documentation'
 	@echo 'make bench         measure; rewrite the tables of benches/README.md'
-	@echo 'make studies       solve each problem of problems/studies, then measure'
+	@echo 'make studies       what accuracy costs, hard cases, effects, random goals, a peer: rewrite their pages in results/'
 	@echo 'make install-deps  install what is missing (make trunk and make test do so by themselves)'
 	@echo 'make clean         remove what was built'
 
@@ -47,8 +47,11 @@ bench: install-deps
 	@$(CARGO) bench --locked --bench block -- 8 16 --write
 
 studies: build
-	@for study in $(STUDIES); do $(PROBOSCIS) solve $$study || exit; done
-	@$(CARGO) bench --locked --bench solve
+	@for study in $(STUDIES); do $(PROBOSCIS) study $$study || exit; done
+	@PROBOSCIS_WRITE_PAGES=1 $(CARGO) test --release --locked --test hard -- --include-ignored
+	@$(CARGO) bench --locked --bench effects -- --write
+	@$(CARGO) bench --locked --bench goals -- --write
+	@benches/peers/run.sh
 
 install-deps:
 	@.ci/install
