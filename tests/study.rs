@@ -6,6 +6,7 @@ use proboscis::dynamics::simulate;
 use proboscis::run::{Allowed, integrate, optimise, trajectory};
 use proboscis::scene::read_problem;
 use proboscis::study::limit::{How, limit, observed_order};
+use proboscis::study::read::read_study;
 use serde_json::{Value, json};
 use std::fs;
 use std::ops::ControlFlow;
@@ -649,6 +650,22 @@ fn wrong_studies_are_refused_with_place_found_and_expected() {
     assert!(status == 2 && err.contains("no readable file"), "{err}");
     let (status, _, err) = run(path, &["study", "study.json", "--runs", "0"]);
     assert!(status == 2 && err.contains("--runs"), "{err}");
+}
+
+#[test]
+fn every_kept_study_is_right() {
+    let mut count = 0;
+    for entry in fs::read_dir("problems/studies").unwrap() {
+        let path = entry.unwrap().path();
+        let study = read_study(&path).unwrap_or_else(|error| panic!("{error}"));
+        assert!(
+            study.methods.len() > 1 && study.runs >= 5,
+            "{}",
+            path.display()
+        );
+        count += 1;
+    }
+    assert!(count >= 8, "{count} studies");
 }
 
 #[test]
