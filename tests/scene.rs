@@ -208,6 +208,8 @@ fn mistakes_in_a_problem_name_place_found_and_expected() {
         ("{ \"rest_at_voltages\": { \"muscle1\": \"1.7 kV\" } }", "{}", "control.goal", "none of them", "exactly one of", "{}"),
         ("{ \"effort\": 1.0 }", "{ \"tracking\": 1.0 }", "control.objective.tracking", "not available in this version", "\"effort\"", "\"tracking\""),
         ("{ \"effort\": 1.0 }", "{ \"efort\": 1.0 }", "control.objective.efort", "the key \"efort\"", "\"effort\"", "\"efort\""),
+        ("\"intervals\": 20,", "\"intervals\": 20, \"voltages\": { \"muscle2\": 0 },", "control.voltages.muscle2", "no electric term", "relative_permittivity", "0"),
+        ("\"intervals\": 20,", "\"intervals\": 20, \"voltages\": { \"muscle1\": 0 },", "control.voltages", "all voltages", "not given, to be looked for", "{ \"muscle1\": 0 }"),
         ("{ \"effort\": 1.0 }", "{}", "control.objective", "no weight", "a positive weight", "{}"),
         ("\"joint\": \"joint1\"", "\"joint\": \"joint\"", "control.limits[0].joint_angle.joint", "\"joint\"", "the name of a joint", "\"joint\""),
         ("\"max\": \"0.3 rad\"", "\"max\": \"-40 deg\"", "control.limits[0].joint_angle.max", "below", "not crossed", "-40 deg"),
@@ -440,6 +442,38 @@ fn a_scene_means_what_is_written() {
         inertia,
         [2.5e-6, 1e-6, 2e-6].map(|moment: f64| moment * 1e9)
     );
+}
+
+#[test]
+fn a_locked_joint_is_fixed() {
+    let key = "\"at\": [0, \"50 mm\", 0] }";
+    let locked = "\"at\": [0, \"50 mm\", 0], \"damping\": \"3 N s/m\", \"locked\": true }";
+    assert!(SCENE.contains(key));
+    let (folder, _) = folder(&SCENE.replace(key, locked), PROBLEM);
+    let system = read_scene(&folder.path().join("scene.json")).expect("a scene");
+    assert_eq!(system.joints[1].kind, JointKind::Fixed);
+    assert_eq!(system.joints[1].damping, None);
+    let goal = "{ \"rest_at_voltages\": { \"muscle1\": \"1.7 kV\" } }";
+    let moved = PROBLEM.replace(goal, "{ \"joint_angles\": { \"joint2\": \"1 mm\" } }");
+    let error = mistake(&SCENE.replace(key, locked), &moved, &[]);
+    assert_eq!(error.path(), "control.goal.joint_angles.joint2");
+    assert!(error.found().contains("locked"), "{error}");
+}
+
+#[test]
+fn voltages_of_a_control_problem_may_be_given() {
+    let second = "\"muscle2\", \"material\": \"silicone\"";
+    let scene = SCENE.replace("\"muscle2\", \"material\": \"rubber\"", second);
+    let given = "\"intervals\": 20, \"voltages\": { \"muscle2\": \"4 kV\" },";
+    let problem = PROBLEM.replace("\"intervals\": 20,", given);
+    // What is given is not bound, at rest neither.
+    let rest = "{ \"muscle1\": \"1.7 kV\", \"muscle2\": \"4 kV\" }";
+    let problem = problem.replace("{ \"muscle1\": \"1.7 kV\" }", rest);
+    let (_folder, path) = folder(&scene, &problem);
+    let Task::Control(control) = read_problem(&path, &[]).expect("a problem").task else {
+        panic!("a control problem")
+    };
+    assert_eq!(control.given, [(1, 4000.0)].into());
 }
 
 #[test]

@@ -6,7 +6,7 @@ mod common;
 use common::cases::{GRAVITY, branched, control, rest_to_rest};
 use common::random::Random;
 use common::trunk;
-use proboscis::control::problem::{Control, Duration, Limit, Objective};
+use proboscis::control::problem::{Control, Duration, Limit, Objective, State};
 use proboscis::control::{Boundary, Transcription, guess};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
@@ -208,6 +208,67 @@ fn effects_cost_what_they_add() {
     assert_eq!(change(&|_, c| c.limits = vec![limit.clone()]), plain);
 }
 
+#[test]
+fn a_given_voltage_is_no_unknown() {
+    let (n, intervals) = (3, 6);
+    let (system, base) = (trunk(n), rest_to_rest(n, intervals, 100.0));
+    let plain = closed_form(n, intervals);
+    // The voltage of a muscle at joint 2, which two angles at each end met.
+    let without = Counts {
+        variables: plain.variables - intervals,
+        rows: plain.rows,
+        jacobian: plain.jacobian - 2 * intervals * 2,
+        hessian: plain.hessian - 2 * (intervals - 1) * 2 - intervals,
+    };
+    for volts in [0.0, 400.0] {
+        let mut control = base.clone();
+        control.given.insert(3, volts);
+        assert_eq!(counts(&system, &control), without, "{volts} V");
+    }
+    // Its jumps are no places either.
+    let mut control = base.clone();
+    control.objective.rate = 1.0;
+    control.given.insert(3, 400.0);
+    let hessian = without.hessian + (intervals - 1) * (2 * n - 1);
+    assert_eq!(counts(&system, &control), Counts { hessian, ..without });
+}
+
+#[test]
+fn equations_under_a_given_voltage_are_those_at_this_voltage() {
+    let (system, base) = (branched(), control(&branched(), 3));
+    let rows = |control: &Control| {
+        with_program(&system, control, |program, mut x| {
+            let mut random = Random(9);
+            let names: Vec<String> = (0..x.len()).map(|i| program.variable_name(i)).collect();
+            for (x, name) in x.iter_mut().zip(&names) {
+                *x += 0.01 * random.unit();
+                // One voltage in kV, and what noise it took.
+                if name.starts_with("voltage of stem to slider") {
+                    *x = 0.75;
+                }
+                if name.starts_with("voltage of") {
+                    random = Random(9);
+                }
+            }
+            let mut g = vec![f64::NAN; program.constraints().lower.len()];
+            program.constraint(&x, &mut g);
+            let cost = program.objective(&x);
+            let unscaled = |(r, g): (usize, f64)| g / program.row_scale(r);
+            let rows: Vec<f64> = g.into_iter().enumerate().map(unscaled).collect();
+            (x.len(), rows, cost)
+        })
+    };
+    let mut given = base.clone();
+    given.given.insert(1, 750.0);
+    let ((all, sought, cost), (fewer, prescribed, same_cost)) = (rows(&base), rows(&given));
+    assert_eq!(fewer + 3, all);
+    assert!(sought.iter().filter(|g| g.abs() > 1e-3).count() > 3);
+    for (a, b) in sought.iter().zip(&prescribed) {
+        assert!((a - b).abs() <= 1e-14 * (1.0 + a.abs()), "{a} {b}");
+    }
+    assert!(cost > 0.0 && (cost - same_cost).abs() <= 1e-15 * cost);
+}
+
 /// All numbers of a program at a point near its guess: f, ∇f, g, ∇g and the Hessian.
 fn numbers(system: &System, control: &Control) -> Vec<f64> {
     with_program(system, control, |program, mut x| {
@@ -291,6 +352,24 @@ fn absent_effects_change_no_bit() {
             }];
         });
         same("markers", &|s, _| s.markers.clear());
+        let passive = |muscle: usize| {
+            let (mut system, control) = (system.clone(), base.clone());
+            system.muscles[muscle].material.electric = None;
+            numbers(&system, &control)
+        };
+        for muscle in 0..3 {
+            let mut silent = base.clone();
+            silent.given.insert(muscle, 0.0);
+            let found = numbers(&system, &silent);
+            assert_eq!(found, passive(muscle), "0 V at {muscle} in {coordinates:?}");
+            assert_ne!(found, plain);
+            // A state of rest that names a voltage of it keeps its electric term.
+            let mut volts = vec![0.0; 4];
+            volts[muscle] = 300.0;
+            silent.start = State::RestAtVoltages(volts);
+            let (model, _) = Boundary::resolve(&system, &silent, 10.0).unwrap();
+            assert_eq!(model.voltages, vec![0, 1, 2]);
+        }
         if coordinates == Coordinates::Reduced {
             // Where all pairs meet anyway, an effect of no size adds zeros to the same places.
             same("gravity of no size", &|s, _| {

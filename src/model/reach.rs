@@ -4,15 +4,27 @@ use crate::model::system::{Potential, Solid, System};
 use std::collections::{BTreeSet, HashMap};
 
 /// Whether a field reaches each element: its material has electric constants, and the dielectric part of the block that it
-/// belongs to touches an electrode whose voltage is not the same everywhere.
+/// belongs to touches electrodes of different voltages. Electrodes that are held at a voltage part a block; a floating one
+/// joins what it touches.
 pub(super) fn dielectric(solid: &Solid) -> Vec<bool> {
     let mesh = &solid.mesh;
-    let mut is: Vec<bool> = mesh
+    let is: Vec<bool> = mesh
         .regions
         .iter()
         .map(|&region| solid.materials[region].electric.is_some())
         .collect();
-    let mut part: Vec<usize> = (0..mesh.nodes.len()).collect();
+    let mut held: HashMap<usize, Potential> = HashMap::new();
+    for electrode in &solid.electrodes {
+        for &node in &electrode.nodes {
+            match electrode.potential {
+                Potential::Floating => held.remove(&node),
+                potential => held.insert(node, potential),
+            };
+        }
+    }
+    // Nodes, then elements.
+    let count = mesh.nodes.len();
+    let mut part: Vec<usize> = (0..count + mesh.hexahedra.len()).collect();
     fn root(part: &mut [usize], mut node: usize) -> usize {
         while part[node] != node {
             part[node] = part[part[node]];
@@ -24,32 +36,32 @@ pub(super) fn dielectric(solid: &Solid) -> Vec<bool> {
         let (a, b) = (root(part, a), root(part, b));
         part[a.max(b)] = a.min(b);
     };
-    for (nodes, _) in mesh.hexahedra.iter().zip(&is).filter(|(_, is)| **is) {
-        for &node in &nodes[1..] {
-            join(&mut part, nodes[0], node);
+    for (e, nodes) in mesh.hexahedra.iter().enumerate().filter(|(e, _)| is[*e]) {
+        for &node in nodes.iter().filter(|node| !held.contains_key(node)) {
+            join(&mut part, node, count + e);
         }
     }
     for electrode in &solid.electrodes {
-        for pair in electrode.nodes.windows(2) {
-            join(&mut part, pair[0], pair[1]);
-        }
-    }
-    let mut potentials: HashMap<usize, Vec<Potential>> = HashMap::new();
-    for electrode in &solid.electrodes {
-        if electrode.potential != Potential::Floating {
-            for &node in &electrode.nodes {
-                let seen = potentials.entry(root(&mut part, node)).or_default();
-                if !seen.contains(&electrode.potential) {
-                    seen.push(electrode.potential);
-                }
+        if electrode.potential == Potential::Floating {
+            for pair in electrode.nodes.windows(2) {
+                join(&mut part, pair[0], pair[1]);
             }
         }
     }
-    for (nodes, is) in mesh.hexahedra.iter().zip(&mut is) {
-        let seen = potentials.get(&root(&mut part, nodes[0]));
-        *is &= seen.is_some_and(|seen| seen.len() > 1);
+    let mut potentials: HashMap<usize, Vec<Potential>> = HashMap::new();
+    for (e, nodes) in mesh.hexahedra.iter().enumerate().filter(|(e, _)| is[*e]) {
+        for potential in nodes.iter().filter_map(|node| held.get(node)) {
+            let seen = potentials.entry(root(&mut part, count + e)).or_default();
+            if !seen.contains(potential) {
+                seen.push(*potential);
+            }
+        }
     }
-    is
+    let mut reached = |e: usize| {
+        let seen = potentials.get(&root(&mut part, count + e));
+        is[e] && seen.is_some_and(|seen| seen.len() > 1)
+    };
+    (0..mesh.hexahedra.len()).map(&mut reached).collect()
 }
 
 /// Sources whose voltages do something: of dielectric muscles, and of driven electrodes that a dielectric element touches.

@@ -100,7 +100,7 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
     }
     let names = |sources: &[usize]| {
         let names = sources.iter().map(|&s| model.sources[s].name.as_str());
-        format!("voltage of {}", listed(&names.collect::<Vec<_>>()))
+        listed(&names.collect::<Vec<_>>())
     };
     let (silent, cut): (Vec<usize>, Vec<usize>) = model
         .reached
@@ -108,10 +108,12 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
         .filter(|s| !model.voltages.contains(s))
         .partition(|s| model.question.silent.contains(s));
     if !silent.is_empty() {
-        add(names(&silent), "0 V all the time".to_owned());
+        let why = format!("0 V all the time at {}", names(&silent));
+        add("voltage".to_owned(), why);
     }
     if !cut.is_empty() {
-        add(names(&cut), "no field without the others".to_owned());
+        let why = format!("no field at {} without the others", names(&cut));
+        add("voltage".to_owned(), why);
     }
     let joints = model.system.joints.iter();
     for joint in joints.filter(|j| j.kind == JointKind::Fixed) {

@@ -56,6 +56,9 @@ impl Factorisation for Dense {
 
     /// By the signs of eigenvalues: slow, and exact.
     fn negative_pivots(&self) -> Option<usize> {
+        if self.pattern.size == 0 {
+            return Some(0);
+        }
         let count = || {
             let eigenvalues = self.matrix().symmetric_eigenvalues();
             eigenvalues.iter().filter(|&&value| value < 0.0).count()
