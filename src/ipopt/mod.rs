@@ -117,6 +117,8 @@ pub fn solve(
     let code = problem.solve(&mut evaluator, &mut x, &mut costates);
     let record = evaluator.into_record();
     let mut status = match Status::from_code(code) {
+        // Ipopt minimises nothing where equations leave no freedom, or seem to.
+        Status::Solved if is_square(&variables, &constraints) => Status::FeasiblePoint,
         status if status.is_solved() => status,
         status => record.stopped.unwrap_or(status),
     };
@@ -148,6 +150,15 @@ pub fn solve(
         evaluations: record.evaluations,
         failed_evaluations: record.failed,
     })
+}
+
+/// Whether there are as many equations as variables that are free.
+fn is_square(variables: &Bounds, constraints: &Bounds) -> bool {
+    let equal = |bounds: &Bounds| {
+        let pairs = bounds.lower.iter().zip(&bounds.upper);
+        pairs.filter(|(lower, upper)| lower == upper).count()
+    };
+    variables.lower.len() - equal(variables) == equal(constraints)
 }
 
 /// A point where a solve may end.

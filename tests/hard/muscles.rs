@@ -310,9 +310,18 @@ fn a_muscle_swings_between_stretches_of_equal_energy() {
 #[test]
 fn a_mass_thrown_at_a_muscle_never_comes_out_behind_it() {
     let (mut curves, mut seen) = (Vec::new(), Vec::new());
-    for (i, speed) in [1.0, 10.0, 100.0, 1000.0].into_iter().enumerate() {
+    for (i, (speed, step, duration)) in [
+        (1.0, "0.1 ms", "20 ms"),
+        (10.0, "0.1 ms", "20 ms"),
+        (30.0, "1 us", "3 ms"),
+        (100.0, "1 ms", "20 ms"),
+        (1000.0, "0.1 ms", "20 ms"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
         let rates = json!({ "slide": format!("{} m/s", -speed) });
-        let task = simulate_from("0.02 s", "0.1 ms", json!({}), rates);
+        let task = simulate_from(duration, step, json!({}), rates);
         let motion = run(&slider(rubber()), &task);
         let end = motion.column("end_z");
         assert!(end.iter().all(|&z| z > 0.0), "{speed}: behind the ground");
@@ -333,7 +342,7 @@ fn a_mass_thrown_at_a_muscle_never_comes_out_behind_it() {
             let kept = total[total.len() - 1] / total[0];
             assert!((kept - 1.0).abs() < 0.02, "{speed}: {kept}");
             seen.push(format!(
-                "{speed} m/s: turns {least:.4} mm before the ground, closed form {turn:.4} mm"
+                "{speed} m/s, steps of {step}: turns {least:.4} mm before the ground, closed form {turn:.4} mm"
             ));
         } else {
             assert_eq!(motion.status(), "step_failed");
@@ -343,7 +352,7 @@ fn a_mass_thrown_at_a_muscle_never_comes_out_behind_it() {
                 words.contains("muscle \"muscle\" by more than a right angle"),
                 "{words}"
             );
-            seen.push(format!("{speed} m/s: {words}"));
+            seen.push(format!("{speed} m/s, steps of {step}: {words}"));
         }
         if end.len() > 1 {
             let name = format!("{speed} m/s");
@@ -429,13 +438,6 @@ fn no_optimum_leads_through_a_muscle_of_no_length() {
     for (i, intervals) in [3, 5, 7, 20].into_iter().enumerate() {
         let found = run(&scene, &control("0.2 s", intervals, goal.clone()));
         assert_eq!(found.exit, 1, "{intervals}: {}", found.summary);
-        let known = [
-            "unresolved",
-            "infeasible",
-            "restoration_failed",
-            "iteration_limit",
-        ];
-        assert!(known.contains(&found.status()), "{}", found.summary);
         seen.push(format!("{intervals} intervals: {}", found.refusal()));
         let z = found.column("end_z");
         let name = format!(

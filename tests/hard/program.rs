@@ -65,6 +65,7 @@ pub(crate) fn run_with(
     if results.exists() {
         let status = summary["status"].as_str().expect("a status");
         let done = [
+            "feasible_point",
             "solved",
             "acceptable",
             "simulated",
