@@ -5,39 +5,21 @@
 
 mod common;
 
+use common::force::{Force, UNIT, with_control};
 use common::{bare, body, joint};
 use nalgebra::{Matrix3, SVector, Vector3};
 use proboscis::control::problem::{Control, Duration, Guess, Objective, Solver, State};
 use proboscis::control::{Boundary, Transcription, guess};
 use proboscis::energy::Energy;
-use proboscis::functional::{Effect, Element, Group, Stencil, Sum, VectorArg};
 use proboscis::ipopt::{self, Options};
 use proboscis::kinematics::MaterialVector;
 use proboscis::math::Jet;
 use proboscis::model::system::{JointKind, System};
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::differences;
-use proboscis::reduction::Reduced;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::ControlFlow;
-
-/// Scalars of a program are in kV: one unit of force is a thousand units of the scalar.
-const UNIT: f64 = 1e-3;
-
-/// `−s n·x`, arguments: x and s.
-struct Force {
-    direction: Vector3<f64>,
-}
-
-impl Energy<4> for Force {
-    const DEGREE: usize = 2;
-
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> Jet<4, ORDER> {
-        let along = |i: usize| Jet::argument(i, p, w) * self.direction[i];
-        (along(0) + along(1) + along(2)) * Jet::argument(3, p, w) * -UNIT
-    }
-}
 
 /// `−s atan2(y, x)` of a vector (x, y, ·) that stays to the right, arguments: the vector and s.
 struct Torque;
@@ -51,36 +33,6 @@ impl Energy<4> for Torque {
         let angle = ratio.map([0.0, 1.0, 0.0, -2.0]) + p[1].atan2(p[0]);
         angle * Jet::argument(3, p, w) * -UNIT
     }
-}
-
-/// The model with one scalar more, which an element with one vector reads.
-fn with_control<E: Energy<4> + 'static>(
-    mut model: Model,
-    energy: E,
-    vector: &MaterialVector,
-) -> Model {
-    let at = model.vectors.iter().position(|v| v == vector);
-    let element = Element {
-        energy,
-        vectors: [VectorArg {
-            vector: at.expect("inertia reads this vector"),
-            stencil: Stencil::Mid,
-        }],
-        scalars: [0],
-    };
-    let control = Group::<E, 4, 1, 1>::intervals("control", -1.0, vec![element]);
-    let Reduced {
-        motion,
-        intervals,
-        instants,
-        ..
-    } = model.action;
-    let mut effects = intervals.effects;
-    effects.push(Box::new(control) as Box<dyn Effect>);
-    let intervals = Sum::new(effects, intervals.measures, intervals.vectors, 1);
-    model.action = Reduced::new(motion, intervals, instants);
-    model.voltages = vec![0];
-    model
 }
 
 /// Optimal value of Σ h s² from rest at zero to rest at `goal` of the one joint, and the optimal s.

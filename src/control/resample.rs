@@ -110,7 +110,7 @@ pub(super) fn costates(
         return None;
     }
     let ratio = grids.ratio();
-    let constraint = ratio * model.multiplier_time / solved.multiplier_time;
+    let constraint = ratio * solved.multiplier_time / model.multiplier_time;
     let n = model.coordinate_count();
     let row = |row: &Row| match *row {
         Row::Equation { k, i } => {

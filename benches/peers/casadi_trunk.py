@@ -1,0 +1,296 @@
+"""The optimal control problem of the elephant trunk, written for CasADi, beside proboscis.
+
+Reads the scene as `proboscis expand` prints it and the problem file, and writes the same nonlinear program: midpoint rule on
+the vectors x = F(theta) of bodies and spans, DMOCC in joint angles, the same objective, boundary conditions, bounds and guess.
+It is solved by the Ipopt with MUMPS that CasADi brings, with exact derivatives. Nothing but the two files is shared with
+proboscis: forward kinematics, energies and rows are written out here, and the objectives have to agree.
+
+    python casadi_trunk.py scene.json problem.json --intervals 40 --variant map
+"""
+
+import argparse
+import json
+import sys
+import time
+
+import casadi as ca
+import numpy as np
+
+# Units: g, mm, ms, N, MPa, V.
+UNITS = {
+    "kg": 1e3, "g": 1.0, "m": 1e3, "cm": 10.0, "mm": 1.0, "um": 1e-3, "s": 1e3, "ms": 1.0,
+    "Pa": 1e-6, "kPa": 1e-3, "MPa": 1.0, "V": 1.0, "kV": 1e3, "Pa s": 1e-3, "kg/m^3": 1e-6, "g/cm^3": 1e-3,
+}
+VACUUM_PERMITTIVITY = 8.854187817e-12
+# Volts by which the guess lies above the voltages at rest.
+LIFT = 100.0
+KILOVOLT = 1e3
+SECOND = 1e3
+VARIANTS = ("sx", "map", "map_jit")
+
+
+def quantity(value):
+    """A number with a unit, in the units above; a number alone is zero or in SI."""
+    if isinstance(value, (int, float)):
+        if value:
+            raise SystemExit(f"{value}: a number without a unit is not read here")
+        return 0.0
+    number, unit = value.split(" ", 1)
+    return float(number) * UNITS[unit]
+
+
+def place(values):
+    return np.array([quantity(value) for value in values])
+
+
+def refuse(condition, what):
+    """What this script does not know is not passed over."""
+    if condition:
+        raise SystemExit(f"{what} is not part of this comparison")
+
+
+class Trunk:
+    """Bodies on revolute joints, each on the one before, and lumped muscles."""
+
+    def __init__(self, scene):
+        self.names = [body["name"] for body in scene["bodies"]]
+        self.joints = scene["joints"]
+        refuse(len(self.joints) != len(self.names), "a scene that is no chain")
+        refuse("gravity" in scene or "solids" in scene, "gravity or an elastic block")
+        self.bodies = [self.body(body) for body in scene["bodies"]]
+        self.muscles = [self.muscle(m, scene["materials"]) for m in scene["muscles"]]
+
+    @staticmethod
+    def body(body):
+        mass, cylinder = quantity(body["mass"]), body["cylinder"]
+        length, radius = quantity(cylinder["length"]), quantity(cylinder["radius"])
+        axis = np.array(cylinder["axis"])
+        axial = mass * radius**2 / 2
+        transverse = mass * (3 * radius**2 + length**2) / 12
+        about = transverse + (axial - transverse) * np.abs(axis)
+        refuse(sorted(np.abs(axis)) != [0, 0, 1], "an oblique cylinder")
+        # Euler inertia of the three directions x, y, z fixed to the body.
+        euler = about.sum() / 2 - about
+        return mass, euler, place(body["position"])
+
+    def muscle(self, muscle, materials):
+        refuse(muscle["model"] != "lumped" or muscle.get("section_inertia"), "another kind of muscle")
+        material = materials[muscle["material"]]
+        ratio = material["relative_permittivity"]
+        refuse(material.get("dielectric", "first_order") != "first_order", "another dielectric")
+        a, b = (self.attachment(muscle[end]) for end in ("from", "to"))
+        length = np.linalg.norm(b[1] - a[1])
+        sides = [quantity(side) for side in muscle["cross_section"]]
+        volume = sides[0] * sides[1] * length
+        return {
+            "ends": (a, b),
+            "length": length,
+            "volume": volume,
+            "mass": volume * quantity(material["density"]),
+            "mu": quantity(material["shear_modulus"]),
+            "c1": -(ratio - 1) * VACUUM_PERMITTIVITY,
+            "c2": (ratio - 1) * VACUUM_PERMITTIVITY / 2,
+            "layer": quantity(muscle["layer_thickness"]),
+            "viscosity": quantity(material["viscosity"]),
+            "name": muscle["name"],
+        }
+
+    def attachment(self, end):
+        body = None if end["body"] == "ground" else self.names.index(end["body"])
+        return body, place(end["at"])
+
+    def vectors(self, theta):
+        """What inertia and muscles read: centres, turned axes, middles and spans of the muscles, all linear in directors."""
+        turn, foot, before = ca.SX.eye(3), ca.SX.zeros(3), np.zeros(3)
+        poses = []
+        for i, joint in enumerate(self.joints):
+            refuse(self.names.index(joint["child"]) != i, "a scene that is no chain")
+            parent = "ground" if i == 0 else self.names[i - 1]
+            refuse(joint["parent"] != parent or "revolute" not in joint, "a scene that is no chain")
+            at = place(joint["at"])
+            foot = foot + turn @ (at - before)
+            n = np.array(joint["revolute"]["axis"])
+            cross = np.array([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
+            turn = turn @ (ca.SX.eye(3) + ca.sin(theta[i]) * cross + (1 - ca.cos(theta[i])) * (cross @ cross))
+            poses.append((turn, foot, at))
+            before = at
+        point = lambda body, x: x if body is None else poses[body][1] + poses[body][0] @ (x - poses[body][2])
+        centres = [point(i, position) for i, (_, _, position) in enumerate(self.bodies)]
+        axes = [poses[i][0] for i in range(len(self.bodies))]
+        ends = [[point(*end) for end in muscle["ends"]] for muscle in self.muscles]
+        middles = [(a + b) / 2 for a, b in ends]
+        spans = [b - a for a, b in ends]
+        return centres, axes, middles, spans
+
+    def energy(self, spans, voltages):
+        """Electro-elastic energy of all muscles."""
+        total = 0
+        for muscle, r, v in zip(self.muscles, spans, ca.vertsplit(voltages)):
+            i = ca.dot(r, r) / muscle["length"] ** 2
+            elastic = muscle["mu"] / 2 * (2 / ca.sqrt(i) + i - 3)
+            electric = muscle["c1"] + muscle["c2"] * i - VACUUM_PERMITTIVITY / (2 * i)
+            total += muscle["volume"] * (elastic + electric * (v / muscle["layer"]) ** 2)
+        return total
+
+    def interval(self):
+        """Rows that an interval adds to its two instants, as functions of both angles and of its voltages in V."""
+        n, m = len(self.joints), len(self.muscles)
+        a, b, v, h = ca.SX.sym("a", n), ca.SX.sym("b", n), ca.SX.sym("v", m), ca.SX.sym("h")
+        xa, xb = self.vectors(a), self.vectors(b)
+        rates = [[(q - p) / h for p, q in zip(*lists)] for lists in zip(xa, xb)]
+        means = [(p + q) / 2 for p, q in zip(xa[3], xb[3])]
+        kinetic = 0
+        for (mass, euler, _), centre, axes in zip(self.bodies, rates[0], rates[1]):
+            kinetic += mass * ca.dot(centre, centre) / 2
+            for i in range(3):
+                kinetic += euler[i] * ca.dot(axes[:, i], axes[:, i]) / 2
+        for muscle, middle, span in zip(self.muscles, rates[2], rates[3]):
+            kinetic += muscle["mass"] / 2 * (ca.dot(middle, middle) + ca.dot(span, span) / 12)
+        action = h * (kinetic - self.energy(means, v))
+        rows = [ca.gradient(action, a), ca.gradient(action, b)]
+        for muscle, r, rate, ra, rb in zip(self.muscles, means, rates[3], xa[3], xb[3]):
+            force = -1.5 * muscle["viscosity"] * muscle["volume"] * ca.dot(r, rate) / ca.dot(r, r) ** 2 * r
+            rows[0] += ca.jtimes(ra, a, h / 2 * force, True)
+            rows[1] += ca.jtimes(rb, b, h / 2 * force, True)
+        return ca.Function("interval", [a, b, v, h], rows)
+
+    def equilibrium(self, voltages):
+        """Joint angles at rest under voltages in V, by Newton from the straight trunk."""
+        n, m = len(self.joints), len(self.muscles)
+        theta, v = ca.SX.sym("theta", n), ca.SX.sym("v", m)
+        energy = self.energy(self.vectors(theta)[3], v)
+        hessian, gradient = ca.hessian(energy, theta)
+        step = ca.Function("step", [theta, v], [gradient, hessian])
+        at = np.zeros(n)
+        # Voltages in ten parts, so that Newton stays near its solution.
+        for part in np.linspace(0.1, 1, 10):
+            for _ in range(50):
+                g, k = (np.array(x) for x in step(at, part * np.asarray(voltages)))
+                move = np.linalg.solve(k, g).ravel()
+                at = at - move
+                if np.abs(move).max() < 1e-13:
+                    break
+        return at
+
+
+def rest(trunk, state):
+    given = state["rest_at_voltages"]
+    return np.array([quantity(given.get(muscle["name"], 0.0)) for muscle in trunk.muscles])
+
+
+def build(trunk, control, intervals, variant):
+    """The solver, its arguments, and the seconds it took to make it."""
+    began = time.perf_counter()
+    n, m = len(trunk.joints), len(trunk.muscles)
+    for key in ("limits",):
+        refuse(key in control, f"control.{key}")
+    refuse(control["objective"].keys() != {"effort"}, "an objective other than effort")
+    refuse(control.get("guess", "interpolate") != "interpolate", "another guess")
+    h = quantity(control["duration"]) / intervals
+    voltages = rest(trunk, control["goal"])
+    start = trunk.equilibrium(rest(trunk, control["start"]))
+    goal = trunk.equilibrium(voltages)
+    interval = trunk.interval()
+    kind = ca.SX if variant == "sx" else ca.MX
+    # Instant by instant, voltages in kV between the angles.
+    angles = [kind.sym(f"theta{k}", n) for k in range(1, intervals)]
+    volts = [kind.sym(f"v{k}", m) for k in range(intervals)]
+    order = [volts[0]] + [x for pair in zip(angles, volts[1:]) for x in pair]
+    ends = [kind(ca.DM(start))] + angles + [kind(ca.DM(goal))]
+    if variant == "sx":
+        parts = [interval(a, b, v * KILOVOLT, h) for a, b, v in zip(ends, ends[1:], volts)]
+        early, late = [p[0] for p in parts], [p[1] for p in parts]
+    else:
+        both = interval.map(intervals)(
+            ca.horzcat(*ends[:-1]), ca.horzcat(*ends[1:]), ca.horzcat(*volts) * KILOVOLT, h
+        )
+        early, late = (ca.horzsplit(x) for x in both)
+    rows = [early[0]] + [p + q for p, q in zip(late, early[1:])] + [late[-1]]
+    effort = control["objective"]["effort"] * h / SECOND
+    stacked = ca.vertcat(*volts)
+    program = {"x": ca.vertcat(*order), "f": effort * ca.dot(stacked, stacked), "g": ca.vertcat(*rows)}
+
+    held = (voltages + LIFT) / KILOVOLT
+    smooth = lambda s: s * s * (3 - 2 * s)
+    guess = [held]
+    for k in range(1, intervals):
+        guess += [start + smooth(k / intervals) * (goal - start), held]
+    guess = np.concatenate(guess)
+    bounds = [quantity(value) / KILOVOLT for value in control["voltage_bounds"]]
+    low, high = [np.full(m, bounds[0])], [np.full(m, bounds[1])]
+    for _ in range(1, intervals):
+        low += [np.full(n, -np.inf), np.full(m, bounds[0])]
+        high += [np.full(n, np.inf), np.full(m, bounds[1])]
+
+    # Rows in units of their largest derivative at the guess, joint by joint, as proboscis has them.
+    slopes = ca.Function("slopes", [program["x"]], [ca.jacobian(program["g"], program["x"])])(guess)
+    largest = np.abs(np.array(ca.mmax(ca.fabs(slopes.T)) if False else slopes)).max(axis=1)
+    scale = 1 / largest.reshape(intervals + 1, n).max(axis=0)
+    program["g"] = program["g"] * np.tile(scale, intervals + 1)
+
+    options = {
+        "print_time": False,
+        "ipopt": {
+            "print_level": 0,
+            "sb": "yes",
+            "linear_solver": "mumps",
+            "tol": control["solver"].get("tolerance", 1e-8),
+            "max_iter": control["solver"]["max_iterations"],
+            "nlp_scaling_method": "none",
+            "honor_original_bounds": "yes",
+            "mumps_pivot_order": 0,
+        },
+    }
+    if variant == "map_jit":
+        options |= {"jit": True, "compiler": "shell", "jit_options": {"flags": ["-O2"], "compiler": "gcc"}}
+    solver = ca.nlpsol("solver", "ipopt", program, options)
+    arguments = {
+        "x0": guess,
+        "lbx": np.concatenate(low),
+        "ubx": np.concatenate(high),
+        "lbg": 0,
+        "ubg": 0,
+    }
+    return solver, arguments, time.perf_counter() - began
+
+
+CALLBACKS = {"objective": "f", "gradient": "grad_f", "constraints": "g", "jacobian": "jac_g", "hessian": "hess_l"}
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("scene")
+    parser.add_argument("problem")
+    parser.add_argument("--intervals", type=int, required=True)
+    parser.add_argument("--variant", choices=VARIANTS, default="sx")
+    arguments = parser.parse_args()
+    with open(arguments.scene) as scene, open(arguments.problem) as problem:
+        trunk, control = Trunk(json.load(scene)), json.load(problem)["control"]
+    solver, given, setup = build(trunk, control, arguments.intervals, arguments.variant)
+    began = time.perf_counter()
+    solution = solver(**given)
+    seconds = time.perf_counter() - began
+    stats = solver.stats()
+    called = lambda key: stats.get(f"n_call_nlp_{key}", 0)
+    spent = lambda key: stats.get(f"t_wall_nlp_{key}", 0.0)
+    json.dump(
+        {
+            "objective": float(solution["f"]),
+            "status": stats["return_status"],
+            "iterations": stats["iter_count"],
+            "setup": setup,
+            "solve": seconds,
+            "calls": {name: called(key) for name, key in CALLBACKS.items()},
+            "microseconds": {
+                name: 1e6 * spent(key) / called(key) for name, key in CALLBACKS.items() if called(key)
+            },
+            "violation": float(np.abs(np.array(solution["g"])).max()),
+            "version": ca.__version__,
+        },
+        sys.stdout,
+    )
+    return 0 if stats["success"] else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
