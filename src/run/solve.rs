@@ -376,6 +376,9 @@ fn meaning(status: Status) -> &'static str {
         }
         Status::TimeLimit => "the time allowed was used up; the files hold the last iterate",
         Status::Interrupted => "interrupted; the files hold the last iterate",
+        Status::InvalidNumber => {
+            "an equation has no value at the guess: the ends of a muscle meet there, or an element is turned inside out; choose another guess or number of intervals"
+        }
         Status::TooFewDegreesOfFreedom => "there are more equations than unknowns",
         _ => "the solver stopped short; the files hold the last iterate",
     }
