@@ -225,6 +225,7 @@ fn far_beyond_pull_in_a_motion_ends_without_nan() {
             Some(
                 StepError::NoConvergence { time, step, .. }
                 | StepError::Inverted { time, step }
+                | StepError::Reversed { time, step, .. }
                 | StepError::Singular { time, step, .. },
             ) => {
                 assert!(time >= history.times[last] && time < history.times[last] + 0.2);

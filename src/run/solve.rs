@@ -332,7 +332,7 @@ fn meaning(status: Status) -> &'static str {
         Status::TimeLimit => "the time allowed was used up; the files hold the last iterate",
         Status::Interrupted => "interrupted; the files hold the last iterate",
         Status::InvalidNumber => {
-            "the motion or a derivative of it does not exist where the solver went; the files hold the last iterate"
+            "an equation or a derivative of one has no value where the solver went: the ends of a muscle meet there, or an element is turned inside out; the files hold the last iterate; take another guess or more intervals"
         }
         Status::TooFewDegreesOfFreedom => "there are more equations than unknowns",
         _ => "the solver stopped short; the files hold the last iterate",
