@@ -149,8 +149,9 @@ impl LinePlot {
                 ranges,
             };
             plot.axes(&self.x, &self.y);
+            let mut labelled = Vec::new();
             for series in &self.series {
-                plot.series(series, &self.x, &self.y);
+                plot.series(series, &self.x, &self.y, &mut labelled);
             }
             plot.border();
             let (place, size) = ([MARGIN[0], MARGIN[1] + 0.3 * TITLE], style::LABEL_SIZE);
@@ -275,7 +276,8 @@ impl Frame<'_, '_> {
         }
     }
 
-    fn series(&self, series: &Series, x: &Axis, y: &Axis) {
+    /// A curve, and its labels where none of another curve stands yet; `labelled` are the places and widths of those.
+    fn series(&self, series: &Series, x: &Axis, y: &Axis, labelled: &mut Vec<(Place, f64)>) {
         let places: Vec<_> = series
             .points
             .iter()
@@ -293,6 +295,14 @@ impl Frame<'_, '_> {
             let beside = if comes_down { 9.5 } else { -9.0 };
             let at = [place[0], place[1] + beside];
             let size = style::LABEL_OF_POINT_SIZE;
+            let width = text_width(label, size);
+            let covers = |(other, its): &(Place, f64)| {
+                2.0 * (at[0] - other[0]).abs() < width + its && (at[1] - other[1]).abs() < size
+            };
+            if label.is_empty() || labelled.iter().any(covers) {
+                continue;
+            }
+            labelled.push((at, width));
             self.canvas.text(at, label, size, colour, Align::Centre);
         }
     }
