@@ -12,6 +12,7 @@ use crate::dynamics::History;
 use crate::dynamics::trajectory::Trajectory;
 use crate::model::Model;
 use crate::model::system::JointKind;
+use crate::run::motion::has_coordinate;
 
 /// Errors or orders by the name of what is measured.
 pub type Measures = BTreeMap<&'static str, f64>;
@@ -64,7 +65,7 @@ impl Sample {
             .system
             .joints
             .iter()
-            .filter(|joint| crate::run::motion::has_coordinate(joint));
+            .filter(|joint| has_coordinate(joint));
         let joints = motion.joints[last]
             .iter()
             .zip(kinds)
