@@ -157,7 +157,7 @@ fn starts_that_make_no_sense_are_refused() {
         (
             &["solve", &pair, "--starts", "2", "--set", unknown],
             &[
-                "start 1: ",
+                "start ",
                 "control.solver.ipopt",
                 "did you mean mu_strategy?",
             ],

@@ -5,6 +5,9 @@ the vectors x = F(theta) of bodies and spans, DMOCC in joint angles, the same ob
 It is solved by the Ipopt with MUMPS that CasADi brings, with exact derivatives. Nothing but the two files is shared with
 proboscis: forward kinematics, energies and rows are written out here, and the objectives have to agree.
 
+Variants: `sx` writes the whole program as one expression of scalars and leaves the derivatives to CasADi; `map` differentiates
+one interval, maps that over all of them and puts the blocks into Jacobian and Hessian; `map_jit` compiles the interval.
+
     python casadi_trunk.py scene.json problem.json --intervals 40 --variant map
 """
 
@@ -178,80 +181,176 @@ def rest(trunk, state):
     return np.array([quantity(given.get(muscle["name"], 0.0)) for muscle in trunk.muscles])
 
 
-def build(trunk, control, intervals, variant):
-    """The solver, its arguments, and the seconds it took to make it."""
-    began = time.perf_counter()
+def placed(blocks, rows, cols, shape, upper=False):
+    """Sparsity of a matrix made of equal blocks, and the matrix that takes the blocks' nonzeros to its own.
+
+    `rows` and `cols` hold one list of indices a block, negative where a row or column is given and dropped.
+    """
+    of_rows, of_cols = (np.array(x) for x in blocks.get_triplet())
+    at = [(r[of_rows], c[of_cols]) for r, c in zip(rows, cols)]
+    r, c = (np.concatenate(x) for x in zip(*at))
+    kept = (r >= 0) & (c >= 0)
+    if upper:
+        kept &= r <= c
+    places, which = np.unique(c[kept] * shape[0] + r[kept], return_inverse=True)
+    pattern = ca.Sparsity.triplet(*shape, (places % shape[0]).tolist(), (places // shape[0]).tolist())
+    source = np.flatnonzero(kept)
+    sums = ca.Sparsity.triplet(len(places), len(r), which.tolist(), source.tolist())
+    return pattern, ca.DM(sums, 1.0)
+
+
+class Program:
+    """Variables instant by instant, voltages in kV between the angles; rows of all instants."""
+
+    def __init__(self, trunk, control, intervals):
+        for key in ("limits",):
+            refuse(key in control, f"control.{key}")
+        refuse(control["objective"].keys() != {"effort"}, "an objective other than effort")
+        refuse(control.get("guess", "interpolate") != "interpolate", "another guess")
+        self.n, self.m, self.intervals = len(trunk.joints), len(trunk.muscles), intervals
+        self.h = quantity(control["duration"]) / intervals
+        self.weight = control["objective"]["effort"] * self.h / SECOND
+        hold = rest(trunk, control["goal"])
+        self.start = trunk.equilibrium(rest(trunk, control["start"]))
+        self.goal = trunk.equilibrium(hold)
+        n, m = self.n, self.m
+        held = (hold + LIFT) / KILOVOLT
+        guess, low, high = [held], [], []
+        for k in range(1, intervals):
+            s = k / intervals
+            guess += [self.start + s * s * (3 - 2 * s) * (self.goal - self.start), held]
+        self.guess = np.concatenate(guess)
+        bounds = [quantity(value) / KILOVOLT for value in control["voltage_bounds"]]
+        free, volts = np.full(n, np.inf), np.ones(m)
+        self.low = np.concatenate([bounds[0] * volts] + (intervals - 1) * [-free, bounds[0] * volts])
+        self.high = np.concatenate([bounds[1] * volts] + (intervals - 1) * [free, bounds[1] * volts])
+
+    def angles(self, k):
+        """Indices of the variables of instant k; −1 where they are given."""
+        if k in (0, self.intervals):
+            return np.full(self.n, -1)
+        return self.m + (k - 1) * (self.n + self.m) + np.arange(self.n)
+
+    def volts(self, k):
+        return k * (self.n + self.m) + np.arange(self.m)
+
+    def parts(self, x):
+        """Angles of both ends and voltages of every interval as columns."""
+        n, m, count = self.n, self.m, self.intervals
+        inner = ca.reshape(x[m:], n + m, count - 1)
+        ends = ca.horzcat(self.start, inner[:n, :], self.goal)
+        return ends[:, :-1], ends[:, 1:], ca.horzcat(x[:m], inner[n:, :])
+
+    def objective(self, x):
+        volts = ca.vec(self.parts(x)[2])
+        return self.weight * ca.dot(volts, volts)
+
+    def rows(self, early, late):
+        zero = ca.DM.zeros(self.n, 1)
+        return ca.vec(ca.horzcat(early, zero) + ca.horzcat(zero, late))
+
+
+def interval_functions(trunk, options):
+    """Rows of an interval, their Jacobian, and the Hessian along costates, of both ends and voltages in kV."""
     n, m = len(trunk.joints), len(trunk.muscles)
-    for key in ("limits",):
-        refuse(key in control, f"control.{key}")
-    refuse(control["objective"].keys() != {"effort"}, "an objective other than effort")
-    refuse(control.get("guess", "interpolate") != "interpolate", "another guess")
-    h = quantity(control["duration"]) / intervals
-    voltages = rest(trunk, control["goal"])
-    start = trunk.equilibrium(rest(trunk, control["start"]))
-    goal = trunk.equilibrium(voltages)
-    interval = trunk.interval()
-    kind = ca.SX if variant == "sx" else ca.MX
-    # Instant by instant, voltages in kV between the angles.
-    angles = [kind.sym(f"theta{k}", n) for k in range(1, intervals)]
-    volts = [kind.sym(f"v{k}", m) for k in range(intervals)]
-    order = [volts[0]] + [x for pair in zip(angles, volts[1:]) for x in pair]
-    ends = [kind(ca.DM(start))] + angles + [kind(ca.DM(goal))]
+    a, b, v, h = ca.SX.sym("a", n), ca.SX.sym("b", n), ca.SX.sym("v", m), ca.SX.sym("h")
+    la, lb = ca.SX.sym("la", n), ca.SX.sym("lb", n)
+    early, late = ca.cse(list(trunk.interval()(a, b, v * KILOVOLT, h)))
+    z, rows = ca.vertcat(a, b, v), ca.vertcat(early, late)
+    hessian, _ = ca.hessian(ca.dot(ca.vertcat(la, lb), rows), z)
+    jacobian, hessian = ca.cse([ca.jacobian(rows, z), hessian])
+    given = [a, b, v, h]
+    return (
+        ca.Function("rows", given, [early, late], options),
+        ca.Function("rows_jacobian", given, [early, late, jacobian], options),
+        ca.Function("rows_hessian", given + [la, lb], [hessian], options),
+    )
+
+
+def by_blocks(program, functions, scale):
+    """Objective, rows and their derivatives, each from the map of one interval's."""
+    count, n, m = program.intervals, program.n, program.m
+    size, row_count = len(program.guess), n * (count + 1)
+    rows, jacobian, hessian = functions
+    x, s = ca.MX.sym("x", size), ca.DM(scale)
+    parts = program.parts(x)
+    early, late = rows.map(count)(*parts, program.h)
+    f, g = program.objective(x), program.rows(early, late) * s
+    of_rows = [np.arange(k * n, (k + 2) * n) for k in range(count)]
+    of_z = [np.concatenate([program.angles(k), program.angles(k + 1), program.volts(k)]) for k in range(count)]
+
+    early, late, blocks = jacobian.map(count)(*parts, program.h)
+    pattern, sums = placed(jacobian.sparsity_out(2), of_rows, of_z, (row_count, size))
+    values = ca.mtimes(sums, blocks.nz[:]) * ca.DM(scale[np.array(pattern.row())])
+    p = ca.MX.sym("p", 0)
+    again = program.rows(early, late) * s
+    jac_g = ca.Function("nlp_jac_g", [x, p], [again, ca.MX(pattern, values)], ["x", "p"], ["g", "jac_g_x"])
+
+    sigma, costates = ca.MX.sym("sigma"), ca.MX.sym("costates", row_count)
+    along = ca.reshape(costates * s, n, count + 1)
+    blocks = hessian.map(count)(*parts, program.h, along[:, :-1], along[:, 1:])
+    pattern, sums = placed(hessian.sparsity_out(0), of_z, of_z, (size, size), upper=True)
+    values = ca.mtimes(sums, blocks.nz[:])
+    is_voltage = np.zeros(size)
+    is_voltage[np.concatenate([program.volts(k) for k in range(count)])] = 2 * program.weight
+    of_voltages = ca.diag(ca.DM(is_voltage))
+    matrix = ca.MX(pattern, values) + sigma * ca.sparsify(of_voltages)
+    hess = ca.Function(
+        "nlp_hess_l", [x, p, sigma, costates], [matrix], ["x", "p", "lam_f", "lam_g"], ["hess_gamma_x_x"]
+    )
+    return {"x": x, "f": f, "g": g}, {"jac_g": jac_g, "hess_lag": hess}
+
+
+def as_one(program, rows, scale):
+    """Objective and rows as expressions of scalars."""
+    x = ca.SX.sym("x", len(program.guess))
+    parts = zip(*(ca.horzsplit(part) for part in program.parts(x)))
+    early, late = zip(*(rows(a, b, v, program.h) for a, b, v in parts))
+    g = program.rows(ca.horzcat(*early), ca.horzcat(*late))
+    return {"x": x, "f": program.objective(x), "g": g * scale}, {}
+
+
+def row_scales(program, jacobian):
+    """One over the largest derivative at the guess by joint, as proboscis scales its rows."""
+    count, n = program.intervals, program.n
+    x = ca.DM(program.guess)
+    largest = np.zeros(n)
+    for k, (a, b, v) in enumerate(zip(*(ca.horzsplit(part) for part in program.parts(x)))):
+        block = np.abs(np.array(jacobian(a, b, v, program.h)[2]))
+        for end, columns in ((k, slice(0, n)), (k + 1, slice(n, 2 * n))):
+            if end in (0, count):
+                block[:, columns] = 0
+        largest = np.maximum(largest, np.maximum(block[:n], block[n:]).max(axis=1))
+    return np.tile(1 / largest, count + 1)
+
+
+def build(trunk, control, intervals, variant, tolerance):
+    """The solver and its arguments."""
+    program = Program(trunk, control, intervals)
+    jit = {"jit": True, "compiler": "shell", "jit_options": {"flags": ["-O1"], "compiler": "gcc"}}
+    functions = interval_functions(trunk, jit if variant == "map_jit" else {})
+    scale = row_scales(program, functions[1])
     if variant == "sx":
-        parts = [interval(a, b, v * KILOVOLT, h) for a, b, v in zip(ends, ends[1:], volts)]
-        early, late = [p[0] for p in parts], [p[1] for p in parts]
+        expressions, derivatives = as_one(program, functions[0], scale)
     else:
-        both = interval.map(intervals)(
-            ca.horzcat(*ends[:-1]), ca.horzcat(*ends[1:]), ca.horzcat(*volts) * KILOVOLT, h
-        )
-        early, late = (ca.horzsplit(x) for x in both)
-    rows = [early[0]] + [p + q for p, q in zip(late, early[1:])] + [late[-1]]
-    effort = control["objective"]["effort"] * h / SECOND
-    stacked = ca.vertcat(*volts)
-    program = {"x": ca.vertcat(*order), "f": effort * ca.dot(stacked, stacked), "g": ca.vertcat(*rows)}
-
-    held = (voltages + LIFT) / KILOVOLT
-    smooth = lambda s: s * s * (3 - 2 * s)
-    guess = [held]
-    for k in range(1, intervals):
-        guess += [start + smooth(k / intervals) * (goal - start), held]
-    guess = np.concatenate(guess)
-    bounds = [quantity(value) / KILOVOLT for value in control["voltage_bounds"]]
-    low, high = [np.full(m, bounds[0])], [np.full(m, bounds[1])]
-    for _ in range(1, intervals):
-        low += [np.full(n, -np.inf), np.full(m, bounds[0])]
-        high += [np.full(n, np.inf), np.full(m, bounds[1])]
-
-    # Rows in units of their largest derivative at the guess, joint by joint, as proboscis has them.
-    slopes = ca.Function("slopes", [program["x"]], [ca.jacobian(program["g"], program["x"])])(guess)
-    largest = np.abs(np.array(ca.mmax(ca.fabs(slopes.T)) if False else slopes)).max(axis=1)
-    scale = 1 / largest.reshape(intervals + 1, n).max(axis=0)
-    program["g"] = program["g"] * np.tile(scale, intervals + 1)
-
-    options = {
+        expressions, derivatives = by_blocks(program, functions, scale)
+    options = derivatives | {
         "print_time": False,
         "ipopt": {
             "print_level": 0,
             "sb": "yes",
             "linear_solver": "mumps",
-            "tol": control["solver"].get("tolerance", 1e-8),
+            "tol": tolerance,
             "max_iter": control["solver"]["max_iterations"],
             "nlp_scaling_method": "none",
-            "honor_original_bounds": "yes",
+            # Without it the two report objectives on either side of the relaxed bounds.
+            "bound_relax_factor": 0.0,
             "mumps_pivot_order": 0,
         },
     }
-    if variant == "map_jit":
-        options |= {"jit": True, "compiler": "shell", "jit_options": {"flags": ["-O2"], "compiler": "gcc"}}
-    solver = ca.nlpsol("solver", "ipopt", program, options)
-    arguments = {
-        "x0": guess,
-        "lbx": np.concatenate(low),
-        "ubx": np.concatenate(high),
-        "lbg": 0,
-        "ubg": 0,
-    }
-    return solver, arguments, time.perf_counter() - began
+    solver = ca.nlpsol("solver", "ipopt", expressions, options)
+    arguments = {"x0": program.guess, "lbx": program.low, "ubx": program.high, "lbg": 0, "ubg": 0}
+    return solver, arguments
 
 
 CALLBACKS = {"objective": "f", "gradient": "grad_f", "constraints": "g", "jacobian": "jac_g", "hessian": "hess_l"}
@@ -262,14 +361,16 @@ def main():
     parser.add_argument("scene")
     parser.add_argument("problem")
     parser.add_argument("--intervals", type=int, required=True)
-    parser.add_argument("--variant", choices=VARIANTS, default="sx")
+    parser.add_argument("--variant", choices=VARIANTS, default="map")
+    parser.add_argument("--tolerance", type=float, default=1e-8)
     arguments = parser.parse_args()
+    began = time.perf_counter()
     with open(arguments.scene) as scene, open(arguments.problem) as problem:
         trunk, control = Trunk(json.load(scene)), json.load(problem)["control"]
-    solver, given, setup = build(trunk, control, arguments.intervals, arguments.variant)
-    began = time.perf_counter()
+    solver, given = build(trunk, control, arguments.intervals, arguments.variant, arguments.tolerance)
+    ready = time.perf_counter()
     solution = solver(**given)
-    seconds = time.perf_counter() - began
+    done = time.perf_counter()
     stats = solver.stats()
     called = lambda key: stats.get(f"n_call_nlp_{key}", 0)
     spent = lambda key: stats.get(f"t_wall_nlp_{key}", 0.0)
@@ -278,8 +379,8 @@ def main():
             "objective": float(solution["f"]),
             "status": stats["return_status"],
             "iterations": stats["iter_count"],
-            "setup": setup,
-            "solve": seconds,
+            "setup": ready - began,
+            "solve": done - ready,
             "calls": {name: called(key) for name, key in CALLBACKS.items()},
             "microseconds": {
                 name: 1e6 * spent(key) / called(key) for name, key in CALLBACKS.items() if called(key)

@@ -172,7 +172,7 @@ pub(super) fn simulation(
     let compared = summary.comparison.iter().flat_map(Comparison::notes);
     let mut notes: Vec<String> = summary.message.iter().cloned().chain(compared).collect();
     summary.write(&folder)?;
-    let rows = [
+    let mut rows = vec![
         ("status".to_owned(), status.replace('_', " ")),
         ("steps".to_owned(), history.intervals().to_string()),
         ("duration".to_owned(), format!("{} s", reached / 1e3)),
@@ -183,6 +183,12 @@ pub(super) fn simulation(
         ),
         ("time".to_owned(), format!("{:.3} s", summary.seconds.total)),
     ];
+    rows.extend(summary.accuracy.iter().flat_map(|a| {
+        let told = |(name, error): (&&str, &f64)| {
+            (format!("estimated error, {name}"), format!("{error:.1e}"))
+        };
+        a.estimate.iter().map(told)
+    }));
     let run = Run {
         system,
         trajectory: &motion,

@@ -25,7 +25,7 @@ use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
 use crate::run::resimulate::{resimulate, under_constant_voltages};
 use crate::run::solution_file;
-use crate::run::summary::{MEASURED, PerInterval, Program, Seconds, Summary};
+use crate::run::summary::{Evaluations, MEASURED, PerInterval, Program, Seconds, Summary};
 use crate::run::violations::Violation;
 
 /// Length of the motion under constant voltages that is drawn beside the optimal one, in durations.
@@ -108,6 +108,13 @@ pub(super) fn control(
         constraints: optimum.constraints,
         jacobian_nonzeros: optimum.jacobian_nonzeros,
         hessian_nonzeros: optimum.hessian_nonzeros,
+        evaluations: Evaluations {
+            objective: solution.evaluations.objective,
+            gradient: solution.evaluations.gradient,
+            constraints: solution.evaluations.constraints,
+            jacobian: solution.evaluations.jacobian,
+            hessian: solution.evaluations.hessian,
+        },
         interval_microseconds: PerInterval {
             jacobian: per_interval(seconds.jacobian, solution.evaluations.jacobian),
             hessian: per_interval(seconds.hessian, solution.evaluations.hessian),
@@ -237,6 +244,9 @@ fn rows(summary: &Summary) -> Vec<(String, String)> {
         row("variables", program.variables.to_string());
         row("constraints", program.constraints.to_string());
         row("time", format!("{:.3} s", summary.seconds.total));
+        for (name, error) in summary.accuracy.iter().flat_map(|a| &a.estimate) {
+            row(&format!("estimated error, {name}"), format!("{error:.1e}"));
+        }
         if let Some(r) = &program.resimulation {
             let of = |d: &crate::run::resimulate::Distance| {
                 format!("{:.1e} rad, {:.1e} m", d.angle, d.length)

@@ -62,6 +62,8 @@ pub(super) struct Program {
     pub(super) constraints: usize,
     pub(super) jacobian_nonzeros: usize,
     pub(super) hessian_nonzeros: usize,
+    /// How often the solver asked for what.
+    pub(super) evaluations: Evaluations,
     /// Mean time of one evaluation per interval.
     pub(super) interval_microseconds: PerInterval,
     /// Greatest violation of an equation or limit, as the solver measures it.
@@ -70,6 +72,16 @@ pub(super) struct Program {
     pub(super) violations: Vec<Violation>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) resimulation: Option<Resimulation>,
+}
+
+/// Numbers of evaluations.
+#[derive(Debug, Serialize)]
+pub(super) struct Evaluations {
+    pub(super) objective: usize,
+    pub(super) gradient: usize,
+    pub(super) constraints: usize,
+    pub(super) jacobian: usize,
+    pub(super) hessian: usize,
 }
 
 /// Mean time of one evaluation per interval, in µs; nothing where there was none.
