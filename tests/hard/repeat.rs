@@ -105,6 +105,7 @@ fn timeless(value: Value) -> Value {
             .filter(|(key, _)| !key.contains("seconds"))
             .map(|(key, entry)| (key, timeless(entry)))
             .collect(),
+        Value::Array(list) => list.into_iter().map(timeless).collect(),
         other => other,
     }
 }
