@@ -43,6 +43,8 @@ struct Variant {
     step: f64,
     steps: usize,
     seconds: Vec<f64>,
+    /// Newton iterations a step.
+    iterations: f64,
     tip: Vector3<f64>,
 }
 
@@ -61,6 +63,7 @@ impl Variant {
             step,
             steps: steps as usize,
             seconds: Vec::new(),
+            iterations: f64::NAN,
             tip: Vector3::zeros(),
         }
     }
@@ -79,6 +82,7 @@ impl Variant {
         }
         self.seconds
             .push(began.elapsed().as_secs_f64() / self.steps as f64);
+        self.iterations = stepper.report().iterations as f64 / self.steps as f64;
         self.tip = stepper.instant().x[self.model.markers[0]];
     }
 
@@ -464,8 +468,8 @@ fn table(mut pairs: Vec<Pair>) -> String {
         }
     }
     let mut text = String::from(
-        "| effect | scene | unknowns of a step, without → with | entries of the tangent | µs a step, without → with | tip moves by, mm |\n\
-         |:--|:--|--:|--:|--:|--:|\n",
+        "| effect | scene | unknowns of a step, without → with | entries of the tangent | µs a step, without → with | Newton iterations a step | tip moves by, mm |\n\
+         |:--|:--|--:|--:|--:|--:|--:|\n",
     );
     for Pair {
         effect,
@@ -483,11 +487,13 @@ fn table(mut pairs: Vec<Pair>) -> String {
         let moved = (with.tip - without.tip).norm();
         writeln!(
             text,
-            "| {effect} | {scene} | {a} → {c} | {b} → {d} | {:.1}{} → {:.1}{} | {moved:.3} |",
+            "| {effect} | {scene} | {a} → {c} | {b} → {d} | {:.1}{} → {:.1}{} | {:.2} → {:.2} | {moved:.1e} |",
             times[0],
             factored(without),
             times[1],
             factored(with),
+            without.iterations,
+            with.iterations,
         )
         .expect("a string takes text");
     }
@@ -533,15 +539,16 @@ fn specialised(system: &System, volts: &[f64]) -> String {
     );
     let base = reference.time()[1];
     let mut text = String::from(
-        "| trunk, reduced | µs a step: quartile, median, quartile | median over the first |\n|:--|--:|--:|\n",
+        "| trunk, reduced | µs a step: quartile, median, quartile | median over the first | Newton iterations a step |\n|:--|--:|--:|--:|\n",
     );
     for variant in &variants {
         let [low, middle, high] = variant.time();
         writeln!(
             text,
-            "| {} | {low:.2}, {middle:.2}, {high:.2} | {:.3} |",
+            "| {} | {low:.2}, {middle:.2}, {high:.2} | {:.3} | {:.2} |",
             variant.name,
-            middle / base
+            middle / base,
+            variant.iterations
         )
         .expect("a string takes text");
     }

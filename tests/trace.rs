@@ -9,7 +9,7 @@ use common::trunk;
 use proboscis::control::problem::{Control, Duration, Limit, Objective, State};
 use proboscis::control::{Boundary, Transcription, guess};
 use proboscis::model::Coordinates;
-use proboscis::model::system::System;
+use proboscis::model::system::{JointKind, System};
 use proboscis::nlp::Nlp;
 
 /// Sizes of a program.
@@ -139,6 +139,24 @@ fn effects_cost_what_they_add() {
             .iter_mut()
             .for_each(|m| m.material.viscosity = None)),
         plain
+    );
+    assert_eq!(
+        change(&|s, _| s.joints.iter_mut().for_each(|j| j.damping = Some(30.0))),
+        plain
+    );
+    // A locked joint takes its angle away: a trunk of one joint less, with two spans on its last body, whose voltages meet
+    // the angles that are left.
+    let less = closed_form(n - 1, intervals);
+    let met = 2 * (n - 1);
+    let locked = Counts {
+        variables: less.variables + 2 * intervals,
+        rows: less.rows,
+        jacobian: less.jacobian + 2 * intervals * met,
+        hessian: less.hessian + 2 * inner * met + 2 * intervals,
+    };
+    assert_eq!(
+        change(&|s, _| s.joints[n - 1].kind = JointKind::Fixed),
+        locked
     );
     // A passive muscle at joint 2 takes its voltage away, which two angles at each end met.
     let passive = Counts {

@@ -7,8 +7,9 @@ use crate::model::joints::triad;
 use crate::model::system::{Discretisation, Electrode, Fidelity, Glue, Muscle, Potential, Solid};
 use nalgebra::Vector3;
 
-/// All blocks; every node of a muscle that nothing moves is held.
-pub(super) fn blocks(condensed: &Condensed) -> Vec<Solid> {
+/// All blocks, those of the scene taken out of the condensed system; every node of a muscle that nothing moves is held.
+pub(super) fn blocks(condensed: &mut Condensed) -> Vec<Solid> {
+    let of_scene = std::mem::take(&mut condensed.system.solids);
     let (system, still) = (&condensed.system, &condensed.still);
     let muscles = system.muscles.iter().enumerate();
     let of_muscles = muscles.filter_map(|(source, muscle)| match muscle.fidelity {
@@ -21,7 +22,7 @@ pub(super) fn blocks(condensed: &Condensed) -> Vec<Solid> {
             Some(solid)
         }
     });
-    system.solids.iter().cloned().chain(of_muscles).collect()
+    of_scene.into_iter().chain(of_muscles).collect()
 }
 
 /// A muscle as a pile of layers, glued to both bodies. A layer of the model stands for many of the muscle: its voltage is

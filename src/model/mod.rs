@@ -10,6 +10,7 @@ mod error;
 mod floating;
 mod graph;
 mod joints;
+mod named;
 mod quantity;
 mod question;
 mod reach;
@@ -64,7 +65,7 @@ pub struct Model {
     pub system: System,
     /// What is asked of it.
     pub question: Question,
-    /// What remains of it to be solved for.
+    /// What remains of it to be solved for; its blocks are in `continua`.
     pub condensed: Condensed,
     /// Which coordinates.
     pub coordinates: Coordinates,
@@ -130,20 +131,20 @@ impl Model {
     /// # Errors
     /// Reduced coordinates were asked for and do not exist.
     pub fn answering(system: System, question: Question) -> Result<Self, ModelError> {
-        let condensed = Condensed::new(&system, &question);
+        let mut condensed = Condensed::new(&system, &question);
+        let solids = blocks::blocks(&mut condensed);
         let rest = &condensed.system;
         let coordinates = Self::choose(rest, question.coordinates)?;
         let graph = Graph::new(rest);
         let reference: Vec<Pose> = rest.bodies.iter().map(system::Body::pose).collect();
         let mut vectors = Vectors::default();
-        let solids = blocks::blocks(&condensed);
         let voltages = reach::voltages(rest, &solids);
         let reached = match question.silent.is_empty() {
             true => voltages.clone(),
             false => Self::reached(&system, &question),
         };
         let ties = coordinates == Coordinates::Redundant;
-        let scene = rest.solids.len();
+        let scene = system.solids.len();
         let continua = Continua::new(solids, scene, &reference, &voltages, ties, &mut vectors)?;
         let mut parts = effects::Builder::new(rest, &reference, &voltages, &continua, &mut vectors);
         let intervals = parts.intervals(question.of_motion);
@@ -219,8 +220,9 @@ impl Model {
             stirred: None,
             ..question.clone()
         };
-        let whole = Condensed::new(system, &question);
-        reach::voltages(&whole.system, &blocks::blocks(&whole))
+        let mut whole = Condensed::new(system, &question);
+        let solids = blocks::blocks(&mut whole);
+        reach::voltages(&whole.system, &solids)
     }
 
     /// How the coordinates of the joints of the scene are read from the poses of its bodies.
@@ -265,53 +267,6 @@ impl Model {
     /// Number of coordinates of an instant, without multipliers.
     pub fn coordinate_count(&self) -> usize {
         self.action.motion.coordinates
-    }
-
-    /// What coordinate or multiplier `i` of an instant is, or what potential of an interval after these.
-    pub fn unknown_name(&self, i: usize) -> String {
-        let n = self.coordinate_count();
-        match self.coordinates {
-            _ if i >= n + self.multiplier_names.len() => {
-                let potential = i - n - self.multiplier_names.len();
-                format!("potential of {}", self.potential_names[potential])
-            }
-            _ if i >= n => format!("multiplier of {}", self.multiplier_names[i - n]),
-            _ if i >= self.action.motion.of_bodies => {
-                let (node, axis) = self.action.motion.of_nodes[i - self.action.motion.of_bodies];
-                let (block, node) = self.node_names[node];
-                let name = &self.continua[block].solid.name;
-                format!("{} of node {node} of {name}", ["x", "y", "z"][axis])
-            }
-            Coordinates::Reduced => {
-                let joint = self.gauges.iter().position(|g| g.coordinate == Some(i));
-                format!(
-                    "coordinate of {}",
-                    self.system.joints[joint.expect("each coordinate has a joint")].name
-                )
-            }
-            Coordinates::Redundant => {
-                let part = ["centre", "d1", "d2", "d3"][i % 12 / 3];
-                let axis = ["x", "y", "z"][i % 3];
-                format!(
-                    "{} {part}.{axis}",
-                    self.condensed.system.bodies[i / 12].name
-                )
-            }
-        }
-    }
-
-    /// Whether coordinate `i` is a length, rather than an angle or a component of a director.
-    pub fn is_length(&self, i: usize) -> bool {
-        match self.coordinates {
-            _ if i >= self.action.motion.of_bodies => true,
-            Coordinates::Redundant => i % 12 < 3,
-            Coordinates::Reduced => {
-                let prismatic =
-                    |j: &system::Joint| matches!(j.kind, system::JointKind::Prismatic { .. });
-                let joint = self.gauges.iter().position(|g| g.coordinate == Some(i));
-                joint.is_some_and(|j| prismatic(&self.system.joints[j]))
-            }
-        }
     }
 
     /// Coordinates of an instant at given joint coordinates (rad or mm, by joint; zero where a joint has none).
