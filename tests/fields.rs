@@ -72,6 +72,7 @@ fn request(input: PathBuf, output: &Path, set: &[&str]) -> Request {
         output: Some(output.to_owned()),
         max_seconds: None,
         max_iterations: None,
+        wanted: None,
         progress: Shown::Never,
     }
 }
