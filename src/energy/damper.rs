@@ -22,15 +22,28 @@ impl Energy<27> for AngularDamper {
         p: &SVector<f64, 27>,
         w: &SVector<f64, 27>,
     ) -> Jet<27, ORDER> {
-        let (sine, cosine) = (Jet::dot(12, 15, p, w), Jet::dot(9, 15, p, w));
         // Rate of a product of two vectors: one factor varies (at `shift`), the other stands.
         let rate =
             |a: usize, shift: usize| Jet::dot(a + shift, 15, p, w) + Jet::dot(a, 15 + shift, p, w);
-        let turning = |shift: usize| rate(12, shift) * cosine - rate(9, shift) * sine;
         let virtual_rate = |a: usize| Jet::dot(a - 9, 15, p, w) + Jet::dot(a, 6, p, w);
-        let virtual_turning = virtual_rate(12) * cosine - virtual_rate(9) * sine;
-        let square = sine.squared() + cosine.squared();
-        turning(9) * virtual_turning * square.squared().recip() * -self.coefficient
+        let products: [Jet<27, ORDER>; 6] = [
+            Jet::dot(12, 15, p, w),
+            Jet::dot(9, 15, p, w),
+            rate(12, 9),
+            rate(9, 9),
+            virtual_rate(12),
+            virtual_rate(9),
+        ];
+        // Of s, c, their rates and their variations, far fewer than the arguments.
+        let values = SVector::from_fn(|i, _| products[i].value);
+        let along = SVector::from_fn(|i, _| products[i].value_w);
+        let [s, c, ds, dc, vs, vc] =
+            std::array::from_fn(|i| Jet::<6, ORDER>::argument(i, &values, &along));
+        let turning = ds * c - dc * s;
+        let virtual_turning = vs * c - vc * s;
+        let square = s.squared() + c.squared();
+        let work = turning * virtual_turning * square.squared().recip() * -self.coefficient;
+        Jet::compose(&work, &products)
     }
 }
 
