@@ -33,7 +33,7 @@ pub struct Sample {
     pub duration: Option<f64>,
     /// Places by instant, in lengths of the system: of the markers, or where there are none of bodies and nodes.
     pub path: Vec<Vec<Vector3<f64>>>,
-    /// The last instant: joint coordinates (rad, or lengths of the system), directors of bodies.
+    /// The last instant: joint coordinates, directors of bodies, places of bodies and nodes (rad, or lengths of the system).
     pub end: Vec<f64>,
     /// Greatest deviation from the motion under the same voltages with half the step; infinite where there is no such motion.
     pub response: Option<f64>,
@@ -72,12 +72,14 @@ impl Sample {
                 JointKind::Prismatic { .. } => value / length,
                 _ => *value,
             });
-        let directors = motion.poses[last]
-            .iter()
-            .flat_map(|p| p.directors.iter().copied());
+        let poses = &motion.poses[last];
+        let directors = poses.iter().flat_map(|p| p.directors.iter().copied());
+        let centres = poses.iter().flat_map(|p| p.centre.iter());
+        let nodes = &history.z[last][of_bodies..model.coordinate_count()];
+        let lengths = centres.chain(nodes).map(|x| x / length);
         Self {
             path: (0..=last).map(places).collect(),
-            end: joints.chain(directors).collect(),
+            end: joints.chain(directors).chain(lengths).collect(),
             ..Self::default()
         }
     }
