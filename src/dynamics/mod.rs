@@ -1,7 +1,7 @@
 //! Motion in time and rest: two readers of the discrete action.
 //!
-//! - `stepper`: Newton on the equations of one step; `midpoint`: those of the midpoint rule; `stages`: those of every other method,
-//!   told by its `rule`, with `lobatto` points and `places` of their derivatives.
+//! - `stepper`: Newton on the equations of one step; `midpoint`: those of the midpoint rule; `stages`: those of every other
+//!   method.
 //! - `simulate`, `history`, `observe`, `kinetic`: step after step, recorded and observed.
 //! - `statics`, `equilibrium`, `continuation`: rest, and paths of it.
 
@@ -11,11 +11,8 @@ mod equilibrium;
 mod error;
 mod history;
 mod kinetic;
-mod lobatto;
 mod midpoint;
 mod observe;
-mod places;
-mod rule;
 mod simulate;
 mod solving;
 mod spans;
