@@ -44,9 +44,7 @@ pub(super) fn shortest(model: &Model, at: &Instant) -> Option<(usize, f64)> {
 
 /// The first lumped muscle whose ends meet at coordinates.
 pub fn muscle_without_length(model: &Model, coordinates: &[f64]) -> Option<usize> {
-    let mut instant = model.action.motion.instant();
-    instant.z[..coordinates.len()].copy_from_slice(coordinates);
-    model.action.motion.place(&mut instant);
+    let instant = model.action.motion.placed(coordinates);
     let (muscle, stretch) = shortest(model, &instant)?;
     (stretch < NOTHING).then_some(muscle)
 }
@@ -64,15 +62,10 @@ pub(super) fn is_inverted(model: &Model, at: &Instant, scalars: &[f64]) -> bool 
 
 /// The first interval of a motion in which the span of a lumped muscle turns by a right angle or more, and the muscle.
 pub fn reversed_muscle(model: &Model, history: &History) -> Option<(usize, usize)> {
-    let placed = |z: &[f64]| {
-        let mut instant = model.action.motion.instant();
-        instant.z.copy_from_slice(z);
-        model.action.motion.place(&mut instant);
-        instant
-    };
+    let motion = &model.action.motion;
     let mut pairs = history.z.windows(2).enumerate();
     pairs.find_map(|(k, ends)| {
-        let muscle = reversed(model, &placed(&ends[0]), &placed(&ends[1]))?;
+        let muscle = reversed(model, &motion.placed(&ends[0]), &motion.placed(&ends[1]))?;
         Some((k, muscle))
     })
 }

@@ -21,9 +21,7 @@ impl Model {
         let layout = action.layout();
         let mut scratch = action.scratch(Level::Hessian);
         let mut values = vec![0.0; layout.values(1)];
-        let mut instant = action.motion.instant();
-        instant.z.copy_from_slice(z);
-        action.motion.place(&mut instant);
+        let mut instant = action.motion.placed(z);
         action.evaluate_instant(Level::Hessian, &mut instant, &[], &mut scratch);
         action.pull_back_instant(Level::Hessian, &mut instant, 0, &mut scratch, &mut values);
         let mut gradients = DMatrix::<f64>::zeros(n, m);

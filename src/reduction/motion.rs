@@ -146,6 +146,14 @@ impl Motion {
         self.coordinates + self.multipliers
     }
 
+    /// An instant placed at coordinates, and multipliers where they are given.
+    pub fn placed(&self, z: &[f64]) -> Instant {
+        let mut instant = self.instant();
+        instant.z[..z.len()].copy_from_slice(z);
+        self.place(&mut instant);
+        instant
+    }
+
     /// x = F(u) and the columns of P.
     pub fn place(&self, instant: &mut Instant) {
         self.vectors(instant);

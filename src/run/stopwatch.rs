@@ -16,10 +16,8 @@ const ROUNDS: u32 = 3;
 /// first; about `spent` seconds or one evaluation go into each.
 pub(super) fn times(model: &Model, spent: f64) -> Vec<f64> {
     let action = &model.action;
-    let mut instant = action.motion.instant();
     let start = model.coordinates_at(&vec![0.0; model.gauges.len()]);
-    instant.z.copy_from_slice(&start);
-    action.motion.place(&mut instant);
+    let instant = action.motion.placed(&start);
     let scalars = vec![0.0; action.intervals.scalars];
     let interval = Interval::given(&scalars, model.question.interval);
     let of_interval = interval.frame([&instant, &instant]);

@@ -88,7 +88,9 @@ pub struct ReferenceSpec {
 }
 
 /// What is measured of a point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, Serialize, JsonSchema)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, Serialize, JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum MeasureSpec {
     /// Place of the markers at the end of a motion.

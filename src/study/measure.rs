@@ -5,7 +5,8 @@ use serde::Serialize;
 use crate::control::problem::{Task, Voltages};
 use crate::model::{Coordinates, Model};
 use crate::scene::Loaded;
-use crate::scene::spec_study::MeasureSpec;
+
+pub use crate::scene::spec_study::MeasureSpec as Measure;
 
 /// What the problems of a study ask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -26,49 +27,6 @@ impl Asked {
             Self::Control => "a control problem",
             Self::Motion => "a simulation",
             Self::Rest => "an equilibrium",
-        }
-    }
-}
-
-/// What is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Measure {
-    /// Place of the markers at the end, in mm.
-    End,
-    /// Places of the markers at the instants that all points have in common, in mm.
-    Path,
-    /// Place of the markers at rest, in mm.
-    Place,
-    /// Objective.
-    Objective,
-    /// Distance at the end from the motion on a finer grid under the optimal voltages, in mm.
-    ResimulatedEnd,
-    /// The same at all instants, in mm.
-    ResimulatedPath,
-    /// Greatest change of the energy, relative to the greatest kinetic energy.
-    EnergyBalance,
-    /// Trend of the energy, relative to the greatest kinetic energy.
-    EnergyDrift,
-    /// Greatest violation of a constraint that the coordinates leave open.
-    ConstraintViolation,
-    /// Greatest violation that the solver left.
-    Infeasibility,
-}
-
-impl From<MeasureSpec> for Measure {
-    fn from(spec: MeasureSpec) -> Self {
-        match spec {
-            MeasureSpec::End => Self::End,
-            MeasureSpec::Path => Self::Path,
-            MeasureSpec::Place => Self::Place,
-            MeasureSpec::Objective => Self::Objective,
-            MeasureSpec::ResimulatedEnd => Self::ResimulatedEnd,
-            MeasureSpec::ResimulatedPath => Self::ResimulatedPath,
-            MeasureSpec::EnergyBalance => Self::EnergyBalance,
-            MeasureSpec::EnergyDrift => Self::EnergyDrift,
-            MeasureSpec::ConstraintViolation => Self::ConstraintViolation,
-            MeasureSpec::Infeasibility => Self::Infeasibility,
         }
     }
 }

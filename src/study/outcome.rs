@@ -223,7 +223,8 @@ fn rest(
         seconds: began.elapsed().as_secs_f64(),
         is_solved: false,
     };
-    let model = match Model::new(system, task.coordinates, 1.0, &[]) {
+    let question = task.question(&system);
+    let model = match Model::answering(system, question) {
         Ok(model) => model,
         Err(error) => return (failed(REFUSED, error.to_string(), began), None),
     };
@@ -295,9 +296,7 @@ fn markers(model: &Model, names: &[String]) -> Vec<usize> {
 
 /// Places of the markers with these names at coordinates z.
 fn marks(model: &Model, z: &[f64], names: &[String]) -> Vec<Vector3<f64>> {
-    let mut instant = model.action.motion.instant();
-    instant.z[..z.len()].copy_from_slice(z);
-    model.action.motion.place(&mut instant);
+    let instant = model.action.motion.placed(z);
     let all: Vec<_> = model.markers.iter().map(|&v| instant.x[v]).collect();
     markers(model, names).into_iter().map(|m| all[m]).collect()
 }

@@ -440,10 +440,9 @@ fn measures(
     let Some(named) = &spec.measures else {
         return Ok(all);
     };
-    let wanted = named.iter().enumerate().map(|(index, &spec)| {
-        let measure = Measure::from(spec);
+    let wanted = named.iter().enumerate().map(|(index, &measure)| {
         let place = scope.key("measures").index(index);
-        if named[..index].contains(&spec) {
+        if named[..index].contains(&measure) {
             return Err(place.wrong(format!("{:?} again", measure.key()), "each measure once"));
         }
         if !all.contains(&measure) {

@@ -153,9 +153,7 @@ impl<'m> Steps<Stages<'m>> {
 /// Rates and momenta of all vectors at the start.
 fn moving(model: &Model, start: &Start) -> (Vec<Vector>, Vec<Vector>) {
     let motion = &model.action.motion;
-    let mut instant = motion.instant();
-    instant.z.copy_from_slice(&start.z);
-    motion.place(&mut instant);
+    let mut instant = motion.placed(&start.z);
     let known = start.rates.clone();
     let rates = known.unwrap_or_else(|| rates(model, &mut instant, &start.momentum));
     instant.l.fill(0.0);
