@@ -5,20 +5,22 @@ export PATH := $(PATH):$(or $(CARGO_HOME),$(HOME)/.cargo)/bin
 CARGO := cargo
 PROBOSCIS := target/release/proboscis
 TRUNKS := elephant_trunk elephant_trunk_smooth
+GALLERY := results/gallery
 STUDIES := $(wildcard problems/studies/*.json)
 
 BLOCKS := bending_actuator clamped_stack pull_in fe_bending_control
 MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight
 
-.PHONY: help trunk blocks build test check bench studies install-deps clean
+.PHONY: help trunk blocks gallery build test check bench studies install-deps clean
 
 help:
 	@echo 'make trunk         solve the elephant trunk and say where the pictures are'
 	@echo 'make blocks        run the problems of finite elements, but the block of 16384'
+	@echo 'make gallery       rewrite the results that the README shows, $(GALLERY)'
 	@echo 'make test          run the tests'
 	@echo 'make check         formatting, lints, documentation'
 	@echo 'make bench         measure; rewrite the tables of benches/README.md'
-	@echo 'make studies       what accuracy costs, hard cases, effects, random goals, a peer: rewrite their pages in results/'
+	@echo 'make studies       what accuracy costs, hard cases, effects, random goals, a peer: rewrite their pages in $(GALLERY)'
 	@echo 'make install-deps  install what is missing (make trunk and make test do so by themselves)'
 	@echo 'make clean         remove what was built'
 
@@ -29,6 +31,10 @@ trunk: build
 blocks: build
 	@for problem in $(BLOCKS); do $(PROBOSCIS) solve problems/$$problem.json || exit; done
 	@for problem in $(MOTIONS); do $(PROBOSCIS) simulate problems/$$problem.json || exit; done
+
+gallery: build
+	@for problem in $(TRUNKS) $(BLOCKS); do $(PROBOSCIS) solve problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
+	@for problem in $(MOTIONS); do $(PROBOSCIS) simulate problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
 
 build: install-deps
 	@$(CARGO) build --release --locked --quiet
@@ -47,7 +53,7 @@ bench: install-deps
 	@$(CARGO) bench --locked --bench block -- 8 16 --write
 
 studies: build
-	@for study in $(STUDIES); do $(PROBOSCIS) study $$study || exit; done
+	@for study in $(STUDIES); do $(PROBOSCIS) study $$study -o $(GALLERY)/studies/$$(basename $$study .json) || exit; done
 	@PROBOSCIS_WRITE_PAGES=1 $(CARGO) test --release --locked --test hard -- --include-ignored
 	@$(CARGO) bench --locked --bench effects -- --write
 	@$(CARGO) bench --locked --bench goals -- --write

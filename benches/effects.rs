@@ -1,6 +1,6 @@
 //! What each effect adds in unknowns, entries and time per step, what it changes in the answer, and what its absence costs.
 //!
-//! `cargo bench --bench effects` prints the tables; `-- --write` puts them into `results/effects.md`. All variants of a scene
+//! `cargo bench --bench effects` prints the tables; `-- --write` puts them into `results/gallery/effects.md`. All variants of a scene
 //! are timed in turn, so that numbers of one run can be compared with each other.
 
 mod trunk;
@@ -576,7 +576,7 @@ fn main() {
     );
     println!("{text}");
     if std::env::args().any(|argument| argument == "--write") {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/results/effects.md");
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/results/gallery/effects.md");
         std::fs::write(path, text).expect("results can be written");
     }
 }

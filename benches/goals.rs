@@ -1,7 +1,7 @@
 //! Random goals of the elephant trunk: how many are solved, how fast, and what several starting points add.
 //!
 //! `cargo bench --bench goals -- [GOALS] [--write]`: so many goals of rest, 200 where not said, half as many places of the tip
-//! and an eighth as many goals in haste; with `--write` tables and figure go to `results/random_goals/`. Each solve is a process, as a user starts it.
+//! and an eighth as many goals in haste; with `--write` tables and figure go to `results/gallery/random_goals/`. Each solve is a process, as a user starts it.
 
 #[path = "../tests/random_goals/mod.rs"]
 mod random_goals;
@@ -117,7 +117,7 @@ fn main() {
     let text = report(&once, &several, &chosen);
     println!("{text}");
     if writes {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/random_goals");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/gallery/random_goals");
         fs::create_dir_all(&folder).expect("a folder");
         let write = |name: &str, text: String| {
             fs::write(folder.join(name), text).expect("a written file");

@@ -1,7 +1,7 @@
 //! Hard cases: each ends in a right answer or in a refusal that says why; never in a panic, a hang, a number that is not
 //! finite in a file, or a wrong "solved".
 //!
-//! With `PROBOSCIS_WRITE_PAGES=1` each case writes its figure and its section of `results/hard_cases.md`.
+//! With `PROBOSCIS_WRITE_PAGES=1` each case writes its figure and its section of `results/gallery/hard_cases.md`.
 
 #[path = "../common/mod.rs"]
 mod common;

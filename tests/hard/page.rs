@@ -1,4 +1,4 @@
-//! Sections and figures of `results/hard_cases.md`.
+//! Sections and figures of `results/gallery/hard_cases.md`.
 //!
 //! The page is its own store: a case replaces its section, the list at the top is made anew from all sections that stand.
 
@@ -91,7 +91,7 @@ pub(crate) struct Case {
 static PAGE: Mutex<()> = Mutex::new(());
 
 fn results() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("results")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("results/gallery")
 }
 
 impl Case {
