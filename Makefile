@@ -11,7 +11,7 @@ STUDIES := $(wildcard problems/studies/*.json)
 BLOCKS := bending_actuator clamped_stack pull_in fe_bending_control
 MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight
 
-.PHONY: help trunk blocks gallery build test check bench studies install-deps clean
+.PHONY: help trunk blocks gallery build test check bench studies install-deps try-fresh clean
 
 help:
 	@echo 'make trunk         solve the elephant trunk and say where the pictures are'
@@ -21,6 +21,7 @@ help:
 	@echo 'make check         formatting, lints, documentation'
 	@echo 'make bench         measure; rewrite the tables of benches/README.md'
 	@echo 'make studies       what accuracy costs, hard cases, effects, random goals, a peer: rewrite their pages in $(GALLERY)'
+	@echo 'make try-fresh     run both commands of the README in bare roots of Debian (debootstrap, as root)'
 	@echo 'make install-deps  install what is missing (make trunk and make test do so by themselves)'
 	@echo 'make clean         remove what was built'
 
@@ -37,7 +38,8 @@ gallery: build
 	@for problem in $(MOTIONS); do $(PROBOSCIS) simulate problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
 
 build: install-deps
-	@$(CARGO) build --release --locked --quiet
+	@[ -x $(PROBOSCIS) ] || echo 'building (a few minutes the first time)'
+	@$(CARGO) build --release --locked
 
 test: install-deps
 	@$(CARGO) test --locked
@@ -61,6 +63,9 @@ studies: build
 
 install-deps:
 	@.ci/install
+
+try-fresh:
+	@.ci/try-fresh
 
 clean:
 	@$(CARGO) clean

@@ -1,5 +1,7 @@
 //! The program as its users meet it: files in, one line and files out, an exit status.
 
+mod signals;
+
 use assert_cmd::Command;
 use proboscis::model::system::Fidelity;
 use proboscis::scene::read_problem;
@@ -664,9 +666,7 @@ fn ctrl_c_keeps_the_files() {
         );
         std::thread::sleep(Duration::from_millis(2));
     }
-    let signal = ["-INT", &child.id().to_string()];
-    let sent = std::process::Command::new("kill").args(signal).status();
-    assert!(sent.unwrap().success());
+    signals::interrupt(&child);
     assert_eq!(child.wait().unwrap().code(), Some(1));
     assert_eq!(summary(folder.path(), "stopped")["status"], "interrupted");
     assert!(folder.path().join("stopped/solution.json").is_file());

@@ -1,6 +1,7 @@
 //! Ctrl-C stops a solve in good order; pressed twice it ends the process.
 
 mod programs;
+mod signals;
 
 use std::env;
 use std::io::{BufRead, BufReader};
@@ -11,14 +12,6 @@ use std::time::{Duration, Instant};
 
 use proboscis::ipopt::{Options, Point, Status, interrupt, solve};
 use programs::{HS071_START, hs071};
-
-fn send_interrupt(process: u32) {
-    let sent = Command::new("kill")
-        .args(["-INT", &process.to_string()])
-        .status()
-        .expect("kill can be run");
-    assert!(sent.success());
-}
 
 /// Run in a process of its own by the next test: solves until interrupted, then waits for the second Ctrl-C.
 #[test]
@@ -69,8 +62,8 @@ fn ctrl_c_stops_the_solve_and_the_second_one_the_process() {
     let mut lines = BufReader::new(child.stdout.take().expect("its output")).lines();
     let mut wait_for = |word| lines.any(|line| line.expect("text") == word);
     assert!(wait_for("ready"));
-    send_interrupt(child.id());
+    signals::interrupt(&child);
     assert!(wait_for("stopped"));
-    send_interrupt(child.id());
+    signals::interrupt(&child);
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
 }

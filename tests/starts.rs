@@ -1,5 +1,7 @@
 //! Several starting points, each in a process of its own.
 
+mod signals;
+
 use assert_cmd::Command;
 use serde_json::Value;
 use std::fs;
@@ -210,9 +212,7 @@ fn ctrl_c_ends_all_starts_and_keeps_the_best() {
         std::thread::sleep(Duration::from_millis(5));
     }
     // As a terminal does: to the whole group.
-    let group = format!("-{}", child.id());
-    let sent = Command::new("kill").args(["-INT", "--", &group]).status();
-    assert!(sent.unwrap().success());
+    signals::interrupt_group(&child);
     assert_eq!(child.wait().unwrap().code(), Some(1));
     let summary = read(&path.join("out/summary.json"));
     assert_eq!(summary["status"], "interrupted");
@@ -224,9 +224,5 @@ fn ctrl_c_ends_all_starts_and_keeps_the_best() {
         "{each:?}"
     );
     // None of them is left.
-    let left = Command::new("kill")
-        .args(["-0", "--", &group])
-        .stderr(Stdio::null())
-        .status();
-    assert!(!left.unwrap().success());
+    assert!(!signals::group_runs(&child));
 }

@@ -1,5 +1,7 @@
 //! What accuracy costs: studies of motions with a closed form, refused studies, points that fail, and their files.
 
+mod signals;
+
 use assert_cmd::Command;
 use proboscis::control::problem::Task;
 use proboscis::dynamics::simulate;
@@ -689,11 +691,7 @@ fn ctrl_c_keeps_the_results_so_far() {
         thread::sleep(Duration::from_millis(10));
     }
     thread::sleep(Duration::from_millis(300));
-    let sent = std::process::Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(sent.success());
+    signals::interrupt(&child);
     assert_eq!(child.wait().unwrap().code(), Some(1));
     let record = record(folder.path());
     assert_eq!(record["status"], "interrupted");
