@@ -4,7 +4,6 @@ export PATH := $(PATH):$(or $(CARGO_HOME),$(HOME)/.cargo)/bin
 
 CARGO := cargo
 PROBOSCIS := target/release/proboscis
-TRUNKS := elephant_trunk elephant_trunk_smooth
 GALLERY := results/gallery
 STUDIES := $(wildcard problems/studies/*.json)
 
@@ -14,7 +13,7 @@ MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight
 .PHONY: help trunk blocks gallery build test check bench studies install-deps try-fresh clean
 
 help:
-	@echo 'make trunk         solve the elephant trunk and say where the pictures are'
+	@echo 'make trunk         solve the elephant trunk, let it swing under constant voltages, and say where the pictures are'
 	@echo 'make blocks        run the problems of finite elements, but the block of 16384'
 	@echo 'make gallery       rewrite the results that the README shows, $(GALLERY)'
 	@echo 'make test          run the tests'
@@ -26,16 +25,17 @@ help:
 	@echo 'make clean         remove what was built'
 
 trunk: build
-	@for problem in $(TRUNKS); do $(PROBOSCIS) solve problems/$$problem.json || exit; done
-	@echo; echo 'Pictures:'; for problem in $(TRUNKS); do ls results/$$problem/*.svg results/$$problem/report.html; done
+	@$(PROBOSCIS) solve problems/elephant_trunk.json
+	@$(PROBOSCIS) simulate problems/elephant_trunk_constant.json
+	@echo; echo 'Pictures:'; for problem in elephant_trunk elephant_trunk_constant; do ls results/$$problem/*.svg results/$$problem/report.html; done
 
 blocks: build
 	@for problem in $(BLOCKS); do $(PROBOSCIS) solve problems/$$problem.json || exit; done
 	@for problem in $(MOTIONS); do $(PROBOSCIS) simulate problems/$$problem.json || exit; done
 
 gallery: build
-	@for problem in $(TRUNKS) $(BLOCKS); do $(PROBOSCIS) solve problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
-	@for problem in $(MOTIONS); do $(PROBOSCIS) simulate problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
+	@for problem in elephant_trunk elephant_trunk_effort $(BLOCKS); do $(PROBOSCIS) solve problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
+	@for problem in elephant_trunk_constant $(MOTIONS); do $(PROBOSCIS) simulate problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
 
 build: install-deps
 	@[ -x $(PROBOSCIS) ] || echo 'building (a few minutes the first time)'

@@ -563,7 +563,7 @@ fn main() {
     let text = format!(
         "# What each effect costs, and what it changes\n\n\
          Written by `cargo bench --bench effects -- --write`. Times are medians of {ROUNDS} rounds in which all variants take turns;\n\
-         they are compared within this run only. The trunk takes {STEPS} steps of 10 ms under the voltages of `problems/elephant_trunk.json`,\n\
+         they are compared within this run only. The trunk takes {STEPS} steps of 10 ms under the voltages of `problems/elephant_trunk_effort.json`,\n\
          the block {BLOCK_STEPS} steps of 0.5 ms under {VOLTAGE:.0} V; its weight pulls aside. \
          The last column is the distance of both tips at the end.\n\n\
          {}\n{}\n\

@@ -225,7 +225,7 @@ fn quantiles(mut values: Vec<f64>, digits: usize) -> String {
 fn report(once: &[Ended], several: &[Ended], chosen: &[usize]) -> String {
     let mut out = String::from(
         "# Random goals of the elephant trunk\n\n\
-         Written by `cargo bench --bench goals -- --write`. The trunk of `problems/elephant_trunk.json`, 40 intervals, voltages from 0 to 3 kV, at most\n\
+         Written by `cargo bench --bench goals -- --write`. The trunk of `problems/elephant_trunk_effort.json`, 40 intervals, voltages from 0 to 3 kV, at most\n\
          200 iterations.\n\n\
          * *rest*: equilibria under twelve random voltages within the bounds, in 0.6 s;\n\
          * *tip*: places of the tip in such equilibria, to be reached at rest in any posture, in 0.6 s;\n\
@@ -371,7 +371,7 @@ fn histogram(once: &[Ended]) -> String {
     );
     plot.svg(&Origin {
         command: "cargo bench --bench goals -- --write".to_owned(),
-        input: "problems/elephant_trunk.json".to_owned(),
+        input: "problems/elephant_trunk_effort.json".to_owned(),
         version: Origin::program(),
         ..Origin::default()
     })

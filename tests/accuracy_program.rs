@@ -43,7 +43,7 @@ fn read(path: PathBuf) -> Value {
 #[test]
 fn the_trunk_is_solved_to_a_thousandth_from_grid_to_grid() {
     let folder = workshop();
-    let trunk = "problems/elephant_trunk.json";
+    let trunk = "problems/elephant_trunk_effort.json";
     let (status, out, err) = run(
         folder.path(),
         &["solve", trunk, "--accuracy", "1e-3", "-o", "out"],
@@ -126,7 +126,7 @@ fn a_weight_on_the_rate_makes_the_order_one_and_warm_starts_worth_half() {
 fn a_finer_grid_that_fails_leaves_the_files_of_the_one_before() {
     let folder = workshop();
     let trunk = [
-        "problems/elephant_trunk.json",
+        "problems/elephant_trunk_effort.json",
         "--set",
         "control.intervals=20",
     ];

@@ -233,7 +233,7 @@ fn an_unreachable_goal_is_named_and_the_files_are_kept() {
     let goal = "control.goal={\"markers\":{\"tip\":[\"0 mm\",\"400 mm\",\"0 mm\"]}}";
     let arguments = [
         "solve",
-        "problems/elephant_trunk.json",
+        "problems/elephant_trunk_effort.json",
         "--set",
         goal,
         "-o",
@@ -356,7 +356,7 @@ fn assert_same_objective(a: &Value, b: &Value) {
 
 #[test]
 fn a_solution_starts_the_same_problem_at_its_end() {
-    for problem in ["pair", "pair_time", "elephant_trunk"] {
+    for problem in ["pair", "pair_time", "elephant_trunk_effort"] {
         let (cold, warm) = warm(problem, &[]);
         assert!(iterations(&cold) > 8, "{cold}");
         assert!(iterations(&warm) <= 8, "{warm}");
@@ -409,7 +409,7 @@ fn reference_solutions_written_by_hand_start_a_solve() {
     for (problem, reference) in [
         ("pair", "pair"),
         ("pair_time", "pair_time"),
-        ("elephant_trunk", "trunk6"),
+        ("elephant_trunk_effort", "trunk6"),
     ] {
         let folder = workshop();
         fs::write(
@@ -618,7 +618,7 @@ fn limits_of_the_command_line_stop_a_solve_with_its_files() {
     let folder = workshop();
     let many = [
         "solve",
-        "problems/elephant_trunk.json",
+        "problems/elephant_trunk_effort.json",
         "--set",
         "control.intervals=400",
     ];
@@ -652,7 +652,7 @@ fn ctrl_c_keeps_the_files() {
     let folder = workshop();
     let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("proboscis"))
         .current_dir(folder.path())
-        .args(["solve", "problems/elephant_trunk.json", "-o", "stopped"])
+        .args(["solve", "problems/elephant_trunk_effort.json", "-o", "stopped"])
         .args(["--set", "control.intervals=1500"])
         .stdout(std::process::Stdio::piped())
         .spawn()

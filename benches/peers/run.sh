@@ -8,4 +8,4 @@ venv=target/peers
 "$venv/bin/python" -m pip install --quiet -r benches/peers/requirements.txt
 cargo build --release --locked --bin proboscis
 exec "$venv/bin/python" benches/peers/compare.py target/release/proboscis \
-    problems/scenes/elephant_trunk.json problems/elephant_trunk.json results/gallery/studies/peer "$@"
+    problems/scenes/elephant_trunk.json problems/elephant_trunk_effort.json results/gallery/studies/peer "$@"

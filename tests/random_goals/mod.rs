@@ -42,7 +42,7 @@ pub(crate) struct Goals {
 
 /// The kept problem of the trunk.
 pub(crate) fn trunk() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("problems/elephant_trunk.json")
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("problems/elephant_trunk_effort.json")
 }
 
 impl Goals {
