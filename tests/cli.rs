@@ -652,7 +652,12 @@ fn ctrl_c_keeps_the_files() {
     let folder = workshop();
     let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("proboscis"))
         .current_dir(folder.path())
-        .args(["solve", "problems/elephant_trunk_effort.json", "-o", "stopped"])
+        .args([
+            "solve",
+            "problems/elephant_trunk_effort.json",
+            "-o",
+            "stopped",
+        ])
         .args(["--set", "control.intervals=1500"])
         .stdout(std::process::Stdio::piped())
         .spawn()

@@ -852,7 +852,8 @@ fn every_kept_problem_is_right() {
     let (scene, problem) = new_trunk(6);
     let (_folder, path) = folder(&scene, &problem);
     let started = read_problem(&path, &[]).expect("a starting problem");
-    let kept = read_problem(Path::new("problems/elephant_trunk_effort.json"), &[]).expect("the trunk");
+    let kept =
+        read_problem(Path::new("problems/elephant_trunk_effort.json"), &[]).expect("the trunk");
     assert_eq!(started.task, kept.task);
 }
 

@@ -14,7 +14,10 @@ use std::path::Path;
 
 /// Reads scene and control problem.
 pub(crate) fn read(intervals: usize, coordinates: Coordinates) -> (System, Control) {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/problems/elephant_trunk_effort.json");
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/problems/elephant_trunk_effort.json"
+    );
     let loaded = read_problem(Path::new(path), &[]).expect("the trunk problem can be read");
     let Task::Control(mut control) = loaded.task else {
         panic!("the trunk problem is one of control");
