@@ -1,6 +1,6 @@
 //! Scene and problem files: every mistake is answered with its place, what was found and what is expected.
 
-use proboscis::control::problem::{Duration, Limit, State, Task, Voltages};
+use proboscis::control::problem::{Afterwards, Duration, Limit, State, Task, Voltages};
 use proboscis::dynamics::Integrator;
 use proboscis::model::system::{
     Discretisation, ElementKind, Fidelity, JointKind, Potential, Shape, System, VACUUM_PERMITTIVITY,
@@ -350,12 +350,13 @@ fn simulation_and_solution_are_checked() {
     let Task::Simulate(simulation) = read_problem(&path, &[]).expect("a simulation").task else {
         panic!("a simulation")
     };
-    let rows = vec![vec![100.0, 0.0], vec![200.0, 0.0]];
+    let rows = vec![vec![100.0, 0.0], vec![200.0, 0.0], vec![200.0, 0.0]];
     assert_eq!(
         simulation.voltages,
         Voltages::Sampled {
             ends: vec![500.0, 1000.0],
             rows,
+            afterwards: Afterwards::OfLastInterval,
             solution: folder.path().join("solution.json"),
         }
     );

@@ -20,10 +20,16 @@ pub struct Initial {
     pub h: f64,
     /// Costates and bound multipliers.
     pub costates: Option<Costates>,
+    /// Durations in ms of an earlier solution and of this guess, where they differ: it is stretched in time.
+    pub stretched: Option<[f64; 2]>,
 }
 
+/// Durations that differ by no more than this part are one: a solver may end so far outside a bound.
+const SAME_DURATION: f64 = 1e-6;
+
 /// The guess of a control problem on `control.intervals` intervals of about `h` ms; `earlier` is the solution it
-/// names, or one that comes before it.
+/// names, or one that comes before it. A duration that is given stays; one that is free starts from that of the earlier
+/// solution, within its bounds.
 pub fn guess(
     model: &Model,
     boundary: &Boundary,
@@ -33,7 +39,7 @@ pub fn guess(
 ) -> Initial {
     let intervals = control.intervals;
     match (&control.guess, earlier) {
-        (_, Some(solved)) => from_solution(model, boundary, control, solved, h),
+        (_, Some(solved)) => from_solution(model, boundary, control, solved),
         (Guess::Simulate(voltages), _) => {
             let mut voltages = voltages.clone();
             for (&source, &voltage) in &control.given {
@@ -56,6 +62,7 @@ pub fn guess(
                 history,
                 h,
                 costates: None,
+                stretched: None,
             }
         }
         _ => interpolate(model, boundary, control, h),
@@ -105,6 +112,7 @@ fn interpolate(model: &Model, boundary: &Boundary, control: &Control, h: f64) ->
         history,
         h,
         costates: None,
+        stretched: None,
     }
 }
 
@@ -123,22 +131,21 @@ fn joints_of(model: &Model, z: &[f64]) -> Option<Vec<f64>> {
     Some(model.joints(&instant, &vec![0.0; model.gauges.len()]))
 }
 
-/// An earlier solution: as it is on the same grid, carried over from another one; from other coordinates only the joints.
+/// An earlier solution: as it is on the same grid, carried over from another one, stretched in time where its duration is
+/// not allowed; from other coordinates only the joints.
 fn from_solution(
     model: &Model,
     boundary: &Boundary,
     control: &Control,
     solved: &Solved,
-    h: f64,
 ) -> Initial {
     let intervals = control.intervals;
-    let duration = solved.times[solved.intervals()];
-    let h = if duration > 0.0 {
-        duration / intervals as f64
-    } else {
-        h
-    };
-    let grids = Grids::new(solved.intervals(), intervals);
+    let before = solved.times[solved.intervals()];
+    let duration = control.duration.nearest(before);
+    let h = duration / intervals as f64;
+    let is_stretched = (duration - before).abs() > SAME_DURATION * duration;
+    let stretch = if is_stretched { duration / before } else { 1.0 };
+    let grids = Grids::new(solved.intervals(), intervals, stretch);
     let same_coordinates = solved.coordinates == model.coordinates
         && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
     let n = model.coordinate_count();
@@ -177,5 +184,6 @@ fn from_solution(
         costates: same_coordinates
             .then(|| resample::costates(model, boundary, control, solved, grids))
             .flatten(),
+        stretched: is_stretched.then_some([before, duration]),
     }
 }

@@ -69,15 +69,26 @@ pub enum Rest {
 pub enum Voltages {
     /// The same in every interval.
     Constant(Vec<f64>),
-    /// One row per interval of the given grid; held at the last row afterwards.
+    /// One row per interval of the given grid, and one for the time afterwards.
     Sampled {
         /// End of each interval in ms, increasing.
         ends: Vec<f64>,
-        /// Rows of voltages.
+        /// Rows of voltages, one more than ends.
         rows: Vec<Vec<f64>>,
+        /// What the last row is.
+        afterwards: Afterwards,
         /// The solution they were read from.
         solution: PathBuf,
     },
+}
+
+/// Voltages after the end of a solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Afterwards {
+    /// Those that hold its goal, as it says.
+    OfGoal,
+    /// Those of its last interval: it names no others.
+    OfLastInterval,
 }
 
 impl Voltages {
@@ -121,6 +132,24 @@ pub enum Duration {
         /// Where the solver starts.
         guess: f64,
     },
+}
+
+impl Duration {
+    /// Where the solver starts.
+    pub fn first(self) -> f64 {
+        match self {
+            Self::Given(duration) => duration,
+            Self::Free { guess, .. } => guess,
+        }
+    }
+
+    /// The duration allowed that is nearest to `other`.
+    pub fn nearest(self, other: f64) -> f64 {
+        match self {
+            Self::Given(duration) => duration,
+            Self::Free { min, max, .. } => other.clamp(min, max),
+        }
+    }
 }
 
 /// An optimal control problem.

@@ -14,25 +14,27 @@ use crate::model::Model;
 /// Instants of the old grid that a curve is led through.
 const THROUGH: usize = 4;
 
-/// Two grids over one duration.
+/// Two grids over one duration, or over one that is stretched.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grids {
     from: usize,
     to: usize,
+    /// New duration in old ones.
+    stretch: f64,
 }
 
 /// Instants of the old grid with their weights.
 type Weights = Vec<(usize, f64)>;
 
 impl Grids {
-    /// From a number of intervals to another.
-    pub(super) fn new(from: usize, to: usize) -> Self {
-        Self { from, to }
+    /// From a number of intervals to another, and to so many times the duration.
+    pub(super) fn new(from: usize, to: usize, stretch: f64) -> Self {
+        Self { from, to, stretch }
     }
 
     /// New interval length in old ones.
     fn ratio(self) -> f64 {
-        self.from as f64 / self.to as f64
+        self.from as f64 / self.to as f64 * self.stretch
     }
 
     /// Values in the middle of new interval k, on the lines between the middles of the old ones.
@@ -138,7 +140,10 @@ pub(super) fn costates(
             ratio * place.map_or(0.0, |v| list[v])
         }
         // The duration is so many times the interval length.
-        Variable::Horizon => from.unknowns.horizon().map_or(0.0, |v| list[v]) / ratio,
+        Variable::Horizon => {
+            let intervals = grids.to as f64 / grids.from as f64;
+            from.unknowns.horizon().map_or(0.0, |v| list[v]) * intervals
+        }
     };
     let of = |list: &[f64]| {
         to.unknowns

@@ -20,6 +20,8 @@ pub struct Solved {
     pub multiplier_time: f64,
     /// Voltages by interval and muscle.
     pub voltages: Vec<Vec<f64>>,
+    /// Voltages by muscle that hold the goal, where there is one and they are known.
+    pub hold: Option<Vec<f64>>,
     /// Potentials by interval, where a scene has any.
     pub potentials: Vec<Vec<f64>>,
     /// Multipliers of the optimisation.

@@ -175,9 +175,8 @@ impl Ending {
         let mut g = vec![0.0; constraints.lower.len()];
         let objective = nlp.objective(&x);
         nlp.constraint(&x, &mut g);
-        let exists = objective.is_finite() && x.iter().chain(&g).all(|value| value.is_finite());
-        let violation = match exists {
-            true => violation(variables, &x).max(violation(constraints, &g)),
+        let violation = match objective.is_finite() {
+            true => variables.violation(&x).max(constraints.violation(&g)),
             false => f64::INFINITY,
         };
         Self {
@@ -187,17 +186,6 @@ impl Ending {
             violation,
         }
     }
-}
-
-/// Greatest distance of a value outside its bounds.
-fn violation(bounds: &Bounds, values: &[f64]) -> f64 {
-    let bounds = bounds.lower.iter().zip(&bounds.upper);
-    values
-        .iter()
-        .zip(bounds)
-        .fold(0.0, |worst, (value, (lower, upper))| {
-            worst.max(lower - value).max(value - upper)
-        })
 }
 
 /// The multipliers to begin with; zeros unless they are asked for.

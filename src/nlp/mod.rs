@@ -11,6 +11,22 @@ pub struct Bounds {
     pub upper: Vec<f64>,
 }
 
+impl Bounds {
+    /// Distance of entry `i` from its bounds with a value; infinite of a value that is no finite number.
+    pub fn excess(&self, i: usize, value: f64) -> f64 {
+        match value.is_finite() {
+            true => (self.lower[i] - value).max(value - self.upper[i]).max(0.0),
+            false => f64::INFINITY,
+        }
+    }
+
+    /// Greatest distance of values from their bounds; infinite where one of them is no finite number.
+    pub fn violation(&self, values: &[f64]) -> f64 {
+        let excesses = values.iter().enumerate().map(|(i, &v)| self.excess(i, v));
+        excesses.fold(0.0, f64::max)
+    }
+}
+
 /// Places of the stored entries of a sparse matrix, zero-based; a place listed twice counts as a sum.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Entries {

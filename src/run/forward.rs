@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use crate::control::problem::{Simulation, Voltages};
+use crate::control::problem::{Afterwards, Simulation, Voltages};
 use crate::control::resolve_start;
 use crate::dynamics::{History, StepError, observations, simulate_by};
 use crate::ipopt::interrupt;
@@ -171,6 +171,8 @@ pub(super) fn simulation(
         .map(|(path, earlier)| Comparison::new(&model, path, &motion, earlier));
     let compared = summary.comparison.iter().flat_map(Comparison::notes);
     let mut notes: Vec<String> = summary.message.iter().cloned().chain(compared).collect();
+    summary.notes.extend(afterwards(task));
+    notes.extend(summary.notes.iter().cloned());
     summary.write(&folder)?;
     let mut rows = vec![
         ("status".to_owned(), status.replace('_', " ")),
@@ -224,13 +226,37 @@ pub(super) fn simulation(
     })
 }
 
+/// What drives a simulation after the end of the solution whose voltages it takes, where it goes on for longer.
+fn afterwards(task: &Simulation) -> Option<String> {
+    let Voltages::Sampled {
+        ends,
+        afterwards,
+        solution,
+        ..
+    } = &task.voltages
+    else {
+        return None;
+    };
+    let end = ends[ends.len() - 1];
+    let path = solution.display();
+    (task.duration > end * (1.0 + 1e-9)).then(|| match afterwards {
+        Afterwards::OfGoal => {
+            format!("after {} s the voltages that hold the goal of {path} are held", end / 1e3)
+        }
+        Afterwards::OfLastInterval => format!(
+            "after {} s the voltages of the last interval are held: {path} has no \"hold\", voltages that hold its goal",
+            end / 1e3
+        ),
+    })
+}
+
 /// Voltages at a time in ms.
 fn row(voltages: &Voltages, time: f64) -> &[f64] {
     match voltages {
         Voltages::Constant(row) => row,
         Voltages::Sampled { ends, rows, .. } => {
             let k = ends.iter().position(|&end| time < end);
-            &rows[k.unwrap_or(rows.len() - 1)]
+            &rows[k.unwrap_or(ends.len())]
         }
     }
 }

@@ -55,9 +55,11 @@ pub fn optimise_to(
             let seconds = left();
             let limits = Allowed { seconds, ..allowed };
             let earlier = before.map(|optimum| &optimum.motion);
-            let run = optimise(file, system, &control, earlier, limits, &mut |iteration| {
+            let mut run = optimise(file, system, &control, earlier, limits, &mut |iteration| {
                 observer(control.intervals, iteration)
             })?;
+            // What the guess of the problem became belongs to all grids.
+            run.stretched = before.map_or(run.stretched, |optimum| optimum.stretched);
             let is_complete = run.is_solved();
             let sample = match is_complete {
                 true => sample(&run, matches!(control.duration, Duration::Free { .. })),

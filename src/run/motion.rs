@@ -25,6 +25,7 @@ pub fn solved(model: &Model, history: &History, costates: Option<Costates>) -> S
         z: history.z.clone(),
         multiplier_time: model.multiplier_time,
         voltages: motion.voltages,
+        hold: None,
         potentials: potentials(model, history),
         costates,
     }

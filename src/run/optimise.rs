@@ -59,6 +59,8 @@ pub struct Optimum {
     pub hessian_nonzeros: usize,
     /// Seconds before the solver began.
     pub setup: f64,
+    /// Durations in ms of the solution that it started from and of its first guess, where they differ.
+    pub stretched: Option<[f64; 2]>,
 }
 
 impl Optimum {
@@ -86,6 +88,7 @@ pub fn optimise(
         mut program,
         point,
         start,
+        stretched,
     } = prepare(file, &model, &boundary, control, earlier)?;
     let setup = began.elapsed().as_secs_f64();
     let options = Options {
@@ -99,7 +102,10 @@ pub fn optimise(
     let solution = ipopt::solve(&mut program, &point, &options, observer)
         .map_err(|error| RunError::ipopt(file, &error))?;
     let history = program.decode(&solution.x);
-    let motion = solved(&model, &history, Some(program.costates(&solution.costates)));
+    let motion = Solved {
+        hold: boundary.rest[1].clone(),
+        ..solved(&model, &history, Some(program.costates(&solution.costates)))
+    };
     let reversed = match solution.status.is_solved() {
         true => reversed_muscle(&model, &history),
         false => None,
@@ -125,6 +131,7 @@ pub fn optimise(
         jacobian_nonzeros,
         hessian_nonzeros,
         setup,
+        stretched,
     })
 }
 
@@ -133,6 +140,8 @@ pub(super) struct Prepared<'m> {
     pub(super) program: Transcription<'m>,
     pub(super) point: ipopt::Point,
     pub(super) start: Start,
+    /// Durations in ms of the earlier solution and of the start, where they differ.
+    pub(super) stretched: Option<[f64; 2]>,
 }
 
 /// Model and boundary of a control problem.
@@ -147,11 +156,7 @@ pub(super) fn resolve(
 
 /// Interval length in ms, or its guess.
 fn interval(control: &Control) -> f64 {
-    let (Duration::Given(duration)
-    | Duration::Free {
-        guess: duration, ..
-    }) = control.duration;
-    duration / control.intervals as f64
+    control.duration.first() / control.intervals as f64
 }
 
 /// Guess and program; an `earlier` solution in memory comes before the guess of the problem.
@@ -172,9 +177,12 @@ pub(super) fn prepare<'m>(
     let program = Transcription::new(model, boundary, control, &initial)
         .map_err(|error| RunError::boundary(file, "control", &error))?;
     let point = program.start(&initial);
+    let stretched = initial.stretched;
+    let is_same_grid =
+        |earlier: &Solved| earlier.intervals() == control.intervals && stretched.is_none();
     let start = match earlier {
         None => Start::Cold,
-        Some(earlier) if earlier.intervals() == control.intervals => match point.costates {
+        Some(earlier) if is_same_grid(earlier) => match point.costates {
             Some(_) => Start::PRIMAL_DUAL,
             None => Start::PRIMAL,
         },
@@ -185,6 +193,7 @@ pub(super) fn prepare<'m>(
         program,
         point,
         start,
+        stretched,
     })
 }
 

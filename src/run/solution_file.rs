@@ -1,6 +1,7 @@
 //! `solution.json`: a motion in files' units with all that a later run needs to start from it exactly.
 //!
-//! People read `time` (s), `configuration` (m, rad) and `voltages` (V); `state` holds coordinates and multipliers of the
+//! People read `time` (s), `configuration` (m, rad), `voltages` and, where a goal has any, the voltages that `hold` it (V);
+//! `state` holds coordinates and multipliers of the
 //! instants as the program has them (g, mm, ms, N), and `costates` the multipliers of the optimisation, unscaled. A file made
 //! by hand needs `time`, `voltages` and the coordinates of the joints, in `joints` or in `configuration.joints`.
 
@@ -14,7 +15,7 @@ use thiserror::Error;
 use crate::control::{Costates, Solved};
 use crate::kinematics::Pose;
 use crate::math::Matrix;
-use crate::model::system::{Joint, JointKind, System};
+use crate::model::system::{Joint, JointKind, Source, System};
 use crate::model::{Coordinates, Model};
 use crate::report::atomic::{self, WriteError};
 use crate::scene::lay_out;
@@ -72,6 +73,9 @@ struct File {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     configuration: Option<Configuration>,
     voltages: BTreeMap<String, Vec<f64>>,
+    /// Voltages that hold the goal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    hold: Option<BTreeMap<String, f64>>,
     /// Potentials of elastic blocks by interval, as multiples of their unit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     potentials: Vec<Vec<f64>>,
@@ -146,6 +150,10 @@ pub fn write(path: &Path, model: &Model, solved: &Solved) -> Result<(), WriteErr
             joints: joints.collect(),
         }),
         voltages: model.reached.iter().map(voltage).collect(),
+        hold: solved.hold.as_ref().map(|row| {
+            let held = |&s: &usize| (sources[s].name.clone(), row[s]);
+            model.reached.iter().map(held).collect()
+        }),
         potentials: solved.potentials.clone(),
         coordinates: Some(solved.coordinates.name().to_owned()),
         state: Some(State {
@@ -226,6 +234,16 @@ fn parse(path: &Path, model: &Model) -> Result<Solved, Reason> {
             row[s] = value;
         }
     }
+    let hold = match &file.hold {
+        None => None,
+        Some(held) => {
+            let driven = model.reached.iter().map(|&s| sources[s].name.as_str());
+            let named = held.keys().map(String::as_str);
+            same_names("muscle or electrode", named, driven)?;
+            let value = |source: &Source| held.get(&source.name).copied().unwrap_or(0.0);
+            Some(sources.iter().map(value).collect())
+        }
+    };
     let poses = poses(file.configuration.as_ref(), system, instants)?;
     let coordinates = match file.coordinates.as_deref() {
         Some("reduced") => Coordinates::Reduced,
@@ -258,6 +276,7 @@ fn parse(path: &Path, model: &Model) -> Result<Solved, Reason> {
         z,
         multiplier_time,
         voltages,
+        hold,
         potentials: file.potentials,
         costates: file.costates.map(|c| Costates {
             rows: c.rows,

@@ -123,6 +123,7 @@ pub(super) fn control(
         violations: violated.clone(),
         resimulation,
     });
+    summary.notes.extend(optimum.stretched.map(stretched));
     summary.accuracy = accuracy;
     summary.plan = Plan::of(model, Some(control), MEASURED)
         .map_err(|error| RunError::boundary(&request.input, "control", &error.into()))?;
@@ -285,6 +286,7 @@ fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> Told {
     };
     let mut notes: Vec<String> = summary.message.iter().cloned().collect();
     notes.extend(violated.iter().map(describe));
+    notes.extend(summary.notes.iter().cloned());
     let mut grid = String::new();
     if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
         notes.extend(accuracy.notes());
@@ -307,6 +309,15 @@ fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> Told {
 /// A number with its noun.
 pub(super) fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// A guess of another length.
+fn stretched([from, to]: [f64; 2]) -> String {
+    format!(
+        "the guess lasts {} s; it was stretched in time to {} s",
+        from / 1e3,
+        to / 1e3
+    )
 }
 
 /// Why an optimum of the discrete equations is none of the system.

@@ -29,6 +29,9 @@ pub(super) struct Summary {
     /// Why it ended early, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) message: Option<String>,
+    /// What else there is to say of the result.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) notes: Vec<String>,
     #[serde(flatten)]
     pub(super) program: Option<Program>,
     #[serde(flatten)]
@@ -204,6 +207,7 @@ impl Summary {
             input: request.input.display().to_string(),
             status: status.to_owned(),
             message: None,
+            notes: Vec::new(),
             program: None,
             simulation: None,
             accuracy: None,

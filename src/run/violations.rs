@@ -28,12 +28,7 @@ pub fn violations(
     let bounds = program.constraints();
     let mut g = vec![0.0; bounds.lower.len()];
     program.constraint(x, &mut g);
-    let excess = |row: usize| match g[row] {
-        value if !value.is_finite() => f64::INFINITY,
-        value => (bounds.lower[row] - value)
-            .max(value - bounds.upper[row])
-            .max(0.0),
-    };
+    let excess = |row: usize| bounds.excess(row, g[row]);
     let mut rows: Vec<usize> = (0..g.len()).filter(|&r| excess(r) > tolerance).collect();
     rows.sort_by(|&a, &b| excess(b).total_cmp(&excess(a)));
     rows.truncate(count);

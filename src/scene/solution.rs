@@ -4,7 +4,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::control::problem::Voltages;
+use crate::control::problem::{Afterwards, Voltages};
 use crate::model::system::System;
 use crate::scene::build_state::driven;
 use crate::scene::document::Document;
@@ -18,9 +18,13 @@ struct Solution {
     time: Vec<f64>,
     /// Voltages in V by source, one per interval.
     voltages: BTreeMap<String, Vec<f64>>,
+    /// Voltages in V by source that hold the goal; a motion without a goal, or with one whose voltages are not known, has none.
+    #[serde(default)]
+    hold: Option<BTreeMap<String, f64>>,
 }
 
-/// Voltages of a solution; 0 for sources that it does not know.
+/// Voltages of a solution, then those that hold its goal, or where it names none the last ones; 0 for sources that it does
+/// not know.
 pub(crate) fn sampled_voltages(path: &Path, system: &System) -> Result<Voltages, SceneError> {
     let document = &Document::read(path)?;
     let solution: Solution = document.parse()?;
@@ -49,9 +53,21 @@ pub(crate) fn sampled_voltages(path: &Path, system: &System) -> Result<Voltages,
             row[source] = *voltage;
         }
     }
+    let (last, afterwards) = match &solution.hold {
+        Some(hold) => {
+            let mut row = vec![0.0; sources.len()];
+            for (name, &voltage) in hold {
+                row[driven(name, &sources, &scope.key("hold").key(name))?] = voltage;
+            }
+            (row, Afterwards::OfGoal)
+        }
+        None => (rows[ends.len() - 1].clone(), Afterwards::OfLastInterval),
+    };
+    rows.push(last);
     Ok(Voltages::Sampled {
         ends,
         rows,
+        afterwards,
         solution: path.to_owned(),
     })
 }

@@ -104,7 +104,7 @@ pub struct Transcription<'m> {
     gradient: Vec<f64>,
 }
 impl<'m> Transcription<'m> {
-    /// Transcribes a control problem; the guess sets the scales.
+    /// Transcribes a control problem; the guess sets the scales, and the interval length where the duration is free.
     ///
     /// # Errors
     /// There are more equations than unknowns.
@@ -257,16 +257,10 @@ impl<'m> Transcription<'m> {
         self.row_scales[row]
     }
 
-    /// Largest violation of the scaled rows.
+    /// Largest violation of the scaled rows; infinite where one has no value.
     pub fn violation(&mut self, x: &[f64]) -> f64 {
-        let bounds = self.constraints();
         let mut g = vec![0.0; self.unknowns.rows.len()];
         self.constraint(x, &mut g);
-        let excess = |r: usize| {
-            (bounds.lower[r] - g[r])
-                .max(g[r] - bounds.upper[r])
-                .max(0.0)
-        };
-        (0..g.len()).map(excess).fold(0.0, f64::max)
+        self.constraints().violation(&g)
     }
 }
