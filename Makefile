@@ -10,13 +10,16 @@ STUDIES := $(wildcard problems/studies/*.json)
 BLOCKS := bending_actuator clamped_stack pull_in fe_bending_control
 MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight
 
-.PHONY: help trunk blocks gallery build test check bench studies install-deps try-fresh clean
+FUZZ_SECONDS := 600
+
+.PHONY: help trunk blocks gallery build test fuzz check bench studies install-deps try-fresh clean
 
 help:
 	@echo 'make trunk         solve the elephant trunk, let it swing under constant voltages, and say where the pictures are'
 	@echo 'make blocks        run the problems of finite elements, but the block of 16384'
 	@echo 'make gallery       rewrite the results that the README shows, $(GALLERY)'
 	@echo 'make test          run the tests'
+	@echo 'make fuzz          look for files that the reader does not survive, for FUZZ_SECONDS=$(FUZZ_SECONDS)'
 	@echo 'make check         formatting, lints, documentation'
 	@echo 'make bench         measure; rewrite the tables of benches/README.md'
 	@echo 'make studies       what accuracy costs, hard cases, effects, random goals, a peer: rewrite their pages in $(GALLERY)'
@@ -43,6 +46,11 @@ build: install-deps
 
 test: install-deps
 	@$(CARGO) test --locked
+
+# All properties at once, so that each has the whole time.
+fuzz: install-deps
+	@FUZZ_SECONDS=$(FUZZ_SECONDS) $(CARGO) test --release --locked --test fuzz_reader -- \
+	  --test-threads 16 --nocapture are_read_or_refused are_refused are_taken_or_refused
 
 check: install-deps
 	@$(CARGO) fmt --check

@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use proboscis::ipopt::interrupt;
 use proboscis::run::accuracy::Wanted;
 use proboscis::run::{self, Request, RunError, Shown, Told};
+use proboscis::scene::printable;
 use proboscis::study::{StudyRequest, study};
 use tracing_subscriber::EnvFilter;
 
@@ -227,7 +228,7 @@ fn main() -> ExitCode {
             ExitCode::from(if told.is_solved { 0 } else { 1 })
         }
         Err(error) => {
-            eprintln!("error: {error}");
+            eprintln!("error: {}", printable(&error.to_string()));
             if let Some(excerpt) = error.excerpt() {
                 eprintln!("{}", excerpt.trim_end());
             }
@@ -259,10 +260,14 @@ fn answer(command: Command) -> Result<Told, RunError> {
             run::run(&problem.request())
         }
         Command::Equilibrium { problem, voltages } => {
+            interrupt::install();
             run::equilibrium_of_file(&problem.request(), voltages.as_deref())
         }
         Command::Inspect(problem) => run::inspect(&problem.request()),
-        Command::Check(problem) => run::check(&problem.request()),
+        Command::Check(problem) => {
+            interrupt::install();
+            run::check(&problem.request())
+        }
         Command::Study(variants) => {
             interrupt::install();
             study(&variants.request())

@@ -7,6 +7,7 @@
 use crate::dynamics::EquilibriumError;
 use crate::dynamics::equilibrium::Equilibrium;
 use crate::dynamics::statics::{State, Statics};
+use crate::ipopt::interrupt;
 use crate::model::Model;
 
 /// Limit of corrections in one step.
@@ -78,6 +79,10 @@ impl Path<'_, '_> {
 
     /// Evaluates and factorises at a state; returns −K⁻¹ b.
     fn linearise(&mut self, state: &[f64], fraction: f64) -> Option<Vec<f64>> {
+        // A path that is to stop ends like one that cannot go on.
+        if interrupt::stop().is_some() {
+            return None;
+        }
         let loaded: Vec<f64> = self.voltages.iter().map(|v| v * fraction).collect();
         self.statics.evaluate(state, &loaded);
         if self.statics.residual.iter().any(|r| !r.is_finite()) {

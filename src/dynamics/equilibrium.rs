@@ -110,6 +110,7 @@ pub fn equilibrium(
                 (state, reached) = (trial, target);
                 increment *= 2.0;
             }
+            Err(stopped @ EquilibriumError::Stopped(_)) => return Err(stopped),
             Ok(Outcome::Failed) | Err(_) => increment *= 0.5,
         }
         if increment < SMALLEST {

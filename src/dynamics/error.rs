@@ -2,6 +2,7 @@
 
 use crate::dynamics::spans::NOTHING;
 use crate::dynamics::{Equilibrium, Instability};
+use crate::ipopt::Status;
 use thiserror::Error;
 
 /// A step forward in time failed and was not accepted.
@@ -44,6 +45,16 @@ pub enum StepError {
         /// Smallest step that was tried in ms.
         step: f64,
     },
+    /// Ctrl-C was pressed, or the time allowed is over.
+    #[error("the step from t = {time} ms was stopped ({})", status.word().replace('_', " "))]
+    Stopped {
+        /// Start of the step in ms.
+        time: f64,
+        /// Step in ms.
+        step: f64,
+        /// [`Status::Interrupted`] or [`Status::TimeLimit`].
+        status: Status,
+    },
     /// The tangent is singular.
     #[error(
         "singular tangent at t = {time} ms with a step of {step} ms: {name} is not determined{}",
@@ -80,6 +91,9 @@ pub enum EquilibriumError {
         /// The state there.
         last: Box<Equilibrium>,
     },
+    /// Ctrl-C was pressed, or the time allowed is over.
+    #[error("stopped before an equilibrium was found ({})", .0.word().replace('_', " "))]
+    Stopped(Status),
     /// There is no equilibrium to start from.
     #[error(
         "no equilibrium even without voltages: gravity or the start are more than the system bears"

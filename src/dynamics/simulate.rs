@@ -44,7 +44,8 @@ impl Start {
 
 /// Integrates `steps` steps of `h` ms; `voltages` gives those of the interval between two times, by scalar.
 ///
-/// After each step `observer` sees its number and may end the motion.
+/// After each step `observer` sees its number and may end the motion; so may a [watch](crate::ipopt::interrupt::watch), within a
+/// step too.
 ///
 /// The history ends where a step fails; the error says why.
 pub fn simulate(
@@ -125,6 +126,7 @@ fn record<E: Equations>(
                 history.scalars.push(stepper.scalars().to_vec());
                 history.works.extend(stepper.work());
             }
+            Err(StepError::Stopped { .. }) => break,
             Err(error) => {
                 failure = Some(error);
                 break;

@@ -6,6 +6,7 @@
 use crate::dynamics::EquilibriumError;
 use crate::dynamics::tangent::{Entries, Tangent};
 use crate::functional::Level;
+use crate::ipopt::interrupt;
 use crate::math::Vector;
 use crate::model::Model;
 use crate::reduction::{Instant, Interval, Scratch};
@@ -170,6 +171,9 @@ impl<'m> Statics<'m> {
     ) -> Result<Outcome, EquilibriumError> {
         let mut last = f64::INFINITY;
         for _ in 0..ITERATIONS {
+            if let Some(status) = interrupt::stop() {
+                return Err(EquilibriumError::Stopped(status));
+            }
             self.iterations += 1;
             self.evaluate(state, voltages);
             if self.residual.iter().any(|r| !r.is_finite()) {

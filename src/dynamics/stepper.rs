@@ -6,6 +6,7 @@ use crate::dynamics::solving::Newton;
 use crate::dynamics::spans;
 use crate::dynamics::tangent::Tangent;
 use crate::functional::Level;
+use crate::ipopt::interrupt;
 use crate::model::Model;
 use crate::reduction::Instant as Place;
 use std::time::Instant;
@@ -188,6 +189,7 @@ impl<E: Equations> Steps<E> {
                     done += part;
                     multipliers.get_or_insert_with(|| self.equations.multipliers().to_vec());
                 }
+                Err(stopped @ StepError::Stopped { .. }) => return Err(stopped),
                 // What an old tangent could not do, a new one may.
                 Err(_) if std::mem::take(&mut self.stale) => self.factored = None,
                 Err(error) if halvings == HALVINGS => return Err(error),
@@ -215,6 +217,7 @@ impl<E: Equations> Steps<E> {
             Newton::Reused => REUSED,
         };
         for _ in 0..limit {
+            self.go_on(h)?;
             self.report.iterations += 1;
             let level = if reused {
                 Level::Gradient
@@ -231,7 +234,9 @@ impl<E: Equations> Steps<E> {
             }
             if !reused {
                 self.anderson.start();
+                self.go_on(h)?;
                 self.factor(h)?;
+                self.go_on(h)?;
             }
             let size = self.advance();
             // Newton's updates shrink quadratically, those of a reused tangent by a factor.
@@ -269,6 +274,20 @@ impl<E: Equations> Steps<E> {
             step: h,
             residuals,
             muscle: self.short_muscle(),
+        })
+    }
+
+    /// Whether there is time for what comes next in a step.
+    fn go_on(&mut self, h: f64) -> Result<(), StepError> {
+        let Some(status) = interrupt::stop() else {
+            return Ok(());
+        };
+        self.equations.restore();
+        let time = self.equations.time();
+        Err(StepError::Stopped {
+            time,
+            step: h,
+            status,
         })
     }
 

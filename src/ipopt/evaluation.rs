@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use crate::ipopt::interrupt;
+use crate::ipopt::interrupt::{self, Watch};
 use crate::ipopt::solution::{Evaluations, Iteration, Seconds};
 use crate::ipopt::status::Status;
 use crate::nlp::{Entries, Nlp};
@@ -13,7 +13,8 @@ const RESERVED_ITERATIONS: usize = 4096;
 
 /// Answers the questions of Ipopt about one nonlinear program.
 ///
-/// A quantity that is NaN or ±∞ anywhere is refused, and Ipopt then shortens its step.
+/// A quantity that is NaN or ±∞ anywhere is refused, and Ipopt then shortens its step. When it is time to stop everything is
+/// refused, and Ipopt soon gives up.
 ///
 /// Before Ipopt tells of an iterate it has asked for the derivatives there, because it needs them to tell the dual
 /// infeasibility; at points which it merely tries it asks for f and g alone. So the point at which derivatives were
@@ -27,7 +28,7 @@ pub(super) struct Evaluator<'a> {
     /// Factor of f in all that Ipopt sees.
     scale: f64,
     began: Instant,
-    max_seconds: f64,
+    _watch: Watch,
     derivatives_at: Vec<f64>,
     record: Record,
 }
@@ -65,7 +66,7 @@ impl<'a> Evaluator<'a> {
             jacobian,
             hessian,
             began: Instant::now(),
-            max_seconds: max_seconds.unwrap_or(f64::INFINITY),
+            _watch: interrupt::watch(max_seconds),
             derivatives_at: start.to_vec(),
             record: Record {
                 iterations: Vec::with_capacity(RESERVED_ITERATIONS),
@@ -154,16 +155,12 @@ impl<'a> Evaluator<'a> {
         let verdict = timed(&mut self.record.seconds.observer, || {
             (self.observer)(iteration)
         });
-        self.record.stopped = if verdict.is_break() || interrupt::requested() {
-            Some(Status::Interrupted)
-        } else if self.began.elapsed().as_secs_f64() >= self.max_seconds {
-            Some(Status::TimeLimit)
-        } else {
-            None
-        };
-        match self.record.stopped {
-            Some(_) => ControlFlow::Break(()),
-            None => ControlFlow::Continue(()),
+        if verdict.is_break() {
+            self.record.stopped = Some(Status::Interrupted);
+        }
+        match self.is_stopped() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
         }
     }
 
@@ -181,8 +178,18 @@ impl<'a> Evaluator<'a> {
         self.record
     }
 
-    /// Whether all `values` are finite; if not, that is counted.
+    /// Whether it is time to stop, which is then remembered.
+    pub(super) fn is_stopped(&mut self) -> bool {
+        self.record.stopped = self.record.stopped.or_else(interrupt::stop);
+        self.record.stopped.is_some()
+    }
+
+    /// Whether all `values` are there and finite; if not finite, that is counted. What was evaluated while it became time to
+    /// stop may be there in part.
     fn accepts(&mut self, values: &[f64]) -> bool {
+        if self.is_stopped() {
+            return false;
+        }
         let finite = values.iter().all(|value| value.is_finite());
         self.record.failed += usize::from(!finite);
         finite

@@ -1,6 +1,7 @@
 //! Where the nodes of a mesh are: bounds, nodes at a place, rigid placement.
 
 use super::Mesh;
+use super::topology::FACES;
 use nalgebra::Vector3;
 
 impl Mesh {
@@ -27,6 +28,18 @@ impl Mesh {
         } else {
             (upper - lower).norm()
         }
+    }
+
+    /// Length in mm of the shortest edge of an element; infinite for no elements.
+    pub fn shortest_edge(&self) -> f64 {
+        let length = |[a, b]: [usize; 2]| (self.nodes[a] - self.nodes[b]).norm();
+        let edges = self.hexahedra.iter().flat_map(|nodes| {
+            let faces = FACES.into_iter();
+            faces
+                .flat_map(|face| (0..4).map(move |i| [face[i], face[(i + 1) % 4]]))
+                .map(|edge| edge.map(|corner| nodes[corner]))
+        });
+        edges.map(length).fold(f64::INFINITY, f64::min)
     }
 
     /// Nodes with `|x_axis − value| ≤ tolerance`, ascending; axes are 0, 1, 2 for x, y, z, lengths in mm.

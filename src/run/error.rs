@@ -6,10 +6,11 @@ use miette::{Diagnostic, GraphicalReportHandler, LabeledSpan, SourceCode};
 use thiserror::Error;
 
 use crate::control::BoundaryError;
-use crate::ipopt::IpoptError;
+use crate::dynamics::EquilibriumError;
+use crate::ipopt::{IpoptError, Status};
 use crate::report::atomic::WriteError;
 use crate::run::solution_file::SolutionError;
-use crate::scene::SceneError;
+use crate::scene::{SceneError, printable};
 
 /// Bytes of the longest line that is shown; beyond 65 535 columns nothing could be marked any more.
 const LONGEST_LINE: usize = 2000;
@@ -52,6 +53,9 @@ pub enum RunError {
         /// What it said.
         message: String,
     },
+    /// Ctrl-C was pressed, or the time allowed is over, before there was anything to write.
+    #[error("stopped before the first result ({})", .0.word().replace('_', " "))]
+    Stopped(Status),
     /// A file stands where a new one was to be written.
     #[error("{} exists already and is left as it is; choose another folder", .0.display())]
     Exists(PathBuf),
@@ -61,10 +65,10 @@ pub enum RunError {
 }
 
 impl RunError {
-    /// Exit status of the program: 2 where the input is wrong, 1 where the results could not be kept.
+    /// Exit status of the program: 2 where the input is wrong, 1 where there was no time or the results could not be kept.
     pub fn exit_status(&self) -> u8 {
         match self {
-            Self::Write(_) => 1,
+            Self::Write(_) | Self::Stopped(_) => 1,
             _ => 2,
         }
     }
@@ -91,6 +95,10 @@ impl RunError {
     pub(super) fn boundary(file: &Path, task: &str, error: &BoundaryError) -> Self {
         let (key, reason) = match error {
             BoundaryError::Model(source) => ("coordinates", source.to_string()),
+            BoundaryError::NoEquilibrium {
+                source: EquilibriumError::Stopped(status),
+                ..
+            } => return Self::Stopped(*status),
             BoundaryError::NoEquilibrium { place, source } => (*place, source.to_string()),
             BoundaryError::Inconsistent { place, .. } | BoundaryError::NoLength { place, .. } => {
                 let text = error.to_string();
@@ -122,7 +130,7 @@ impl RunError {
 
 /// The marked text of a mistake; what is wrong is told in the line before.
 #[derive(Debug, Error)]
-#[error("{}", .0.path())]
+#[error("{}", printable(.0.path()))]
 struct Excerpt<'a>(&'a SceneError);
 
 impl Diagnostic for Excerpt<'_> {

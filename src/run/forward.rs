@@ -19,7 +19,7 @@ use crate::run::fields;
 use crate::run::grids::integrate_to;
 use crate::run::memory;
 use crate::run::motion::{solved, trajectory};
-use crate::run::progress::Progress;
+use crate::run::progress::{Progress, phase};
 use crate::run::request::{Request, Told};
 use crate::run::solution_file;
 use crate::run::solve::{counted, make_folder};
@@ -61,11 +61,17 @@ pub fn integrate(
     let began = Instant::now();
     let (steps, h) = grid(task);
     let wrong = |error| RunError::boundary(file, "simulate", &error);
+    phase("building");
     let model = Model::answering(system.clone(), task.question(system, h))
         .map_err(|error| wrong(error.into()))?;
     memory::of_motion(file, &model, steps)?;
+    if let Some(status) = interrupt::stop() {
+        return Err(RunError::Stopped(status));
+    }
+    phase("finding the start");
     let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;
     let setup = began.elapsed().as_secs_f64();
+    phase("ordering and first factorisation");
     let scalars = |from: f64, to: f64| model.scalars(row(&task.voltages, 0.5 * (from + to)));
     let (history, failure) = simulate_by(task.solving, &model, &start, h, steps, scalars, observer);
     let seconds = began.elapsed().as_secs_f64() - setup;
@@ -88,8 +94,8 @@ pub(super) fn simulation(
     let (steps, _) = grid(task);
     let folder = request.folder();
     let read = began.elapsed().as_secs_f64();
-    let mut stopped = None;
     let mut unwritable = None;
+    let watch = interrupt::watch(request.max_seconds.map(|s| s - read));
     let (
         Simulated {
             model,
@@ -107,14 +113,10 @@ pub(super) fn simulation(
             if step == 1 && unwritable.is_none() {
                 unwritable = make_folder(&folder).err();
             }
-            let late = |limit: f64| began.elapsed().as_secs_f64() > limit;
-            stopped = match step < steps {
-                _ if unwritable.is_some() => Some("unwritable"),
-                true if interrupt::requested() => Some("interrupted"),
-                true if request.max_seconds.is_some_and(late) => Some("time_limit"),
-                _ => return ControlFlow::Continue(()),
-            };
-            ControlFlow::Break(())
+            match unwritable {
+                Some(_) => ControlFlow::Break(()),
+                None => ControlFlow::Continue(()),
+            }
         };
         let file = &request.input;
         match request.wanted {
@@ -130,17 +132,19 @@ pub(super) fn simulation(
         }
     };
     // A finer grid that was stopped leaves the motion on the one before as it is.
-    let stopped = stopped.filter(|_| history.intervals() < steps);
+    let stopped = interrupt::stop().filter(|_| history.intervals() < steps);
+    drop(watch);
     if let Some(error) = unwritable {
         return Err(error.into());
     }
     make_folder(&folder)?;
+    phase("writing");
     let plan = Plan::of(&model, None, MEASURED)
         .map_err(|error| RunError::boundary(&request.input, "simulate", &error.into()))?;
     let reached = history.times[history.intervals()];
     let status = match (&failure, stopped) {
         (Some(_), _) => "step_failed",
-        (None, Some(word)) => word,
+        (None, Some(stopped)) => stopped.word(),
         (None, None) => "simulated",
     };
 

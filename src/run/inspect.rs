@@ -11,7 +11,7 @@ use crate::run::blocks::Blocks;
 use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::memory;
-use crate::run::optimise::{Prepared, prepare, resolve};
+use crate::run::optimise::{Counted, Prepared, prepare, resolve};
 use crate::run::request::{Request, Told};
 use crate::run::solve::make_folder;
 use crate::run::spy;
@@ -155,8 +155,14 @@ fn listed<'a>(heading: &str, lines: impl Iterator<Item = (&'a String, &'a String
 
 fn of_control(request: &Request, system: &System, control: &Control) -> Result<String, RunError> {
     let (model, boundary) = resolve(&request.input, system, control)?;
-    let Prepared { program, start, .. } =
-        prepare(&request.input, &model, &boundary, control, None)?;
+    let Prepared { program, start, .. } = prepare(
+        &request.input,
+        &model,
+        &boundary,
+        control,
+        None,
+        Counted::Yes,
+    )?;
     let (jacobian, hessian) = (program.jacobian_structure(), program.hessian_structure());
     let rows = program.constraints();
     let equalities = rows.lower.iter().zip(&rows.upper).filter(|(l, u)| l == u);

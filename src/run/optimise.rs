@@ -8,12 +8,13 @@ use std::time::Instant;
 use crate::control::problem::{Control, Duration, Guess};
 use crate::control::{Boundary, Solved, Transcription, guess};
 use crate::dynamics::reversed_muscle;
-use crate::ipopt::{self, Iteration, OptionValue, Options, Solution, Start};
+use crate::ipopt::{self, Iteration, OptionValue, Options, Solution, Start, interrupt};
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
 use crate::run::error::RunError;
 use crate::run::memory;
 use crate::run::motion::solved;
+use crate::run::progress::phase;
 use crate::run::solution_file;
 use crate::run::violations::{Violation, violations};
 
@@ -83,13 +84,20 @@ pub fn optimise(
     observer: &mut dyn FnMut(&Iteration) -> ControlFlow<()>,
 ) -> Result<Optimum, RunError> {
     let began = Instant::now();
+    let watch = interrupt::watch(allowed.seconds);
+    phase("building the model, finding start and goal");
     let (model, boundary) = resolve(file, system, control)?;
+    phase("building the program");
     let Prepared {
         mut program,
         point,
         start,
+<<<<<<< HEAD
         stretched,
     } = prepare(file, &model, &boundary, control, earlier)?;
+=======
+    } = prepare(file, &model, &boundary, control, earlier, Counted::Yes)?;
+>>>>>>> 1ea1619 (Texts from files cannot command a terminal; a long run of the reader's properties is one command)
     let setup = began.elapsed().as_secs_f64();
     let options = Options {
         tolerance: control.solver.tolerance,
@@ -98,9 +106,11 @@ pub fn optimise(
         start,
         extra: linear_solver(&model, control),
     };
+    phase("ordering and first factorisation");
     tracing::info!(?start, variables = point.x.len(), "solve");
     let solution = ipopt::solve(&mut program, &point, &options, observer)
         .map_err(|error| RunError::ipopt(file, &error))?;
+    drop(watch);
     let history = program.decode(&solution.x);
     let motion = Solved {
         hold: boundary.rest[1].clone(),
@@ -159,6 +169,15 @@ fn interval(control: &Control) -> f64 {
     control.duration.first() / control.intervals as f64
 }
 
+/// Whether a program with more equations than unknowns is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Counted {
+    /// It has no solution.
+    Yes,
+    /// Its derivatives exist all the same.
+    No,
+}
+
 /// Guess and program; an `earlier` solution in memory comes before the guess of the problem.
 pub(super) fn prepare<'m>(
     file: &Path,
@@ -166,6 +185,7 @@ pub(super) fn prepare<'m>(
     boundary: &Boundary,
     control: &Control,
     earlier: Option<&Solved>,
+    counted: Counted,
 ) -> Result<Prepared<'m>, RunError> {
     memory::of_program(file, model, control.intervals)?;
     let named = match (&control.guess, earlier) {
@@ -174,8 +194,11 @@ pub(super) fn prepare<'m>(
     };
     let earlier = earlier.or(named.as_ref());
     let initial = guess(model, boundary, control, interval(control), earlier);
-    let program = Transcription::new(model, boundary, control, &initial)
-        .map_err(|error| RunError::boundary(file, "control", &error))?;
+    let program = match counted {
+        Counted::Yes => Transcription::new(model, boundary, control, &initial)
+            .map_err(|error| RunError::boundary(file, "control", &error))?,
+        Counted::No => Transcription::of_any(model, boundary, control, &initial),
+    };
     let point = program.start(&initial);
     let stretched = initial.stretched;
     let is_same_grid =

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{Continuation, History, Instability, continuation};
+use crate::ipopt::{Status, interrupt};
 use crate::model::Model;
 use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Mark, Series};
@@ -14,6 +15,7 @@ use crate::report::{atomic, style, table};
 use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::fields;
+use crate::run::progress::phase;
 use crate::run::request::{Request, Told};
 use crate::run::rest::{Asked, refused};
 use crate::run::solve::{counted, make_folder};
@@ -50,12 +52,14 @@ pub(super) fn follow(
     let model = Model::answering(asked.system.clone(), asked.task.question(asked.system))
         .map_err(|error| wrong(error.into()))?;
     let setup = began.elapsed().as_secs_f64();
+    phase("following the path");
     let start = model.coordinates_at(&vec![0.0; model.gauges.len()]);
     let found = match continuation(&model, &start, &model.scalars(&asked.task.voltages), points) {
         Ok(found) => found,
         Err(error) => return refused(request, &error, "no equilibrium to start from"),
     };
-    let notes = found.lost.iter().map(loss).map(|l| {
+    let stopped = interrupt::stop();
+    let lost = found.lost.iter().map(loss).map(|l| {
         let what = if l.kind == "pull_in" {
             "pull-in"
         } else {
@@ -63,8 +67,13 @@ pub(super) fn follow(
         };
         format!("{what} at {:.6} % of the voltages", 100.0 * l.fraction)
     });
+    let early = stopped.map(|status| {
+        let why = status.word().replace('_', " ");
+        format!("the path was not followed to its end ({why})")
+    });
+    let notes = lost.chain(early);
     let mut told = Told {
-        is_solved: true,
+        is_solved: stopped.is_none(),
         result: counted(found.points.len(), "equilibrium").replace("equilibriums", "equilibria"),
         notes: notes.collect(),
     };
@@ -91,7 +100,8 @@ pub(super) fn follow(
     let svg = figure(&model, &found, &history, &origin);
     atomic::write(&folder.join("path.svg"), svg.as_bytes())?;
     fields::write(&folder, &model, &history, &origin)?;
-    let mut summary = Summary::new(request, "path_followed", model.coordinates.name());
+    let word = stopped.map_or("path_followed", Status::word);
+    let mut summary = Summary::new(request, word, model.coordinates.name());
     summary.plan = Plan::of(&model, None, MEASURED).map_err(|error| wrong(error.into()))?;
     summary.path = Some(Followed {
         points: found.points.len(),

@@ -1,5 +1,7 @@
-//! Progress on standard error: the iterations of a solve, the steps of a simulation.
+//! Progress on standard error: what is being done before there is anything to count, the iterations of a solve, the steps of a
+//! simulation.
 
+use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -15,14 +17,35 @@ pub enum Shown {
     Never,
 }
 
+thread_local! {
+    /// The line of the run of this thread.
+    static LINE: RefCell<Option<ProgressBar>> = const { RefCell::new(None) };
+}
+
+/// Says what the run of this thread does now: reading, building, ….
+pub(super) fn phase(doing: &'static str) {
+    LINE.with_borrow(|line| {
+        if let Some(bar) = line {
+            bar.set_message(doing);
+            bar.tick();
+        }
+    });
+}
+
 /// A line that changes while a run goes on.
 #[derive(Debug)]
 pub(super) struct Progress {
     bar: ProgressBar,
     began: Instant,
+    before: Option<ProgressBar>,
 }
 
 impl Progress {
+    /// A run of which nothing is known yet but what it [does](phase).
+    pub(super) fn of_phases(shown: Shown) -> Self {
+        Self::of_solve(shown)
+    }
+
     /// A solve with an open number of iterations.
     pub(super) fn of_solve(shown: Shown) -> Self {
         let bar = target(ProgressBar::no_length(), shown);
@@ -37,6 +60,7 @@ impl Progress {
         bar.set_style(style(
             "{elapsed_precise} {wide_bar} step {pos} of {len} {msg}",
         ));
+        bar.enable_steady_tick(Duration::from_millis(120));
         Self::starting(bar)
     }
 
@@ -51,8 +75,15 @@ impl Progress {
     }
 
     fn starting(bar: ProgressBar) -> Self {
-        let began = Instant::now();
-        Self { bar, began }
+        let before = LINE.replace(Some(bar.clone()));
+        if let Some(line) = &before {
+            line.finish_and_clear();
+        }
+        Self {
+            bar,
+            began: Instant::now(),
+            before,
+        }
     }
 
     /// An iterate on so many intervals was accepted.
@@ -81,8 +112,19 @@ impl Progress {
         let seconds = self.began.elapsed().as_secs_f64() / step.max(1) as f64;
         // Short steps are too many to watch.
         if seconds > 0.01 {
-            self.bar.set_message(format!("({seconds:.2} s each)"));
+            let left = rough(seconds * steps.saturating_sub(step) as f64);
+            self.bar
+                .set_message(format!("{seconds:.2} s each, about {left} left"));
         }
+    }
+}
+
+/// A time as one says it.
+fn rough(seconds: f64) -> String {
+    match seconds {
+        s if s < 90.0 => format!("{s:.0} s"),
+        s if s < 5400.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
     }
 }
 
@@ -96,6 +138,10 @@ pub(crate) fn progress_bar(shown: Shown, length: u64, template: &str) -> Progres
 impl Drop for Progress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
+        if let Some(line) = &self.before {
+            line.reset();
+        }
+        LINE.set(self.before.take());
     }
 }
 

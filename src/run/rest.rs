@@ -9,6 +9,7 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
     Equilibrium, EquilibriumError, History, Instability, equilibrium, observations,
 };
+use crate::ipopt::interrupt;
 use crate::model::system::{Joint, JointKind};
 use crate::model::{Model, System};
 use crate::report::atomic;
@@ -22,6 +23,7 @@ use crate::run::inspect::key;
 use crate::run::memory;
 use crate::run::motion::solved;
 use crate::run::path;
+use crate::run::progress::{Progress, phase};
 use crate::run::request::{Request, Told};
 use crate::run::solve::make_folder;
 use crate::run::summary::{MEASURED, Rest, Seconds, Summary};
@@ -37,6 +39,8 @@ pub fn equilibrium_of_file(
     voltages: Option<&[String]>,
 ) -> Result<Told, RunError> {
     let began = Instant::now();
+    let _progress = Progress::of_phases(request.progress);
+    phase("reading");
     if let Some(voltages) = voltages {
         let system = read_system(&request.input, &request.set)?;
         memory::of_elements(&request.input, &system)?;
@@ -82,13 +86,17 @@ pub(super) struct Asked<'a> {
 
 /// Finds the equilibrium under voltages, or follows the path there; where it is lost on the way there, the last one is kept.
 pub(super) fn at(request: &Request, asked: &Asked<'_>, began: Instant) -> Result<Told, RunError> {
+    let left = |seconds| seconds - began.elapsed().as_secs_f64();
+    let watch = interrupt::watch(request.max_seconds.map(left));
     if let Some(points) = asked.task.path {
         return path::follow(request, asked, points, began);
     }
     let wrong = |error| RunError::boundary(&request.input, "equilibrium", &error);
+    phase("building");
     let model = Model::answering(asked.system.clone(), asked.task.question(asked.system))
         .map_err(|error| wrong(error.into()))?;
     let setup = began.elapsed().as_secs_f64();
+    phase("equilibrium");
     let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
     let (status, found, failure) =
         match equilibrium(&model, &zero, &model.scalars(&asked.task.voltages)) {
@@ -107,6 +115,7 @@ pub(super) fn at(request: &Request, asked: &Asked<'_>, began: Instant) -> Result
             }
             Err(error) => return refused(request, &error, "no equilibrium"),
         };
+    drop(watch);
     let n = model.coordinate_count();
     let state = History {
         times: vec![0.0],
@@ -169,12 +178,16 @@ pub(super) fn refused(
     error: &EquilibriumError,
     result: &str,
 ) -> Result<Told, RunError> {
-    if let EquilibriumError::Floating { .. } = error {
-        return Err(RunError::Problem {
-            file: request.input.clone(),
-            place: "equilibrium".to_owned(),
-            reason: error.to_string(),
-        });
+    match error {
+        EquilibriumError::Floating { .. } => {
+            return Err(RunError::Problem {
+                file: request.input.clone(),
+                place: "equilibrium".to_owned(),
+                reason: error.to_string(),
+            });
+        }
+        EquilibriumError::Stopped(status) => return Err(RunError::Stopped(*status)),
+        _ => {}
     }
     Ok(Told {
         is_solved: false,

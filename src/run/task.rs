@@ -6,6 +6,7 @@ use crate::control::problem::Task;
 use crate::run::accuracy::Wanted;
 use crate::run::error::RunError;
 use crate::run::memory;
+use crate::run::progress::{Progress, phase};
 use crate::run::request::{Request, Told};
 use crate::run::{forward, rest, solve};
 use crate::scene::read_problem;
@@ -16,6 +17,8 @@ use crate::scene::read_problem;
 /// The input is wrong, and nothing was written; or the results cannot be written.
 pub fn run(request: &Request) -> Result<Told, RunError> {
     let began = Instant::now();
+    let _progress = Progress::of_phases(request.progress);
+    phase("reading");
     let loaded = read_problem(&request.input, &request.set)?;
     memory::of_elements(&request.input, &loaded.system)?;
     match loaded.task {

@@ -131,15 +131,18 @@ fn directors_along(axis: &Vector3<f64>) -> Matrix3<f64> {
 
 /// A direction of length one.
 pub(crate) fn unit_axis(axis: &[f64; 3], scope: &Scope<'_>) -> Result<Vector3<f64>, SceneError> {
+    direction(axis).ok_or_else(|| {
+        let found = format!("{axis:?}");
+        scope.wrong(found, "a direction, such as [0, 0, 1]")
+    })
+}
+
+/// The unit vector along an axis; `None` for an axis without a direction.
+pub(crate) fn direction(axis: &[f64; 3]) -> Option<Vector3<f64>> {
     // Scaling by the largest entry keeps the norm of very long and very short axes in range.
-    let largest = axis
-        .iter()
-        .fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
-    if largest == 0.0 || !largest.is_finite() {
-        return Err(scope.wrong(format!("{axis:?}"), "a direction, such as [0, 0, 1]"));
-    }
+    let largest = Vector3::from(*axis).amax();
+    let scaled = Vector3::from(*axis) / largest;
     // Adding zero turns −0 into 0.
-    Ok((Vector3::from(*axis) / largest)
-        .normalize()
-        .map(|entry| entry + 0.0))
+    let unit = scaled.normalize().map(|entry| entry + 0.0);
+    unit.iter().all(|entry| entry.is_finite()).then_some(unit)
 }

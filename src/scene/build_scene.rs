@@ -163,10 +163,10 @@ fn check_chain(
     let length = scope.key("length").positive(&chain.length)?;
     scope.key("radius").positive(&chain.radius)?;
     scope.key("mass").positive(&chain.mass)?;
-    if !(length * chain.segments as f64).is_finite() {
-        return Err(scope
-            .key("length")
-            .wrong(chain.length.to_string(), "a finite chain"));
+    let reach = length * chain.segments as f64;
+    if !reach.is_finite() {
+        let found = chain.length.to_string();
+        return Err(scope.key("length").wrong(found, "a finite chain"));
     }
     let axis = unit_axis(&chain.axis, &scope.key("axis"))?;
     let place = scope.key("first_joint_axis");
@@ -186,8 +186,12 @@ fn check_chain(
             material: &pair.material,
         };
         fidelity(&model, materials, &scope)?;
-        scope.key("arm").positive(&pair.arm)?;
-        scope.key("rest_length").positive(&pair.rest_length)?;
+        let arm = scope.key("arm").positive(&pair.arm)?;
+        let rest_length = scope.key("rest_length").positive(&pair.rest_length)?;
+        if !(reach + arm + rest_length).is_finite() {
+            let found = format!("an arm of {} at a length of {}", pair.arm, pair.rest_length);
+            return Err(scope.wrong(found, "muscles in finite places"));
+        }
         positive_sides(&pair.cross_section, &scope)?;
         scope
             .key("layer_thickness")

@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use crate::scene::error::{Mistake, SceneError, nearest};
+use crate::scene::error::{Mistake, SceneError, is_printable, nearest, printable};
 use crate::scene::locate::{Place, Step, locate};
 use crate::scene::wording::wording;
 
@@ -55,6 +55,7 @@ impl Document {
 
     /// The values as a type, or the first mistake.
     pub(crate) fn parse<T: DeserializeOwned>(&self) -> Result<T, SceneError> {
+        self.refuse_unprintable()?;
         serde_path_to_error::deserialize(&self.value).map_err(|error| {
             let steps = error.path().iter().filter_map(|segment| match segment {
                 serde_path_to_error::Segment::Seq { index } => Some(Step::Index(*index)),
@@ -134,7 +135,7 @@ impl Document {
         overridden: bool,
     ) -> SceneError {
         let file = self.path.display().to_string();
-        let named = || NamedSource::new(&file, self.text.clone()).with_language("json");
+        let named = || NamedSource::new(printable(&file), shown(&self.text)).with_language("json");
         Mistake {
             source: span.map(|span| (named(), span)),
             file,
@@ -200,6 +201,23 @@ impl Document {
         )
     }
 
+    /// Names are shown in messages, figures, tables and pages: what cannot be printed has no place in any text.
+    fn refuse_unprintable(&self) -> Result<(), SceneError> {
+        let Some(mut found) = unprintable(&self.value) else {
+            return Ok(());
+        };
+        found.steps.reverse();
+        let (place, text) = (Place(found.steps), found.text);
+        let expected = "a text without control characters".to_owned();
+        Err(self.describe(
+            &place,
+            format!("the text {text:?}"),
+            expected,
+            None,
+            found.is_key,
+        ))
+    }
+
     /// JSON readers keep the last of two equal keys without a word; here that is a mistake.
     fn refuse_repeated_keys(&self) -> Result<(), SceneError> {
         let all = locate(&self.text);
@@ -210,5 +228,51 @@ impl Document {
             return Err(self.error(place.to_string(), what, expected, None, Some(span), false));
         }
         Ok(())
+    }
+}
+
+/// The text with question marks, as many as bytes, in place of what cannot be printed; places in it stay where they are.
+fn shown(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        match is_printable(c) || matches!(c, '\n' | '\r' | '\t') {
+            true => shown.push(c),
+            false => shown.extend(std::iter::repeat_n('?', c.len_utf8())),
+        }
+    }
+    shown
+}
+
+/// A text that cannot be printed, with the steps to it from the innermost one outwards.
+struct Unprintable<'a> {
+    text: &'a str,
+    is_key: bool,
+    steps: Vec<Step>,
+}
+
+/// The first text among keys and values that cannot be printed.
+fn unprintable(value: &Value) -> Option<Unprintable<'_>> {
+    let check = |text, is_key| {
+        let steps = Vec::new();
+        let found = Unprintable {
+            text,
+            is_key,
+            steps,
+        };
+        (!found.text.chars().all(is_printable)).then_some(found)
+    };
+    match value {
+        Value::String(text) => check(text, false),
+        Value::Array(entries) => entries.iter().enumerate().find_map(|(index, entry)| {
+            let mut found = unprintable(entry)?;
+            found.steps.push(Step::Index(index));
+            Some(found)
+        }),
+        Value::Object(entries) => entries.iter().find_map(|(key, entry)| {
+            let mut found = check(key, true).or_else(|| unprintable(entry))?;
+            found.steps.push(Step::Key(key.clone()));
+            Some(found)
+        }),
+        _ => None,
     }
 }

@@ -76,15 +76,15 @@ impl fmt::Display for SceneError {
             overridden,
             ..
         } = self.0.as_ref();
-        write!(f, "{file}: ")?;
+        write!(f, "{}: ", printable(file))?;
         if !path.is_empty() {
-            write!(f, "{}: ", shortened(path))?;
+            write!(f, "{}: ", printable(&shortened(path)))?;
         }
-        write!(f, "found {}", shortened(found))?;
+        write!(f, "found {}", printable(&shortened(found)))?;
         if *overridden {
             f.write_str(" (set on the command line)")?;
         }
-        write!(f, ", expected {expected}")?;
+        write!(f, ", expected {}", printable(expected))?;
         if let Some(nearest) = nearest {
             write!(f, "; did you mean {nearest:?}?")?;
         }
@@ -101,7 +101,7 @@ impl Diagnostic for SceneError {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let label = format!("expected {}", self.0.expected);
+        let label = format!("expected {}", printable(&self.0.expected));
         let span = LabeledSpan::at(self.span()?, label);
         Some(Box::new([span].into_iter()))
     }
@@ -110,6 +110,24 @@ impl Diagnostic for SceneError {
         let nearest = self.0.nearest.as_ref()?;
         Some(Box::new(format!("did you mean {nearest:?}?")))
     }
+}
+
+/// Whether a character only shows itself: a control character can command a terminal, and marks of direction can make a line
+/// read as what it does not say.
+pub(crate) fn is_printable(c: char) -> bool {
+    !c.is_control() && !matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// A text in which characters that are not printable stand as their escapes, such as `\u{1b}`.
+pub fn printable(text: &str) -> Cow<'_, str> {
+    if text.chars().all(is_printable) {
+        return Cow::Borrowed(text);
+    }
+    let escaped = text.chars().map(|c| match is_printable(c) {
+        true => c.to_string(),
+        false => c.escape_default().to_string(),
+    });
+    Cow::Owned(escaped.collect())
 }
 
 /// Characters of a path or of what was found that are told.

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::scene::build_body::direction;
 use crate::scene::quantity::Quantity;
 use crate::scene::spec_scene::{
     AxisSpec, BodySpec, ChainSpec, CylinderSpec, JointSpec, MarkerSpec, MuscleSpec, Point,
@@ -39,8 +40,8 @@ struct Link {
 
 impl Link {
     fn new(chain: &ChainSpec, number: usize) -> Self {
-        let axis = Vector3::from(chain.axis).normalize();
-        let first = Vector3::from(chain.first_joint_axis).normalize();
+        let axis = direction(&chain.axis).unwrap_or_default();
+        let first = direction(&chain.first_joint_axis).unwrap_or_default();
         let second = axis.cross(&first);
         let odd = number % 2 == 1;
         Self {

@@ -41,7 +41,7 @@ mod unit;
 mod wording;
 
 pub(crate) use document::Document;
-pub use error::SceneError;
+pub use error::{SceneError, printable};
 pub(crate) use layout::lay_out;
 pub(crate) use locate::Place;
 pub(crate) use scope::Scope;

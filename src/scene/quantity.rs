@@ -234,10 +234,16 @@ impl<M: Measure> Quantity<M> {
 }
 
 impl Quantity<Length> {
-    /// A length of this many mm, written with its unit.
+    /// A finite length of this many mm, written with its unit.
     pub(crate) fn millimetres(value: f64) -> Self {
         // Adding zero turns −0 into 0.
-        Self::try_from_text(&format!("{} mm", value + 0.0)).expect("finite length")
+        let number = value + 0.0;
+        Self {
+            written: Written::Text(format!("{number} mm")),
+            number,
+            unit: Some(Unit::millimetre()),
+            measure: PhantomData,
+        }
     }
 }
 

@@ -114,6 +114,18 @@ impl<'m> Transcription<'m> {
         control: &Control,
         initial: &Initial,
     ) -> Result<Self, BoundaryError> {
+        let program = Self::of_any(model, boundary, control, initial);
+        program.count(&boundary.limits.list)?;
+        Ok(program)
+    }
+
+    /// Transcribes like [`new`](Self::new), also where there are more equations than unknowns: derivatives exist all the same.
+    pub fn of_any(
+        model: &'m Model,
+        boundary: &Boundary,
+        control: &Control,
+        initial: &Initial,
+    ) -> Self {
         let motion = &model.action.motion;
         let (n, unknown_count) = (motion.coordinates, motion.unknowns());
         let driven = model.voltages.len();
@@ -210,12 +222,11 @@ impl<'m> Transcription<'m> {
                 .collect(),
             unknowns,
         };
-        out.count(&boundary.limits.list)?;
         out.lay_jacobian();
         out.lay_hessian();
         out.set_scales(&initial.history, initial.h);
         out.set_bounds(control);
-        Ok(out)
+        out
     }
 
     fn count(&self, limits: &[Bounded]) -> Result<(), BoundaryError> {

@@ -7,6 +7,7 @@
 use crate::control::transcription::Placed;
 use crate::control::transcription::limit_rows::{LimitRow, Site, fill_weights};
 use crate::functional::{Horizon, Level, Sides};
+use crate::ipopt::interrupt::Limit;
 use crate::math::Vector;
 use crate::reduction::{Instant, Interval, Reduced, Scratch};
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -30,6 +31,8 @@ pub(super) struct Shared<'a> {
     pub(super) horizon: Horizon,
     pub(super) placed: Placed,
     pub(super) level: Level,
+    /// Until when intervals are evaluated.
+    pub(super) limit: Option<Limit>,
 }
 
 /// Storage of one thread.
@@ -84,6 +87,10 @@ impl Stretch<'_> {
         self.prepare(0);
         let mut square = 0.0;
         for j in 0..self.instants.len() {
+            // What is not evaluated any more is not used either.
+            if self.shared.limit.and_then(Limit::reached).is_some() {
+                break;
+            }
             self.prepare(j + 1);
             square += self.interval(j);
             if self.first + j > 0 && j == 0 {

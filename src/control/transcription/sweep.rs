@@ -4,6 +4,7 @@ use crate::control::transcription::limit_rows::{LimitRow, Site};
 use crate::control::transcription::stretch::{Shared, Stretch, instant_of, join, needed};
 use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
 use crate::functional::{Frame, Horizon, Level, Measure, Sides};
+use crate::ipopt::interrupt;
 use crate::math::Vector;
 
 impl<'m> Transcription<'m> {
@@ -29,6 +30,7 @@ impl<'m> Transcription<'m> {
             horizon: self.horizon,
             placed: self.placed,
             level,
+            limit: interrupt::limit(),
         };
         let [bench, second] = &mut self.benches;
         let values = &mut self.values;

@@ -190,6 +190,9 @@ fn physical_names(lines: &mut Lines<'_>) -> Result<BTreeMap<Group, String>, Mesh
             Some(name.trim())
         });
         match name {
+            Some(name) if name.contains(char::is_control) => {
+                return Err(line.error(quoted(name), "a name without control characters"));
+            }
             Some(name) if dimension <= 3 => {
                 if !name.is_empty() {
                     names.insert((dimension, number.unsigned_abs()), name.to_owned());

@@ -25,7 +25,12 @@ struct Pair {
     place: Place,
     analytic: f64,
     difference: f64,
+    /// Difference of a shorter step, where the first one is far away.
+    again: Option<f64>,
 }
+
+/// Differences that are apart by this part of their distance from an entry agree against it.
+const AGREE: f64 = 0.25;
 
 impl Comparison {
     pub(super) fn new(places: &Entries, values: &[f64], terms: Vec<f64>, columns: usize) -> Self {
@@ -90,8 +95,45 @@ impl Comparison {
                     place,
                     analytic,
                     difference,
+                    again: None,
                 });
             }
+        }
+    }
+
+    /// Columns with entries above the tolerance.
+    pub(super) fn doubted(&self) -> Vec<usize> {
+        let far = self
+            .pairs
+            .iter()
+            .filter(|pair| self.error(pair) > TOLERANCE);
+        far.map(|pair| pair.column).collect()
+    }
+
+    /// Puts the entries above the tolerance of a column beside differences of another step.
+    pub(super) fn compare_again(&mut self, column: usize, difference: impl Fn(usize) -> f64) {
+        for index in 0..self.pairs.len() {
+            let pair = &self.pairs[index];
+            if pair.column == column && self.error(pair) > TOLERANCE {
+                let again = difference(pair.row);
+                self.pairs[index].again = Some(again);
+            }
+        }
+    }
+
+    /// Relative error of an entry, by the differences known so far: the smaller one, and none that counts where they are
+    /// apart from each other as they are from the entry.
+    fn error(&self, pair: &Pair) -> f64 {
+        let size = self.largest[pair.row] + self.terms[pair.row];
+        let first = relative_error(pair.analytic, pair.difference, size);
+        let Some(again) = pair.again else {
+            return first;
+        };
+        let nearest = first.min(relative_error(pair.analytic, again, size));
+        let apart = relative_error(pair.difference, again, size);
+        match apart > AGREE * nearest {
+            true => nearest.min(TOLERANCE),
+            false => nearest,
         }
     }
 
@@ -104,15 +146,16 @@ impl Comparison {
         wrong: &mut Vec<WrongEntry>,
     ) -> f64 {
         let mut greatest = 0.0_f64;
-        for &Pair {
-            row,
-            column,
-            place,
-            analytic,
-            difference,
-        } in &self.pairs
-        {
-            let error = relative_error(analytic, difference, self.largest[row] + self.terms[row]);
+        for pair in &self.pairs {
+            let error = self.error(pair);
+            let &Pair {
+                row,
+                column,
+                place,
+                analytic,
+                difference,
+                ..
+            } = pair;
             greatest = greatest.max(error);
             if error > TOLERANCE {
                 let (row, column) = (row_name(row), nlp.variable_name(column));

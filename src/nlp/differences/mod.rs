@@ -17,6 +17,10 @@
 //!
 //! Rounding alone then stays near 4e-8, a wrong entry counts fully if it is not a thousand times smaller than its
 //! row, and one a million times smaller still counts 1e-3: [`TOLERANCE`] lies between.
+//!
+//! An entry above the tolerance is compared with the difference of a second step, eight times shorter, before it is called
+//! wrong. The part h² of a difference is then 64 times smaller and its rounding eight times larger, so that the two
+//! differences are apart by about what each is off; a wrong entry is off by the same from both.
 
 mod comparison;
 mod report;
@@ -29,8 +33,20 @@ pub use report::{Matrix, Place, Report, WrongEntry};
 /// Relative error above which an entry is taken for wrong.
 pub const TOLERANCE: f64 = 1e-5;
 
+/// The first step of a difference over the second one.
+const SHORTER: f64 = 8.0;
+
 /// Wrong entries listed in a report.
 const LISTED: usize = 20;
+
+/// The variables along which differences are taken.
+#[derive(Clone, Copy, Debug)]
+pub struct Along<'a> {
+    /// The variables, ascending.
+    pub columns: &'a [usize],
+    /// The size of every variable of the program: a change of that size matters.
+    pub sizes: &'a [f64],
+}
 
 /// Compares all derivatives of `nlp` at `x` with central differences; `seed` picks σ and y.
 ///
@@ -40,8 +56,30 @@ const LISTED: usize = 20;
 ///
 /// If `x` has the wrong length, or if an entry of a structure lies outside its matrix or above the diagonal of the Hessian.
 pub fn check(nlp: &mut dyn Nlp, x: &[f64], seed: u64) -> Report {
+    let (columns, sizes) = ((0..x.len()).collect::<Vec<_>>(), vec![1.0; x.len()]);
+    let along = Along {
+        columns: &columns,
+        sizes: &sizes,
+    };
+    check_along(nlp, x, along, seed, || false)
+}
+
+/// Compares like [`check`] the derivatives by some variables, each with steps of its size; those left when `stop` says so
+/// are counted.
+///
+/// # Panics
+///
+/// As [`check`], or if a size is missing.
+pub fn check_along(
+    nlp: &mut dyn Nlp,
+    x: &[f64],
+    Along { columns, sizes }: Along<'_>,
+    seed: u64,
+    mut stop: impl FnMut() -> bool,
+) -> Report {
     let (n, m) = (nlp.variables().lower.len(), nlp.constraints().lower.len());
     assert_eq!(x.len(), n, "one value per variable");
+    assert_eq!(sizes.len(), n, "one size per variable");
     let mut random = SplitMix64(seed);
     let sigma = random.in_half_to_two();
     let costates: Vec<f64> = (0..m)
@@ -68,34 +106,40 @@ pub fn check(nlp: &mut dyn Nlp, x: &[f64], seed: u64) -> Report {
         n,
     );
     gradient.add_linear_terms(x);
-    let sizes = here.constraints.iter().map(|g| g.abs()).collect();
-    let mut jacobian = Comparison::new(&lagrangian.jacobian, &here.jacobian, sizes, n);
+    let terms = here.constraints.iter().map(|g| g.abs()).collect();
+    let mut jacobian = Comparison::new(&lagrangian.jacobian, &here.jacobian, terms, n);
     jacobian.add_linear_terms(x);
-    let sizes = lagrangian.term_sizes(&here);
-    let mut hessian = Comparison::new(&nlp.hessian_structure(), &hessian, sizes, n);
+    let terms = lagrangian.term_sizes(&here);
+    let mut hessian = Comparison::new(&nlp.hessian_structure(), &hessian, terms, n);
 
     let mut report = Report::default();
-    let mut moved = x.to_vec();
-    for j in 0..n {
-        let step = f64::EPSILON.cbrt() * x[j].abs().max(1.0);
-        moved[j] = x[j] + step;
-        let (ahead, at_ahead) = (moved[j], Sample::at(nlp, &lagrangian, &moved));
-        moved[j] = x[j] - step;
-        let (behind, at_behind) = (moved[j], Sample::at(nlp, &lagrangian, &moved));
-        moved[j] = x[j];
-        if !(at_ahead.exists() && at_behind.exists()) {
-            report.unchecked.push(nlp.variable_name(j));
+    let step = |j: usize| f64::EPSILON.cbrt() * sizes[j] * x[j].abs().max(1.0);
+    for &j in columns {
+        if stop() {
+            report.left += 1;
             continue;
         }
-        let slope =
-            |ahead_value: f64, behind_value: f64| (ahead_value - behind_value) / (ahead - behind);
-        gradient.compare(j, 0, |_| slope(at_ahead.objective, at_behind.objective));
-        jacobian.compare(j, 0, |i| {
-            slope(at_ahead.constraints[i], at_behind.constraints[i])
-        });
-        hessian.compare(j, j, |i| {
-            slope(at_ahead.lagrangian[i], at_behind.lagrangian[i])
-        });
+        let Some(slope) = Slope::along(nlp, &lagrangian, x, j, step(j)) else {
+            report.unchecked.push(nlp.variable_name(j));
+            continue;
+        };
+        report.checked += 1;
+        gradient.compare(j, 0, |_| slope.objective());
+        jacobian.compare(j, 0, |i| slope.constraint(i));
+        hessian.compare(j, j, |i| slope.lagrangian(i));
+    }
+    let mut doubted: Vec<usize> = [&gradient, &jacobian, &hessian]
+        .into_iter()
+        .flat_map(Comparison::doubted)
+        .collect();
+    doubted.sort_unstable();
+    doubted.dedup();
+    for j in doubted {
+        if let Some(slope) = Slope::along(nlp, &lagrangian, x, j, step(j) / SHORTER) {
+            gradient.compare_again(j, |_| slope.objective());
+            jacobian.compare_again(j, |i| slope.constraint(i));
+            hessian.compare_again(j, |i| slope.lagrangian(i));
+        }
     }
 
     report.gradient = gradient.judge(
@@ -199,6 +243,48 @@ impl Sample {
             .chain(&self.constraints)
             .chain(&self.lagrangian)
             .all(|value| value.is_finite())
+    }
+}
+
+/// Central differences along one variable.
+struct Slope {
+    ahead: Sample,
+    behind: Sample,
+    width: f64,
+}
+
+impl Slope {
+    /// Over a step to both sides; `None` where a value does not exist there.
+    fn along(
+        nlp: &mut dyn Nlp,
+        lagrangian: &Lagrangian,
+        x: &[f64],
+        j: usize,
+        step: f64,
+    ) -> Option<Self> {
+        let mut moved = x.to_vec();
+        moved[j] = x[j] + step;
+        let (end, ahead) = (moved[j], Sample::at(nlp, lagrangian, &moved));
+        moved[j] = x[j] - step;
+        let behind = Sample::at(nlp, lagrangian, &moved);
+        let width = end - moved[j];
+        (ahead.exists() && behind.exists()).then_some(Self {
+            ahead,
+            behind,
+            width,
+        })
+    }
+
+    fn objective(&self) -> f64 {
+        (self.ahead.objective - self.behind.objective) / self.width
+    }
+
+    fn constraint(&self, i: usize) -> f64 {
+        (self.ahead.constraints[i] - self.behind.constraints[i]) / self.width
+    }
+
+    fn lagrangian(&self, i: usize) -> f64 {
+        (self.ahead.lagrangian[i] - self.behind.lagrangian[i]) / self.width
     }
 }
 

@@ -52,6 +52,10 @@ pub struct Report {
     pub hessian: f64,
     /// Entries in error by more than [`TOLERANCE`](super::TOLERANCE), the worst first; at most twenty.
     pub wrong: Vec<WrongEntry>,
+    /// Number of variables along which derivatives were compared.
+    pub checked: usize,
+    /// Number of variables for which no time was left.
+    pub left: usize,
     /// Variables along which a value is NaN or ±∞ a small step away, so that nothing was checked there.
     pub unchecked: Vec<String>,
 }
@@ -60,7 +64,7 @@ impl Report {
     /// True if every derivative was checked and none is wrong.
     #[must_use]
     pub const fn is_consistent(&self) -> bool {
-        self.wrong.is_empty() && self.unchecked.is_empty()
+        self.wrong.is_empty() && self.unchecked.is_empty() && self.left == 0
     }
 }
 
