@@ -210,6 +210,15 @@ fn the_order_is_observed_and_chance_is_not_believed() {
             "{ratio} for {order}"
         );
     }
+    // What falls faster than the rule can is told as it is, and estimated as if it fell by four.
+    let found = series(1e-6, |times| 0.1 * (times as f64).powi(-4));
+    let seen = found.accuracy.order["objective"];
+    assert!((seen - 4.0).abs() < 0.05, "{seen}");
+    assert!(found.accuracy.estimate["objective"] > 10.0 * found.run);
+    // So is what grows.
+    let found = series(1e-9, |times| 1.0 + 1e-3 * (times as f64).powf(0.5));
+    let seen = found.accuracy.order["objective"];
+    assert!((seen + 0.5).abs() < 0.05, "{seen}");
     // Two grids that agree by chance are no proof: the difference of 0.03 before it has to fall by four at a time.
     let found = series(1e-4, |times| {
         [0.06, 0.03, 0.0299999, 0.008, 0.002][times.ilog2().min(4) as usize]

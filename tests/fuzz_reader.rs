@@ -373,6 +373,8 @@ fn found_before() {
     scene["chain"]["muscles"]["rest_length"] = json!("1.2e308 mm");
     scene["chain"]["muscles"]["arm"] = json!("1.2e308 mm");
     assert!(is_refused(scene.to_string().as_bytes(), true));
+    // A carriage return sets a terminal back to the start of its line.
+    assert!(is_refused(b"{ \r\n \"na\rme\": 1 }\r\n", true));
     for text in ["sc\ne", "\u{1b}[31mred", "\u{9b}2J", "\u{202e}lin"] {
         for scene in [json!({ text: 1 }), json!({ "name": text })] {
             assert!(is_refused(scene.to_string().as_bytes(), true), "{text:?}");

@@ -51,7 +51,7 @@ pub struct Accuracy {
     pub is_met: Option<bool>,
     /// Estimated errors of the solution that is kept; none where there is no second grid.
     pub estimate: Measures,
-    /// Orders in the step that the last three grids show.
+    /// Orders in the step that the last three grids show, as observed; zero or less where differences do not fall.
     pub order: Measures,
     /// Order where none is shown.
     pub assumed_order: f64,

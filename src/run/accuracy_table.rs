@@ -45,6 +45,14 @@ impl Accuracy {
         if !orders.is_empty() {
             notes.push(format!("orders observed: {}", orders.join(", ")));
         }
+        let grows = |(name, p): (&&str, &f64)| (*p <= 0.0).then(|| (*name).to_owned());
+        let growing: Vec<String> = self.order.iter().filter_map(grows).collect();
+        if !growing.is_empty() {
+            notes.push(format!(
+                "the last refinement changed {} no less than the one before: errors do not fall steadily, their estimates are rough",
+                growing.join(" and ")
+            ));
+        }
         notes.extend(self.stopped.as_deref().map(|word| match word {
             "too_large" => "no finer grid is tried: it would be too large".to_owned(),
             "time_limit" => "no finer grid: the time allowed was used up".to_owned(),

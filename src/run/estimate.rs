@@ -1,8 +1,8 @@
 //! Errors of discretisation, estimated from what changes when the grid is refined.
 //!
 //! With d the difference between a grid and the one with half its step, errors that fall like hᵖ leave `d/(2ᵖ − 1)` on the
-//! finer grid and `d 2ᵖ/(2ᵖ − 1)` on the coarser one. Three grids show p. The midpoint rule has order two, so a p above two
-//! is chance: a difference counts as no less than a quarter of the one before.
+//! finer grid and `d 2ᵖ/(2ᵖ − 1)` on the coarser one. Three grids show p, which is told as it is. The midpoint rule has order
+//! two, so that a p above two is chance: in an estimate a difference counts as no less than a quarter of the one before.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ pub type Measures = BTreeMap<&'static str, f64>;
 /// The measure that a grid has by itself: the motion against the one under the same voltages with half the step.
 pub const RESPONSE: &str = "response";
 
-/// Orders that are believed.
+/// Orders that estimates believe.
 const ORDERS: [f64; 2] = [0.5, 2.0];
 /// Differences below this are rounding.
 const ROUNDING: f64 = 1e-13;
@@ -126,7 +126,16 @@ impl Sample {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Convergence {
     /// By grid from the second on, those with the grid before; for [`RESPONSE`] from the first on, its own.
-    differences: BTreeMap<&'static str, Vec<f64>>,
+    differences: BTreeMap<&'static str, Vec<Difference>>,
+}
+
+/// A difference between two grids.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Difference {
+    /// As it is; infinite where there is no number.
+    seen: f64,
+    /// No less than a quarter of the one before.
+    believed: f64,
 }
 
 impl Convergence {
@@ -138,23 +147,30 @@ impl Convergence {
         new.extend(fine.response.map(|value| (RESPONSE, value)));
         for (name, value) in new {
             let list = self.differences.entry(name).or_default();
-            let least = list.last().map_or(0.0, |before| before / 4.0);
-            list.push(if value.is_nan() {
-                f64::INFINITY
-            } else {
-                value.max(least)
-            });
+            let least = list.last().map_or(0.0, |before| before.believed / 4.0);
+            let seen = if value.is_nan() { f64::INFINITY } else { value };
+            let believed = seen.max(least);
+            list.push(Difference { seen, believed });
         }
     }
 
-    /// Orders that the last three grids show; nothing of a measure that is rounding, or has too few grids.
+    /// Orders that the last three grids show, as they are: zero or less where differences do not fall. Nothing of a measure
+    /// that is rounding, or has too few grids.
     pub fn orders(&self) -> Measures {
-        let order = |list: &Vec<f64>| {
-            let [.., before, last] = list[..] else {
+        let mut orders = self.shown(|difference| difference.seen);
+        orders.retain(|_, order| order.is_finite());
+        orders
+    }
+
+    /// The orders shown by differences of either kind.
+    fn shown(&self, kind: impl Fn(&Difference) -> f64) -> Measures {
+        let order = |list: &Vec<Difference>| {
+            let [.., before, last] = list.as_slice() else {
                 return None;
             };
+            let [before, last] = [before, last].map(&kind);
             let is_real = before.is_finite() && last.is_finite() && last > ROUNDING;
-            is_real.then(|| (before / last).log2().clamp(ORDERS[0], ORDERS[1]))
+            is_real.then(|| (before / last).log2())
         };
         let known = self.differences.iter();
         known
@@ -180,10 +196,11 @@ impl Convergence {
 
     /// The last differences times `part` of the factor by which errors fall from grid to grid.
     fn left(&self, assumed: f64, part: impl Fn(&'static str, f64) -> f64) -> Measures {
-        let orders = self.orders();
-        let error = |(&name, list): (&&'static str, &Vec<f64>)| {
+        let orders = self.shown(|difference| difference.believed);
+        let error = |(&name, list): (&&'static str, &Vec<Difference>)| {
             let order = orders.get(name).copied().unwrap_or(assumed);
-            Some((name, list.last()? * part(name, order.exp2())))
+            let factor = order.clamp(ORDERS[0], ORDERS[1]).exp2();
+            Some((name, list.last()?.believed * part(name, factor)))
         };
         self.differences.iter().filter_map(error).collect()
     }

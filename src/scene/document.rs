@@ -231,13 +231,16 @@ impl Document {
     }
 }
 
-/// The text with question marks, as many as bytes, in place of what cannot be printed; places in it stay where they are.
+/// The text with question marks, as many as bytes, in place of what cannot be printed, and spaces for carriage returns; places
+/// in it stay where they are.
 fn shown(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
-        match is_printable(c) || matches!(c, '\n' | '\r' | '\t') {
-            true => shown.push(c),
-            false => shown.extend(std::iter::repeat_n('?', c.len_utf8())),
+        match c {
+            '\r' => shown.push(' '),
+            '\n' | '\t' => shown.push(c),
+            _ if is_printable(c) => shown.push(c),
+            _ => shown.extend(std::iter::repeat_n('?', c.len_utf8())),
         }
     }
     shown
