@@ -92,12 +92,8 @@ pub fn optimise(
         mut program,
         point,
         start,
-<<<<<<< HEAD
         stretched,
-    } = prepare(file, &model, &boundary, control, earlier)?;
-=======
     } = prepare(file, &model, &boundary, control, earlier, Counted::Yes)?;
->>>>>>> 1ea1619 (Texts from files cannot command a terminal; a long run of the reader's properties is one command)
     let setup = began.elapsed().as_secs_f64();
     let options = Options {
         tolerance: control.solver.tolerance,

@@ -1,0 +1,232 @@
+//! What the user is told: that a run was stopped, which derivatives are wrong, what a command does not know.
+
+mod programs;
+mod signals;
+
+use proboscis::control::problem::Task;
+use proboscis::dynamics::{Start, simulate};
+use proboscis::ipopt::{Options, Point, Status, interrupt, solve};
+use proboscis::model::Model;
+use proboscis::nlp::differences::{Along, TOLERANCE, check_along};
+use proboscis::scene::read_problem;
+use programs::{HS071_START, Program, hs071, one_variable};
+use serde_json::Value;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+fn problem(name: &str) -> String {
+    format!("{}/problems/{name}.json", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Exit status, standard output and standard error of the program.
+fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let program = env!("CARGO_BIN_EXE_proboscis");
+    let output = Command::new(program)
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    let status = output.status.code().unwrap();
+    (status, text(output.stdout), text(output.stderr))
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// A column of few elements.
+const SMALL: [&str; 4] = [
+    "--set",
+    "scene.solids[0].box.elements=[2,2,4]",
+    "--set",
+    "scene.markers=[]",
+];
+
+#[test]
+fn a_step_is_stopped_between_its_iterations() {
+    let changes = [SMALL[1], SMALL[3]].map(str::to_owned);
+    let loaded = read_problem(problem("clamped_stack_step").as_ref(), &changes).unwrap();
+    let Task::Simulate(task) = &loaded.task else {
+        panic!("a simulation");
+    };
+    let question = task.question(&loaded.system, 0.5);
+    let model = Model::answering(loaded.system.clone(), question).unwrap();
+    let z = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+    let start = Start::at_rest(&model, z);
+    let voltages = |_: f64, _: f64| model.scalars(&[3e5]);
+    let three = |_: usize| ControlFlow::Continue(());
+    let steps = || simulate(&model, &start, 0.5, 3, voltages, three);
+
+    let (history, failure) = steps();
+    assert!(failure.is_none() && history.intervals() == 3);
+    let watch = interrupt::watch(Some(0.0));
+    let (history, failure) = steps();
+    assert!(failure.is_none(), "{failure:?}");
+    assert_eq!((history.intervals(), history.report.iterations), (0, 0));
+    // Whoever watches inside for longer is stopped all the same.
+    let inner = interrupt::watch(Some(1e9));
+    assert_eq!(interrupt::stop(), Some(Status::TimeLimit));
+    drop(inner);
+    drop(watch);
+    assert_eq!(interrupt::stop(), None);
+    let _watch = interrupt::watch(Some(1e300));
+    assert_eq!(steps().0.intervals(), 3);
+}
+
+/// After the time is over Ipopt gets no answer any more.
+#[test]
+fn a_solve_is_stopped_at_the_next_question() {
+    let slow = || -> Program {
+        let mut program = hs071();
+        let mut hessian = hs071().hess;
+        program.hess = Box::new(move |x, sigma, y, values| {
+            thread::sleep(Duration::from_millis(300));
+            hessian(x, sigma, y, values);
+        });
+        program
+    };
+    let start = Point {
+        x: HS071_START.to_vec(),
+        costates: None,
+    };
+    let options = Options {
+        max_seconds: Some(0.15),
+        ..Options::default()
+    };
+    let mut go_on = |_: &_| ControlFlow::Continue(());
+    let solution = solve(&mut slow(), &start, &options, &mut go_on).unwrap();
+    assert_eq!(solution.status, Status::TimeLimit);
+    assert_eq!(solution.evaluations.hessian, 1);
+    assert_eq!(solution.evaluations.gradient, 1);
+    assert!(solution.x.iter().all(|x| x.is_finite()));
+}
+
+#[test]
+fn ctrl_c_stops_a_motion_of_elements_within_a_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_proboscis"))
+        .current_dir(folder.path())
+        .args(["simulate", &problem("clamped_stack_step"), "-o", "out"])
+        .args([
+            "--set",
+            "simulate.step=0.01 ms",
+            "--set",
+            "simulate.duration=1000 s",
+        ])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // The folder is made after the first step.
+    let began = Instant::now();
+    while !folder.path().join("out").exists() && began.elapsed() < Duration::from_secs(60) {
+        thread::sleep(Duration::from_millis(20));
+    }
+    signals::interrupt(&child);
+    let status = child.wait().unwrap();
+    let mut told = String::new();
+    std::io::Read::read_to_string(child.stderr.as_mut().unwrap(), &mut told).unwrap();
+    assert_eq!(status.code(), Some(1), "{told}");
+    assert!(told.contains("stopping"), "{told}");
+    let summary = json(&folder.path().join("out/summary.json"));
+    assert_eq!(summary["status"], "interrupted");
+    assert!(folder.path().join("out/solution.json").exists());
+}
+
+#[test]
+fn no_time_is_told_by_every_task() {
+    let folder = tempfile::tempdir().unwrap();
+    for (command, name) in [
+        ("equilibrium", "clamped_stack"),
+        ("simulate", "clamped_stack_step"),
+        ("simulate", "pair_constant"),
+        ("equilibrium", "pull_in"),
+    ] {
+        let path = problem(name);
+        let arguments = [command, &path, "--max-seconds", "1e-6", "-o", "out"];
+        let (status, out, err) = run(folder.path(), &arguments);
+        assert_eq!(status, 1, "{name}: {out}{err}");
+        assert!(
+            format!("{out}{err}").contains("time limit"),
+            "{name}: {out}{err}"
+        );
+    }
+}
+
+#[test]
+fn derivatives_are_checked_for_every_task() {
+    let folder = tempfile::tempdir().unwrap();
+    let fine = [
+        "--set",
+        "scene.solids[0].box.elements=[6,1,4]",
+        "--set",
+        "control.intervals=4",
+    ];
+    let cases: [(&str, &[&str]); 4] = [
+        ("clamped_stack", &SMALL),
+        ("clamped_stack_step", &SMALL),
+        ("free_flight", &[]),
+        ("fe_bending_control", &fine),
+    ];
+    for (name, more) in cases {
+        let path = problem(name);
+        let arguments = [&["check", &path], more].concat();
+        let (status, out, err) = run(folder.path(), &arguments);
+        assert_eq!(status, 0, "{name}: {out}{err}");
+        assert!(
+            out.contains("derivatives agree with differences"),
+            "{name}: {out}{err}"
+        );
+    }
+}
+
+/// A curvature that a difference over a long step does not resolve is no mistake; one that it does not have is.
+#[test]
+fn two_differences_have_to_agree_before_an_entry_is_wrong() {
+    // x + sin(a x)/a: its slope changes over a length of 1/a.
+    let wave = |a: f64, wrong: f64| -> Program {
+        let mut program = one_variable((-1.0, 1.0), |x| x, |_| 1.0, |_| 0.0);
+        program.f = Box::new(move |x| x[0] + (a * x[0]).sin() / a);
+        program.grad = Box::new(move |x, grad| grad[0] = 1.0 + (a * x[0]).cos() + wrong);
+        program.hess = Box::new(move |x, sigma, _, values| {
+            values[0] = -sigma * a * (a * x[0]).sin();
+        });
+        program
+    };
+    let check = |a: f64, wrong: f64, size: f64| {
+        let along = Along {
+            columns: &[0],
+            sizes: &[size],
+        };
+        check_along(&mut wave(a, wrong), &[0.3008], along, 3, || false)
+    };
+    let report = check(2e3, 0.0, 1.0);
+    assert!(
+        report.is_consistent() && report.hessian <= TOLERANCE,
+        "{report}"
+    );
+    let report = check(2e3, 1e-2, 1.0);
+    assert!(!report.wrong.is_empty(), "{report}");
+    // A step of the size of the wave needs no second one.
+    let report = check(2e3, 0.0, 1e-2);
+    assert!(
+        report.is_consistent() && report.hessian < 0.1 * TOLERANCE,
+        "{report}"
+    );
+    let stopped = check_along(
+        &mut wave(1.0, 0.0),
+        &[0.3008],
+        Along {
+            columns: &[0],
+            sizes: &[1.0],
+        },
+        3,
+        || true,
+    );
+    assert!(!stopped.is_consistent() && stopped.left == 1 && stopped.checked == 0);
+}
