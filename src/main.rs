@@ -29,6 +29,9 @@ enum Command {
     Solve {
         #[command(flatten)]
         problem: InTime,
+        /// Stop after so many iterations of the solver; of a control problem only.
+        #[arg(long, value_name = "N")]
+        max_iterations: Option<usize>,
         /// Solve from so many starting points, its own guess and random ones, and keep the best.
         #[arg(long, value_name = "N", conflicts_with_all = ["accuracy", "estimate_error"])]
         starts: Option<usize>,
@@ -47,9 +50,21 @@ enum Command {
         voltages: Option<Vec<String>>,
     },
     /// Show what a problem consists of: effects, unknowns, equations, nonzeros.
-    Inspect(Problem),
+    Inspect {
+        #[command(flatten)]
+        input: Input,
+        /// Folder for pictures of Jacobian and Hessian; none are drawn where it is not given.
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+    },
     /// Compare the derivatives of a problem with differences.
-    Check(Problem),
+    Check {
+        #[command(flatten)]
+        input: Input,
+        /// Stop after so many seconds.
+        #[arg(long, value_name = "S", value_parser = seconds)]
+        max_seconds: Option<f64>,
+    },
     /// Run variants of a problem, to see what accuracy costs in time.
     Study(Variants),
     /// Print a scene without shorthand.
@@ -121,21 +136,24 @@ impl Variants {
 }
 
 #[derive(Args, Debug)]
-struct Problem {
+struct Input {
     /// The problem file.
     problem: PathBuf,
-    /// Folder for the results [default: results/<name of the problem>].
-    #[arg(short, long, value_name = "DIR")]
-    output: Option<PathBuf>,
     /// Override an entry, such as control.intervals=80 or scene.gravity=[0,-9.81,0]; may be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
+}
+
+#[derive(Args, Debug)]
+struct Problem {
+    #[command(flatten)]
+    input: Input,
+    /// Folder for the results [default: results/<name of the problem>].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
     /// Stop after so many seconds.
     #[arg(long, value_name = "S", value_parser = seconds)]
     max_seconds: Option<f64>,
-    /// Stop after so many iterations of the solver.
-    #[arg(long, value_name = "N")]
-    max_iterations: Option<usize>,
     /// Show no progress.
     #[arg(short, long)]
     quiet: bool,
@@ -168,17 +186,28 @@ impl InTime {
     }
 }
 
-impl Problem {
+impl Input {
     fn request(self) -> Request {
         Request {
             command: typed(),
             input: self.problem,
             set: self.set,
+            output: None,
+            max_seconds: None,
+            max_iterations: None,
+            wanted: None,
+            progress: Shown::Never,
+        }
+    }
+}
+
+impl Problem {
+    fn request(self) -> Request {
+        Request {
             output: self.output,
             max_seconds: self.max_seconds,
-            max_iterations: self.max_iterations,
-            wanted: None,
             progress: shown(self.quiet),
+            ..self.input.request()
         }
     }
 }
@@ -246,13 +275,18 @@ fn answer(command: Command) -> Result<Told, RunError> {
     match command {
         Command::Solve {
             problem,
+            max_iterations,
             starts,
             seed,
         } => {
             interrupt::install();
+            let request = Request {
+                max_iterations,
+                ..problem.request()
+            };
             match starts {
-                Some(starts) => run::solve_from_starts(&problem.request(), starts, seed),
-                None => run::run(&problem.request()),
+                Some(starts) => run::solve_from_starts(&request, starts, seed),
+                None => run::run(&request),
             }
         }
         Command::Simulate(problem) => {
@@ -263,10 +297,16 @@ fn answer(command: Command) -> Result<Told, RunError> {
             interrupt::install();
             run::equilibrium_of_file(&problem.request(), voltages.as_deref())
         }
-        Command::Inspect(problem) => run::inspect(&problem.request()),
-        Command::Check(problem) => {
+        Command::Inspect { input, output } => run::inspect(&Request {
+            output,
+            ..input.request()
+        }),
+        Command::Check { input, max_seconds } => {
             interrupt::install();
-            run::check(&problem.request())
+            run::check(&Request {
+                max_seconds,
+                ..input.request()
+            })
         }
         Command::Study(variants) => {
             interrupt::install();

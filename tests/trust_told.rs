@@ -114,9 +114,9 @@ fn ctrl_c_stops_a_motion_of_elements_within_a_step() {
         .args(["simulate", &problem("clamped_stack_step"), "-o", "out"])
         .args([
             "--set",
-            "simulate.step=0.01 ms",
+            "simulate.step=0.05 ms",
             "--set",
-            "simulate.duration=1000 s",
+            "simulate.duration=1 s",
         ])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

@@ -45,7 +45,7 @@ pub fn svg(system: &System, trajectory: &Trajectory, origin: &Origin) -> String 
     .svg(origin)
 }
 
-/// The observed charges of electrodes and muscles over time in s, in µC.
+/// The observed charges of electrodes and muscles over time in s, in mC.
 pub fn charges(trajectory: &Trajectory, observations: &Observations) -> Vec<Series> {
     let columns = observations.columns.iter();
     let named = columns.filter_map(|c| Some((c.name.strip_suffix("_charge")?, c)));
@@ -53,17 +53,27 @@ pub fn charges(trajectory: &Trajectory, observations: &Observations) -> Vec<Seri
         .enumerate()
         .map(|(i, (name, column))| {
             let instants = trajectory.times.iter().zip(&column.values);
-            let points = instants.map(|(t, q)| [t / 1e3, q * 1e3]).collect();
+            let points = instants.map(|(t, q)| [t / 1e3, *q]).collect();
             Series::curve(name.replace('_', " "), points, style::hue(i))
         })
         .collect()
 }
 
-/// `charge.svg`: the charges over time in s.
-pub fn charge_svg(charges: Vec<Series>, origin: &Origin) -> String {
+/// `charge.svg`: the charges over time in s, in the unit that suits the largest.
+pub fn charge_svg(mut charges: Vec<Series>, origin: &Origin) -> String {
+    let values = charges.iter().flat_map(|series| &series.points);
+    let largest = values.map(|p| p[1].abs()).filter(|q| q.is_finite());
+    let (unit, factor) = match largest.fold(0.0, f64::max) {
+        q if q >= 1.0 => ("mC", 1.0),
+        q if q >= 1e-3 => ("µC", 1e3),
+        q if q >= 1e-6 => ("nC", 1e6),
+        _ => ("pC", 1e9),
+    };
+    let points = charges.iter_mut().flat_map(|series| &mut series.points);
+    points.for_each(|p| p[1] *= factor);
     LinePlot::new(
         Axis::linear("time [s]", Extent::Tight),
-        Axis::linear("charge [µC]", Extent::Padded),
+        Axis::linear(&format!("charge [{unit}]"), Extent::Padded),
         charges,
     )
     .svg(origin)

@@ -7,12 +7,16 @@ use crate::model::system::System;
 use crate::report::origin::Origin;
 
 /// `trajectory.csv`: one row per instant, headers `name [unit]`; each number reads back identical, and where there is none
-/// the cell is empty.
+/// the cell is empty. Charges, which are observed in mC, are written in nC.
 pub fn trajectory_csv(observations: &Observations, origin: &Origin) -> String {
     let columns = &observations.columns;
-    let header = columns.iter().map(|c| match c.unit {
-        "" => c.name.clone(),
-        unit => format!("{} [{unit}]", c.name),
+    let written = |unit: &'static str| match unit {
+        "mC" => ("nC", 1e6),
+        unit => (unit, 1.0),
+    };
+    let header = columns.iter().map(|c| match written(c.unit) {
+        ("", _) => c.name.clone(),
+        (unit, _) => format!("{} [{unit}]", c.name),
     });
     let rows = columns.iter().map(|c| c.values.len()).max().unwrap_or(0);
     csv(
@@ -21,7 +25,7 @@ pub fn trajectory_csv(observations: &Observations, origin: &Origin) -> String {
         (0..rows).map(|k| {
             columns
                 .iter()
-                .map(move |c| c.values.get(k).copied().unwrap_or(f64::NAN))
+                .map(move |c| written(c.unit).1 * c.values.get(k).copied().unwrap_or(f64::NAN))
         }),
     )
 }

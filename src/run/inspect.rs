@@ -10,6 +10,7 @@ use crate::report::table;
 use crate::run::blocks::Blocks;
 use crate::run::effects::Plan;
 use crate::run::error::RunError;
+use crate::run::extent;
 use crate::run::memory;
 use crate::run::optimise::{Counted, Prepared, prepare, resolve};
 use crate::run::request::{Request, Told};
@@ -87,13 +88,14 @@ fn of_model(file: &Path, model: &Model, control: Option<&Control>) -> Result<Str
         _ => "",
     };
     Ok(format!(
-        "{}, {} coordinates\n\n{}\n{}\n{}\n{}{tangent}",
+        "{}, {} coordinates\n\n{}\n{}\n{}\n{}{tangent}{}",
         system.name,
         model.coordinates.name(),
         active(&plan),
         reasons(&plan),
         missing(&plan),
-        numbers(&sizes)
+        numbers(&sizes),
+        extent::lines(system)
     ))
 }
 

@@ -15,6 +15,7 @@ mod comparison;
 mod effects;
 mod error;
 pub mod estimate;
+mod extent;
 mod fields;
 mod forward;
 mod grids;

@@ -21,13 +21,13 @@ pub fn run(request: &Request) -> Result<Told, RunError> {
     phase("reading");
     let loaded = read_problem(&request.input, &request.set)?;
     memory::of_elements(&request.input, &loaded.system)?;
+    refuse_unused(request, &loaded.task)?;
     match loaded.task {
         Task::Control(control) => solve::control(request, &loaded.system, &control, began),
         Task::Simulate(simulation) => {
             forward::simulation(request, &loaded.system, &simulation, began)
         }
         Task::Equilibrium(task) => {
-            refuse_wanted(request)?;
             let asked = rest::Asked {
                 system: &loaded.system,
                 task: &task,
@@ -38,18 +38,25 @@ pub fn run(request: &Request) -> Result<Told, RunError> {
     }
 }
 
-/// An equilibrium has no grid in time.
-fn refuse_wanted(request: &Request) -> Result<(), RunError> {
-    let option = match request.wanted {
-        None => return Ok(()),
-        Some(Wanted::Below(_)) => "--accuracy",
-        Some(Wanted::Estimate) => "--estimate-error",
+/// Refuses options that the task has no use for.
+fn refuse_unused(request: &Request, task: &Task) -> Result<(), RunError> {
+    let option = match (task, request.wanted) {
+        (Task::Equilibrium(_), Some(Wanted::Below(_))) => "--accuracy",
+        (Task::Equilibrium(_), Some(Wanted::Estimate)) => "--estimate-error",
+        (Task::Equilibrium(_) | Task::Simulate(_), _) if request.max_iterations.is_some() => {
+            "--max-iterations"
+        }
+        _ => return Ok(()),
+    };
+    let asks = match task {
+        Task::Equilibrium(_) if request.wanted.is_some() => {
+            "an equilibrium, which has no steps in time to refine"
+        }
+        Task::Equilibrium(_) => "an equilibrium, for which no solver of programs iterates",
+        _ => "a simulation, for which no solver of programs iterates",
     };
     Err(RunError::Option {
         option,
-        reason: format!(
-            "{} asks for an equilibrium, which has no steps in time to refine",
-            request.input.display()
-        ),
+        reason: format!("{} asks for {asks}", request.input.display()),
     })
 }
