@@ -206,10 +206,10 @@ fn effects_cost_what_they_add() {
         max: 1.5,
     };
     assert_eq!(change(&|_, c| c.limits = vec![limit.clone()]), stretch);
-    // Field of a muscle at joint 2: two angles at each end of each interval, and the voltage.
+    // Field of a muscle at joint 2: two angles at each end of each interval, or at one of them, and the voltage.
     let field = Counts {
-        rows: plain.rows + intervals,
-        jacobian: plain.jacobian + 2 * inner * 2 + intervals,
+        rows: plain.rows + 3 * intervals,
+        jacobian: plain.jacobian + 2 * inner * 2 + 2 * inner * 2 + 3 * intervals,
         ..plain
     };
     let limit = Limit::ElectricField {
@@ -224,6 +224,41 @@ fn effects_cost_what_they_add() {
         max: 1.0,
     };
     assert_eq!(change(&|_, c| c.limits = vec![limit.clone()]), plain);
+}
+
+#[test]
+fn a_limit_has_rows_where_something_is_open() {
+    let (n, intervals) = (3, 6);
+    let (system, mut base) = (trunk(n), rest_to_rest(n, intervals, 100.0));
+    let limited = |base: &Control, limit: Limit| {
+        let mut control = base.clone();
+        control.limits = vec![limit];
+        let (all, plain) = (counts(&system, &control), counts(&system, base));
+        (all.rows - plain.rows, all.jacobian - plain.jacobian)
+    };
+    // A goal that leaves the last joint open: a muscle there is limited at the end too, one before it is not.
+    let given = |joints: &[usize]| State::JointAngles {
+        angles: joints.iter().map(|&j| (j, 0.01)).collect(),
+        rates: std::collections::BTreeMap::new(),
+    };
+    base.goal = given(&[0, 1]);
+    let stretch = |muscle: usize| Limit::Stretch {
+        muscle,
+        min: 0.5,
+        max: 1.5,
+    };
+    let inner = intervals - 1;
+    assert_eq!(limited(&base, stretch(4)), (intervals, 3 * inner + 1));
+    assert_eq!(limited(&base, stretch(2)), (inner, 2 * inner));
+    // A voltage that is given leaves no row where start and goal give the places.
+    base.goal = given(&[0, 1, 2]);
+    base.given.insert(2, 300.0);
+    let field = Limit::ElectricField {
+        muscle: 2,
+        max: 1e5,
+    };
+    let rows = intervals + 2 * inner;
+    assert_eq!(limited(&base, field), (rows, 8 * inner));
 }
 
 #[test]

@@ -1,9 +1,10 @@
 //! Start and goal: which coordinates they give, which equations they add, and the voltages at rest.
 
+use crate::control::ends;
 use crate::control::error::BoundaryError;
 use crate::control::limits::Limits;
 use crate::control::problem::{Control, Rest, State};
-use crate::dynamics::{Start, equilibrium, muscle_without_length};
+use crate::dynamics::{Equilibrium, Start, equilibrium, muscle_without_length};
 use crate::functional::Level;
 use crate::model::{Condensed, Coordinates, Model, Quantity, Question, System};
 
@@ -43,7 +44,7 @@ impl Boundary {
         let remaining = Condensed::new(system, &question).system;
         let coordinates = Model::choose(&remaining, control.coordinates)?;
         let redundant = coordinates == Coordinates::Redundant;
-        let mut limits = Limits::new(&control.limits, system, &question.silent, redundant);
+        let mut limits = Limits::new(&control.limits, system, redundant);
         let all_joints = all_joints_given(system, &control.goal);
         match &control.goal {
             State::Markers { places, rest, .. } => {
@@ -79,13 +80,22 @@ impl Boundary {
             ..question
         };
         let model = Model::answering(system.clone(), question)?;
-        let start = resolve_start(&model, &control.start, "start")?;
+        let mut scalars = [None, None];
+        let start = match &control.start {
+            State::RestAtVoltages(voltages) => {
+                let rest = rest_at(&model, voltages, "start")?;
+                scalars[0] = Some(rest.scalars);
+                at_rest(&model, rest.z)
+            }
+            state => resolve_start(&model, state, "start")?,
+        };
         let n = model.coordinate_count();
         let mut given = vec![None; n];
         match &control.goal {
             State::RestAtVoltages(voltages) => {
                 let rest = rest_at(&model, voltages, "goal")?;
-                given = rest[..n].iter().copied().map(Some).collect();
+                scalars[1] = Some(rest.scalars);
+                given = rest.z[..n].iter().copied().map(Some).collect();
             }
             State::JointAngles { angles, .. } if redundant && all_joints => {
                 let joints: Vec<f64> = (0..system.joints.len())
@@ -112,24 +122,23 @@ impl Boundary {
             _ => None,
         };
         let rest = [voltages(&control.start), voltages(&control.goal)];
-        Ok((
-            model,
-            Self {
-                start,
-                goal: Goal {
-                    coordinates: given,
-                    nodes_rest: !matches!(
-                        control.goal,
-                        State::Markers {
-                            rest: Rest::Markers,
-                            ..
-                        }
-                    ),
-                },
-                rest,
-                limits,
+        let boundary = Self {
+            start,
+            goal: Goal {
+                coordinates: given,
+                nodes_rest: !matches!(
+                    control.goal,
+                    State::Markers {
+                        rest: Rest::Markers,
+                        ..
+                    }
+                ),
             },
-        ))
+            rest,
+            limits,
+        };
+        ends::check(&model, &boundary, control, scalars)?;
+        Ok((model, boundary))
     }
 }
 
@@ -149,12 +158,18 @@ fn rest_at(
     model: &Model,
     voltages: &[f64],
     place: &'static str,
-) -> Result<Vec<f64>, BoundaryError> {
+) -> Result<Equilibrium, BoundaryError> {
     let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
     let found = equilibrium(model, &zero, &model.scalars(voltages));
-    Ok(found
-        .map_err(|source| BoundaryError::NoEquilibrium { place, source })?
-        .z)
+    found.map_err(|source| BoundaryError::NoEquilibrium { place, source })
+}
+
+/// A start at coordinates of rest; nodes may have velocities of their own.
+fn at_rest(model: &Model, z: Vec<f64>) -> Start {
+    match model.node_rates() {
+        Some(rates) => Start::with_rates(model, z, &rates),
+        None => Start::at_rest(model, z),
+    }
 }
 
 /// Coordinates and momenta of a start.
@@ -167,13 +182,7 @@ pub fn resolve_start(
     place: &'static str,
 ) -> Result<Start, BoundaryError> {
     match state {
-        State::RestAtVoltages(voltages) => {
-            let z = rest_at(model, voltages, place)?;
-            Ok(match model.node_rates() {
-                Some(rates) => Start::with_rates(model, z, &rates),
-                None => Start::at_rest(model, z),
-            })
-        }
+        State::RestAtVoltages(voltages) => Ok(at_rest(model, rest_at(model, voltages, place)?.z)),
         State::JointAngles { angles, rates } => {
             let value = |map: &std::collections::BTreeMap<usize, f64>, j: usize| {
                 map.get(&j).copied().unwrap_or(0.0)

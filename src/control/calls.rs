@@ -116,7 +116,7 @@ impl<'a> Spoken<'a> {
                 self.of_point(&muscle.to);
             }
             // A field without voltage is none.
-            Limit::ElectricField { .. } => {}
+            Limit::ElectricField { .. } | Limit::BlockField { .. } => {}
             Limit::Marker { marker, .. } => self.of_marker(marker),
         }
     }

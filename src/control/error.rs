@@ -38,6 +38,14 @@ pub enum BoundaryError {
         /// The muscle.
         muscle: String,
     },
+    /// What is known of the start or the goal breaks a limit.
+    #[error("{place}: {reason}")]
+    Limit {
+        /// `start` or `goal`.
+        place: &'static str,
+        /// The limit, the value and the bound.
+        reason: String,
+    },
     /// More equations than unknowns.
     #[error(
         "the problem is overdetermined: {equations} equations (of them {goals} of the goal) for {unknowns} unknowns; \

@@ -1,8 +1,9 @@
 //! Path limits and goals as bounded quantities at instants and in intervals.
 
 use crate::control::problem::{Limit, Side};
-use crate::model::{Quantity, Region, System};
-use std::collections::BTreeSet;
+use crate::functional::Stencil;
+use crate::math::significant;
+use crate::model::{FieldPlace, Quantity, Region, System};
 
 /// A quantity with bounds at some instants or intervals.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,18 +36,17 @@ pub struct Limits {
     pub list: Vec<Bounded>,
 }
 
+/// A value this far beyond its bound, relative to it, is rounding.
+const ROUNDING: f64 = 1e-8;
 /// Σ ξ¹⁶ ≥ 3 holds only outside the box.
 const OUTSIDE_BOX: f64 = 3.0;
+/// When fields are bounded: where the voltages of an interval act, and at the instants, where those of both neighbours do.
+const TIMES: [Stencil; 3] = [Stencil::Here, Stencil::Mid, Stencil::Next];
 
 impl Limits {
     /// The path limits of a problem. Joint limits become measures only where `measure_joints`; in joint coordinates
-    /// they are bounds of variables. A source that is silent has no field.
-    pub fn new(
-        limits: &[Limit],
-        system: &System,
-        silent: &BTreeSet<usize>,
-        measure_joints: bool,
-    ) -> Self {
+    /// they are bounds of variables.
+    pub fn new(limits: &[Limit], system: &System, measure_joints: bool) -> Self {
         let mut list = Vec::new();
         for limit in limits {
             let mut add = |quantity, lower, upper, name| {
@@ -79,15 +79,34 @@ impl Limits {
                     );
                 }
                 Limit::ElectricField { muscle, max } => {
-                    let takes_voltage = system.muscles[muscle].material.electric.is_some();
-                    if takes_voltage && !silent.contains(&muscle) {
+                    let place = FieldPlace::Muscle(muscle);
+                    for at in TIMES {
+                        let limit = max;
+                        let quantity = Quantity::SquaredField { place, limit, at };
                         let name = format!("electric field of {}", system.muscles[muscle].name);
-                        add(
-                            Quantity::SquaredField { muscle, limit: max },
-                            f64::NEG_INFINITY,
-                            1.0,
-                            name,
-                        );
+                        add(quantity, f64::NEG_INFINITY, 1.0, name);
+                    }
+                }
+                Limit::BlockField { block, region, max } => {
+                    let name = system.block_name(block);
+                    for (element, point) in system.field_points(block, region) {
+                        let where_ = match point {
+                            None => "the centre".to_owned(),
+                            Some(point) => format!("Gauss point {}", point + 1),
+                        };
+                        let place = FieldPlace::Element {
+                            block,
+                            element,
+                            point,
+                        };
+                        for at in TIMES {
+                            let limit = max;
+                            let quantity = Quantity::SquaredField { place, limit, at };
+                            let name = format!(
+                                "electric field of {name} at {where_} of element {element}"
+                            );
+                            add(quantity, f64::NEG_INFINITY, 1.0, name);
+                        }
                     }
                 }
                 Limit::Marker {
@@ -159,5 +178,31 @@ impl Limits {
     /// What is measured, in order.
     pub fn quantities(&self) -> Vec<Quantity> {
         self.list.iter().map(|b| b.quantity).collect()
+    }
+}
+
+impl Bounded {
+    /// A value and the bound that it breaks, in words; `None` where it keeps its bounds up to rounding.
+    pub fn broken(&self, value: f64, system: &System) -> Option<String> {
+        let rounding = |bound: f64| ROUNDING * (1.0 + bound.abs());
+        let (is_below, is_above) = (
+            value < self.lower - rounding(self.lower),
+            value > self.upper + rounding(self.upper),
+        );
+        let bound = match (is_below, is_above) {
+            (true, _) => self.lower,
+            (_, true) => self.upper,
+            _ => return None,
+        };
+        let [value, bound] = [value, bound].map(|v| self.quantity.plain(v, system));
+        let side = if is_below { "at least" } else { "at most" };
+        let [value, bound] = [value, bound].map(|(v, unit)| {
+            let space = if unit.is_empty() { "" } else { " " };
+            format!("{}{space}{unit}", significant(v, 5))
+        });
+        let name = &self.name;
+        Some(format!(
+            "{name} is {value}, and its limit is {side} {bound}"
+        ))
     }
 }

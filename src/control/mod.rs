@@ -2,6 +2,7 @@
 
 mod boundary;
 mod calls;
+mod ends;
 mod error;
 mod guess;
 mod limits;

@@ -239,10 +239,20 @@ pub enum Limit {
         /// Upper bound or ∞.
         max: f64,
     },
-    /// True electric field |V|/(t Λ) of a muscle in the intervals.
+    /// True electric field |V|/(t Λ) of a lumped muscle, in the intervals and at the instants.
     ElectricField {
         /// Muscle index.
         muscle: usize,
+        /// Breakdown value in V/mm.
+        max: f64,
+    },
+    /// True electric field |F⁻ᵀE| in the finite elements of a block, at centres and Gauss points, in the intervals and at
+    /// the instants.
+    BlockField {
+        /// Block: those of the scene, then those of the muscles of finite elements.
+        block: usize,
+        /// Region of its mesh; all elements where there is none.
+        region: Option<usize>,
         /// Breakdown value in V/mm.
         max: f64,
     },

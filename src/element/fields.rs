@@ -95,8 +95,14 @@ impl Viscosity {
 impl Shape {
     /// Σ x_i ⊗ G_i at the Gauss point `g`.
     fn gradient_of(&self, x: &[Vector; 8], g: usize) -> Matrix {
-        (0..8).map(|i| x[i] * self.gradient(i, g).transpose()).sum()
+        gradient_of(x, &self.gradients_at(g))
     }
+}
+
+/// Σ x_i ⊗ G_i.
+pub(super) fn gradient_of(x: &[Vector; 8], gradients: &[Vector; 8]) -> Matrix {
+    let both = x.iter().zip(gradients);
+    both.map(|(x, gradient)| x * gradient.transpose()).sum()
 }
 
 /// F⁻ᵀE.
@@ -105,7 +111,7 @@ fn spatial(deformation: &Matrix, field: &Vector) -> Vector {
 }
 
 /// F⁻¹; NaN for a singular map.
-fn inverse(map: &Matrix) -> Matrix {
+pub(super) fn inverse(map: &Matrix) -> Matrix {
     let inverse = map.try_inverse();
     inverse.unwrap_or_else(|| Matrix::repeat(f64::NAN))
 }

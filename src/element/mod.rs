@@ -7,7 +7,8 @@
 //! ```
 //!
 //! summed over 2 × 2 × 2 Gauss points of weight w_g = det ∂X/∂ξ. [`Shape`] holds G_i and w_g, [`Elastomer`] the law Ω with
-//! the derivatives of W to third order, [`Viscosity`] the virtual work of σ = η d, [`Fields`] what is shown of a state.
+//! the derivatives of W to third order, [`Viscosity`] the virtual work of σ = η d, [`Fields`] what is shown of a state,
+//! [`FieldPoint`] the true field that limits bound.
 //!
 //! The formulas are written in the spatial gradients g_i = F⁻ᵀG_i and evaluated at all Gauss points side by side.
 
@@ -18,6 +19,7 @@
 
 mod algebra;
 mod elastomer;
+mod field_point;
 mod fields;
 mod kinematics;
 mod local;
@@ -27,6 +29,7 @@ mod variations;
 mod viscosity;
 
 pub use elastomer::{Dielectric, Elastomer, Field, Passive, Volume};
+pub use field_point::{FieldPoint, SpatialField};
 pub use fields::Fields;
 pub use local::{Electric, Local};
 pub use shape::{Inverted, Shape};

@@ -114,6 +114,21 @@ impl Shape {
         Vector::from_fn(|m, _| self.gradients[i][m][g])
     }
 
+    /// Gradients of all N_i at the Gauss point `g`, in 1/mm.
+    pub fn gradients_at(&self, g: usize) -> [Vector; 8] {
+        std::array::from_fn(|i| self.gradient(i, g))
+    }
+
+    /// Gradients of all N_i at the centre of a hexahedron with these nodes; `None` where it is turned inside out there.
+    pub fn central_gradients(nodes: &[Vector; 8]) -> Option<[Vector; 8]> {
+        let slopes = CORNERS.map(|corner| Vector::from(corner) * 0.125);
+        let both = nodes.iter().zip(&slopes);
+        let jacobian: Matrix = both.map(|(x, s)| x * s.transpose()).sum();
+        let inverse = jacobian.try_inverse()?;
+        let is_right = jacobian.determinant() > 0.0;
+        is_right.then(|| slopes.map(|slope| inverse.tr_mul(&slope)))
+    }
+
     /// Gradients, `[i][m][g]`.
     #[inline(always)]
     pub(super) fn gradients(&self) -> &[[[f64; 8]; 3]; 8] {

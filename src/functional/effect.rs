@@ -112,6 +112,9 @@ pub trait Measure: Debug + Send + Sync {
     /// Scalars it reads.
     fn scalars(&self) -> Vec<usize>;
 
+    /// Whether it reads the instant k + side.
+    fn reads(&self, side: usize) -> bool;
+
     /// Its value.
     fn value(&self, frame: &Frame<'_>) -> f64;
 

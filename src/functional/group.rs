@@ -103,6 +103,7 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
             let [a, b] = arg.stencil.weights(frame.h);
             let sample = |v: [&[Vector]; 2]| match arg.stencil {
                 Stencil::Here => v[0][arg.vector],
+                Stencil::Next => v[1][arg.vector],
                 _ => v[0][arg.vector] * a + v[1][arg.vector] * b,
             };
             let virtual_displacement = i < E::VIRTUAL;
@@ -143,9 +144,10 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
             if keep(i) {
                 let weights = arg.stencil.weights(h);
                 let gi = g.fixed_rows::<3>(3 * i) * c;
-                forces[0][arg.vector] += gi * weights[0];
-                if arg.stencil != Stencil::Here {
-                    forces[1][arg.vector] += gi * weights[1];
+                for (side, forces) in forces.iter_mut().enumerate() {
+                    if arg.stencil.reads(side) {
+                        forces[arg.vector] += gi * weights[side];
+                    }
                 }
             }
         }
@@ -437,6 +439,11 @@ where
 
     fn scalars(&self) -> Vec<usize> {
         self.elements.iter().flat_map(|e| e.scalars).collect()
+    }
+
+    fn reads(&self, side: usize) -> bool {
+        let mut args = self.elements.iter().flat_map(|e| &e.vectors);
+        args.any(|arg| arg.stencil.reads(side))
     }
 
     fn value(&self, frame: &Frame<'_>) -> f64 {

@@ -12,6 +12,7 @@
 
 mod couplings;
 mod effect;
+mod element_field;
 mod group;
 mod hexahedra;
 mod inertia;
@@ -21,6 +22,7 @@ mod viscous_hexahedra;
 
 pub use couplings::{Blocks, Couplings, Part, Sides};
 pub use effect::{Effect, Frame, Horizon, Kind, Level, Measure, Output, Sum};
+pub use element_field::ElementField;
 pub use group::{Element, Group};
 pub use hexahedra::{Hexahedra, Hexahedron, Terminal, Wired};
 pub use inertia::{Inertia, Mass};

@@ -5,6 +5,8 @@
 pub enum Stencil {
     /// x_k.
     Here,
+    /// x_{k+1}.
+    Next,
     /// (x_k + x_{k+1})/2.
     Mid,
     /// (x_{k+1} − x_k)/h.
@@ -19,9 +21,19 @@ impl Stencil {
     pub fn weights(self, h: f64) -> [f64; 2] {
         match self {
             Self::Here => [1.0, 0.0],
+            Self::Next => [0.0, 1.0],
             Self::Mid => [0.5, 0.5],
             Self::Rate => [-1.0 / h, 1.0 / h],
             Self::Difference => [-1.0, 1.0],
+        }
+    }
+
+    /// Whether it reads the instant k + side.
+    pub fn reads(self, side: usize) -> bool {
+        match self {
+            Self::Here => side == 0,
+            Self::Next => side == 1,
+            Self::Mid | Self::Rate | Self::Difference => true,
         }
     }
 }

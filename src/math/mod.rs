@@ -1,8 +1,10 @@
-//! Numbers that carry their derivatives, and numbers drawn at random.
+//! Numbers that carry their derivatives, and numbers drawn at random; numbers as people read them.
 
+mod digits;
 mod jet;
 pub mod random;
 
+pub use digits::significant;
 pub use jet::Jet;
 
 /// A vector of space.

@@ -99,9 +99,8 @@ impl Continua {
         for Glue { nodes, body: to } in &solid.glued {
             for &node in nodes {
                 body[node] = Some(*to);
-                if to.is_none() || !ties {
-                    free[node] = [false; 3];
-                }
+                // A glued node moves with its body, whatever else holds it.
+                free[node] = [to.is_some() && ties; 3];
             }
         }
         let mut place = |node: usize| {

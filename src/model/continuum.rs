@@ -35,6 +35,12 @@ impl Continuum {
         self.solid.mesh.hexahedra[element].map(|node| self.vectors[node])
     }
 
+    /// Gradients of the shape functions at the centre of an element; `None` where it is turned inside out there.
+    pub(super) fn central_gradients(&self, element: usize) -> Option<[Vector; 8]> {
+        let mesh = &self.solid.mesh;
+        Shape::central_gradients(&mesh.hexahedra[element].map(|node| mesh.nodes[node]))
+    }
+
     /// Terminals of the nodes of a dielectric element.
     pub fn terminals(&self, element: usize) -> [Terminal; 8] {
         self.solid.mesh.hexahedra[element]

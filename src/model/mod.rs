@@ -10,6 +10,7 @@ mod error;
 mod floating;
 mod graph;
 mod joints;
+mod measures;
 mod named;
 mod quantity;
 mod question;
@@ -25,7 +26,7 @@ pub use error::ModelError;
 pub use floating::Floating;
 pub use graph::Graph;
 pub use joints::JointGauge;
-pub use quantity::{Quantity, Region};
+pub use quantity::{FieldPlace, Quantity, Region, joint_unit};
 pub use question::{Question, Stirred};
 pub use still::Still;
 pub use system::{System, VACUUM_PERMITTIVITY};
@@ -36,6 +37,7 @@ use crate::math::Vector;
 use crate::reduction::{Instant, Motion, NodePlace, Reduced};
 use crate::sparse::Symmetry;
 use continua::Continua;
+use measures::Measures;
 use std::collections::BTreeSet;
 use system::{Attachment, Source};
 
@@ -91,6 +93,8 @@ pub struct Model {
     pub spans: Vec<usize>,
     /// Vector of each marker.
     pub markers: Vec<usize>,
+    /// Index of each quantity of the question among the measures of its site; `None` where nothing of the model can change it.
+    pub measured: Vec<Option<usize>>,
     /// How the coordinates of each joint are read from poses.
     pub gauges: Vec<JointGauge>,
     /// Names of the multipliers.
@@ -163,13 +167,14 @@ impl Model {
             })
             .collect::<Vec<_>>();
         let measures = {
-            let known = quantity::Known {
+            let known = measures::Known {
                 condensed: &condensed,
                 reference: &reference,
                 voltages: &voltages,
                 markers: &markers,
+                continua: &continua.list,
             };
-            quantity::measures(&question.quantities, &known, &mut vectors)
+            Measures::new(&question.quantities, &known, &mut vectors)
         };
         let list = vectors.list();
         let multipliers = multiplier_names.len();
@@ -202,6 +207,7 @@ impl Model {
             node_names: continua.names,
             spans,
             markers,
+            measured: measures.places,
             gauges: Self::gauges(&system, &condensed),
             multiplier_names,
             multiplier_time: question.interval,

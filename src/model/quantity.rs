@@ -1,11 +1,8 @@
-//! Quantities that a problem may bound or prescribe, measured at the instants or in the intervals.
+//! Quantities that a problem may bound or prescribe, at the instants or in the intervals.
 
-use crate::energy::{Angle, Energy, OutsideBox, Place, Projection, SquaredDistance, SquaredField};
-use crate::functional::{Element, Group, Measure, Stencil, VectorArg};
-use crate::kinematics::{MaterialVector, Pose, Vectors};
+use crate::functional::Stencil;
 use crate::math::Vector;
-use crate::model::Condensed;
-use crate::model::joints::{JointGauge, Measure as Gauge};
+use crate::model::system::{JointKind, System};
 
 /// A region of space in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +23,22 @@ pub enum Region {
     },
 }
 
+/// Where a true electric field is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FieldPlace {
+    /// In a lumped muscle.
+    Muscle(usize),
+    /// At a point of a finite element.
+    Element {
+        /// Block: those of the scene, then those of the muscles of finite elements.
+        block: usize,
+        /// Element of its mesh.
+        element: usize,
+        /// Gauss point; the centre where there is none.
+        point: Option<usize>,
+    },
+}
+
 /// Something to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Quantity {
@@ -41,12 +54,14 @@ pub enum Quantity {
         /// Muscle index.
         muscle: usize,
     },
-    /// (|V|/(t Λ E))² of a muscle in the intervals.
+    /// (|e|/E)² of the true field e under the voltages of an interval.
     SquaredField {
-        /// Muscle index.
-        muscle: usize,
+        /// Where it is read.
+        place: FieldPlace,
         /// E in V/mm.
         limit: f64,
+        /// At the start, in the middle or at the end of the interval: `Here`, `Mid` or `Next`.
+        at: Stencil,
     },
     /// A component of the place of a marker in mm at the instants.
     MarkerPlace {
@@ -71,170 +86,47 @@ pub enum Quantity {
     },
 }
 
+/// V/mm in a V/µm.
+const MEGAVOLT_PER_METRE: f64 = 1e3;
+
 impl Quantity {
     /// Whether it is measured in the intervals rather than at the instants.
     pub fn is_of_intervals(&self) -> bool {
         matches!(self, Self::SquaredField { .. } | Self::MarkerStep { .. })
     }
-}
 
-/// Measures by site, in the order of the quantities.
-#[derive(Debug, Default)]
-pub(super) struct Measures {
-    pub(super) instants: Vec<Box<dyn Measure>>,
-    pub(super) intervals: Vec<Box<dyn Measure>>,
-}
-
-fn here(vector: usize) -> VectorArg {
-    VectorArg {
-        vector,
-        stencil: Stencil::Here,
-    }
-}
-
-fn instant<E: Energy<M> + 'static, const M: usize, const NV: usize>(
-    energy: E,
-    vectors: [usize; NV],
-) -> Box<dyn Measure> {
-    let element = Element {
-        energy,
-        vectors: vectors.map(here),
-        scalars: [],
-    };
-    Box::new(Group::<E, M, NV, 0>::instants(
-        "measure",
-        1.0,
-        vec![element],
-    ))
-}
-
-/// What quantities are measured on.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Known<'a> {
-    pub(super) condensed: &'a Condensed,
-    pub(super) reference: &'a [Pose],
-    /// Source of each voltage.
-    pub(super) voltages: &'a [usize],
-    /// Vector of each marker.
-    pub(super) markers: &'a [usize],
-}
-
-/// The measures of a list of quantities.
-pub(super) fn measures(
-    quantities: &[Quantity],
-    &Known {
-        condensed,
-        reference,
-        voltages,
-        markers,
-    }: &Known<'_>,
-    vectors: &mut Vectors,
-) -> Measures {
-    let system = &condensed.system;
-    let mut out = Measures::default();
-    let span = |index: usize, vectors: &mut Vectors| {
-        let muscle = &system.muscles[index];
-        let [from, to] =
-            [&muscle.from, &muscle.to].map(|a| MaterialVector::point(a.body, &a.at, reference));
-        vectors.index(MaterialVector::span(&from, &to))
-    };
-    for quantity in quantities {
-        let measure = match *quantity {
-            Quantity::Joint { joint, near } => {
-                let Some(joint) = condensed.joint(joint) else {
-                    continue;
-                };
-                let gauge = JointGauge::new(&system.joints[joint], None, reference);
-                match gauge.measure {
-                    Gauge::Angle { vectors: v } => {
-                        instant(Angle { near }, v.map(|x| vectors.index(x)))
-                    }
-                    Gauge::Displacement { axis, span } => {
-                        instant(Projection, [axis, span].map(|x| vectors.index(x)))
-                    }
-                    Gauge::None => continue,
-                }
-            }
-            Quantity::SquaredStretch { muscle } => {
-                let scale = system.muscles[muscle].length();
-                instant(
-                    SquaredDistance {
-                        centre: Vector::zeros(),
-                        scale,
-                    },
-                    [span(muscle, vectors)],
-                )
-            }
-            Quantity::MarkerPlace { marker: m, axis } => {
-                let normal = Vector::ith(axis, 1.0);
-                instant(
-                    Place {
-                        origin: Vector::zeros(),
-                        normal,
-                    },
-                    [markers[m]],
-                )
-            }
-            Quantity::MarkerRegion { marker: m, region } => match region {
-                Region::Sphere { centre, radius } => instant(
-                    SquaredDistance {
-                        centre,
-                        scale: radius,
-                    },
-                    [markers[m]],
-                ),
-                Region::Box { min, max } => {
-                    let energy = OutsideBox {
-                        centre: (min + max) * 0.5,
-                        half: (max - min) * 0.5,
-                    };
-                    instant(energy, [markers[m]])
-                }
+    /// When it is measured, in front of the number of the instant or interval.
+    pub fn when(&self) -> &'static str {
+        match self {
+            Self::SquaredField { at, .. } => match at {
+                Stencil::Here => "at the start of interval",
+                Stencil::Next => "at the end of interval",
+                _ => "in the middle of interval",
             },
-            Quantity::MarkerStep { marker, axis } => {
-                let element = Element {
-                    energy: Place {
-                        origin: Vector::zeros(),
-                        normal: Vector::ith(axis, 1.0),
-                    },
-                    vectors: [VectorArg {
-                        vector: markers[marker],
-                        stencil: Stencil::Difference,
-                    }],
-                    scalars: [],
-                };
-                out.intervals.push(Box::new(Group::<_, 3, 1, 0>::intervals(
-                    "measure",
-                    1.0,
-                    vec![element],
-                )));
-                continue;
-            }
-            Quantity::SquaredField { muscle, limit } => {
-                let Some(scalar) = voltages.iter().position(|&m| m == muscle) else {
-                    continue;
-                };
-                let of = &system.muscles[muscle];
-                let element = Element {
-                    energy: SquaredField {
-                        length: of.length(),
-                        voltage: of.layer_thickness * limit,
-                    },
-                    vectors: [VectorArg {
-                        vector: span(muscle, vectors),
-                        stencil: Stencil::Mid,
-                    }],
-                    scalars: [scalar],
-                };
-                out.intervals.push(Box::new(Group::<_, 4, 1, 1>::intervals(
-                    "measure",
-                    1.0,
-                    vec![element],
-                )));
-                continue;
-            }
-        };
-        out.instants.push(measure);
+            Self::MarkerStep { .. } => "in interval",
+            _ => "at instant",
+        }
     }
-    out
+
+    /// What a value means to people: a coordinate, stretch, field or distance, and its unit.
+    pub fn plain(&self, value: f64, system: &System) -> (f64, &'static str) {
+        match *self {
+            Self::Joint { joint, .. } => (value, joint_unit(system, joint)),
+            Self::SquaredStretch { .. } => (value.sqrt(), ""),
+            Self::SquaredField { limit, .. } => (value.sqrt() * limit / MEGAVOLT_PER_METRE, "V/um"),
+            Self::MarkerPlace { .. } | Self::MarkerStep { .. } => (value, "mm"),
+            Self::MarkerRegion { region, .. } => match region {
+                Region::Sphere { radius, .. } => (value.sqrt() * radius, "mm from its centre"),
+                Region::Box { .. } => (value.powf(1.0 / 16.0), "half edges from its centre"),
+            },
+        }
+    }
+}
+
+/// Unit of a joint coordinate.
+pub fn joint_unit(system: &System, joint: usize) -> &'static str {
+    match system.joints[joint].kind {
+        JointKind::Prismatic { .. } => "mm",
+        _ => "rad",
+    }
 }

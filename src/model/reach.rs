@@ -3,6 +3,13 @@
 use crate::model::system::{Potential, Solid, System};
 use std::collections::{BTreeSet, HashMap};
 
+impl Solid {
+    /// Whether a field reaches each element, if no voltage is zero all the time.
+    pub fn elements_with_field(&self) -> Vec<bool> {
+        dielectric(self)
+    }
+}
+
 /// Whether a field reaches each element: its material has electric constants, and the dielectric part of the block that it
 /// belongs to touches electrodes of different voltages. Electrodes that are held at a voltage part a block; a floating one
 /// joins what it touches.

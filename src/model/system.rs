@@ -44,6 +44,40 @@ impl System {
         solid.supports.iter().any(holds)
     }
 
+    /// Indices of the muscles of finite elements; their blocks follow those of the scene in this order.
+    pub fn meshed_muscles(&self) -> impl Iterator<Item = usize> + '_ {
+        let muscles = self.muscles.iter().enumerate();
+        let meshed = muscles.filter(|(_, muscle)| muscle.fidelity != Fidelity::Lumped);
+        meshed.map(|(index, _)| index)
+    }
+
+    /// Name of a block of the scene, or of the muscle that the block is.
+    pub fn block_name(&self, block: usize) -> &str {
+        match self.muscle_of_block(block) {
+            None => &self.solids[block].name,
+            Some(muscle) => &muscle.name,
+        }
+    }
+
+    fn muscle_of_block(&self, block: usize) -> Option<&Muscle> {
+        let index = block.checked_sub(self.solids.len())?;
+        self.meshed_muscles().nth(index).map(|m| &self.muscles[m])
+    }
+
+    /// Element and point, the centre or a Gauss point, of all points at which the field of a block is limited.
+    pub fn field_points(&self, block: usize, region: Option<usize>) -> Vec<(usize, Option<usize>)> {
+        let elements = match self.muscle_of_block(block) {
+            Some(muscle) => muscle.fidelity.elements(),
+            None => self.solids[block].mesh.hexahedra.len(),
+        };
+        let is_in = |e: &usize| region.is_none_or(|r| self.solids[block].mesh.regions[*e] == r);
+        let points = || std::iter::once(None).chain((0..8).map(Some));
+        let elements = (0..elements).filter(is_in);
+        elements
+            .flat_map(|e| points().map(move |p| (e, p)))
+            .collect()
+    }
+
     /// Number of finite elements of muscles and blocks.
     pub fn elements(&self) -> usize {
         let of_muscles = self.muscles.iter().map(|muscle| muscle.fidelity.elements());

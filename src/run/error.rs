@@ -100,6 +100,7 @@ impl RunError {
                 ..
             } => return Self::Stopped(*status),
             BoundaryError::NoEquilibrium { place, source } => (*place, source.to_string()),
+            BoundaryError::Limit { place, reason } => (*place, reason.clone()),
             BoundaryError::Inconsistent { place, .. } | BoundaryError::NoLength { place, .. } => {
                 let text = error.to_string();
                 let reason = text.strip_prefix(&format!("{place}: ")).unwrap_or(&text);

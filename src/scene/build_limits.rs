@@ -2,14 +2,14 @@
 
 use crate::control::problem::{Limit, Side};
 use crate::model::Region;
-use crate::model::system::{Fidelity, System};
+use crate::model::system::System;
 use crate::scene::build_scene::{names, vector};
 use crate::scene::build_state::{ELECTRIC_KEYS, joint_value, joint_with_coordinate};
 use crate::scene::error::SceneError;
 use crate::scene::quantity::{Angle, Length};
 use crate::scene::scope::Scope;
 use crate::scene::spec_limits::{
-    ElectricFieldLimitSpec, JointAngleLimitSpec, LimitSpec, MarkerLimitSpec, RegionSpec,
+    All, ElectricFieldLimitSpec, JointAngleLimitSpec, LimitSpec, MarkerLimitSpec, RegionSpec,
     StretchLimitSpec,
 };
 
@@ -102,27 +102,71 @@ fn electric_field(
     scope: &Scope<'_>,
 ) -> Result<Vec<Limit>, SceneError> {
     let max = scope.key("max").positive(&spec.max)?;
-    let one = spec.muscle.as_ref().map(Some);
-    let name = scope.exactly_one([("muscle", one), ("muscles", spec.muscles.map(|_| None))])?;
-    let muscles = match name {
-        Some(name) => vec![muscle_with_field(name, system, &scope.key("muscle"))?],
-        None => (0..system.muscles.len())
-            .filter(|&muscle| system.muscles[muscle].material.electric.is_some())
-            .collect(),
-    };
-    let of_elements = |&&muscle: &&usize| system.muscles[muscle].fidelity != Fidelity::Lumped;
-    if let Some(&muscle) = muscles.iter().find(of_elements) {
-        let place = scope.key(if spec.muscle.is_some() {
-            "muscle"
-        } else {
-            "muscles"
-        });
-        let name = &system.muscles[muscle].name;
-        let found = format!("{name:?}, a muscle of finite elements, where the field varies");
-        return Err(place.wrong(found, "a lumped muscle"));
+    let one = |name: &Option<String>| name.clone().map(Some);
+    let all = |all: Option<All>| all.map(|_| None);
+    let chosen = [
+        ("muscle", one(&spec.muscle)),
+        ("muscles", all(spec.muscles)),
+        ("solid", one(&spec.solid)),
+        ("solids", all(spec.solids)),
+    ];
+    let key = chosen.iter().find(|(_, choice)| choice.is_some());
+    let key = key.map_or("", |(key, _)| key);
+    let name = scope.exactly_one(chosen)?;
+    let place = scope.key(key);
+    if spec.region.is_some() && key != "solid" {
+        let found = "a region without \"solid\"";
+        return Err(scope.key("region").wrong(found, "a region of one block"));
     }
-    let limit = |muscle| Limit::ElectricField { muscle, max };
-    Ok(muscles.into_iter().map(limit).collect())
+    let nothing = |expected: String| place.wrong("nothing that a field reaches", expected);
+    if key.starts_with("muscle") {
+        let muscles = match &name {
+            Some(name) => vec![muscle_with_field(name, system, &place)?],
+            None => (0..system.muscles.len())
+                .filter(|&muscle| system.muscles[muscle].material.electric.is_some())
+                .collect(),
+        };
+        if muscles.is_empty() {
+            let beside = match system.solids.is_empty() {
+                true => "",
+                false => "; the field of elastic blocks is limited by \"solid\" or \"solids\"",
+            };
+            return Err(nothing(format!("a muscle of {ELECTRIC_KEYS}{beside}")));
+        }
+        let limit = |muscle| match system.meshed_muscles().position(|m| m == muscle) {
+            None => Limit::ElectricField { muscle, max },
+            Some(index) => Limit::BlockField {
+                block: system.solids.len() + index,
+                region: None,
+                max,
+            },
+        };
+        return Ok(muscles.into_iter().map(limit).collect());
+    }
+    let (blocks, region) = match &name {
+        None => ((0..system.solids.len()).collect(), None),
+        Some(name) => {
+            let names = names(&system.solids, |solid| &solid.name);
+            let block = place.find(name, &names, "the name of an elastic block")?;
+            let regions = &system.solids[block].mesh.region_names;
+            let of = scope.key("region");
+            let region = spec.region.as_ref();
+            let region = region.map(|name| of.find(name, regions, "the name of a region"));
+            (vec![block], region.transpose()?)
+        }
+    };
+    let has_field = |&block: &usize| {
+        let solid = &system.solids[block];
+        let mut elements = solid.mesh.regions.iter().zip(solid.elements_with_field());
+        elements.any(|(of, has_field)| has_field && region.is_none_or(|region| *of == region))
+    };
+    let blocks: Vec<usize> = blocks.into_iter().filter(has_field).collect();
+    if blocks.is_empty() {
+        let expected = format!("elements of {ELECTRIC_KEYS} between electrodes");
+        return Err(nothing(expected));
+    }
+    let limit = |block| Limit::BlockField { block, region, max };
+    Ok(blocks.into_iter().map(limit).collect())
 }
 
 /// Index of a muscle with an electric term.

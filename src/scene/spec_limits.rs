@@ -16,7 +16,7 @@ pub struct LimitSpec {
     /// Limits of the stretch of a muscle.
     #[serde(default)]
     pub stretch: Option<StretchLimitSpec>,
-    /// Breakdown field of muscles.
+    /// Breakdown field of muscles or elastic blocks.
     #[serde(default)]
     pub electric_field: Option<ElectricFieldLimitSpec>,
     /// Region of a marker.
@@ -52,7 +52,11 @@ pub struct StretchLimitSpec {
     pub max: Option<f64>,
 }
 
-/// Breakdown field of one muscle (`"muscle": name`) or all (`"muscles": "all"`).
+/// Breakdown field of one muscle (`"muscle": name`) or all (`"muscles": "all"`), of one elastic block (`"solid": name`, or a
+/// `region` of it) or all (`"solids": "all"`).
+///
+/// It bounds the true field at every instant and in the middle of every interval; in finite elements at their centres and Gauss
+/// points.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ElectricFieldLimitSpec {
@@ -62,6 +66,15 @@ pub struct ElectricFieldLimitSpec {
     /// All muscles with an electric term.
     #[serde(default)]
     pub muscles: Option<All>,
+    /// Name of the elastic block.
+    #[serde(default)]
+    pub solid: Option<String>,
+    /// All elastic blocks that a field reaches.
+    #[serde(default)]
+    pub solids: Option<All>,
+    /// Name of a region of the mesh of `solid`; all elements that a field reaches where not written.
+    #[serde(default)]
+    pub region: Option<String>,
     /// Largest true field, SI unit V/m.
     pub max: Quantity<ElectricField>,
 }

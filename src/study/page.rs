@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use crate::math::significant;
 use crate::report::origin::Origin;
 use crate::study::compare::{Judged, common};
 use crate::study::limit::How;
@@ -9,7 +10,6 @@ use crate::study::measure::{Measure, Unit};
 use crate::study::read::Study;
 use crate::study::record::{command, machine, of_reference};
 use crate::study::schedule::{Done, Results};
-use crate::study::table::significant;
 
 /// Accuracies that are priced, as parts of the scale of a measure.
 const ACCURACIES: [f64; 3] = [1e-2, 1e-4, 1e-6];

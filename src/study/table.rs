@@ -1,5 +1,6 @@
 //! `table.csv` with every number in full, and `table.txt` to read.
 
+use crate::math::significant;
 use crate::report::origin::Origin;
 use crate::report::table::{aligned, cells_csv};
 use crate::study::compare::Judged;
@@ -112,11 +113,4 @@ pub(super) fn text(study: &Study, results: &Results<'_>, judged: &[Judged]) -> S
 
 fn dash() -> String {
     "–".to_owned()
-}
-
-/// A positive number with so many digits that count.
-pub(super) fn significant(value: f64, digits: usize) -> String {
-    let before = value.log10().floor() as i64 + 1;
-    let decimals = usize::try_from(digits as i64 - before).unwrap_or(0);
-    format!("{value:.decimals$}")
 }

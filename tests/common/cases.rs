@@ -473,11 +473,20 @@ pub fn cases() -> Vec<Case> {
         case("blocks, marker at rest, free time", blocks(), &|c| {
             c.duration = free;
             c.objective = every_objective;
-            c.limits = vec![Limit::Stretch {
-                muscle: 0,
-                min: 0.7,
-                max: 1.2,
-            }];
+            let field = |block: usize, region: Option<usize>| Limit::BlockField {
+                block,
+                region,
+                max: 1e4,
+            };
+            c.limits = vec![
+                Limit::Stretch {
+                    muscle: 0,
+                    min: 0.7,
+                    max: 1.2,
+                },
+                field(0, Some(0)),
+                field(1, None),
+            ];
             c.goal = corner_goal();
         }),
         case("branched tree, free time", branched(), &|c| {

@@ -37,15 +37,22 @@ impl Layout {
             scalars: model.voltages.len() + model.potentials,
         };
         let at_rest = boundary.goal.nodes_rest;
-        let balanced = |k: usize, i: usize| k < intervals || i < motion.of_bodies || at_rest;
+        // A node that multipliers hold rests with what they hold it to: its balance gives their last value.
+        let mut is_held = vec![false; motion.coordinates];
+        for &(i, j) in model.action.layout().same.entries() {
+            if i >= motion.coordinates && j < motion.coordinates {
+                is_held[j] = true;
+            }
+        }
+        let rests = |i: usize| i < motion.of_bodies || is_held[i] || at_rest;
+        let balanced = |k: usize, i: usize| k < intervals || rests(i);
         let free = matches!(control.duration, Duration::Free { .. });
         let prescribed = |s: usize| {
             let source = model.voltages.get(s);
             source.is_some_and(|source| control.given.contains_key(source))
         };
         let mut unknowns = Unknowns::new(counts, free, given, balanced, prescribed);
-        let final_is_given = goal.iter().all(Option::is_some);
-        let limits = limit_rows(model, &boundary.limits.list, intervals, final_is_given);
+        let limits = limit_rows(model, &boundary.limits.list, intervals, &unknowns);
         let mut limit_rows = Vec::new();
         for (index, limit) in limits.iter().enumerate() {
             for k in limit.at.clone() {

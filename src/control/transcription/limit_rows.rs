@@ -1,12 +1,17 @@
 //! Limits and goals as rows behind the equations of motion.
 
 use crate::control::limits::{Bounded, Place};
+use crate::control::unknowns::Unknowns;
+use crate::functional::Measure;
 use crate::model::{Model, Quantity};
 use std::ops::Range;
 
+/// Mark of a scalar among the entries of a gradient.
+pub(super) const SCALAR: usize = 2;
+
 /// Where in time a quantity is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Site {
+pub(in crate::control) enum Site {
     Instants,
     Intervals,
 }
@@ -23,36 +28,31 @@ pub(super) struct LimitRow {
     pub(super) first: usize,
     pub(super) lower: f64,
     pub(super) upper: f64,
-    /// Entries of its gradient: (side, entry of z) or (2, scalar).
+    /// Entries of its gradient: (side, entry of z) or ([`SCALAR`], scalar).
     pub(super) entries: Vec<(usize, usize)>,
     /// Vectors it reads.
     pub(super) vectors: Vec<usize>,
     pub(super) name: String,
+    /// When it is read, in front of the number of the instant or interval.
+    pub(super) when: &'static str,
     pub(super) place: Place,
     pub(super) scale: f64,
 }
 
-/// Rows of the bounded quantities over a horizon, with the entries their gradients have. Path limits end before the final
-/// instant where the goal gives all its coordinates.
+/// Rows of the bounded quantities over a horizon, with the entries their gradients have. A path limit has no row where start
+/// or goal give all that it reads: there it is looked at before.
 pub(super) fn limit_rows(
     model: &Model,
     list: &[Bounded],
     intervals: usize,
-    final_is_given: bool,
+    unknowns: &Unknowns,
 ) -> Vec<LimitRow> {
     let motion = &model.action.motion;
-    let mut next = [0, 0];
     let mut first = 0;
-    let row = |bounded: &Bounded| {
-        let (site, sum) = if bounded.quantity.is_of_intervals() {
-            (Site::Intervals, &model.action.intervals)
-        } else {
-            (Site::Instants, &model.action.instants)
-        };
-        let counter = &mut next[site as usize];
-        let measure = *counter;
-        *counter += 1;
-        let reads = &sum.measures[measure];
+    let row = |(bounded, measure): (&Bounded, &Option<usize>)| {
+        let measure = (*measure)?;
+        let site = Site::of(&bounded.quantity);
+        let reads = site.measure(model, measure);
         let mut support: Vec<usize> = reads
             .vectors()
             .iter()
@@ -60,19 +60,33 @@ pub(super) fn limit_rows(
             .collect();
         support.sort_unstable();
         support.dedup();
-        let at = match (bounded.place, site) {
-            (Place::Goal, Site::Instants) => intervals..intervals + 1,
-            (Place::Goal, Site::Intervals) => intervals - 1..intervals,
-            (Place::Everywhere, Site::Intervals) => 0..intervals,
-            (Place::Everywhere, Site::Instants) => 1..intervals + usize::from(!final_is_given),
-        };
-        let sides = 0..site.sides();
+        let sides = (0..site.sides()).filter(|&side| reads.reads(side));
         let mut entries: Vec<(usize, usize)> = sides
             .flat_map(|side| support.iter().map(move |&i| (side, i)))
             .collect();
         if site == Site::Intervals {
-            entries.extend(reads.scalars().into_iter().map(|s| (2, s)));
+            entries.extend(reads.scalars().into_iter().map(|s| (SCALAR, s)));
         }
+        let at = match (bounded.place, site) {
+            (Place::Goal, Site::Instants) => intervals..intervals + 1,
+            (Place::Goal, Site::Intervals) => intervals - 1..intervals,
+            (Place::Everywhere, _) => {
+                let mut all = 0..intervals + 2 - site.sides();
+                let is_open = |k: usize| {
+                    entries.iter().any(|&(side, i)| match side {
+                        SCALAR => unknowns.scalar(k, i).is_some(),
+                        _ => unknowns.unknown(k + side, i).is_some(),
+                    })
+                };
+                while !all.is_empty() && !is_open(all.start) {
+                    all.start += 1;
+                }
+                while !all.is_empty() && !is_open(all.end - 1) {
+                    all.end -= 1;
+                }
+                all
+            }
+        };
         let scale = match bounded.quantity {
             Quantity::MarkerPlace { .. } | Quantity::MarkerStep { .. } => 1.0 / model.length(),
             _ => 1.0,
@@ -87,16 +101,34 @@ pub(super) fn limit_rows(
             entries,
             vectors: reads.vectors(),
             name: bounded.name.clone(),
+            when: bounded.quantity.when(),
             place: bounded.place,
             scale,
         };
         first += limit.at.len();
-        limit
+        Some(limit)
     };
-    list.iter().map(row).collect()
+    list.iter().zip(&model.measured).filter_map(row).collect()
 }
 
 impl Site {
+    /// Where a quantity is measured.
+    pub(in crate::control) fn of(quantity: &Quantity) -> Self {
+        match quantity.is_of_intervals() {
+            true => Self::Intervals,
+            false => Self::Instants,
+        }
+    }
+
+    /// A measure of the site.
+    pub(in crate::control) fn measure(self, model: &Model, index: usize) -> &dyn Measure {
+        let sum = match self {
+            Self::Instants => &model.action.instants,
+            Self::Intervals => &model.action.intervals,
+        };
+        sum.measures[index].as_ref()
+    }
+
     /// How many instants a quantity of the site reads.
     pub(super) fn sides(self) -> usize {
         match self {

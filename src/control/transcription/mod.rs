@@ -30,6 +30,7 @@ use crate::nlp::{Bounds, Entries, Nlp};
 use crate::reduction::Instant;
 pub(super) use layout::Layout;
 use limit_rows::LimitRow;
+pub(super) use limit_rows::Site;
 use scaling::objective_scale;
 use stretch::Bench;
 

@@ -1,7 +1,7 @@
 //! What the solver asks.
 
 use crate::control::limits::Place;
-use crate::control::transcription::limit_rows::Site;
+use crate::control::transcription::limit_rows::LimitRow;
 use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
 use crate::control::unknowns::{Row, Variable};
 use crate::functional::Level;
@@ -163,11 +163,15 @@ impl Nlp for Transcription<'_> {
                 "Gauss's law of {} in interval {k}",
                 self.model.potential_names[s - self.model.voltages.len()]
             ),
-            Row::Limit { limit, k } => match (self.limits[limit].place, self.limits[limit].site) {
-                (Place::Goal, _) => self.limits[limit].name.clone(),
-                (_, Site::Intervals) => format!("{} in interval {k}", self.limits[limit].name),
-                (_, Site::Instants) => format!("{} at instant {k}", self.limits[limit].name),
-            },
+            Row::Limit { limit, k } => {
+                let LimitRow {
+                    name, when, place, ..
+                } = &self.limits[limit];
+                match place {
+                    Place::Goal => name.clone(),
+                    Place::Everywhere => format!("{name} {when} {k}"),
+                }
+            }
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Which entries of the periodic values the Jacobian and the Hessian keep.
 
+use crate::control::transcription::limit_rows::SCALAR;
 use crate::control::transcription::{Kept, Transcription};
 use crate::control::unknowns::Row;
 use crate::nlp::Entries;
@@ -56,7 +57,7 @@ impl Transcription<'_> {
         let first = self.unknowns.rows.len() - self.limit_rows.len();
         for (r, &(limit, k)) in self.limit_rows.iter().enumerate() {
             for &(side, i) in &self.limits[limit].entries {
-                let col = if side == 2 {
+                let col = if side == SCALAR {
                     u.scalar(k, i)
                 } else {
                     u.unknown(k + side, i)

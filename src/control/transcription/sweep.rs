@@ -136,13 +136,7 @@ impl<'m> Transcription<'m> {
     }
 
     fn measure(&self, limit: &LimitRow) -> &'m dyn Measure {
-        let action = &self.model.action;
-        let site = if limit.site == Site::Intervals {
-            &action.intervals
-        } else {
-            &action.instants
-        };
-        site.measures[limit.measure].as_ref()
+        limit.site.measure(self.model, limit.measure)
     }
 
     pub(super) fn limit_value(&self, limit: &LimitRow, k: usize) -> f64 {
@@ -155,25 +149,22 @@ impl Transcription<'_> {
     pub(super) fn limit_gradients(&mut self) {
         let motion = &self.model.action.motion;
         let mut place = self.model.action.layout().values(self.intervals);
+        self.rows[..motion.unknowns()].fill(0.0);
         for index in 0..self.limit_rows.len() {
             let (limit, k) = self.limit_rows[index];
             let measure = self.measure(&self.limits[limit]);
             let site = self.limits[limit].site;
             let mut part = std::mem::take(&mut self.measured);
             measure.gradient(&self.frame(site, k), &mut part.forces, &mut part.rows);
-            let sides = site.sides();
             // Rows of the coordinates of one side at a time, in the storage of one instant's rows.
-            let count = motion.unknowns();
             let mut at = 0;
-            for side in 0..sides {
-                let rows = &mut self.rows[..count];
-                rows.fill(0.0);
+            for side in (0..site.sides()).filter(|&side| measure.reads(side)) {
                 for &vector in &self.limits[limit].vectors {
                     motion.pull_back_one(
                         vector,
                         &self.instants[k + side].columns,
                         &part.forces[side][vector],
-                        rows,
+                        &mut self.rows,
                     );
                 }
                 while let Some(&(_, i)) = self.limits[limit]
@@ -181,7 +172,7 @@ impl Transcription<'_> {
                     .get(at)
                     .filter(|(s, _)| *s == side)
                 {
-                    self.values[place] = rows[i];
+                    self.values[place] = std::mem::take(&mut self.rows[i]);
                     (at, place) = (at + 1, place + 1);
                 }
             }

@@ -1,0 +1,178 @@
+//! Limits at start and goal: what is known of both before the solve keeps them, or is refused by name.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector3;
+
+use crate::control::boundary::Boundary;
+use crate::control::error::BoundaryError;
+use crate::control::limits::{Bounded, Place};
+use crate::control::problem::{Control, Limit, State};
+use crate::control::transcription::Site;
+use crate::energy::{Energy, OutsideBox, SquaredDistance};
+use crate::functional::{Frame, Horizon, Sides};
+use crate::model::{Coordinates, Model, Quantity, Region};
+use crate::reduction::Instant;
+
+/// Refuses a start or goal of which it is known that it breaks a limit. `scalars` are voltages and potentials of states of
+/// rest at start and goal.
+pub(super) fn check(
+    model: &Model,
+    boundary: &Boundary,
+    control: &Control,
+    scalars: [Option<Vec<f64>>; 2],
+) -> Result<(), BoundaryError> {
+    let start: Vec<_> = boundary.start.z.iter().copied().map(Some).collect();
+    let goal = &boundary.goal.coordinates;
+    let [at_start, at_goal] = scalars;
+    let ends = [
+        ("start", &start, at_start, &control.start),
+        ("goal", goal, at_goal, &control.goal),
+    ];
+    for (place, coordinates, scalars, state) in ends {
+        let mut end = End::new(model, control, coordinates, scalars);
+        match state {
+            State::JointAngles { angles, .. } => end.angles = angles.clone(),
+            State::Markers { places, .. } => end.places = places.clone(),
+            State::RestAtVoltages(_) => {}
+        }
+        let of_joints = control.limits.iter().find_map(|limit| end.joint(limit));
+        let bounded = || {
+            let list = boundary.limits.list.iter().zip(&model.measured);
+            let paths = list.filter(|(bounded, _)| bounded.place == Place::Everywhere);
+            let mut values = paths.map(|(b, m)| (b, end.value(b, *m)));
+            values.find_map(|(b, value)| b.broken(value?, &model.system))
+        };
+        if let Some(reason) = of_joints.or_else(bounded) {
+            return Err(BoundaryError::Limit { place, reason });
+        }
+    }
+    Ok(())
+}
+
+/// What is known of a start or goal.
+struct End<'a> {
+    model: &'a Model,
+    instant: Instant,
+    /// Which coordinates are known.
+    known: Vec<bool>,
+    /// Voltages and potentials, where they are known.
+    scalars: Vec<Option<f64>>,
+    /// Joint coordinates that it names.
+    angles: BTreeMap<usize, f64>,
+    /// Places of markers that it names.
+    places: BTreeMap<usize, Vector3<f64>>,
+}
+
+impl<'a> End<'a> {
+    fn new(
+        model: &'a Model,
+        control: &Control,
+        coordinates: &[Option<f64>],
+        scalars: Option<Vec<f64>>,
+    ) -> Self {
+        let count = model.coordinate_count();
+        let mut instant = model.action.motion.instant();
+        let reference = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+        let values = coordinates.iter().zip(reference);
+        for (z, (value, reference)) in instant.z[..count].iter_mut().zip(values) {
+            *z = value.unwrap_or(reference);
+        }
+        model.action.motion.vectors(&mut instant);
+        let given = |s: usize| control.given.get(model.voltages.get(s)?).copied();
+        let all = model.voltages.len() + model.potentials;
+        Self {
+            model,
+            instant,
+            known: coordinates[..count].iter().map(Option::is_some).collect(),
+            scalars: match scalars {
+                Some(scalars) => scalars.into_iter().map(Some).collect(),
+                None => (0..all).map(given).collect(),
+            },
+            angles: BTreeMap::new(),
+            places: BTreeMap::new(),
+        }
+    }
+
+    /// What a joint limit says of it.
+    fn joint(&self, limit: &Limit) -> Option<String> {
+        let Limit::JointAngle { joint, min, max } = *limit else {
+            return None;
+        };
+        let joints = &self.model.system.joints;
+        let of_gauge = || {
+            if !self.known.iter().all(|known| *known) {
+                let coordinate = self.model.gauges[joint].coordinate?;
+                let is_known =
+                    self.model.coordinates == Coordinates::Reduced && self.known[coordinate];
+                return is_known.then(|| self.instant.z[coordinate]);
+            }
+            let mut instant = self.instant.clone();
+            self.model.action.motion.place(&mut instant);
+            let near = (0..joints.len()).map(|j| self.angles.get(&j).copied().unwrap_or(0.0));
+            Some(self.model.joints(&instant, &near.collect::<Vec<_>>())[joint])
+        };
+        let value = self.angles.get(&joint).copied().or_else(of_gauge)?;
+        let name = format!("joint {}", joints[joint].name);
+        let quantity = Quantity::Joint { joint, near: value };
+        let bounded = Bounded {
+            quantity,
+            lower: min,
+            upper: max,
+            place: Place::Everywhere,
+            name,
+        };
+        bounded.broken(value, &self.model.system)
+    }
+
+    /// The value of a limited quantity.
+    fn value(&self, bounded: &Bounded, measure: Option<usize>) -> Option<f64> {
+        match bounded.quantity {
+            Quantity::Joint { .. } => return None,
+            Quantity::MarkerPlace { marker, axis } if self.places.contains_key(&marker) => {
+                return Some(self.places[&marker][axis]);
+            }
+            Quantity::MarkerRegion { marker, region } if self.places.contains_key(&marker) => {
+                return Some(region_value(&region, &self.places[&marker]));
+            }
+            _ => {}
+        }
+        let measure = Site::of(&bounded.quantity).measure(self.model, measure?);
+        let motion = &self.model.action.motion;
+        let mut reads = measure
+            .vectors()
+            .into_iter()
+            .flat_map(|v| motion.support(v));
+        let is_known = reads.all(|i| self.known[i])
+            && measure.scalars().iter().all(|&s| self.scalars[s].is_some());
+        let scalars: Vec<f64> = self.scalars.iter().map(|s| s.unwrap_or(0.0)).collect();
+        let x = &self.instant.x[..];
+        let frame = Frame {
+            vectors: [x, x],
+            along: [x, x],
+            scalars: &scalars,
+            scalars_along: &[],
+            h: 1.0,
+            horizon: Horizon::Given,
+            sides: Sides::ALL,
+            weights: &[],
+        };
+        is_known.then(|| measure.value(&frame))
+    }
+}
+
+fn region_value(region: &Region, place: &Vector3<f64>) -> f64 {
+    let still = Vector3::zeros();
+    match *region {
+        Region::Sphere { centre, radius } => {
+            let scale = radius;
+            let energy = SquaredDistance { centre, scale };
+            energy.jet::<1>(place, &still).value
+        }
+        Region::Box { min, max } => {
+            let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
+            let energy = OutsideBox { centre, half };
+            energy.jet::<1>(place, &still).value
+        }
+    }
+}

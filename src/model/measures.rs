@@ -1,0 +1,167 @@
+//! Measures of quantities: what they read, and their formulas.
+
+use crate::element::FieldPoint;
+use crate::energy::{Angle, Energy, OutsideBox, Place, Projection, SquaredDistance, SquaredField};
+use crate::functional::{Element, ElementField, Group, Measure, Stencil, VectorArg};
+use crate::kinematics::{MaterialVector, Pose, Vectors};
+use crate::math::Vector;
+use crate::model::joints::{JointGauge, Measure as Gauge};
+use crate::model::{Condensed, Continuum, FieldPlace, Quantity, Region};
+
+/// Measures by site, in the order of the quantities.
+#[derive(Debug, Default)]
+pub(super) struct Measures {
+    pub(super) instants: Vec<Box<dyn Measure>>,
+    pub(super) intervals: Vec<Box<dyn Measure>>,
+    /// Index of each quantity among those of its site; `None` where nothing of the model can change it.
+    pub(super) places: Vec<Option<usize>>,
+}
+
+/// What quantities are measured on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Known<'a> {
+    pub(super) condensed: &'a Condensed,
+    pub(super) reference: &'a [Pose],
+    /// Source of each voltage.
+    pub(super) voltages: &'a [usize],
+    /// Vector of each marker.
+    pub(super) markers: &'a [usize],
+    pub(super) continua: &'a [Continuum],
+}
+
+impl Measures {
+    /// The measures of a list of quantities.
+    pub(super) fn new(quantities: &[Quantity], known: &Known<'_>, vectors: &mut Vectors) -> Self {
+        let mut out = Self::default();
+        for quantity in quantities {
+            let list = match quantity.is_of_intervals() {
+                true => &mut out.intervals,
+                false => &mut out.instants,
+            };
+            let measure = known.measure(quantity, vectors);
+            out.places.push(measure.is_some().then_some(list.len()));
+            list.extend(measure);
+        }
+        out
+    }
+}
+
+impl Known<'_> {
+    fn measure(&self, quantity: &Quantity, vectors: &mut Vectors) -> Option<Box<dyn Measure>> {
+        let origin = Vector::zeros();
+        Some(match *quantity {
+            Quantity::Joint { joint, near } => {
+                let joint = self.condensed.joint(joint)?;
+                let joint = &self.condensed.system.joints[joint];
+                match JointGauge::new(joint, None, self.reference).measure {
+                    Gauge::Angle { vectors: v } => {
+                        instant(Angle { near }, v.map(|x| vectors.index(x)))
+                    }
+                    Gauge::Displacement { axis, span } => {
+                        instant(Projection, [axis, span].map(|x| vectors.index(x)))
+                    }
+                    Gauge::None => return None,
+                }
+            }
+            Quantity::SquaredStretch { muscle } => {
+                let energy = SquaredDistance {
+                    centre: origin,
+                    scale: self.condensed.system.muscles[muscle].length(),
+                };
+                instant(energy, [self.span(muscle, vectors)])
+            }
+            Quantity::MarkerPlace { marker, axis } => {
+                let normal = Vector::ith(axis, 1.0);
+                instant(Place { origin, normal }, [self.markers[marker]])
+            }
+            Quantity::MarkerRegion { marker, region } => {
+                let vectors = [self.markers[marker]];
+                match region {
+                    Region::Sphere { centre, radius } => {
+                        let scale = radius;
+                        instant(SquaredDistance { centre, scale }, vectors)
+                    }
+                    Region::Box { min, max } => {
+                        let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
+                        instant(OutsideBox { centre, half }, vectors)
+                    }
+                }
+            }
+            Quantity::MarkerStep { marker, axis } => {
+                let normal = Vector::ith(axis, 1.0);
+                let marker = (self.markers[marker], Stencil::Difference);
+                interval::<_, 3, 1, 0>(Place { origin, normal }, [marker], [])
+            }
+            Quantity::SquaredField { place, limit, at } => match place {
+                FieldPlace::Muscle(muscle) => {
+                    let scalar = self.voltages.iter().position(|&m| m == muscle)?;
+                    let of = &self.condensed.system.muscles[muscle];
+                    let energy = SquaredField {
+                        length: of.length(),
+                        voltage: of.layer_thickness * limit,
+                    };
+                    let span = (self.span(muscle, vectors), at);
+                    interval::<_, 4, 1, 1>(energy, [span], [scalar])
+                }
+                FieldPlace::Element {
+                    block,
+                    element,
+                    point,
+                } => {
+                    let continuum = &self.continua[block];
+                    if !continuum.is_dielectric[element] {
+                        return None;
+                    }
+                    let gradients = match point {
+                        Some(point) => continuum.shapes[element].gradients_at(point),
+                        None => continuum.central_gradients(element)?,
+                    };
+                    Box::new(ElementField::new(
+                        FieldPoint { gradients, limit },
+                        continuum.nodes(element),
+                        continuum.terminals(element),
+                        at,
+                    ))
+                }
+            },
+        })
+    }
+
+    /// Vector of the span of a muscle.
+    fn span(&self, muscle: usize, vectors: &mut Vectors) -> usize {
+        let muscle = &self.condensed.system.muscles[muscle];
+        let [from, to] = [&muscle.from, &muscle.to]
+            .map(|a| MaterialVector::point(a.body, &a.at, self.reference));
+        vectors.index(MaterialVector::span(&from, &to))
+    }
+}
+
+fn instant<E: Energy<M> + 'static, const M: usize, const NV: usize>(
+    energy: E,
+    vectors: [usize; NV],
+) -> Box<dyn Measure> {
+    let element = Element {
+        energy,
+        vectors: vectors.map(|vector| VectorArg {
+            vector,
+            stencil: Stencil::Here,
+        }),
+        scalars: [],
+    };
+    let elements = vec![element];
+    Box::new(Group::<E, M, NV, 0>::instants("measure", 1.0, elements))
+}
+
+fn interval<E: Energy<M> + 'static, const M: usize, const NV: usize, const NS: usize>(
+    energy: E,
+    vectors: [(usize, Stencil); NV],
+    scalars: [usize; NS],
+) -> Box<dyn Measure> {
+    let element = Element {
+        energy,
+        vectors: vectors.map(|(vector, stencil)| VectorArg { vector, stencil }),
+        scalars,
+    };
+    let elements = vec![element];
+    Box::new(Group::<E, M, NV, NS>::intervals("measure", 1.0, elements))
+}
