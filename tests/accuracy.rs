@@ -55,6 +55,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
         goal: rest_at(GOAL),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
         given: Default::default(),
+        hold: Default::default(),
         // h is in ms and the effort in s.
         objective: Objective {
             effort: 1e3,

@@ -55,6 +55,7 @@ fn optimum(
         goal: rest_at(goal),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
         given: BTreeMap::new(),
+        hold: Default::default(),
         // h is in ms and the effort in s.
         objective: Objective {
             effort: 1e3,

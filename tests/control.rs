@@ -37,6 +37,7 @@ fn problem(name: &str, coordinates: Coordinates) -> Control {
         goal: State::RestAtVoltages(hold),
         voltage_bounds: [0.0, 3000.0],
         given: BTreeMap::new(),
+        hold: Default::default(),
         objective,
         limits: Vec::new(),
         coordinates: Some(coordinates),

@@ -28,6 +28,8 @@ pub struct Goal {
     pub coordinates: Vec<Option<f64>>,
     /// Whether the nodes of elastic blocks rest too.
     pub nodes_rest: bool,
+    /// The equilibrium that it is, where it is one under voltages that are named.
+    pub rest: Option<Equilibrium>,
 }
 
 impl Boundary {
@@ -91,11 +93,13 @@ impl Boundary {
         };
         let n = model.coordinate_count();
         let mut given = vec![None; n];
+        let mut at_goal = None;
         match &control.goal {
             State::RestAtVoltages(voltages) => {
                 let rest = rest_at(&model, voltages, "goal")?;
-                scalars[1] = Some(rest.scalars);
+                scalars[1] = Some(rest.scalars.clone());
                 given = rest.z[..n].iter().copied().map(Some).collect();
+                at_goal = Some(rest);
             }
             State::JointAngles { angles, .. } if redundant && all_joints => {
                 let joints: Vec<f64> = (0..system.joints.len())
@@ -133,6 +137,7 @@ impl Boundary {
                         ..
                     }
                 ),
+                rest: at_goal,
             },
             rest,
             limits,

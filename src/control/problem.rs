@@ -64,6 +64,16 @@ pub enum Rest {
     Markers,
 }
 
+/// What becomes of a goal that its voltages do not keep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Hold {
+    /// It is reported.
+    #[default]
+    Reported,
+    /// It is refused.
+    Required,
+}
+
 /// Voltages over time (V, one per muscle).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Voltages {
@@ -167,6 +177,8 @@ pub struct Control {
     pub voltage_bounds: [f64; 2],
     /// Voltages that are given for all the time (V, by source): no unknowns.
     pub given: BTreeMap<usize, f64>,
+    /// What becomes of a goal that cannot be kept.
+    pub hold: Hold,
     /// What is minimised.
     pub objective: Objective,
     /// Path limits.

@@ -162,6 +162,7 @@ fn as_control(task: Task, system: &System) -> Control {
         goal: at_reference(),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
         given: BTreeMap::new(),
+        hold: Default::default(),
         objective: Objective {
             effort: 1.0,
             rate: 1.0,

@@ -5,7 +5,6 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::control::problem::{Control, Duration, Simulation, Voltages};
-use crate::dynamics::simulate;
 use crate::ipopt::{Iteration, interrupt};
 use crate::model::System;
 use crate::run::accuracy::{Attempt, Refined, Wanted, refine};
@@ -60,7 +59,8 @@ pub fn optimise_to(
             })?;
             // What the guess of the problem became belongs to all grids.
             run.stretched = before.map_or(run.stretched, |optimum| optimum.stretched);
-            let is_complete = run.is_solved();
+            // What is not reproduced may be on a finer grid.
+            let is_complete = run.meets_equations();
             let sample = match is_complete {
                 true => sample(&run, matches!(control.duration, Duration::Free { .. })),
                 false => Sample::default(),
@@ -70,7 +70,7 @@ pub fn optimise_to(
                 intervals: control.intervals,
                 iterations: run.solution.iterations.len().saturating_sub(1),
                 variables: run.solution.x.len(),
-                status: run.solution.status.word(),
+                status: run.word(),
                 is_complete,
                 run,
             })
@@ -155,30 +155,11 @@ fn sample(optimum: &Optimum, is_free: bool) -> Sample {
     }
 }
 
-/// Deviation of an optimal motion from the one under its voltages with half the step; infinite where that ends early.
+/// Deviation of an optimal motion from the one under its voltages with half the step; infinite where there is none.
 fn response(optimum: &Optimum, optimal: &Sample) -> f64 {
-    let (model, kept) = (&optimum.model, &optimum.motion);
-    let n = kept.intervals();
-    let h = kept.times[n] / n as f64;
-    let scalars = |from: f64, to: f64| {
-        let k = (0.5 * (from + to) / h) as usize;
-        model.scalars(&kept.voltages[k.min(n - 1)])
-    };
-    let start = &optimum.boundary.start;
-    let (history, failure) =
-        simulate(
-            model,
-            start,
-            0.5 * h,
-            2 * n,
-            scalars,
-            |_| match interrupt::requested() {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
-            },
-        );
-    match failure.is_none() && history.intervals() == 2 * n {
-        true => optimal.deviation(&Sample::of_motion(model, &history)),
-        false => f64::INFINITY,
-    }
+    let tested = optimum.resimulation.as_ref();
+    let half = tested.and_then(|tested| tested.half.as_ref());
+    half.map_or(f64::INFINITY, |history| {
+        optimal.deviation(&Sample::of_motion(&optimum.model, history))
+    })
 }

@@ -3,7 +3,8 @@
 //! - `solve`, `forward`, `rest`: the three tasks; `task` chooses what a file asks for.
 //! - `starts`: a control problem from several guesses, each in a process of its own; `memory`: what is more than the machine has.
 //! - `grids`: solve and simulate as finely as an accuracy needs; `accuracy`, `estimate`: how that is found, `accuracy_table`: told.
-//! - `motion`, `resimulate`, `violations`, `effects`, `reasons`, `stopwatch`, `blocks`: what is read from a scene or a result.
+//! - `resimulate`: what an optimum is worth, by the `distance` of motions; `cure`: finer grids where it is none; `holding`: its end.
+//! - `motion`, `violations`, `effects`, `reasons`, `stopwatch`, `blocks`: what is read from a scene or a result.
 //! - `solution_file`, `summary`: the two JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
 //! - `inspect`, `spy`, `check`, `starter`: the other commands.
 
@@ -12,6 +13,8 @@ mod accuracy_table;
 mod blocks;
 mod check;
 mod comparison;
+mod cure;
+mod distance;
 mod effects;
 mod error;
 pub mod estimate;
@@ -19,6 +22,7 @@ mod extent;
 mod fields;
 mod forward;
 mod grids;
+mod holding;
 mod inspect;
 mod memory;
 mod motion;
@@ -52,6 +56,7 @@ pub use progress::Shown;
 pub(crate) use progress::progress_bar;
 pub use reasons::{Absent, EFFECTS, absent};
 pub use request::{Request, Told};
+pub use resimulate::{Cause, Resimulation};
 pub use rest::equilibrium_of_file;
 pub(crate) use solve::make_folder;
 pub use starter::{expand, new_trunk, schema, study_schema};

@@ -12,9 +12,11 @@ use crate::ipopt::{self, Iteration, OptionValue, Options, Solution, Start, inter
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
 use crate::run::error::RunError;
+use crate::run::holding;
 use crate::run::memory;
 use crate::run::motion::solved;
 use crate::run::progress::phase;
+use crate::run::resimulate::{Cause, Resimulation, resimulate};
 use crate::run::solution_file;
 use crate::run::violations::{Violation, violations};
 
@@ -62,12 +64,52 @@ pub struct Optimum {
     pub setup: f64,
     /// Durations in ms of the solution that it started from and of its first guess, where they differ.
     pub stretched: Option<[f64; 2]>,
+    /// Its voltages put to the test, where the solver found a solution.
+    pub resimulation: Option<Resimulation>,
+    /// Seconds that the test took.
+    pub tested: f64,
 }
 
 impl Optimum {
-    /// Whether it is an optimal motion.
+    /// Whether it is an optimal motion: the solver found it, and a simulation under its voltages reproduces it.
     pub fn is_solved(&self) -> bool {
+        self.meets_equations() && self.cause().is_none()
+    }
+
+    /// Holds the voltages of the goal after its end, where they are known and it is reproduced.
+    pub(super) fn hold(&mut self) {
+        let Self {
+            model,
+            boundary,
+            motion,
+            resimulation: Some(tested),
+            ..
+        } = self
+        else {
+            return;
+        };
+        if tested.cause.is_none() {
+            tested.hold(model, boundary, motion);
+        }
+    }
+
+    /// Whether it meets the discrete equations, reproduced or not.
+    pub(super) fn meets_equations(&self) -> bool {
         self.solution.status.is_solved() && self.reversed.is_none()
+    }
+
+    /// Why a simulation does not reproduce it, where it does not.
+    pub fn cause(&self) -> Option<&Cause> {
+        self.resimulation.as_ref()?.cause.as_ref()
+    }
+
+    /// How it ended, in a word.
+    pub fn word(&self) -> &'static str {
+        match self.cause() {
+            _ if self.reversed.is_some() => "unresolved",
+            Some(_) => "not_reproduced",
+            None => self.solution.status.word(),
+        }
     }
 }
 
@@ -120,6 +162,11 @@ pub fn optimise(
         true => Vec::new(),
         false => violations(&mut program, &solution.x, HOLDS, NAMED),
     };
+    let is_motion = solution.status.is_solved() && reversed.is_none();
+    let solved = Instant::now();
+    let resimulation =
+        is_motion.then(|| resimulate(&model, &boundary.start, &motion, control.solver.tolerance));
+    let tested = solved.elapsed().as_secs_f64();
     let infeasibility = program.violation(&solution.x);
     let constraints = program.constraints().lower.len();
     let jacobian_nonzeros = program.jacobian_structure().rows.len();
@@ -138,6 +185,8 @@ pub fn optimise(
         hessian_nonzeros,
         setup,
         stretched,
+        resimulation,
+        tested,
     })
 }
 
@@ -156,8 +205,10 @@ pub(super) fn resolve(
     system: &System,
     control: &Control,
 ) -> Result<(Model, Boundary), RunError> {
-    Boundary::resolve(system, control, interval(control))
-        .map_err(|error| RunError::boundary(file, "control", &error))
+    let (model, boundary) = Boundary::resolve(system, control, interval(control))
+        .map_err(|error| RunError::boundary(file, "control", &error))?;
+    holding::check(file, control, &model, &boundary)?;
+    Ok((model, boundary))
 }
 
 /// Interval length in ms, or its guess.

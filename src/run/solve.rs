@@ -5,25 +5,27 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use crate::control::problem::Control;
+use crate::control::problem::{Control, Hold};
 use crate::control::{Boundary, Solved};
 use crate::dynamics::observations;
-use crate::ipopt::{Iteration, Status};
+use crate::ipopt::{Iteration, Status, interrupt};
 use crate::model::{Model, System};
 use crate::report::atomic::{self, WriteError};
 use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::run::accuracy::{Accuracy, Refined};
 use crate::run::blocks::Blocks;
+use crate::run::cure::{Cured, reproduced};
 use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::grids::optimise_to;
+use crate::run::holding;
 use crate::run::motion::{history, solved, trajectory};
-use crate::run::optimise::{Allowed, Optimum, optimise};
+use crate::run::optimise::{Allowed, Optimum};
 use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
-use crate::run::resimulate::{resimulate, under_constant_voltages};
+use crate::run::resimulate::{Cause, Resimulation, under_constant_voltages};
 use crate::run::solution_file;
 use crate::run::summary::{Evaluations, MEASURED, PerInterval, Program, Seconds, Summary};
 use crate::run::violations::Violation;
@@ -45,9 +47,10 @@ pub(super) fn control(
         seconds: request.max_seconds.map(|s| (s - read).max(0.0)),
     };
     let Found {
-        optimum,
+        mut optimum,
         iterations,
         accuracy,
+        note,
     } = {
         let progress = Progress::of_solve(request.progress);
         find(
@@ -73,30 +76,41 @@ pub(super) fn control(
     }
     make_folder(&folder)?;
 
+    optimum.hold();
     let Optimum {
         model,
         boundary,
         motion: kept,
         solution,
         violated,
+        resimulation,
         ..
     } = &optimum;
-    let unresolved = optimum.reversed.map(|(k, m)| unresolved(model, k, m));
-    let is_solved = optimum.is_solved();
-    let resimulation = is_solved.then(|| resimulate(model, boundary, kept));
+    let refuted = optimum.reversed.map(|(k, m)| unresolved(model, k, m));
+    let refuted = refuted.or_else(|| optimum.cause().map(Cause::told));
+    let tested = resimulation.as_ref();
+    let not_kept = holding::warning(control, model, boundary, tested);
+    let mut is_solved = optimum.is_solved();
+    let mut word = optimum.word();
+    if interrupt::requested() && word == "not_reproduced" {
+        word = Status::Interrupted.word();
+    }
+    let has_to_hold = is_solved && control.hold == Hold::Required;
+    let not_held = not_kept.clone().filter(|_| has_to_hold);
+    if not_held.is_some() {
+        (is_solved, word) = (false, "not_held");
+    }
     let intervals = kept.intervals();
     let per_interval = |seconds: f64, evaluations: usize| {
         (evaluations > 0).then(|| 1e6 * seconds / (evaluations * intervals) as f64)
     };
     let seconds = &solution.seconds;
-    let word = match unresolved {
-        Some(_) => "unresolved",
-        None => solution.status.word(),
-    };
     let mut summary = Summary::new(request, word, model.coordinates.name());
-    summary.message =
-        unresolved.or_else(|| (!is_solved).then(|| meaning(solution.status).to_owned()));
-    if let Some(message) = &mut summary.message {
+    summary.message = refuted.or(not_held);
+    if summary.message.is_none() && !is_solved {
+        summary.message = Some(meaning(solution.status).to_owned());
+    }
+    if let (Some(message), false) = (&mut summary.message, optimum.meets_equations()) {
         message.push_str(&redundancy(&model.redundant_constraints(&boundary.start.z)));
     }
     summary.program = Some(Program {
@@ -121,8 +135,11 @@ pub(super) fn control(
         },
         infeasibility: optimum.infeasibility,
         violations: violated.clone(),
-        resimulation,
+        resimulation: resimulation.clone(),
     });
+    let coarse = tested.and_then(Resimulation::warning);
+    summary.notes.extend(note.into_iter().chain(coarse));
+    summary.notes.extend(not_kept.filter(|_| is_solved));
     summary.notes.extend(optimum.stretched.map(stretched));
     summary.accuracy = accuracy;
     summary.plan = Plan::of(model, Some(control), MEASURED)
@@ -147,6 +164,8 @@ struct Found {
     /// Iterations on the grids up to its own.
     iterations: usize,
     accuracy: Option<Accuracy>,
+    /// Why another grid was taken than that of the problem.
+    note: Option<String>,
 }
 
 /// Solves on the grid of the problem, or on finer ones where an accuracy is asked for.
@@ -159,13 +178,16 @@ fn find(
 ) -> Result<Found, RunError> {
     let file = &request.input;
     let Some(wanted) = request.wanted else {
-        let optimum = optimise(file, system, control, None, allowed, &mut |iteration| {
-            observer(control.intervals, iteration)
-        })?;
-        return Ok(Found {
-            iterations: optimum.solution.iterations.len().saturating_sub(1),
+        let Cured {
             optimum,
+            iterations,
+            note,
+        } = reproduced(file, system, control, allowed, observer)?;
+        return Ok(Found {
+            optimum,
+            iterations,
             accuracy: None,
+            note,
         });
     };
     let Refined {
@@ -178,6 +200,7 @@ fn find(
         optimum,
         iterations,
         accuracy: Some(accuracy),
+        note: None,
     })
 }
 
@@ -249,7 +272,7 @@ fn rows(summary: &Summary) -> Vec<(String, String)> {
             row(&format!("estimated error, {name}"), format!("{error:.1e}"));
         }
         if let Some(r) = &program.resimulation {
-            let of = |d: &crate::run::resimulate::Distance| {
+            let of = |d: &crate::run::distance::Distance| {
                 format!("{:.1e} rad, {:.1e} m", d.angle, d.length)
             };
             row("deviation when simulated forward", of(&r.deviation));

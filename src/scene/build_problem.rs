@@ -145,6 +145,7 @@ fn control(spec: &ControlSpec, system: &System, scope: &Scope<'_>) -> Result<Con
         goal,
         voltage_bounds,
         given,
+        hold: spec.hold.into(),
         objective: objective(&spec.objective, &scope.key("objective"))?,
         limits,
         coordinates: coordinates(spec.coordinates, system, scope)?,

@@ -96,6 +96,12 @@ pub(crate) fn goal_state(
     ])?;
     let outer = scope;
     let scope = outer.key(key);
+    for (name, is_written) in [("hold", spec.hold.is_some()), ("rest", spec.rest.is_some())] {
+        if is_written && spec.markers.is_none() {
+            let found = format!("{name:?} beside {key:?}");
+            return Err(outer.key(name).wrong(found, "it beside \"markers\" only"));
+        }
+    }
     if let Some(map) = &spec.rest_at_voltages {
         return voltages(map, system, &scope).map(State::RestAtVoltages);
     }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::marker::PhantomData;
 
-use crate::control::problem::Rest;
+use crate::control::problem::{Hold, Rest};
 use crate::dynamics::Newton;
 use crate::scene::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::scene::quantity::{JointCoordinate, JointRate, Quantity, Time, Voltage};
@@ -150,6 +150,10 @@ pub struct ControlSpec {
     /// they are no unknowns, and one of 0 leaves no electric term at all.
     #[serde(default)]
     pub voltages: VoltageMap,
+    /// What becomes of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is
+    /// `reported` (where not written), or refused where holding it is `required`.
+    #[serde(default)]
+    pub hold: HoldSpec,
     /// What is minimised.
     pub objective: ObjectiveSpec,
     /// Path limits.
@@ -212,6 +216,26 @@ pub enum RestSpec {
     Everything,
     /// Bodies and the markers of the goal.
     Markers,
+}
+
+/// What becomes of a goal that cannot be kept.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum HoldSpec {
+    /// A line says so.
+    #[default]
+    Reported,
+    /// It is no solution.
+    Required,
+}
+
+impl From<HoldSpec> for Hold {
+    fn from(spec: HoldSpec) -> Self {
+        match spec {
+            HoldSpec::Reported => Self::Reported,
+            HoldSpec::Required => Self::Required,
+        }
+    }
 }
 
 impl From<RestSpec> for Rest {

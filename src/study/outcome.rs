@@ -11,7 +11,7 @@ use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{EquilibriumError, equilibrium, observations, simulate};
 use crate::ipopt::interrupt;
 use crate::model::Model;
-use crate::run::{Allowed, Optimum, RunError, Simulated, integrate, optimise, trajectory};
+use crate::run::{Allowed, Cause, Optimum, RunError, Simulated, integrate, optimise, trajectory};
 use crate::study::measure::Measure;
 use crate::study::read::Point;
 
@@ -80,12 +80,13 @@ fn control(
         Ok(optimum) => optimum,
         Err(error) => return (refused(&error, seconds), None),
     };
-    let status = optimum.solution.status;
     let is_solved = optimum.is_solved();
+    let none = || "the solver found no solution".to_owned();
     let ended = Ended {
-        status: status.word(),
-        message: (!is_solved).then(|| "the solver found no solution".to_owned()),
-        seconds,
+        status: optimum.word(),
+        message: (!is_solved).then(|| optimum.cause().map_or_else(none, Cause::told)),
+        // Putting voltages to the test is no part of finding them.
+        seconds: seconds - optimum.tested,
         is_solved,
     };
     let seen = markers

@@ -44,6 +44,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
         goal: joints(&[]),
         voltage_bounds: [0.0, 3000.0],
         given: BTreeMap::new(),
+        hold: Default::default(),
         objective: Objective {
             effort: 1.0,
             ..Objective::default()
