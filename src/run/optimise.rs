@@ -163,6 +163,9 @@ pub fn optimise(
         false => violations(&mut program, &solution.x, HOLDS, NAMED),
     };
     let is_motion = solution.status.is_solved() && reversed.is_none();
+    if is_motion {
+        phase("simulating under the optimal voltages");
+    }
     let solved = Instant::now();
     let resimulation =
         is_motion.then(|| resimulate(&model, &boundary.start, &motion, control.solver.tolerance));

@@ -133,7 +133,7 @@ pub(super) fn resimulate(
         half: None,
         end: None,
     };
-    if out.cause.is_some() {
+    if own.failure.is_some() || out.cause.is_some() {
         return out;
     }
     let mut error = 0.0_f64;
@@ -200,8 +200,13 @@ impl Resimulation {
         self.failure.is_none() && self.drift.is_some_and(stays)
     }
 
-    /// That the grid is coarse, where it is.
+    /// That the grid is coarse, or that the voltages could not be put to the test.
     pub(super) fn warning(&self) -> Option<String> {
+        if let (None, None, Some(failure)) = (&self.cause, self.error, &self.failure) {
+            return Some(format!(
+                "the optimal voltages could not be put to the test: {failure}"
+            ));
+        }
         let error = self.error.filter(|&e| e > COARSE && self.cause.is_none())?;
         let Finer { deviation, .. } = self.finer.last()?;
         Some(format!(
@@ -218,6 +223,8 @@ struct Repeat {
     /// Distances from the optimum at its instants, as far as it goes.
     distances: Vec<Distance>,
     failure: Option<String>,
+    /// Whether redundant constraints keep a step forward from being taken at all.
+    is_untestable: bool,
 }
 
 impl Repeat {
@@ -234,7 +241,10 @@ impl Repeat {
         let instants = 0..=history.intervals() / steps;
         let of = |k: usize| Distance::between(model, &motion, steps * k, optimal, k);
         let ended = (history.intervals() < steps * n).then(|| "interrupted".to_owned());
+        let is_untestable = history.intervals() == 0
+            && matches!(&failure, Some(StepError::Singular { redundant, .. }) if !redundant.is_empty());
         Self {
+            is_untestable,
             distances: instants.map(of).collect(),
             failure: failure.map(|error| error.to_string()).or(ended),
             history,
@@ -250,7 +260,7 @@ impl Repeat {
     fn cause(&self, model: &Model, optimal: &Solved, same: f64) -> Option<Cause> {
         let sizes: Vec<f64> = self.distances.iter().map(|d| d.size(model)).collect();
         let Some(k) = sizes.iter().position(|&size| !(size <= same)) else {
-            let failure = self.failure.clone()?;
+            let failure = self.failure.clone().filter(|_| !self.is_untestable)?;
             return Some(Cause::Ends { steps: 1, failure });
         };
         let k = k.max(1);

@@ -133,7 +133,7 @@ pub(super) fn control(
             jacobian: per_interval(seconds.jacobian, solution.evaluations.jacobian),
             hessian: per_interval(seconds.hessian, solution.evaluations.hessian),
         },
-        infeasibility: optimum.infeasibility,
+        infeasibility: Some(optimum.infeasibility).filter(|value| value.is_finite()),
         violations: violated.clone(),
         resimulation: resimulation.clone(),
     });
@@ -240,10 +240,10 @@ fn write_files(
         system: &model.system,
         trajectory: &motion,
         skins: &Skins::new(model, &history),
-        name: if is_solved {
-            "optimal voltages"
-        } else {
-            "last iterate"
+        name: match summary.status.as_str() {
+            _ if is_solved => "optimal voltages",
+            "not_reproduced" | "not_held" => "optimum",
+            _ => "last iterate",
         },
         observations: &observed,
         comparison: compared.as_ref().map(|c| ("constant voltages", c)),

@@ -59,6 +59,9 @@ struct Ended {
     is_solved: bool,
     #[serde(skip)]
     voltages: Vec<f64>,
+    /// What else was said of it.
+    #[serde(skip)]
+    notes: Vec<String>,
 }
 
 /// The section `starts` of `summary.json`.
@@ -83,6 +86,8 @@ struct Summary {
     iterations: Option<usize>,
     infeasibility: Option<f64>,
     seconds: Seconds,
+    #[serde(default)]
+    notes: Vec<String>,
 }
 
 #[derive(Deserialize)]
@@ -302,6 +307,7 @@ impl Ended {
             optimum: None,
             is_solved: false,
             voltages: Vec::new(),
+            notes: Vec::new(),
         }
     }
 
@@ -348,6 +354,7 @@ impl Ended {
             optimum: None,
             is_solved,
             voltages,
+            notes: summary.notes,
         })
     }
 
@@ -449,7 +456,7 @@ fn write(
         Some(objective) if is_solved => format!("solved: objective {objective:.7}, {counts}"),
         _ => format!("not solved: {counts}"),
     };
-    let mut notes = Vec::new();
+    let mut notes = best.map_or_else(Vec::new, |best| best.notes.clone());
     if interrupt::requested() {
         notes.push("interrupted; the files hold the best start that had ended".to_owned());
     }

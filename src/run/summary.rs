@@ -69,8 +69,9 @@ pub(super) struct Program {
     pub(super) evaluations: Evaluations,
     /// Mean time of one evaluation per interval.
     pub(super) interval_microseconds: PerInterval,
-    /// Greatest violation of an equation or limit, as the solver measures it.
-    pub(super) infeasibility: f64,
+    /// Greatest violation of an equation or limit, as the solver measures it; absent where one has no value.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) infeasibility: Option<f64>,
     /// The worst rows that do not hold; none of a solution.
     pub(super) violations: Vec<Violation>,
     #[serde(skip_serializing_if = "Option::is_none")]
