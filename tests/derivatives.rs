@@ -10,9 +10,9 @@ use common::random::Random;
 use nalgebra::{SMatrix, SVector};
 use num_dual::{Dual, Dual64, DualNum, HyperDual};
 use proboscis::energy::{
-    Angle, AngularDamper, Coincidence, DielectricCell, ElasticCell, Energy, Gravity, LinearDamper,
-    Orthogonality, OutsideBox, Place, Projection, SectionInertia, SquaredDistance, SquaredField,
-    ViscousCell,
+    Angle, AngularDamper, Coincidence, CoordinateDamper, DielectricCell, ElasticCell, Energy,
+    Gravity, LinearDamper, Orthogonality, OutsideBox, Place, Projection, SectionInertia,
+    SquaredDistance, SquaredField, ViscousCell,
 };
 use proboscis::math::{Jet, Vector};
 
@@ -122,6 +122,12 @@ impl Formula<27> for AngularDamper {
         let part = |at: usize| -> [D; 9] { std::array::from_fn(|i| p[at + i]) };
         let of = |direction| along(part(9), direction, half_angle);
         -of(part(18)) * of(part(0)) * self.coefficient
+    }
+}
+
+impl Formula<6> for CoordinateDamper {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
+        -polarised(three(p, 3), three(p, 0)) * self.coefficient
     }
 }
 
@@ -443,6 +449,12 @@ fn jets_are_the_derivatives_of_naive_formulas() {
         "angular damper",
         &AngularDamper { coefficient: 0.7 },
         0.3,
+        1.1,
+    );
+    law(
+        "coordinate damper",
+        &CoordinateDamper { coefficient: 0.7 },
+        0.2,
         1.1,
     );
     law(

@@ -155,13 +155,19 @@ fn a_damped_slider_decays_by_the_same_factor_in_every_step() {
         let start = Start::with_rates(&model, at_reference(&model), &rates);
         let seen = observations(&model, &motion(&model, &start, h, 50, &[]));
         let place = column(&seen, "pivot");
+        let momentum = ["x", "y", "z"].map(|i| column(&seen, &format!("linear_momentum_{i}")));
         // m v_{k+½} = m v_{k−½} − (d h/2)(v_{k−½} + v_{k+½}), and v_½ = v₀/(1 + d h/(2m)).
         let half = 0.5 * damping * h / mass;
         let mut v = velocity / (1.0 + half);
         let mut y = 0.0;
-        for &seen in &place[1..] {
+        for (k, &seen) in place.iter().enumerate().skip(1) {
             y += h * v;
             assert!((seen - y).abs() < 1e-12, "{seen} against {y}");
+            // p⁺ = m v − (d h/2) v along the axis: the rail pulls from the ground.
+            for i in 0..3 {
+                let expected = mass * (1.0 - half) * v * axis[i];
+                assert!((momentum[i][k] - expected).abs() < 1e-12);
+            }
             v *= (1.0 - half) / (1.0 + half);
         }
         assert!(v < 0.1 * velocity);

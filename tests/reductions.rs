@@ -235,9 +235,69 @@ const JOINTS: [f64; 5] = [0.1, 2.0, -0.2, 0.3, 0.0];
 const RATES: [f64; 5] = [2e-3, 0.05, -3e-3, 6e-3, 0.0];
 const VOLTAGES: [f64; 5] = [1500.0, 0.0, 1000.0, 2000.0, 500.0];
 
+/// The tree without joint dampers.
+fn undamped() -> System {
+    let mut system = tree();
+    system.joints.iter_mut().for_each(|j| j.damping = None);
+    system
+}
+
+#[test]
+fn dampers_agree_to_second_order() {
+    // Reduced coordinates damp the difference of a joint coordinate, redundant ones the turn of vectors at the midpoint.
+    let system = tree();
+    assert!(system.joints.iter().filter(|j| j.damping.is_some()).count() == 3);
+    let seen = |coordinates: Coordinates, n: usize| {
+        let h = 240.0 / n as f64;
+        let (model, history) = run(&system, coordinates, &JOINTS, &RATES, h, n, &VOLTAGES);
+        let seen = observations(&model, &history);
+        let column = |name: &str| {
+            let found = seen.columns.iter().find(|c| c.name == name);
+            found.unwrap().values.clone()
+        };
+        let names = [
+            "angular_momentum_x",
+            "angular_momentum_z",
+            "dissipated_energy",
+        ];
+        let columns = names.map(column);
+        (columns, Trajectory::from_history(&model, &history))
+    };
+    let (model, history) = run(
+        &undamped(),
+        Coordinates::Reduced,
+        &JOINTS,
+        &RATES,
+        1.5,
+        160,
+        &VOLTAGES,
+    );
+    let free = Trajectory::from_history(&model, &history);
+    let effect = distance(&free, &seen(Coordinates::Reduced, 160).1, 100.0);
+    println!("without dampers: {effect}");
+    assert!(effect > 1e-2, "{effect}");
+    let differences = [160, 320, 640].map(|n| {
+        let [(a, reduced), (b, redundant)] =
+            [Coordinates::Reduced, Coordinates::Redundant].map(|c| seen(c, n));
+        let mut all = vec![distance(&reduced, &redundant, 100.0)];
+        all.extend(a.iter().zip(&b).map(|(a, b)| {
+            let size = a.iter().fold(0.0_f64, |m, a| m.max(a.abs()));
+            let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+            apart.fold(0.0, f64::max) / size
+        }));
+        all
+    });
+    for i in 0..differences[0].len() {
+        let [a, b, c] = [0, 1, 2].map(|n| differences[n][i]);
+        println!("{i}: {a:e} {b:e} {c:e}");
+        assert!(a < 1e-2 && c > 1e-9, "{i}: {a:e} {c:e}");
+        assert!(((b / c).log2() - 2.0).abs() < 0.2, "{i}: {a:e} {b:e} {c:e}");
+    }
+}
+
 #[test]
 fn of_a_tree_with_everything() {
-    let (difference, trajectory) = compare(&tree(), &JOINTS, &RATES, 3.0, 200, &VOLTAGES);
+    let (difference, trajectory) = compare(&undamped(), &JOINTS, &RATES, 3.0, 200, &VOLTAGES);
     println!("tree: {difference:e}");
     for (i, start) in JOINTS.iter().enumerate().take(4) {
         let swing = trajectory
@@ -253,10 +313,7 @@ fn of_a_tree_with_everything() {
 
 #[test]
 fn in_any_order_of_the_joints_and_either_direction() {
-    let mut system = tree();
-    // The damper of a hinge reads two vectors of its parent and one of its child, so its midpoint rule is that of the
-    // other direction to O(h²) only, where the parent turns.
-    system.joints[3].damping = None;
+    let system = undamped();
     let (_, expected) = compare(&system, &JOINTS, &RATES, 3.0, 50, &VOLTAGES);
 
     // The joints from the leaves to the root.
@@ -271,19 +328,47 @@ fn in_any_order_of_the_joints_and_either_direction() {
     // Parent and child exchanged: a turn of one in the other is the opposite turn of the other in the one, and so is a
     // displacement, whose axis then turns with the other body.
     for reversed in [vec![2], vec![1], vec![3, 4]] {
-        let mut swapped = system.clone();
-        let (mut joints, mut rates) = (JOINTS, RATES);
-        for &j in &reversed {
-            let joint = &mut swapped.joints[j];
-            let parent = joint.parent.expect("joints to the ground stay");
-            (joint.parent, joint.child) = (Some(joint.child), parent);
-            joints[j] = -joints[j];
-            rates[j] = -rates[j];
-        }
+        let (swapped, joints, rates) = exchanged(&system, &reversed);
         let (difference, trajectory) = compare(&swapped, &joints, &rates, 3.0, 50, &VOLTAGES);
         let other = distance(&expected, &trajectory, 100.0);
         println!("reversed {reversed:?}: {difference:e}, {other:e}");
         assert!(difference < 1e-9, "{difference:e}");
+        assert!(other < 1e-9, "{other:e}");
+    }
+}
+
+/// The system with parent and child of some joints exchanged, and the same joint coordinates and rates.
+fn exchanged(system: &System, reversed: &[usize]) -> (System, [f64; 5], [f64; 5]) {
+    let mut swapped = system.clone();
+    let (mut joints, mut rates) = (JOINTS, RATES);
+    for &j in reversed {
+        let joint = &mut swapped.joints[j];
+        let parent = joint.parent.expect("joints to the ground stay");
+        (joint.parent, joint.child) = (Some(joint.child), parent);
+        joints[j] = -joints[j];
+        rates[j] = -rates[j];
+    }
+    (swapped, joints, rates)
+}
+
+#[test]
+fn dampers_on_joint_coordinates_know_no_direction() {
+    let motion = |system: &System, joints: &[f64; 5], rates: &[f64; 5]| {
+        let (model, history) = run(
+            system,
+            Coordinates::Reduced,
+            joints,
+            rates,
+            3.0,
+            50,
+            &VOLTAGES,
+        );
+        Trajectory::from_history(&model, &history)
+    };
+    let expected = motion(&tree(), &JOINTS, &RATES);
+    for reversed in [[1], [3]] {
+        let (swapped, joints, rates) = exchanged(&tree(), &reversed);
+        let other = distance(&expected, &motion(&swapped, &joints, &rates), 100.0);
         assert!(other < 1e-9, "{other:e}");
     }
 }

@@ -76,6 +76,8 @@ struct Observer<'m> {
     /// Made where momenta are read at instants.
     kinetic: Option<Kinetic<'m>>,
     dissipated: f64,
+    /// What forces on joint coordinates do to the whole system.
+    pulls: Vec<[Vector; 2]>,
 }
 
 impl<'m> Observer<'m> {
@@ -87,6 +89,7 @@ impl<'m> Observer<'m> {
             scratch: model.action.scratch(Level::Gradient),
             kinetic: None,
             dissipated: 0.0,
+            pulls: model.condensed.system.joint_pulls(),
         }
     }
 
@@ -200,6 +203,7 @@ impl<'m> Observer<'m> {
         let places = Places {
             poses: &poses,
             x: &self.here.x,
+            pulls: &self.pulls,
         };
         for map in momentum_maps(&model.vectors, &places, &momenta, &impulses) {
             row.extend(map.iter());
@@ -332,11 +336,13 @@ pub(super) fn vector_momenta(model: &Model, x: &[Vector], v: &[Vector]) -> Vec<V
 struct Places<'a> {
     poses: &'a [Pose],
     x: &'a [Vector],
+    pulls: &'a [[Vector; 2]],
 }
 
 /// Linear momentum Σ c π and angular momentum about the origin Σ x × π of a list of momenta π of vectors x, with c the part
 /// of a translation that x takes: 1 for a point, 0 for a direction or a span. Momenta of masses count with the whole of
-/// their vectors, impulses of forces with the part on bodies: what pulls at the ground does not move the system.
+/// their vectors, impulses of forces with the part on bodies: what pulls at the ground does not move the system. A force on a
+/// joint coordinate pulls at both bodies of the joint.
 fn momentum_maps(
     vectors: &[MaterialVector],
     places: &Places<'_>,
@@ -355,6 +361,12 @@ fn momentum_maps(
                 Carrier::Ground => (term.at(&Pose::GROUND), *momentum),
                 // A vector that effects read holds no more than one node, and nothing else beside it.
                 Carrier::Node(_) => (*x, momentum + impulse),
+                Carrier::Joint(coordinate) => {
+                    let [force, torque] = places.pulls[coordinate];
+                    linear += force * impulse.x;
+                    angular += torque * impulse.x;
+                    continue;
+                }
             };
             linear += total * term.centre;
             angular += place.cross(&total);

@@ -1,8 +1,32 @@
-//! Joint dampers as virtual work.
+//! Joint dampers as virtual work: on the coordinate of the joint where it is one, on the vectors of its bodies otherwise.
+//!
+//! Both are d times the rate of the coordinate, which the midpoint rule samples once as a difference of angles and once as a
+//! turn of vectors: the same force to O(h²).
 
 use crate::energy::Energy;
 use crate::math::Jet;
 use nalgebra::SVector;
+
+/// Virtual work `−d u̇ δu` of a joint; arguments: δu, then its rate, each in the first component of a vector.
+#[derive(Clone, Copy, Debug)]
+pub struct CoordinateDamper {
+    /// d in N mm ms or N ms/mm.
+    pub coefficient: f64,
+}
+
+impl Energy<6> for CoordinateDamper {
+    const DEGREE: usize = 2;
+    const VIRTUAL: usize = 1;
+    const ISOTROPIC: bool = true;
+
+    fn couples(i: usize, j: usize) -> bool {
+        i != j
+    }
+
+    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
+        Jet::dot(0, 3, p, w) * -self.coefficient
+    }
+}
 
 /// Virtual work `−d θ̇ δθ` of a revolute joint with `tan θ = s/c`, s = b·x, c = a·x, for vectors a, b of the parent and x
 /// of the child; arguments: δa, δb, δx, then their midpoints, then their rates.

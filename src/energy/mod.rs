@@ -8,7 +8,7 @@ mod muscle;
 mod viscosity;
 
 pub use constraint::{Coincidence, Orthogonality};
-pub use damper::{AngularDamper, LinearDamper};
+pub use damper::{AngularDamper, CoordinateDamper, LinearDamper};
 pub use gravity::Gravity;
 pub use limit::{Angle, OutsideBox, Place, Projection, SquaredDistance, SquaredField};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};

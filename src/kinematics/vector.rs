@@ -2,7 +2,7 @@
 //!
 //! On director coordinates q = [φ; d₁; d₂; d₃] of a body every point φ + ρᵢ dᵢ, every director dᵢ and every difference
 //! of points of two bodies is linear: x = Σ (c φ + ρᵢ dᵢ) over a few terms. So is the place of a node of an elastic
-//! block. Energies are functions of such vectors.
+//! block, and a coordinate of a tree in its first component. Energies are functions of such vectors.
 
 use crate::math::{Matrix, Vector};
 
@@ -42,6 +42,8 @@ pub enum Carrier {
     Body(usize),
     /// A node with coordinates of its own, numbered over all blocks; it has a place and no directors.
     Node(usize),
+    /// A coordinate of a joint of a tree, in rad or mm: the first component.
+    Joint(usize),
 }
 
 impl Carrier {
@@ -141,19 +143,31 @@ impl MaterialVector {
         }
     }
 
-    /// Whether a node carries a part of it.
-    pub fn is_of_nodes(&self) -> bool {
-        self.terms
-            .iter()
-            .any(|t| matches!(t.carrier, Carrier::Node(_)))
+    /// A coordinate of a joint of a tree.
+    pub fn joint(coordinate: usize) -> Self {
+        Self {
+            terms: vec![Term {
+                carrier: Carrier::Joint(coordinate),
+                centre: 1.0,
+                directors: Vector::zeros(),
+            }],
+        }
     }
 
-    /// The value at given poses of the bodies and places of the nodes.
+    /// Whether it follows from the poses of the bodies alone.
+    pub fn is_of_bodies(&self) -> bool {
+        self.terms
+            .iter()
+            .all(|t| matches!(t.carrier, Carrier::Ground | Carrier::Body(_)))
+    }
+
+    /// The value at given poses of the bodies and places of the nodes; coordinates of joints are not read from poses.
     pub fn at(&self, poses: &[Pose], nodes: &[Vector]) -> Vector {
         let part = |t: &Term| match t.carrier {
             Carrier::Ground => t.at(&Pose::GROUND),
             Carrier::Body(body) => t.at(&poses[body]),
             Carrier::Node(node) => nodes[node] * t.centre,
+            Carrier::Joint(_) => unreachable!("a coordinate is no place"),
         };
         self.terms.iter().map(part).sum()
     }

@@ -1,11 +1,13 @@
 //! What a scene calls for, effect by effect. This is the only place that makes effects: what is absent makes none.
 
 use crate::energy::{
-    AngularDamper, DielectricCell, ElasticCell, Gravity, LinearDamper, SectionInertia, ViscousCell,
+    AngularDamper, CoordinateDamper, DielectricCell, ElasticCell, Gravity, LinearDamper,
+    SectionInertia, ViscousCell,
 };
 use crate::functional::{Effect, Element, Group, Inertia, Mass, Stencil, VectorArg};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
+use crate::model::Coordinates;
 use crate::model::continua::Continua;
 use crate::model::joints::{JointGauge, Measure};
 use crate::model::system::{Attachment, Fidelity, Muscle, System};
@@ -18,6 +20,7 @@ pub(super) type Effects = Vec<Box<dyn Effect>>;
 pub(super) struct Builder<'a> {
     pub(super) system: &'a System,
     pub(super) reference: &'a [Pose],
+    pub(super) coordinates: Coordinates,
     pub(super) vectors: &'a mut Vectors,
     /// Source of each voltage.
     pub(super) voltages: &'a [usize],
@@ -64,6 +67,7 @@ impl<'a> Builder<'a> {
     pub(super) fn new(
         system: &'a System,
         reference: &'a [Pose],
+        coordinates: Coordinates,
         voltages: &'a [usize],
         continua: &'a Continua,
         vectors: &'a mut Vectors,
@@ -71,6 +75,7 @@ impl<'a> Builder<'a> {
         let mut builder = Self {
             system,
             reference,
+            coordinates,
             vectors,
             voltages,
             continua,
@@ -156,22 +161,34 @@ impl<'a> Builder<'a> {
             1.0,
             self.viscous()
         );
-        group!(
-            effects,
-            intervals,
-            27,
-            "joint damping",
-            1.0,
-            self.angular_dampers()
-        );
-        group!(
-            effects,
-            intervals,
-            18,
-            "joint damping",
-            1.0,
-            self.linear_dampers()
-        );
+        match self.coordinates {
+            Coordinates::Reduced => {
+                let dampers = self.coordinate_dampers();
+                group!(effects, intervals, 6, "joint damping", 1.0, dampers);
+            }
+            Coordinates::Redundant => {
+                let dampers = self.angular_dampers();
+                group!(effects, intervals, 27, "joint damping", 1.0, dampers);
+                let dampers = self.linear_dampers();
+                group!(effects, intervals, 18, "joint damping", 1.0, dampers);
+            }
+        }
+    }
+
+    fn coordinate_dampers(&mut self) -> Vec<Element<CoordinateDamper, 2, 0>> {
+        let mut elements = Vec::new();
+        let coordinates = self.system.joint_coordinates();
+        for (joint, coordinate) in self.system.joints.iter().zip(coordinates) {
+            if let (Some(coefficient), Some(coordinate)) = (joint.damping, coordinate) {
+                let vector = self.vectors.index(MaterialVector::joint(coordinate));
+                elements.push(Element {
+                    energy: CoordinateDamper { coefficient },
+                    vectors: [mid(vector), rate(vector)],
+                    scalars: [],
+                });
+            }
+        }
+        elements
     }
 
     fn angular_dampers(&mut self) -> Vec<Element<AngularDamper, 9, 0>> {

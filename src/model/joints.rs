@@ -58,6 +58,19 @@ impl System {
         };
         self.joints.iter().map(index).collect()
     }
+
+    /// What a unit force on each joint coordinate does to the whole system, as a force and a torque about the origin: between
+    /// two bodies nothing, from the ground the axis of the joint.
+    pub fn joint_pulls(&self) -> Vec<[Vector; 2]> {
+        let none = [Vector::zeros(); 2];
+        let pull = |joint: &Joint| match (joint.kind, joint.parent) {
+            (JointKind::Revolute { axis }, None) => Some([Vector::zeros(), axis]),
+            (JointKind::Prismatic { axis }, None) => Some([axis, joint.at.cross(&axis)]),
+            (JointKind::Revolute { .. } | JointKind::Prismatic { .. }, Some(_)) => Some(none),
+            (JointKind::Spherical | JointKind::Fixed, _) => None,
+        };
+        self.joints.iter().filter_map(pull).collect()
+    }
 }
 
 impl JointGauge {

@@ -150,7 +150,14 @@ impl Model {
         let ties = coordinates == Coordinates::Redundant;
         let scene = system.solids.len();
         let continua = Continua::new(solids, scene, &reference, &voltages, ties, &mut vectors)?;
-        let mut parts = effects::Builder::new(rest, &reference, &voltages, &continua, &mut vectors);
+        let mut parts = effects::Builder::new(
+            rest,
+            &reference,
+            coordinates,
+            &voltages,
+            &continua,
+            &mut vectors,
+        );
         let intervals = parts.intervals(question.of_motion);
         let (instants, multiplier_names) = match coordinates {
             Coordinates::Reduced => (Vec::new(), Vec::new()),

@@ -75,10 +75,10 @@ impl Motion {
     ) -> Self {
         let parts = parts_of_nodes(tree.coordinates(), nodes);
         let dependence = |(vector, packed): (&MaterialVector, &Packed)| {
-            if vector.is_of_nodes() {
-                linear(vector, nodes, &parts)
-            } else {
+            if vector.is_of_bodies() {
                 Dependence::Articulated(packed.clone())
+            } else {
+                linear(vector, nodes, &parts)
             }
         };
         let of_bodies = tree.coordinates();
@@ -291,7 +291,7 @@ fn parts_of_nodes(first: usize, nodes: &[NodePlace]) -> Vec<Vec<LinearPart>> {
     nodes.iter().map(parts).collect()
 }
 
-/// The linear dependence of a vector on directors and nodes.
+/// The linear dependence of a vector on directors, nodes and coordinates of joints.
 fn linear(vector: &MaterialVector, nodes: &[NodePlace], of_node: &[Vec<LinearPart>]) -> Dependence {
     let mut constant = Vector::zeros();
     let mut parts = Vec::new();
@@ -310,6 +310,11 @@ fn linear(vector: &MaterialVector, nodes: &[NodePlace], of_node: &[Vec<LinearPar
                     }
                 }
             }
+            Carrier::Joint(coordinate) => parts.push(LinearPart {
+                coordinate,
+                axis: 0,
+                factor: term.centre,
+            }),
             Carrier::Node(node) => {
                 let NodePlace { reference, free } = nodes[node];
                 for axis in (0..3).filter(|&axis| !free[axis]) {

@@ -151,11 +151,11 @@ impl Tree {
             paths: Vec::new(),
         };
         for (index, vector) in vectors.iter().enumerate() {
-            if vector.is_of_nodes() {
+            if vector.is_of_bodies() {
+                tree.lay_vector(index, vector);
+            } else {
                 tree.constants.push(Vector::zeros());
                 tree.packed.push(Packed::default());
-            } else {
-                tree.lay_vector(index, vector);
             }
         }
         tree.lay_paths();
@@ -184,7 +184,9 @@ impl Tree {
                     });
                 }
                 Carrier::Ground => constant += term.at(&Pose::GROUND),
-                Carrier::Node(_) => unreachable!("vectors of nodes are not on the tree"),
+                Carrier::Node(_) | Carrier::Joint(_) => {
+                    unreachable!("vectors on the tree are of bodies")
+                }
             }
         }
         self.constants.push(constant);
