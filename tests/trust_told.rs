@@ -4,9 +4,11 @@ mod programs;
 mod signals;
 
 use proboscis::control::problem::Task;
+use proboscis::control::{Boundary, Transcription, guess};
 use proboscis::dynamics::{Start, simulate};
 use proboscis::ipopt::{Options, Point, Status, interrupt, solve};
 use proboscis::model::Model;
+use proboscis::nlp::Nlp;
 use proboscis::nlp::differences::{Along, TOLERANCE, check_along};
 use proboscis::scene::read_problem;
 use programs::{HS071_START, Program, hs071, one_variable};
@@ -42,7 +44,7 @@ fn json(path: &Path) -> Value {
 /// A column of few elements.
 const SMALL: [&str; 4] = [
     "--set",
-    "scene.solids[0].box.elements=[2,2,4]",
+    "scene.solids[0].box.elements=[1,1,4]",
     "--set",
     "scene.markers=[]",
 ];
@@ -104,6 +106,48 @@ fn a_solve_is_stopped_at_the_next_question() {
     assert_eq!(solution.evaluations.hessian, 1);
     assert_eq!(solution.evaluations.gradient, 1);
     assert!(solution.x.iter().all(|x| x.is_finite()));
+}
+
+/// What a stop left half done is not taken for done.
+#[test]
+fn a_program_that_was_stopped_is_evaluated_anew() {
+    let loaded = read_problem(problem("pair").as_ref(), &[]).unwrap();
+    let Task::Control(control) = &loaded.task else {
+        panic!("a control problem");
+    };
+    let h = control.duration.first() / control.intervals as f64;
+    let (model, boundary) = Boundary::resolve(&loaded.system, control, h).unwrap();
+    let initial = guess(&model, &boundary, control, h, None);
+    let program = || Transcription::new(&model, &boundary, control, &initial).unwrap();
+    let (mut fresh, mut stopped) = (program(), program());
+    let start = fresh.start(&initial);
+    let x: Vec<f64> = start.x.iter().map(|x| x + 0.01).collect();
+    let values = |program: &mut Transcription<'_>| {
+        let mut g = vec![0.0; program.constraints().lower.len()];
+        program.constraint(&x, &mut g);
+        let mut jacobian = vec![0.0; program.jacobian_structure().rows.len()];
+        program.jacobian(&x, &mut jacobian);
+        [g, jacobian].concat()
+    };
+    let expected = values(&mut fresh);
+    assert!(expected.iter().all(|v| v.is_finite()) && expected.iter().any(|v| *v != 0.0));
+    let watch = interrupt::watch(Some(0.0));
+    assert_ne!(values(&mut stopped), expected);
+    drop(watch);
+    assert_eq!(values(&mut stopped), expected);
+
+    // No time at all, watched from outside too: the start comes back with what it violates.
+    let _watch = interrupt::watch(Some(0.0));
+    let options = Options {
+        max_seconds: Some(0.0),
+        ..Options::default()
+    };
+    let mut go_on = |_: &_| ControlFlow::Continue(());
+    let solution = solve(&mut stopped, &start, &options, &mut go_on).unwrap();
+    assert_eq!(solution.status, Status::TimeLimit);
+    assert!(solution.constraints.iter().all(|g| g.is_finite()));
+    let evaluations = &solution.evaluations;
+    assert_eq!((evaluations.gradient, evaluations.jacobian), (0, 0));
 }
 
 #[test]

@@ -13,8 +13,8 @@ const RESERVED_ITERATIONS: usize = 4096;
 
 /// Answers the questions of Ipopt about one nonlinear program.
 ///
-/// A quantity that is NaN or ±∞ anywhere is refused, and Ipopt then shortens its step. When it is time to stop everything is
-/// refused, and Ipopt soon gives up.
+/// A quantity that is NaN or ±∞ anywhere is refused, and Ipopt then shortens its step. When it is time to stop every value is
+/// refused, and Ipopt soon gives up; without structures it cannot.
 ///
 /// Before Ipopt tells of an iterate it has asked for the derivatives there, because it needs them to tell the dual
 /// infeasibility; at points which it merely tries it asks for f and g alone. So the point at which derivatives were
@@ -81,6 +81,9 @@ impl<'a> Evaluator<'a> {
 
     /// f(x), scaled.
     pub(super) fn objective(&mut self, x: &[f64]) -> Option<f64> {
+        if self.is_stopped() {
+            return None;
+        }
         self.record.evaluations.objective += 1;
         let f = timed(&mut self.record.seconds.objective, || {
             self.scale * self.nlp.objective(x)
@@ -90,6 +93,9 @@ impl<'a> Evaluator<'a> {
 
     /// ∇f(x), scaled.
     pub(super) fn gradient(&mut self, x: &[f64], grad: &mut [f64]) -> bool {
+        if self.is_stopped() {
+            return false;
+        }
         self.derivatives_at.copy_from_slice(x);
         self.record.evaluations.gradient += 1;
         timed(&mut self.record.seconds.gradient, || {
@@ -101,6 +107,9 @@ impl<'a> Evaluator<'a> {
 
     /// g(x).
     pub(super) fn constraints(&mut self, x: &[f64], g: &mut [f64]) -> bool {
+        if self.is_stopped() {
+            return false;
+        }
         self.record.evaluations.constraints += 1;
         timed(&mut self.record.seconds.constraints, || {
             self.nlp.constraint(x, g);
@@ -110,6 +119,9 @@ impl<'a> Evaluator<'a> {
 
     /// Values of ∇g(x).
     pub(super) fn jacobian(&mut self, x: &[f64], values: &mut [f64]) -> bool {
+        if self.is_stopped() {
+            return false;
+        }
         self.derivatives_at.copy_from_slice(x);
         self.record.evaluations.jacobian += 1;
         timed(&mut self.record.seconds.jacobian, || {
@@ -126,6 +138,9 @@ impl<'a> Evaluator<'a> {
         costates: &[f64],
         values: &mut [f64],
     ) -> bool {
+        if self.is_stopped() {
+            return false;
+        }
         self.record.evaluations.hessian += 1;
         timed(&mut self.record.seconds.hessian, || {
             self.nlp.hessian(x, sigma * self.scale, costates, values);
@@ -179,7 +194,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Whether it is time to stop, which is then remembered.
-    pub(super) fn is_stopped(&mut self) -> bool {
+    fn is_stopped(&mut self) -> bool {
         self.record.stopped = self.record.stopped.or_else(interrupt::stop);
         self.record.stopped.is_some()
     }

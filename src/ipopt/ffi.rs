@@ -186,8 +186,7 @@ impl Drop for Problem {
 
 /// Runs `evaluate` and answers Ipopt whether it succeeded.
 ///
-/// A panic must not pass through C++: it is kept for the end, and every further question is answered by "failed"; so is every
-/// question when it is time to stop.
+/// A panic must not pass through C++: it is kept for the end, and every further question is answered by "failed".
 ///
 /// # Safety
 ///
@@ -196,7 +195,6 @@ unsafe fn guard(session: *mut c_void, evaluate: impl FnOnce(&mut Evaluator<'_>) 
     // SAFETY: the caller vouches that the session exists and is not borrowed elsewhere.
     let session = unsafe { &mut *session.cast::<Session<'_, '_>>() };
     let succeeded = session.panic.is_none()
-        && !session.evaluator.is_stopped()
         && catch_unwind(AssertUnwindSafe(|| evaluate(session.evaluator))).unwrap_or_else(|panic| {
             session.panic = Some(panic);
             false

@@ -116,6 +116,7 @@ pub fn solve(
     let mut evaluator = Evaluator::new(nlp, observer, jacobian, hessian, &x, options.max_seconds);
     let code = problem.solve(&mut evaluator, &mut x, &mut costates);
     let record = evaluator.into_record();
+    let _unwatched = interrupt::unwatched();
     let mut status = match Status::from_code(code) {
         // Ipopt minimises nothing where equations leave no freedom, or seem to.
         Status::Solved if is_square(&variables, &constraints) => Status::FeasiblePoint,

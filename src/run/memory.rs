@@ -3,12 +3,15 @@
 use std::fs;
 use std::path::Path;
 
+use crate::model::system::Fidelity;
 use crate::model::{Model, System};
 use crate::run::error::RunError;
 
-/// Bytes of an element with its share of nodes, couplings and tangent: 100 000 were measured, 170 000 with the first step.
-const OF_ELEMENT: f64 = 8e4;
-/// Bytes of a second derivative of an interval in a program and in the solver: 300 were measured without fill-in.
+/// Bytes of an element with its share of nodes, couplings, tangent and factors: dielectric blocks of 2048 to 16 384 elements took
+/// 133 000 at rest, 155 000 to 193 000 with the first step of a motion.
+const OF_ELEMENT: f64 = 1.2e5;
+/// Bytes of a second derivative of an interval in a program and in the solver: 300 were measured for the trunk without fill-in, 220
+/// for each entry of Jacobian and Hessian of a block of 64 elements with its factors.
 const OF_DERIVATIVE: f64 = 200.0;
 /// Bytes of an instant in tables and figures.
 const OF_INSTANT: f64 = 1e3;
@@ -21,8 +24,24 @@ const OF_POSE: f64 = 192.0;
 /// They do.
 pub(super) fn of_elements(file: &Path, system: &System) -> Result<(), RunError> {
     let elements = system.elements();
-    let what = format!("{elements} elements");
+    let unknowns = unknowns(system);
+    let what = format!("{elements} elements with about {unknowns} unknowns");
     enough(file, "scene", &what, elements as f64 * OF_ELEMENT)
+}
+
+/// Places and potentials of the nodes of finite elements, those that are fixed or given included.
+fn unknowns(system: &System) -> usize {
+    let of_muscles = system.muscles.iter().map(|muscle| match muscle.fidelity {
+        Fidelity::Lumped => 0,
+        Fidelity::FiniteElements(grid) => {
+            4 * grid.elements.map(|n| n + 1).iter().product::<usize>()
+        }
+    });
+    let of_blocks = system.solids.iter().map(|solid| {
+        let of_node = if solid.electrodes.is_empty() { 3 } else { 4 };
+        of_node * solid.mesh.nodes.len()
+    });
+    of_muscles.chain(of_blocks).sum()
 }
 
 /// Refuses a motion of too many steps.
@@ -44,7 +63,10 @@ pub(super) fn of_motion(file: &Path, model: &Model, steps: usize) -> Result<(), 
 /// Its derivatives need more than there is.
 pub(super) fn of_program(file: &Path, model: &Model, intervals: usize) -> Result<(), RunError> {
     let derivatives = model.action.layout().values(1) as f64;
-    let what = format!("a program of {intervals} intervals");
+    let unknowns = model.action.motion.unknowns() + model.voltages.len() + model.potentials;
+    let what = format!(
+        "a program of {intervals} intervals with {unknowns} unknowns and {derivatives} second derivatives each"
+    );
     let bytes = intervals as f64 * derivatives * OF_DERIVATIVE;
     enough(file, "control.intervals", &what, bytes)
 }

@@ -2,7 +2,7 @@
 
 use crate::control::transcription::limit_rows::{LimitRow, Site};
 use crate::control::transcription::stretch::{Shared, Stretch, instant_of, join, needed};
-use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
+use crate::control::transcription::{KILOVOLT, MILLISECOND, Placed, Transcription};
 use crate::functional::{Frame, Horizon, Level, Measure, Sides};
 use crate::ipopt::interrupt;
 use crate::math::Vector;
@@ -112,7 +112,11 @@ impl<'m> Transcription<'m> {
         if level == Level::Third && self.horizon == Horizon::Free {
             values[layout.horizon_square_at(last)] = square;
         }
-        self.placed = self.placed.max(needed(level));
+        // A sweep that was stopped has placed some instants only.
+        self.placed = match interrupt::stop() {
+            Some(_) => Placed::Nothing,
+            None => self.placed.max(needed(level)),
+        };
     }
 
     /// The frame in which a measure is read at instant or interval k.
