@@ -153,6 +153,7 @@ fn the_stack_pulls_in() {
         fraction,
         kind,
         last,
+        ..
     } = refused
     else {
         panic!("{refused}");

@@ -90,6 +90,7 @@ fn pull_in_is_found_to_six_digits() {
             fraction,
             kind,
             last,
+            ..
         } = refused
         else {
             panic!("{refused}");

@@ -4,7 +4,7 @@ use crate::control::ends;
 use crate::control::error::BoundaryError;
 use crate::control::limits::Limits;
 use crate::control::problem::{Control, Rest, State};
-use crate::dynamics::{Equilibrium, Start, equilibrium, muscle_without_length};
+use crate::dynamics::{Equilibrium, Start, muscle_without_length, stable_equilibrium};
 use crate::functional::Level;
 use crate::model::{Condensed, Coordinates, Model, Quantity, Question, System};
 
@@ -165,7 +165,7 @@ fn rest_at(
     place: &'static str,
 ) -> Result<Equilibrium, BoundaryError> {
     let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
-    let found = equilibrium(model, &zero, &model.scalars(voltages));
+    let found = stable_equilibrium(model, &zero, &model.scalars(voltages));
     found.map_err(|source| BoundaryError::NoEquilibrium { place, source })
 }
 

@@ -1,12 +1,14 @@
-//! Equilibria along the path of growing voltages by arc length, past limit points, where voltages fall again.
+//! Equilibria along the path of a growing load by arc length, past limit points, where the load falls again.
 //!
-//! With the rows R(y, f) of a state y under the fraction f of the voltages, K = ∂R/∂y and b = ∂R/∂f, the tangent of the
+//! With the rows R(y, f) of a state y under the fraction f of a load, K = ∂R/∂y and b = ∂R/∂f, the tangent of the
 //! path is K ẏ = −ḟ b. A step follows it by Δs and comes back to the path in the plane normal to it. The path has a
 //! limit point (pull-in) where ḟ = 0; where a pivot of K changes its sign elsewhere, it meets another path (buckling).
 
 use crate::dynamics::EquilibriumError;
-use crate::dynamics::equilibrium::Equilibrium;
-use crate::dynamics::statics::{State, Statics};
+use crate::dynamics::equilibrium::{Equilibrium, Route};
+use crate::dynamics::ramp::{Load, Ramp};
+use crate::dynamics::spans::shortest;
+use crate::dynamics::statics::{Outcome, Reach, State, Statics};
 use crate::ipopt::interrupt;
 use crate::model::Model;
 
@@ -27,11 +29,16 @@ const HALVINGS: usize = 24;
 /// Slope ḟ that counts as zero; the fraction is then exact to its square.
 const FLAT: f64 = 1e-6;
 
-/// How an equilibrium under growing voltages is lost.
+/// Least stretch of a muscle on a path: below it the path ends.
+const SHORTEST: f64 = 0.05;
+
+/// How an equilibrium under a growing load is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Instability {
     /// The path turns back: beyond this voltage there is no equilibrium nearby (pull-in).
     PullIn,
+    /// The path turns back under growing weights: the robot collapses.
+    Collapse,
     /// The path goes on, but another one branches off and is preferred (buckling).
     Buckling,
 }
@@ -41,7 +48,25 @@ impl Instability {
     pub fn key(self) -> &'static str {
         match self {
             Self::PullIn => "pull_in",
+            Self::Collapse => "collapse",
             Self::Buckling => "buckling",
+        }
+    }
+
+    /// The word in sentences.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::PullIn => "pull-in",
+            Self::Collapse => "collapse under weight",
+            Self::Buckling => "buckling",
+        }
+    }
+
+    /// What a limit point of a load is.
+    fn of_turn(load: Load) -> Self {
+        match load {
+            Load::Weight => Self::Collapse,
+            Load::Voltages => Self::PullIn,
         }
     }
 }
@@ -67,7 +92,7 @@ struct Point {
 /// The path from a state of equilibrium on.
 struct Path<'s, 'm> {
     statics: &'s mut Statics<'m>,
-    voltages: &'s [f64],
+    ramp: Ramp<'s>,
     weights: Vec<f64>,
 }
 
@@ -83,14 +108,14 @@ impl Path<'_, '_> {
         if interrupt::stop().is_some() {
             return None;
         }
-        let loaded: Vec<f64> = self.voltages.iter().map(|v| v * fraction).collect();
-        self.statics.evaluate(state, &loaded);
+        let voltages = self.ramp.apply(self.statics, fraction);
+        self.statics.evaluate(state, &voltages);
         if self.statics.residual.iter().any(|r| !r.is_finite()) {
             return None;
         }
         self.statics.factor().ok()?;
         let mut load = vec![0.0; state.len()];
-        self.statics.add_load(self.voltages, &mut load);
+        self.ramp.add(self.statics, &mut load);
         self.statics.solve(&mut load);
         load.iter_mut().for_each(|v| *v = -*v);
         Some(load)
@@ -199,11 +224,11 @@ impl Path<'_, '_> {
     }
 }
 
-fn path<'s, 'm>(statics: &'s mut Statics<'m>, voltages: &'s [f64]) -> Path<'s, 'm> {
+fn path<'s, 'm>(statics: &'s mut Statics<'m>, ramp: Ramp<'s>) -> Path<'s, 'm> {
     let weights = statics.weights();
     Path {
         statics,
-        voltages,
+        ramp,
         weights,
     }
 }
@@ -212,10 +237,10 @@ fn path<'s, 'm>(statics: &'s mut Statics<'m>, voltages: &'s [f64]) -> Path<'s, '
 pub(super) fn limit_point(
     statics: &mut Statics<'_>,
     state: &[f64],
-    voltages: &[f64],
+    ramp: Ramp<'_>,
     fraction: f64,
 ) -> Option<LimitPoint> {
-    let mut path = path(statics, voltages);
+    let mut path = path(statics, ramp);
     let mut here = path.point(state.to_vec(), fraction, None)?;
     let mut step = FIRST;
     for _ in 0..STEPS {
@@ -230,7 +255,7 @@ pub(super) fn limit_point(
             let found = path.turn(&here, step, &next);
             return Some(LimitPoint {
                 fraction: found.fraction,
-                kind: Instability::PullIn,
+                kind: Instability::of_turn(ramp.load),
                 state: found.state,
             });
         }
@@ -248,6 +273,65 @@ pub(super) fn limit_point(
     None
 }
 
+/// States in which all of a load acts, on the path that goes on from a state in a direction: +1 towards larger fractions, −1
+/// towards smaller ones. At most `steps` are taken; the path ends at the first stable one, where it leaves the loads between
+/// nothing and twice as much, or where a muscle has almost no length.
+pub(super) fn crossings(
+    statics: &mut Statics<'_>,
+    state: &[f64],
+    ramp: Ramp<'_>,
+    fraction: f64,
+    direction: f64,
+    steps: usize,
+) -> Vec<State> {
+    let mut found = Vec::new();
+    let mut path = path(statics, ramp);
+    let Some(mut here) = path.point(state.to_vec(), fraction, None) else {
+        return found;
+    };
+    here.tangent.0.iter_mut().for_each(|t| *t *= direction);
+    here.tangent.1 *= direction;
+    let mut step = FIRST;
+    for _ in 0..steps {
+        let Some(next) = path.advance(&here, step) else {
+            step *= 0.5;
+            if step < SMALLEST {
+                break;
+            }
+            continue;
+        };
+        if (here.fraction - 1.0) * (next.fraction - 1.0) < 0.0 {
+            // Newton from the point next to it: a crossing is no limit point.
+            let nearest = match (here.fraction - 1.0).abs() < (next.fraction - 1.0).abs() {
+                true => &here,
+                false => &next,
+            };
+            let mut state = nearest.state.clone();
+            let all = ramp.apply(path.statics, 1.0);
+            if let Ok(Outcome::Converged) = path.statics.newton(&mut state, &all, Reach::Near) {
+                let is_stable = path.statics.unstable() == Some(0);
+                found.push(state);
+                if is_stable {
+                    break;
+                }
+            }
+        }
+        here = next;
+        let placed = path
+            .statics
+            .model
+            .action
+            .motion
+            .placed(&here.state[..path.statics.model.action.motion.unknowns()]);
+        let is_short = shortest(path.statics.model, &placed).is_some_and(|(_, s)| s < SHORTEST);
+        if is_short || !(-0.5..=2.0).contains(&here.fraction) {
+            break;
+        }
+        step = (1.5 * step).min(LARGEST);
+    }
+    found
+}
+
 /// Equilibria along a path.
 #[derive(Clone, Debug)]
 pub struct Continuation {
@@ -257,6 +341,8 @@ pub struct Continuation {
     pub points: Vec<Equilibrium>,
     /// Index of the last point before each loss of stability, the exact fraction there, and its kind.
     pub lost: Vec<(usize, f64, Instability)>,
+    /// The equilibria there.
+    pub limits: Vec<Equilibrium>,
 }
 
 /// Follows the path of equilibria from zero voltage by arc length for `steps` points, past limit points.
@@ -271,15 +357,20 @@ pub fn continuation(
 ) -> Result<Continuation, EquilibriumError> {
     // At zero voltage nothing depends on the fraction to first order: the path starts a little further.
     let beginning: Vec<f64> = voltages.iter().map(|v| v * FIRST).collect();
-    let first = crate::dynamics::equilibrium(model, start, &beginning)?;
+    let first = crate::dynamics::stable_equilibrium(model, start, &beginning)?;
     let mut state = first.z.clone();
     state.extend_from_slice(&first.scalars[voltages.len()..]);
     let mut statics = Statics::new(model);
-    let mut path = path(&mut statics, voltages);
+    let ramp = Ramp {
+        load: Load::Voltages,
+        voltages,
+    };
+    let mut path = path(&mut statics, ramp);
     let mut out = Continuation {
         fractions: vec![FIRST],
         points: vec![first],
         lost: Vec::new(),
+        limits: Vec::new(),
     };
     let Some(mut here) = path.point(state, FIRST, None) else {
         return Ok(out);
@@ -294,18 +385,23 @@ pub fn continuation(
             continue;
         };
         let index = out.points.len() - 1;
-        if here.tangent.1 > 0.0 && next.tangent.1 <= 0.0 {
-            let turn = path.turn(&here, step, &next);
-            out.lost.push((index, turn.fraction, Instability::PullIn));
+        let limit = if here.tangent.1 > 0.0 && next.tangent.1 <= 0.0 {
+            Some((path.turn(&here, step, &next), Instability::PullIn))
         } else if let (Some(0), Some(1..)) = (here.unstable, next.unstable) {
-            let found = path.switch(&here, step);
-            out.lost
-                .push((index, found.fraction, Instability::Buckling));
+            Some((path.switch(&here, step), Instability::Buckling))
+        } else {
+            None
+        };
+        let mut rest = |point: &Point| {
+            let loaded: Vec<f64> = voltages.iter().map(|v| v * point.fraction).collect();
+            Equilibrium::on_path(path.statics, &point.state, &loaded, Route::Loads)
+        };
+        if let Some((point, kind)) = limit {
+            out.limits.push(rest(&point));
+            out.lost.push((index, point.fraction, kind));
         }
-        let loaded: Vec<f64> = voltages.iter().map(|v| v * next.fraction).collect();
+        out.points.push(rest(&next));
         out.fractions.push(next.fraction);
-        out.points
-            .push(Equilibrium::new(path.statics, &next.state, &loaded));
         here = next;
         step = (1.5 * step).min(LARGEST);
     }

@@ -1,16 +1,16 @@
-//! Static equilibrium: voltages grow in steps of V², cut when Newton fails.
+//! Static equilibrium on the path of growing loads: the weights first, then the voltages in steps of V², cut when Newton
+//! fails.
 
-use crate::dynamics::statics::{Outcome, State, Statics};
-use crate::dynamics::{EquilibriumError, LimitPoint, limit_point};
+use crate::dynamics::ramp::{Load, Ramp};
+use crate::dynamics::softest::{Mode, softest, stiffness};
+use crate::dynamics::statics::{Outcome, Reach, State, Statics};
+use crate::dynamics::{EquilibriumError, Instability, LimitPoint, limit_point};
 use crate::model::{Floating, Model};
-use nalgebra::{DMatrix, SymmetricEigen};
 
-/// Fraction of the load (in V²) that is tried first.
+/// Part of a load that is tried first, in V² for voltages.
 const FIRST: f64 = 0.25;
 /// Load increments below this end the path.
 const SMALLEST: f64 = 1e-6;
-/// Up to so many coordinates the stiffness is looked at eigenvalue by eigenvalue.
-const EIGENVALUES: usize = 100;
 
 /// A state of rest.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,8 +25,34 @@ pub struct Equilibrium {
     /// Number of directions in which the potential energy falls, by the inertia of the tangent; `None` where the
     /// factorisation does not tell.
     pub unstable: Option<usize>,
+    /// The softest mode; `None` at the points of a path, and where nothing moves.
+    pub softest: Option<Mode>,
+    /// How it was found.
+    pub route: Route,
     /// Newton iterations over all loads.
     pub iterations: usize,
+}
+
+/// How an equilibrium was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Route {
+    /// On the path of growing loads: the weights, then the voltages.
+    Loads,
+    /// On the path that goes on beyond the point where growing loads lose their equilibrium, and comes back to all loads.
+    Beyond(Loss),
+    /// At a minimum of the potential energy, downhill from a state where the path ends or is unstable.
+    Minimum(Loss),
+}
+
+/// Where the path of growing loads loses its stable equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loss {
+    /// The load that grew.
+    pub load: Load,
+    /// Its fraction.
+    pub fraction: f64,
+    /// How, where that was found.
+    pub kind: Option<Instability>,
 }
 
 impl Equilibrium {
@@ -38,96 +64,192 @@ impl Equilibrium {
         }
     }
 
+    /// Where growing loads lose the stable equilibrium, if it does not lie on their path.
+    pub fn loss(&self) -> Option<Loss> {
+        match self.route {
+            Route::Loads => None,
+            Route::Beyond(loss) | Route::Minimum(loss) => Some(loss),
+        }
+    }
+
+    /// Stiffness, stability and softest mode of a model's state of rest: `z` of coordinates and multipliers, `scalars` of
+    /// voltages and potentials.
+    pub fn of_state(model: &Model, z: &[f64], scalars: &[f64]) -> Self {
+        let mut statics = Statics::new(model);
+        let (voltages, potentials) = scalars.split_at(model.voltages.len());
+        let state = [z, potentials].concat();
+        Self::new(&mut statics, &state, voltages, Route::Loads)
+    }
+
     /// A state of rest of a model, from coordinates with multipliers and potentials.
-    pub(super) fn new(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64]) -> Self {
+    pub(super) fn new(
+        statics: &mut Statics<'_>,
+        state: &[f64],
+        voltages: &[f64],
+        route: Route,
+    ) -> Self {
+        let point = Self::on_path(statics, state, voltages, route);
+        Self {
+            softest: softest(statics, state, voltages),
+            ..point
+        }
+    }
+
+    /// The same without its softest mode.
+    pub(super) fn on_path(
+        statics: &mut Statics<'_>,
+        state: &[f64],
+        voltages: &[f64],
+        route: Route,
+    ) -> Self {
         let m = statics.model.action.motion.unknowns();
         statics.evaluate(state, voltages);
-        let known = statics.factor().is_ok();
+        let is_known = statics.factor().is_ok();
         Self {
             z: state[..m].to_vec(),
             scalars: voltages.iter().chain(&state[m..]).copied().collect(),
             stiffness: stiffness(statics),
-            unstable: known.then(|| statics.unstable()).flatten(),
+            unstable: is_known.then(|| statics.unstable()).flatten(),
+            softest: None,
+            route,
             iterations: statics.iterations,
         }
     }
 }
 
-/// Eigenvalues of the stiffness of a small system in joint coordinates, at the state evaluated last.
-fn stiffness(statics: &Statics<'_>) -> Vec<f64> {
-    let model = statics.model;
-    let motion = &model.action.motion;
-    let n = motion.unknowns();
-    let joints_alone = motion.tree.is_some() && motion.of_nodes.is_empty();
-    if motion.multipliers > 0 || !joints_alone || !(1..=EIGENVALUES).contains(&n) {
-        return Vec::new();
-    }
-    let mut matrix = DMatrix::<f64>::zeros(n, n);
-    for ((row, col), value) in statics.entries() {
-        matrix[(row, col)] -= value / model.multiplier_time;
-    }
-    let values = SymmetricEigen::new(matrix).eigenvalues;
-    let mut eigenvalues: Vec<f64> = values.iter().copied().collect();
-    eigenvalues.sort_by(f64::total_cmp);
-    eigenvalues
-}
-
-/// The static equilibrium under constant voltages (by scalar of an interval), on the path from `start`.
+/// The static equilibrium under constant voltages (by scalar of an interval) on the path of growing loads from `start`,
+/// stable or not.
 ///
 /// # Errors
-/// The path ends before the voltages are reached, or nothing holds the system.
+/// The path ends before all loads act, or nothing holds the system.
 pub fn equilibrium(
     model: &Model,
     start: &[f64],
     voltages: &[f64],
 ) -> Result<Equilibrium, EquilibriumError> {
-    if let Some(Floating { name, motion }) = model.floating() {
-        return Err(EquilibriumError::Floating { name, motion });
+    let mut statics = begin(model)?;
+    let mut state = unloaded(&mut statics, start, voltages)?;
+    for load in [Load::Weight, Load::Voltages] {
+        let ramp = Ramp { load, voltages };
+        let grown = grow(&mut statics, state, ramp)?;
+        if grown.fraction < 1.0 {
+            return Err(at_limit(&mut statics, &grown.state, ramp, grown.fraction));
+        }
+        state = grown.state;
     }
-    let mut statics = Statics::new(model);
-    let mut state: State = start.to_vec();
-    state.resize(start.len() + model.potentials, 0.0);
-    let loaded = |fraction: f64| -> Vec<f64> {
-        let factor = fraction.sqrt();
-        voltages.iter().map(|v| v * factor).collect()
+    Ok(Equilibrium::new(
+        &mut statics,
+        &state,
+        voltages,
+        Route::Loads,
+    ))
+}
+
+/// Rows of rest of a model whose blocks are held.
+pub(super) fn begin(model: &Model) -> Result<Statics<'_>, EquilibriumError> {
+    match model.floating() {
+        Some(Floating { name, motion }) => Err(EquilibriumError::Floating { name, motion }),
+        None => Ok(Statics::new(model)),
+    }
+}
+
+/// The state of rest without voltages and, where that exists, without weights.
+///
+/// A robot that only its weight holds has no unique rest without it: then all of it acts at once.
+pub(super) fn unloaded(
+    statics: &mut Statics<'_>,
+    start: &[f64],
+    voltages: &[f64],
+) -> Result<State, EquilibriumError> {
+    let mut first: State = start.to_vec();
+    first.resize(start.len() + statics.model.potentials, 0.0);
+    let none = vec![0.0; voltages.len()];
+    if statics.has_weight() {
+        statics.weight = 0.0;
+        let mut state = first.clone();
+        if let Ok(Outcome::Converged) = statics.newton(&mut state, &none, Reach::Far) {
+            return Ok(state);
+        }
+    }
+    statics.weight = 1.0;
+    match statics.newton(&mut first, &none, Reach::Far)? {
+        Outcome::Converged => Ok(first),
+        Outcome::Failed => Err(EquilibriumError::NoStart),
+    }
+}
+
+/// How far a load has grown.
+#[derive(Debug)]
+pub(super) struct Grown {
+    pub(super) state: State,
+    pub(super) fraction: f64,
+    /// The last state of the path that was stable, and its fraction, where a later one is not.
+    pub(super) last_stable: Option<(State, f64)>,
+}
+
+/// Lets a load grow from nothing, from a state of rest without it, as far as there are equilibria.
+///
+/// # Errors
+/// It was stopped.
+pub(super) fn grow(
+    statics: &mut Statics<'_>,
+    mut state: State,
+    ramp: Ramp<'_>,
+) -> Result<Grown, EquilibriumError> {
+    let m = statics.model.action.motion.unknowns();
+    let is_there = match ramp.load {
+        // All of the weight acts already where nothing else holds the system.
+        Load::Weight => statics.has_weight() && statics.weight < 1.0,
+        Load::Voltages => ramp.voltages.iter().any(|&v| v != 0.0),
     };
     let (mut reached, mut increment) = (0.0, FIRST);
-    if statics.newton(&mut state, &loaded(0.0))? == Outcome::Failed {
-        return Err(EquilibriumError::NoStart);
-    }
-    while reached < 1.0 && voltages.iter().any(|&v| v != 0.0) {
+    let mut stable = Some((state.clone(), 0.0));
+    let mut is_lost = false;
+    while is_there && reached < 1.0 && increment >= SMALLEST {
         let target = f64::min(reached + increment, 1.0);
         let mut trial = state.clone();
         // Potentials grow with the voltages.
-        let growth = if reached > 0.0 {
-            (target / reached).sqrt()
-        } else {
-            1.0
+        let growth = match (ramp.load, reached > 0.0) {
+            (Load::Voltages, true) => (target / reached).sqrt(),
+            _ => 1.0,
         };
-        trial[start.len()..].iter_mut().for_each(|p| *p *= growth);
-        match statics.newton(&mut trial, &loaded(target)) {
+        trial[m..].iter_mut().for_each(|p| *p *= growth);
+        let fraction = ramp.fraction(target);
+        let voltages = ramp.apply(statics, fraction);
+        match statics.newton(&mut trial, &voltages, Reach::Near) {
             Ok(Outcome::Converged) => {
                 (state, reached) = (trial, target);
                 increment *= 2.0;
+                match statics.unstable() {
+                    Some(1..) => is_lost = true,
+                    _ if !is_lost => stable = Some((state.clone(), fraction)),
+                    _ => {}
+                }
             }
             Err(stopped @ EquilibriumError::Stopped(_)) => return Err(stopped),
             Ok(Outcome::Failed) | Err(_) => increment *= 0.5,
         }
-        if increment < SMALLEST {
-            return Err(at_limit(&mut statics, &state, voltages, reached.sqrt()));
-        }
     }
-    Ok(Equilibrium::new(&mut statics, &state, voltages))
+    let fraction = if is_there {
+        ramp.fraction(reached)
+    } else {
+        1.0
+    };
+    Ok(Grown {
+        state,
+        fraction,
+        last_stable: stable.filter(|_| is_lost),
+    })
 }
 
 /// Why the path ends at a state: the limit point next to it, or the last equilibrium.
-fn at_limit(
+pub(super) fn at_limit(
     statics: &mut Statics<'_>,
     state: &[f64],
-    voltages: &[f64],
+    ramp: Ramp<'_>,
     fraction: f64,
 ) -> EquilibriumError {
-    let found = limit_point(statics, state, voltages, fraction);
+    let found = limit_point(statics, state, ramp, fraction);
     let (fraction, kind, last) = match found {
         Some(LimitPoint {
             fraction,
@@ -136,10 +258,21 @@ fn at_limit(
         }) => (fraction, Some(kind), state),
         None => (fraction, None, state.to_vec()),
     };
-    let voltages: Vec<f64> = voltages.iter().map(|v| v * fraction).collect();
+    let loss = Loss {
+        load: ramp.load,
+        fraction,
+        kind,
+    };
+    let voltages = ramp.apply(statics, fraction);
     EquilibriumError::LimitPoint {
         fraction,
         kind,
-        last: Box::new(Equilibrium::new(statics, &last, &voltages)),
+        load: ramp.load,
+        last: Box::new(Equilibrium::new(
+            statics,
+            &last,
+            &voltages,
+            Route::Beyond(loss),
+        )),
     }
 }

@@ -1,7 +1,7 @@
 //! Why a step or an equilibrium was not found.
 
 use crate::dynamics::spans::NOTHING;
-use crate::dynamics::{Equilibrium, Instability};
+use crate::dynamics::{Equilibrium, Instability, Load};
 use crate::ipopt::Status;
 use thiserror::Error;
 
@@ -78,16 +78,18 @@ pub enum StepError {
 /// No static equilibrium was found.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum EquilibriumError {
-    /// The path of equilibria under growing voltages ends.
+    /// The path of equilibria under growing loads ends, and no other equilibrium was found.
     #[error(
-        "no equilibrium under these voltages: the path of equilibria under growing voltages ends at {:.6} % of them ({})",
-        100.0 * fraction, why(*kind)
+        "no equilibrium was found under these voltages: the path of equilibria under growing {} ends at {:.6} % of them ({}{})",
+        grown(*load), 100.0 * fraction, why(*kind), moved(last)
     )]
     LimitPoint {
-        /// Largest fraction of the voltages for which there was an equilibrium.
+        /// Largest fraction of the load for which there was an equilibrium.
         fraction: f64,
         /// How it is lost, where that was found.
         kind: Option<Instability>,
+        /// The load that grew.
+        load: Load,
         /// The state there.
         last: Box<Equilibrium>,
     },
@@ -96,9 +98,15 @@ pub enum EquilibriumError {
     Stopped(Status),
     /// There is no equilibrium to start from.
     #[error(
-        "no equilibrium even without voltages: gravity or the start are more than the system bears"
+        "no equilibrium was found without voltages: neither Newton's method from the reference nor minima of the potential energy lead to one"
     )]
     NoStart,
+    /// Joints that neither a muscle nor a block nor a weight holds.
+    #[error(
+        "no unique equilibrium: no stiffness acts on {}; a muscle, a block or a weight has to hold what it moves",
+        .0.join(", ")
+    )]
+    NoStiffness(Vec<String>),
     /// A part of a block can move freely.
     #[error("{name} is not held: {motion} costs nothing; fix or glue one of its faces")]
     Floating {
@@ -160,9 +168,25 @@ fn hint(residuals: &[f64], muscle: Option<&(String, f64)>) -> String {
     }
 }
 
+fn grown(load: Load) -> &'static str {
+    match load {
+        Load::Weight => "weights",
+        Load::Voltages => "voltages",
+    }
+}
+
+/// What moves where an equilibrium is lost.
+fn moved(last: &Equilibrium) -> String {
+    match &last.softest {
+        Some(mode) if !mode.moves.is_empty() => format!("; what gives way: {}", mode.moves),
+        _ => String::new(),
+    }
+}
+
 fn why(kind: Option<Instability>) -> &'static str {
     match kind {
         Some(Instability::PullIn) => "pull-in: a limit point",
+        Some(Instability::Collapse) => "collapse under weight: a limit point",
         Some(Instability::Buckling) => "buckling: another path branches off",
         None => "pull-in or a limit point",
     }

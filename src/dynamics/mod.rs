@@ -2,20 +2,27 @@
 //!
 //! - `stepper`: Newton on the equations of one step; `midpoint`: those of the midpoint rule; `stages`: those of every other
 //!   method.
+//! - `domain`: where the first-order dielectric ends.
 //! - `simulate`, `history`, `observe`, `kinetic`: step after step, recorded and observed.
-//! - `statics`, `equilibrium`, `continuation`: rest, and paths of it.
+//! - `statics`: the rows of rest; `ramp`, `equilibrium`, `continuation`: paths of rest under growing loads; `minimum`: minima
+//!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest`: its softest mode.
 
 mod anderson;
 mod continuation;
+mod domain;
 mod equilibrium;
 mod error;
 mod history;
 mod kinetic;
 mod midpoint;
+mod minimum;
 mod observe;
+mod ramp;
 mod simulate;
+mod softest;
 mod solving;
 mod spans;
+mod stable;
 mod stages;
 mod statics;
 mod stepper;
@@ -25,13 +32,17 @@ pub mod trajectory;
 use continuation::{LimitPoint, limit_point};
 
 pub use continuation::{Continuation, Instability, continuation};
-pub use equilibrium::{Equilibrium, equilibrium};
+pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
+pub use equilibrium::{Equilibrium, Loss, Route, equilibrium};
 pub use error::{EquilibriumError, StepError};
 pub use history::{History, Reading};
 pub use midpoint::{Midpoint, Stepper};
 pub use observe::{Energies, energies, observations};
+pub use ramp::Load;
 pub use simulate::{Start, simulate, simulate_by};
+pub use softest::{Mode, Softening};
 pub use solving::{Integrator, Newton, Solving};
 pub use spans::{muscle_without_length, reversed_muscle};
+pub use stable::stable_equilibrium;
 pub use stages::Stages;
 pub use stepper::{Equations, StepperReport, Steps};

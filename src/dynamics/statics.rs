@@ -2,10 +2,13 @@
 //!
 //! With q_k = q_{k+1} = q inertia and viscosity vanish from the rows by themselves, and the sum of both rows is
 //! −h Pᵀ∇V − h₀ Gᵀλ; the tangent is the sum of the four blocks. Potentials keep the rows of Gauss's law.
+//!
+//! Weights are constant forces on the vectors, so that a part of them is a part of these forces. A stiffness σ on every
+//! coordinate may be added to the tangent, which makes any state's tangent that of a minimum.
 
 use crate::dynamics::EquilibriumError;
 use crate::dynamics::tangent::{Entries, Tangent};
-use crate::functional::Level;
+use crate::functional::{Effect, Kind, Level};
 use crate::ipopt::interrupt;
 use crate::math::Vector;
 use crate::model::Model;
@@ -17,8 +20,20 @@ const ITERATIONS: usize = 30;
 /// Convergence of the Newton update, relative to angles of one radian and the length of the system.
 const UPDATE: f64 = 1e-11;
 
+/// An update longer than this leaves the region in which the tangent says anything.
+const LONG: f64 = 0.5;
+
 /// A state of rest: coordinates and multipliers, then potentials.
 pub(super) type State = Vec<f64>;
+
+/// From how far Newton's method may come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reach {
+    /// From anywhere: long updates are shortened.
+    Far,
+    /// From a neighbour on a path: a long update is a failure, for it may end on another path.
+    Near,
+}
 
 /// How Newton's method ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +51,12 @@ pub(super) struct Statics<'m> {
     scratch: Scratch,
     values: Vec<f64>,
     scalars: Vec<f64>,
+    /// Weights on the vectors.
+    gravity: Vec<Vector>,
+    /// Part of the weights that acts.
+    pub(super) weight: f64,
+    /// First place of the added stiffness in the values: one a coordinate, one a potential.
+    added: usize,
     tangent: Tangent,
     /// The potentials' own block.
     electric: Option<Tangent>,
@@ -63,6 +84,10 @@ impl<'m> Statics<'m> {
         }
         entries.add_potentials(model, &[[0, 0], [1, 1]]);
         let size = m + model.potentials;
+        let added = layout.values(1);
+        for (place, i) in (0..n).chain(m..size).enumerate() {
+            entries.add(added + place, (i, i));
+        }
         let electric = (model.potentials > 0).then(|| {
             let mut entries = Entries::default();
             entries.add_potentials(model, &[]);
@@ -79,8 +104,11 @@ impl<'m> Statics<'m> {
             a: motion.instant(),
             b: motion.instant(),
             scratch: model.action.scratch(Level::Hessian),
-            values: vec![0.0; layout.values(1)],
+            values: vec![0.0; added + n + model.potentials],
             scalars: vec![0.0; layout.interval_scalars],
+            gravity: weights(model),
+            weight: 1.0,
+            added,
             tangent: entries.tangent(size, Symmetry::Symmetric, None),
             electric,
             residual: vec![0.0; size],
@@ -101,6 +129,8 @@ impl<'m> Statics<'m> {
             values,
             scalars,
             residual,
+            gravity,
+            weight,
             ..
         } = self;
         scalars[..driven].copy_from_slice(voltages);
@@ -117,6 +147,11 @@ impl<'m> Statics<'m> {
         for (force, other) in a.forces.iter_mut().zip(&b.forces) {
             *force += other;
         }
+        if *weight != 1.0 {
+            for (force, all) in a.forces.iter_mut().zip(gravity) {
+                *force += (*weight - 1.0) * *all;
+            }
+        }
         action.evaluate_instant(Level::Hessian, a, &[], scratch);
         action.pull_back_instant(Level::Hessian, a, 0, scratch, values);
         residual.fill(0.0);
@@ -129,9 +164,71 @@ impl<'m> Statics<'m> {
         self.tangent.factor(&self.values)
     }
 
+    /// Factorises the tangent of the state evaluated last with a stiffness σ in N mm for each rad, and each length of the
+    /// system.
+    pub(super) fn factor_with(&mut self, sigma: f64) -> Result<(), Singular> {
+        let n = self.model.action.motion.coordinates;
+        let h = self.model.multiplier_time;
+        for (value, scale) in self.values[self.added..].iter_mut().zip(&self.scales[..n]) {
+            *value = -h * sigma / (scale * scale);
+        }
+        let outcome = self.tangent.factor(&self.values);
+        self.values[self.added..].fill(0.0);
+        outcome
+    }
+
     /// Solves with the last factorisation, in place.
     pub(super) fn solve(&mut self, rhs: &mut [f64]) {
         self.tangent.solve(rhs);
+    }
+
+    /// Largest stiffness on the diagonal, in N mm for each rad or length of the system; 1 where there is none.
+    pub(super) fn largest_stiffness(&self) -> f64 {
+        let layout = self.model.action.layout();
+        let mut diagonal = vec![0.0; self.scales().len()];
+        for (slot, &(i, j)) in layout.same.entries().iter().enumerate() {
+            if i == j && i < diagonal.len() {
+                diagonal[i] += self.values[layout.same_at(0) + slot];
+                diagonal[i] += self.values[layout.same_at(1) + slot];
+            }
+        }
+        let h = self.model.multiplier_time;
+        let scaled = diagonal.iter().zip(self.scales());
+        let largest = scaled.fold(0.0, |m, (k, s)| f64::max(m, (k * s * s / h).abs()));
+        if largest > 0.0 { largest } else { 1.0 }
+    }
+
+    /// Stiffness of the state evaluated last along a direction of the coordinates, potentials being held.
+    pub(super) fn stiffness_along(&self, direction: &[f64]) -> f64 {
+        let layout = self.model.action.layout();
+        let n = direction.len();
+        let mut sum = 0.0;
+        let mut add = |place: usize, &(i, j): &(usize, usize)| {
+            if i < n && j < n {
+                sum += self.values[place] * direction[i] * direction[j];
+            }
+        };
+        for (slot, entry) in layout.same.entries().iter().enumerate() {
+            add(layout.same_at(0) + slot, entry);
+            add(layout.same_at(1) + slot, entry);
+        }
+        for (slot, entry) in layout.cross.entries().iter().enumerate() {
+            add(layout.lower_at(0) + slot, entry);
+            add(layout.upper_at(0) + slot, entry);
+        }
+        -sum / self.model.multiplier_time
+    }
+
+    /// Whether anything has a weight.
+    pub(super) fn has_weight(&self) -> bool {
+        self.gravity.iter().any(|force| *force != Vector::zeros())
+    }
+
+    /// Adds the derivative of the rows by the part of the weights that acts, at the state evaluated last.
+    pub(super) fn add_weight(&self, rows: &mut [f64]) {
+        let motion = &self.model.action.motion;
+        let rows = &mut rows[..motion.coordinates];
+        motion.pull_back(&self.a.columns, &self.gravity, rows);
     }
 
     /// Adds the derivative of the rows along a change of the voltages, at the state evaluated last.
@@ -168,6 +265,7 @@ impl<'m> Statics<'m> {
         &mut self,
         state: &mut State,
         voltages: &[f64],
+        reach: Reach,
     ) -> Result<Outcome, EquilibriumError> {
         let mut last = f64::INFINITY;
         for _ in 0..ITERATIONS {
@@ -189,8 +287,11 @@ impl<'m> Statics<'m> {
             let mut update = std::mem::take(&mut self.residual);
             self.solve(&mut update);
             let size = self.size(&update);
-            // A long update leaves the region in which the tangent says anything.
-            let damping = if size > 0.5 { 0.5 / size } else { 1.0 };
+            if size.is_nan() || (size > LONG && reach == Reach::Near) {
+                self.residual = update;
+                return Ok(Outcome::Failed);
+            }
+            let damping = if size > LONG { LONG / size } else { 1.0 };
             for (value, update) in state.iter_mut().zip(&update) {
                 *value -= damping * update;
             }
@@ -221,6 +322,92 @@ impl<'m> Statics<'m> {
         negative.checked_sub(self.model.action.motion.multipliers + electric)
     }
 
+    /// Potential energy in N mm of a state under voltages, all weights acting; the instant stays placed there.
+    pub(super) fn energy(&mut self, state: &[f64], voltages: &[f64]) -> f64 {
+        let action = &self.model.action;
+        let m = action.motion.unknowns();
+        self.scalars[..voltages.len()].copy_from_slice(voltages);
+        self.scalars[voltages.len()..].copy_from_slice(&state[m..]);
+        self.a.z.copy_from_slice(&state[..m]);
+        action.motion.place(&mut self.a);
+        let interval = Interval::given(&self.scalars, 1.0);
+        let frame = interval.frame([&self.a, &self.a]);
+        let effects = action.intervals.effects.iter();
+        let potential = effects.filter(|effect| effect.kind() == Kind::Potential);
+        potential.map(|effect| effect.energy(&frame)).sum()
+    }
+
+    /// The instant placed last.
+    pub(super) fn instant(&self) -> &Instant {
+        &self.a
+    }
+
+    /// Brings coordinates onto the constraints by the shortest way, and potentials to Gauss's law; `None` where that fails.
+    pub(super) fn settle(&mut self, state: &mut State, voltages: &[f64]) -> Option<()> {
+        let motion = &self.model.action.motion;
+        if motion.multipliers > 0 {
+            self.meet_constraints(state)?;
+        }
+        if self.electric.is_some() {
+            let m = motion.unknowns();
+            self.evaluate(state, voltages);
+            let tangent = self.electric.as_mut()?;
+            tangent.factor(&self.values).ok()?;
+            let mut update = self.residual[m..].to_vec();
+            tangent.solve(&mut update);
+            for (value, update) in state[m..].iter_mut().zip(&update) {
+                *value -= update;
+            }
+        }
+        state.iter().all(|v| v.is_finite()).then_some(())
+    }
+
+    /// Newton on the constraints alone, in the metric of the scales.
+    fn meet_constraints(&mut self, state: &mut State) -> Option<()> {
+        let action = &self.model.action;
+        let (n, m) = (action.motion.coordinates, action.motion.unknowns());
+        for _ in 0..ITERATIONS {
+            let a = &mut self.a;
+            a.z[..n].copy_from_slice(&state[..n]);
+            // The gradients of the constraints alone: no multiplier bends them.
+            a.z[n..].fill(0.0);
+            action.motion.place(a);
+            a.forces.fill(Vector::zeros());
+            self.values.fill(0.0);
+            action.evaluate_instant(Level::Hessian, a, &[], &mut self.scratch);
+            action.pull_back_instant(Level::Hessian, a, 0, &mut self.scratch, &mut self.values);
+            self.residual.fill(0.0);
+            action.rows(a, &self.scratch, &mut self.residual[..m]);
+            self.residual[..n].fill(0.0);
+            let added = self.values[self.added..].iter_mut();
+            for (value, scale) in added.zip(self.scales[..n].iter().chain(&self.scales[m..])) {
+                *value = -1.0 / (scale * scale);
+            }
+            let outcome = self.tangent.factor(&self.values);
+            self.values[self.added..].fill(0.0);
+            outcome.ok()?;
+            let mut update = std::mem::take(&mut self.residual);
+            self.tangent.solve(&mut update);
+            let size = self.size(&update);
+            for (value, update) in state[..n].iter_mut().zip(&update) {
+                *value -= update;
+            }
+            self.residual = update;
+            if size.is_nan() {
+                return None;
+            }
+            if size < 1e-12 {
+                return Some(());
+            }
+        }
+        None
+    }
+
+    /// Scales of coordinates: 1 rad, and the length of the system.
+    pub(super) fn scales(&self) -> &[f64] {
+        &self.scales[..self.model.action.motion.coordinates]
+    }
+
     /// Weights of the squares of a state's entries in the length of a path.
     pub(super) fn weights(&self) -> Vec<f64> {
         let count = self.scales.len() as f64;
@@ -232,4 +419,20 @@ impl<'m> Statics<'m> {
     pub(super) fn entries(&self) -> impl Iterator<Item = ((usize, usize), f64)> + '_ {
         self.tangent.entries()
     }
+}
+
+/// Weights on the vectors over the time of the multipliers, as rows of rest read them.
+fn weights(model: &Model) -> Vec<Vector> {
+    let motion = &model.action.motion;
+    let instant = motion.placed(&vec![0.0; motion.unknowns()]);
+    let scalars = vec![0.0; model.action.layout().interval_scalars];
+    let interval = Interval::given(&scalars, model.multiplier_time);
+    let frame = interval.frame([&instant, &instant]);
+    let mut out = model.action.intervals.output(Level::Gradient);
+    let effects = model.action.intervals.effects.iter();
+    for effect in effects.filter(|effect| Effect::name(effect.as_ref()) == "gravity") {
+        effect.evaluate(Level::Gradient, &frame, &mut out);
+    }
+    let [here, there] = &out.plain.forces;
+    here.iter().zip(there).map(|(a, b)| a + b).collect()
 }

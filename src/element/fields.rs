@@ -94,7 +94,7 @@ impl Viscosity {
 
 impl Shape {
     /// Σ x_i ⊗ G_i at the Gauss point `g`.
-    fn gradient_of(&self, x: &[Vector; 8], g: usize) -> Matrix {
+    pub fn gradient_of(&self, x: &[Vector; 8], g: usize) -> Matrix {
         gradient_of(x, &self.gradients_at(g))
     }
 }

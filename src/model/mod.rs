@@ -105,7 +105,7 @@ pub struct Model {
     reference: Vec<Pose>,
     nodes: Vec<NodePlace>,
     /// Block and node of the mesh of each node with coordinates.
-    node_names: Vec<(usize, usize)>,
+    pub node_names: Vec<(usize, usize)>,
 }
 
 impl Model {

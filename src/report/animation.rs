@@ -61,14 +61,17 @@ pub fn plot(run: &Run<'_>) -> Plot {
     }
     let duration = run.trajectory.times.last().unwrap_or(&0.0);
     let pace = (duration / instants.len() as f64).clamp(PACE[0], PACE[1]);
-    plot.set_layout(
-        layout()
-            .margin(Margin::new().left(0).right(0).top(0).bottom(10))
-            .scene(stage.scene(&instants))
-            .legend(Legend::new().x(0.0).y(0.98))
+    let still = layout()
+        .margin(Margin::new().left(0).right(0).top(0).bottom(10))
+        .scene(stage.scene(&instants))
+        .legend(Legend::new().x(0.0).y(0.98));
+    // A state of rest has nothing to play.
+    plot.set_layout(match instants.len() {
+        0 | 1 => still,
+        _ => still
             .sliders(vec![stage.slider(&instants)])
             .update_menus(vec![buttons(pace as usize)]),
-    );
+    });
     plot.set_configuration(Configuration::new().responsive(true).display_logo(false));
     plot
 }

@@ -113,3 +113,18 @@ pub fn write_run(folder: &Path, run: &Run<'_>) -> Result<Vec<PathBuf>, WriteErro
     });
     written.collect()
 }
+
+/// Writes table, figure and page of a state of rest, a motion of one instant, into a folder that exists.
+pub fn write_still(folder: &Path, table: &str, run: &Run<'_>) -> Result<(), WriteError> {
+    let csv = table::trajectory_csv(run.observations, run.origin);
+    let svg = pose::svg(run.system, run.trajectory, run.skins, run.held, run.origin);
+    let page = page::html(run);
+    for (name, text) in [
+        (table, csv),
+        ("configuration.svg", svg),
+        ("report.html", page),
+    ] {
+        atomic::write(&folder.join(name), text.as_bytes())?;
+    }
+    Ok(())
+}

@@ -17,7 +17,9 @@ pub fn html(run: &Run<'_>) -> String {
         escape(&run.system.name)
     );
     body.push_str(&summary(run.summary));
-    body.push_str(&section("Motion", "motion", 720, &animation::plot(run)));
+    let moves = run.trajectory.times.len() > 1;
+    let heading = if moves { "Motion" } else { "Configuration" };
+    body.push_str(&section(heading, "motion", 720, &animation::plot(run)));
     let mut figures = vec![
         (
             "Voltages",
@@ -38,7 +40,7 @@ pub fn html(run: &Run<'_>) -> String {
             joints::energies(run.trajectory, run.observations),
         ),
     ];
-    figures.retain(|(_, _, _, series)| !series.is_empty());
+    figures.retain(|(_, _, _, series)| moves && !series.is_empty());
     for (heading, id, label, series) in &figures {
         body.push_str(&section(heading, id, 420, &over_time(label, series)));
     }

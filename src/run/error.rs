@@ -37,6 +37,16 @@ pub enum RunError {
         /// Why.
         reason: String,
     },
+    /// The input is right, but a start or goal at rest was not found.
+    #[error("{}: {place}: {reason}", file.display())]
+    NoEquilibrium {
+        /// The problem file as typed.
+        file: PathBuf,
+        /// Path in it.
+        place: String,
+        /// Why.
+        reason: String,
+    },
     /// A value typed on the command line is wrong.
     #[error("{option}: {reason}")]
     Option {
@@ -65,10 +75,11 @@ pub enum RunError {
 }
 
 impl RunError {
-    /// Exit status of the program: 2 where the input is wrong, 1 where there was no time or the results could not be kept.
+    /// Exit status of the program: 2 where the input is wrong, 1 where it has no answer, there was no time, or results could not
+    /// be kept.
     pub fn exit_status(&self) -> u8 {
         match self {
-            Self::Write(_) | Self::Stopped(_) => 1,
+            Self::Write(_) | Self::Stopped(_) | Self::NoEquilibrium { .. } => 1,
             _ => 2,
         }
     }
@@ -99,8 +110,23 @@ impl RunError {
                 source: EquilibriumError::Stopped(status),
                 ..
             } => return Self::Stopped(*status),
-            BoundaryError::NoEquilibrium { place, source } => (*place, source.to_string()),
             BoundaryError::Limit { place, reason } => (*place, reason.clone()),
+            BoundaryError::NoEquilibrium { place, source } => {
+                let reason = source.to_string();
+                // What nothing holds is wrong input; loads that a robot does not bear are not.
+                let is_borne = !matches!(
+                    source,
+                    EquilibriumError::LimitPoint { .. } | EquilibriumError::NoStart
+                );
+                if !is_borne {
+                    return Self::NoEquilibrium {
+                        file: file.to_owned(),
+                        place: format!("{task}.{place}"),
+                        reason,
+                    };
+                }
+                (*place, reason)
+            }
             BoundaryError::Inconsistent { place, .. } | BoundaryError::NoLength { place, .. } => {
                 let text = error.to_string();
                 let reason = text.strip_prefix(&format!("{place}: ")).unwrap_or(&text);

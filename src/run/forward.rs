@@ -6,13 +6,14 @@ use std::time::Instant;
 
 use crate::control::problem::{Afterwards, Simulation, Voltages};
 use crate::control::resolve_start;
-use crate::dynamics::{History, StepError, observations, simulate_by};
+use crate::dynamics::{History, StepError, observations, out_of_domain, simulate_by};
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::run::blocks::Blocks;
 use crate::run::comparison::{self, Comparison};
+use crate::run::domain;
 use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::fields;
@@ -158,6 +159,7 @@ pub(super) fn simulation(
     summary.simulation = Some(summary::Simulation::new(&history, task.solving.integrator));
     summary.plan = plan;
     let observed = observations(&model, &history);
+    summary.domain = domain::told(&out_of_domain(&model, &history));
     let origin = request.origin(false);
     let written = fields::write(&folder, &model, &history, &origin)?;
     summary.blocks = Blocks::of(&model).map(|b| b.after(&model, &observed, written));
@@ -176,6 +178,7 @@ pub(super) fn simulation(
     let compared = summary.comparison.iter().flat_map(Comparison::notes);
     let mut notes: Vec<String> = summary.message.iter().cloned().chain(compared).collect();
     summary.notes.extend(afterwards(task));
+    summary.notes.extend(domain::note(&summary.domain, true));
     notes.extend(summary.notes.iter().cloned());
     summary.write(&folder)?;
     let mut rows = vec![

@@ -4,20 +4,25 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
-use crate::dynamics::{Continuation, History, Instability, continuation};
+use crate::dynamics::{
+    Continuation, Equilibrium, History, Instability, continuation, observations, out_of_domain,
+};
 use crate::ipopt::{Status, interrupt};
-use crate::model::Model;
+use crate::model::{Model, System};
 use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Mark, Series};
 use crate::report::origin::Origin;
-use crate::report::{atomic, style, table};
+use crate::report::skins::Skins;
+use crate::report::{Run, atomic, style, write_still};
+use crate::run::domain;
 use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::progress::phase;
 use crate::run::request::{Request, Told};
-use crate::run::rest::{Asked, refused};
+use crate::run::rest::{at_rest, refused};
 use crate::run::solve::{counted, make_folder};
 use crate::run::summary::{MEASURED, Seconds, Summary};
 
@@ -39,135 +44,243 @@ struct Loss {
     fraction: f64,
     /// `pull_in` or `buckling`.
     kind: &'static str,
+    /// The same in words.
+    #[serde(skip)]
+    words: &'static str,
 }
 
-/// Follows the path for `points` equilibria and writes `path.csv`, `path.svg` and the fields.
+/// Follows the path for `points` equilibria and writes `path.csv`, `path.svg`, the fields, and figure and page of the last
+/// equilibrium before stability is lost, or of the last one.
 pub(super) fn follow(
     request: &Request,
-    asked: &Asked<'_>,
+    system: &System,
+    task: &AtRest,
     points: usize,
     began: Instant,
 ) -> Result<Told, RunError> {
     let wrong = |error| RunError::boundary(&request.input, "equilibrium", &error);
-    let model = Model::answering(asked.system.clone(), asked.task.question(asked.system))
+    let model = Model::answering(system.clone(), task.question(system))
         .map_err(|error| wrong(error.into()))?;
     let setup = began.elapsed().as_secs_f64();
     phase("following the path");
     let start = model.coordinates_at(&vec![0.0; model.gauges.len()]);
-    let found = match continuation(&model, &start, &model.scalars(&asked.task.voltages), points) {
+    let found = match continuation(&model, &start, &model.scalars(&task.voltages), points) {
         Ok(found) => found,
         Err(error) => return refused(request, &error, "no equilibrium to start from"),
     };
     let stopped = interrupt::stop();
-    let lost = found.lost.iter().map(loss).map(|l| {
-        let what = if l.kind == "pull_in" {
-            "pull-in"
-        } else {
-            l.kind
-        };
-        format!("{what} at {:.6} % of the voltages", 100.0 * l.fraction)
+    let path = Followed::new(&found);
+    let folder = request.folder();
+    make_folder(&folder)?;
+    let origin = request.origin(false);
+    let stops = Stop::all(&found);
+    // The first equilibrium stands at both ends of an interval of its own, so that each has its potentials.
+    let states = || stops.iter().map(|stop| stop.rest);
+    let history = History {
+        times: std::iter::once(0.0)
+            .chain(stops.iter().map(|stop| stop.fraction))
+            .collect(),
+        z: std::iter::once(stops[0].rest)
+            .chain(states())
+            .map(|p| p.z.clone())
+            .collect(),
+        momenta: vec![vec![0.0; model.coordinate_count()]; stops.len() + 1],
+        scalars: states().map(|p| p.scalars.clone()).collect(),
+        ..History::default()
+    };
+    let observed = observed(&model, &stops, &history);
+    let shown = stops.iter().position(|stop| stop.lost.is_some());
+    let shown = shown.unwrap_or(stops.len() - 1);
+    let still = still(&history, shown + 1);
+    let motion = Trajectory::from_history(&model, &still);
+    let rows = path.rows(&stops[shown]);
+    let run = Run {
+        system: &model.system,
+        trajectory: &motion,
+        skins: &Skins::new(&model, &still),
+        name: "rest",
+        observations: &observed,
+        comparison: None,
+        held: Some(&motion.voltages[0]),
+        origin: &origin,
+        title: "Path of equilibria",
+        summary: &rows,
+    };
+    write_still(&folder, "path.csv", &run)?;
+    let svg = figure(&model, &stops, &history, &origin);
+    atomic::write(&folder.join("path.svg"), svg.as_bytes())?;
+    fields::write(&folder, &model, &history, &origin)?;
+    let outside = domain::told(&out_of_domain(&model, &history));
+    let notes = path.lost.iter().map(|loss| {
+        format!(
+            "{} at {:.6} % of the voltages",
+            loss.words,
+            100.0 * loss.fraction
+        )
     });
     let early = stopped.map(|status| {
         let why = status.word().replace('_', " ");
         format!("the path was not followed to its end ({why})")
     });
-    let notes = lost.chain(early);
-    let mut told = Told {
+    let told = Told {
         is_solved: stopped.is_none(),
-        result: counted(found.points.len(), "equilibrium").replace("equilibriums", "equilibria"),
-        notes: notes.collect(),
-    };
-    let folder = asked.folder.clone().unwrap_or_else(|| request.folder());
-    make_folder(&folder)?;
-    let origin = request.origin(false);
-    // The first equilibrium stands at both ends of an interval of its own, so that each has its potentials.
-    let first = &found.points[0];
-    let history = History {
-        times: std::iter::once(&0.0)
-            .chain(&found.fractions)
-            .copied()
+        result: format!(
+            "{}, {}",
+            counted(found.points.len(), "equilibrium").replace("equilibriums", "equilibria"),
+            folder.display()
+        ),
+        notes: notes
+            .chain(early)
+            .chain(domain::note(&outside, false))
             .collect(),
-        z: std::iter::once(first)
-            .chain(&found.points)
-            .map(|p| p.z.clone())
-            .collect(),
-        scalars: found.points.iter().map(|p| p.scalars.clone()).collect(),
-        ..History::default()
     };
-    let observed = observations(&model, &found, &history);
-    let csv = table::trajectory_csv(&observed, &origin);
-    atomic::write(&folder.join("path.csv"), csv.as_bytes())?;
-    let svg = figure(&model, &found, &history, &origin);
-    atomic::write(&folder.join("path.svg"), svg.as_bytes())?;
-    fields::write(&folder, &model, &history, &origin)?;
     let word = stopped.map_or("path_followed", Status::word);
     let mut summary = Summary::new(request, word, model.coordinates.name());
     summary.plan = Plan::of(&model, None, MEASURED).map_err(|error| wrong(error.into()))?;
-    summary.path = Some(Followed {
-        points: found.points.len(),
-        largest_fraction: found.fractions.iter().copied().fold(0.0, f64::max),
-        lost: found.lost.iter().map(loss).collect(),
-    });
+    summary.path = Some(path);
+    summary.notes.extend(domain::note(&outside, false));
+    summary.domain = outside;
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),
         setup,
         ..Seconds::default()
     };
     summary.write(&folder)?;
-    told.result.push_str(&format!(", {}", folder.display()));
     Ok(told)
 }
 
-fn loss(&(_, fraction, kind): &(usize, f64, Instability)) -> Loss {
-    Loss {
-        fraction,
-        kind: kind.key(),
+impl Followed {
+    fn new(found: &Continuation) -> Self {
+        let loss = |&(_, fraction, kind): &(usize, f64, Instability)| Loss {
+            fraction,
+            kind: kind.key(),
+            words: kind.words(),
+        };
+        Self {
+            points: found.points.len(),
+            largest_fraction: found.fractions.iter().copied().fold(0.0, f64::max),
+            lost: found.lost.iter().map(loss).collect(),
+        }
+    }
+
+    /// Rows of the page.
+    fn rows(&self, shown: &Stop<'_>) -> Vec<(String, String)> {
+        let mut rows = vec![
+            ("equilibria".to_owned(), self.points.to_string()),
+            (
+                "largest fraction of the voltages".to_owned(),
+                format!("{:.6} %", 100.0 * self.largest_fraction),
+            ),
+        ];
+        rows.extend(self.lost.iter().map(|loss| {
+            let place = format!("{:.6} % of the voltages", 100.0 * loss.fraction);
+            (loss.words.to_owned(), place)
+        }));
+        let place = format!("the equilibrium at {:.6} %", 100.0 * shown.fraction);
+        rows.push(("configuration".to_owned(), place));
+        rows
     }
 }
 
-/// Fraction, voltages, markers and stability of each equilibrium.
-fn observations(model: &Model, found: &Continuation, history: &History) -> Observations {
-    let marks = Trajectory::from_history(model, history).marks;
+/// An equilibrium of the path.
+struct Stop<'a> {
+    rest: &'a Equilibrium,
+    fraction: f64,
+    /// How stability is lost here.
+    lost: Option<Instability>,
+}
+
+impl<'a> Stop<'a> {
+    /// The equilibria followed, with those where stability is lost at their places.
+    fn all(found: &'a Continuation) -> Vec<Self> {
+        let mut stops = Vec::new();
+        for (k, (rest, &fraction)) in found.points.iter().zip(&found.fractions).enumerate() {
+            stops.push(Self {
+                rest,
+                fraction,
+                lost: None,
+            });
+            let here = found.lost.iter().zip(&found.limits);
+            for (&(_, fraction, kind), rest) in here.filter(|((index, ..), _)| *index == k) {
+                stops.push(Self {
+                    rest,
+                    fraction,
+                    lost: Some(kind),
+                });
+            }
+        }
+        stops
+    }
+}
+
+/// The state at an instant, alone.
+fn still(history: &History, k: usize) -> History {
+    History {
+        times: vec![0.0],
+        z: vec![history.z[k].clone()],
+        momenta: vec![history.momenta[k].clone()],
+        scalars: vec![history.scalars[k - 1].clone()],
+        ..History::default()
+    }
+}
+
+/// Fraction, voltages, markers, stretches, charges, energies and stability of each equilibrium, and whether stability is lost
+/// there.
+fn observed(model: &Model, stops: &[Stop<'_>], history: &History) -> Observations {
     let mut columns = Vec::new();
     let mut add = |name: String, unit: &'static str, values: Vec<f64>| {
         columns.push(Column { name, unit, values });
     };
-    add("fraction".to_owned(), "", found.fractions.clone());
+    let each = |value: &dyn Fn(&Stop<'_>) -> f64| stops.iter().map(value).collect();
+    add("fraction".to_owned(), "", each(&|stop| stop.fraction));
     for (s, &source) in model.voltages.iter().enumerate() {
-        let values = found.points.iter().map(|p| p.scalars[s]).collect();
+        let values = each(&|stop| stop.rest.scalars[s]);
         add(model.sources[source].name.clone(), "V", values);
     }
-    for (m, marker) in model.system.markers.iter().enumerate() {
-        for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {
-            let values = marks[1..].iter().map(|row| row[m][i]).collect();
-            add(format!("{}_{axis}", marker.name), "mm", values);
-        }
+    for mut column in at_rest(observations(model, history)).columns {
+        column.values.remove(0);
+        add(column.name, column.unit, column.values);
     }
-    let unstable = |p: &crate::dynamics::Equilibrium| p.unstable.map_or(f64::NAN, |n| n as f64);
-    let values = found.points.iter().map(unstable).collect();
-    add("unstable_directions".to_owned(), "", values);
+    let unstable = |stop: &Stop<'_>| stop.rest.unstable.map_or(f64::NAN, |n| n as f64);
+    add("unstable_directions".to_owned(), "", each(&unstable));
+    let lost = |stop: &Stop<'_>| f64::from(u8::from(stop.lost.is_some()));
+    add("stability_lost".to_owned(), "", each(&lost));
     Observations { columns }
 }
 
-/// `path.svg`: fraction of the voltages over the way of each marker, or of the coordinate that moves most.
-fn figure(model: &Model, found: &Continuation, history: &History, origin: &Origin) -> String {
+/// `path.svg`: fraction of the voltages over the way of each marker, or of the coordinate that moves most; where stability is
+/// lost it is marked.
+fn figure(model: &Model, stops: &[Stop<'_>], history: &History, origin: &Origin) -> String {
     let marks = Trajectory::from_history(model, history).marks;
     let reference = &model.coordinates_at(&vec![0.0; model.gauges.len()]);
     let way = |m: usize, k: usize| (marks[k + 1][m] - marks[0][m]).norm();
-    let curve = |name: &str, m: usize, way: &dyn Fn(usize) -> f64| {
-        let points = (0..found.points.len()).map(|k| [way(k), found.fractions[k]]);
-        Series::curve(name, points.collect(), style::hue(m)).marked(Mark::Disc)
+    let mut series = Vec::new();
+    let mut curve = |name: &str, m: usize, way: &dyn Fn(usize) -> f64| {
+        let place = |k: usize| [way(k), stops[k].fraction];
+        let points = (0..stops.len()).map(place).collect();
+        series.push(Series::curve(name, points, style::hue(m)).marked(Mark::Disc));
+        let lost = (0..stops.len()).filter(|&k| stops[k].lost.is_some());
+        let (points, labels): (Vec<_>, Vec<_>) = lost
+            .map(|k| {
+                let words = stops[k].lost.map_or("", Instability::words);
+                let label = format!("{words} at {:.2} %", 100.0 * stops[k].fraction);
+                (place(k), label)
+            })
+            .unzip();
+        if !points.is_empty() {
+            let mark = Series::curve("", points, style::INK).marked(Mark::Ring);
+            series.push(mark.unjoined().labelled(labels));
+        }
     };
-    let markers = model.system.markers.iter().enumerate();
-    let mut series: Vec<Series> = markers
-        .map(|(m, marker)| curve(&marker.name, m, &|k| way(m, k)))
-        .collect();
-    if series.is_empty() {
+    for (m, marker) in model.system.markers.iter().enumerate() {
+        curve(&marker.name, m, &|k| way(m, k));
+    }
+    if model.system.markers.is_empty() {
         let far = |k: usize| {
-            let z = found.points[k].z.iter().zip(reference);
+            let z = stops[k].rest.z.iter().zip(reference);
             z.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
         };
-        series.push(curve("largest change of a coordinate", 0, &far));
+        curve("largest change of a coordinate", 0, &far);
     }
     LinePlot::new(
         Axis::linear("way from rest [mm]", Extent::FromZero),

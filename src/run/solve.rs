@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use crate::control::problem::{Control, Hold};
 use crate::control::{Boundary, Solved};
-use crate::dynamics::observations;
+use crate::dynamics::{observations, out_of_domain};
 use crate::ipopt::{Iteration, Status, interrupt};
 use crate::model::{Model, System};
 use crate::report::atomic::{self, WriteError};
@@ -16,6 +16,7 @@ use crate::report::{Run, write_run};
 use crate::run::accuracy::{Accuracy, Refined};
 use crate::run::blocks::Blocks;
 use crate::run::cure::{Cured, reproduced};
+use crate::run::domain;
 use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::fields;
@@ -228,6 +229,8 @@ fn write_files(
     let origin = request.origin(true);
     let written = fields::write(folder, model, &history, &origin)?;
     summary.blocks = Blocks::of(model).map(|b| b.after(model, &observed, written));
+    summary.domain = domain::told(&out_of_domain(model, &history));
+    summary.notes.extend(domain::note(&summary.domain, true));
     summary.write(folder)?;
     let motion = trajectory(model, kept);
     let is_solved = summary.message.is_none();

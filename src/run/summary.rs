@@ -9,10 +9,12 @@ use crate::report::atomic::{self, WriteError};
 use crate::run::accuracy::Accuracy;
 use crate::run::blocks::Blocks;
 use crate::run::comparison::Comparison;
+use crate::run::domain::Outside;
 use crate::run::effects::Plan;
 use crate::run::path::Followed;
 use crate::run::request::Request;
 use crate::run::resimulate::Resimulation;
+use crate::run::rest_words::Rest;
 use crate::run::violations::Violation;
 use crate::scene::lay_out;
 
@@ -44,6 +46,9 @@ pub(super) struct Summary {
     pub(super) rest: Option<Rest>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) path: Option<Followed>,
+    /// What leaves the domain of the first-order dielectric.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) domain: Vec<Outside>,
     #[serde(flatten)]
     pub(super) blocks: Option<Blocks>,
     pub(super) coordinates: &'static str,
@@ -139,31 +144,6 @@ impl Simulation {
     }
 }
 
-/// A static equilibrium, or the last one on the way to the voltages asked for.
-#[derive(Debug, Serialize)]
-pub(super) struct Rest {
-    /// Voltage of each muscle and electrode in V.
-    pub(super) voltages: std::collections::BTreeMap<String, f64>,
-    /// What part of the voltages asked for these are, where they were not reached.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) fraction: Option<f64>,
-    /// Largest electric field of an element of a block in its reference configuration in V/m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) largest_nominal_field: Option<f64>,
-    /// Coordinate of each joint in rad or m.
-    pub(super) joints: std::collections::BTreeMap<String, f64>,
-    /// Place of each marker in m.
-    pub(super) markers: std::collections::BTreeMap<String, [f64; 3]>,
-    /// Eigenvalues of the stiffness in joint coordinates, N m/rad for angles, N/m for displacements.
-    pub(super) stiffness: Vec<f64>,
-    /// Whether the equilibrium is stable, by them or by the inertia of the tangent; nothing where that is not known.
-    pub(super) is_stable: Option<bool>,
-    /// Number of directions in which the potential energy falls, by the inertia of the tangent.
-    pub(super) unstable_directions: Option<usize>,
-    /// Newton iterations.
-    pub(super) newton_iterations: usize,
-}
-
 /// Wall time in s.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(super) struct Seconds {
@@ -215,6 +195,7 @@ impl Summary {
             comparison: None,
             rest: None,
             path: None,
+            domain: Vec::new(),
             blocks: None,
             coordinates,
             seconds: Seconds::default(),

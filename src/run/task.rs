@@ -27,14 +27,7 @@ pub fn run(request: &Request) -> Result<Told, RunError> {
         Task::Simulate(simulation) => {
             forward::simulation(request, &loaded.system, &simulation, began)
         }
-        Task::Equilibrium(task) => {
-            let asked = rest::Asked {
-                system: &loaded.system,
-                task: &task,
-                folder: Some(request.folder()),
-            };
-            rest::at(request, &asked, began)
-        }
+        Task::Equilibrium(task) => rest::at(request, &loaded.system, &task, began),
     }
 }
 

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use crate::control::problem::{AtRest, Control, Simulation, Task, Voltages};
 use crate::dynamics::trajectory::{Observations, Trajectory};
-use crate::dynamics::{EquilibriumError, equilibrium, observations, simulate};
+use crate::dynamics::{EquilibriumError, observations, simulate, stable_equilibrium};
 use crate::ipopt::interrupt;
 use crate::model::Model;
 use crate::run::{Allowed, Cause, Optimum, RunError, Simulated, integrate, optimise, trajectory};
@@ -230,7 +230,7 @@ fn rest(
         Err(error) => return (failed(REFUSED, error.to_string(), began), None),
     };
     let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
-    let found = equilibrium(&model, &zero, &model.scalars(&task.voltages));
+    let found = stable_equilibrium(&model, &zero, &model.scalars(&task.voltages));
     let seconds = began.elapsed().as_secs_f64();
     let found = match found {
         Ok(found) => found,

@@ -74,7 +74,8 @@ fn a_cube_at_rest_near_pull_in_and_beyond() {
     let fields = path.path("fraction");
     let heights: Vec<f64> = path.path("corner_z").iter().map(|z| z / 10.0).collect();
     let largest_field = largest(&fields);
-    assert!(largest_field < critical && largest_field > critical - 5e-3);
+    // The limit point itself is among them.
+    assert!((largest_field / critical - 1.0).abs() < 1e-7);
     assert!(
         heights.last().unwrap() < &0.5,
         "the path goes on past the limit"

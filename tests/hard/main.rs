@@ -16,6 +16,7 @@ mod page;
 mod program;
 mod ratios;
 mod repeat;
+mod rest;
 mod scenes;
 mod steps;
 mod units;

@@ -12,12 +12,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 /// Every case, in the order of the page.
-const CASES: [&str; 34] = [
+const CASES: [&str; 36] = [
     "voltage-from-zero",
     "pull-in-lumped",
     "pull-in-lumped-motion",
     "pull-in-elements",
     "pull-in-elements-motion",
+    "pull-in-distorted",
+    "collapse-under-weight",
     "stretch-static",
     "stretch-dynamic",
     "singular-length",

@@ -1,0 +1,182 @@
+//! The domain of the first-order dielectric: up to which stretch its charge and stiffness keep their signs.
+//!
+//! Along a principal direction with stretch Λ the permittivity is ε_eff = −2c₁ − 2c₂ Λ² + ε J/Λ². Where c₂ > 0 it falls with
+//! the stretch, and vanishes at
+//!
+//! ```text
+//! Λ² = [−c₁ + √(c₁² + 2 c₂ ε J)]/(2 c₂)
+//! ```
+
+#![expect(non_snake_case, reason = "notation of the law")]
+
+use crate::dynamics::History;
+use crate::math::{Matrix, Vector};
+use crate::model::system::{Electric, Fidelity};
+use crate::model::{Continuum, Model};
+use nalgebra::SymmetricEigen;
+
+/// A muscle or block that leaves the domain under voltage.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutOfDomain {
+    /// The muscle or block.
+    pub name: String,
+    /// Largest stretch.
+    pub stretch: f64,
+    /// Where the domain ends, at the volume of that place.
+    pub limit: f64,
+    /// Instant of the largest stretch in ms.
+    pub time: f64,
+    /// First instant outside in ms.
+    pub first: f64,
+}
+
+/// Stretch at which the permittivity along it vanishes where the volume is J times the reference volume; `None` where it does
+/// not, or is not even positive at rest.
+pub fn largest_stretch(electric: &Electric, J: f64) -> Option<f64> {
+    let Electric {
+        c1,
+        c2,
+        permittivity,
+    } = *electric;
+    if c2 <= 0.0 || permittivity - 2.0 * c1 - 2.0 * c2 <= 0.0 {
+        return None;
+    }
+    let square = (-c1 + (c1 * c1 + 2.0 * c2 * permittivity * J).sqrt()) / (2.0 * c2);
+    Some(square.sqrt())
+}
+
+/// What leaves the domain at the instants of a motion, in the order of muscles and blocks. The voltages of an instant are
+/// those of the interval that ends there.
+pub fn out_of_domain(model: &Model, history: &History) -> Vec<OutOfDomain> {
+    let muscles = model.system.muscles.iter().enumerate();
+    let lumped: Vec<Watched<'_>> = muscles
+        .filter(|(_, muscle)| muscle.fidelity == Fidelity::Lumped)
+        .filter_map(|(m, muscle)| {
+            let limit = largest_stretch(muscle.material.electric.as_ref()?, 1.0)?;
+            let scalar = model.voltages.iter().position(|&source| source == m)?;
+            let of = Of::Muscle {
+                span: model.spans[m],
+                length: muscle.length(),
+                scalar,
+                limit,
+            };
+            Some(Watched::new(&muscle.name, of))
+        })
+        .collect();
+    let blocks = model.continua.iter().filter(|continuum| {
+        let electric = continuum.solid.materials.iter().filter_map(|m| m.electric);
+        continuum.is_dielectric.contains(&true)
+            && electric
+                .into_iter()
+                .any(|e| largest_stretch(&e, 1.0).is_some())
+    });
+    let blocks = blocks.map(|continuum| Watched::new(&continuum.solid.name, Of::Block(continuum)));
+    let mut watched: Vec<Watched<'_>> = lumped.into_iter().chain(blocks).collect();
+    if watched.is_empty() {
+        return Vec::new();
+    }
+    let mut instant = model.action.motion.instant();
+    for (k, z) in history.z.iter().enumerate() {
+        let Some(scalars) = history.scalars.get(k.saturating_sub(1)) else {
+            continue;
+        };
+        instant.z.copy_from_slice(z);
+        model.action.motion.vectors(&mut instant);
+        for one in &mut watched {
+            one.look(&instant.x, scalars, history.times[k]);
+        }
+    }
+    watched.into_iter().filter_map(|one| one.found).collect()
+}
+
+/// A muscle or block that may leave the domain.
+struct Watched<'m> {
+    name: &'m str,
+    of: Of<'m>,
+    found: Option<OutOfDomain>,
+}
+
+enum Of<'m> {
+    Muscle {
+        span: usize,
+        length: f64,
+        scalar: usize,
+        limit: f64,
+    },
+    Block(&'m Continuum),
+}
+
+impl<'m> Watched<'m> {
+    fn new(name: &'m str, of: Of<'m>) -> Self {
+        Self {
+            name,
+            of,
+            found: None,
+        }
+    }
+
+    /// Looks at an instant.
+    fn look(&mut self, x: &[Vector], scalars: &[f64], time: f64) {
+        let worst = match &self.of {
+            &Of::Muscle {
+                span,
+                length,
+                scalar,
+                limit,
+            } => {
+                let stretch = x[span].norm() / length;
+                (scalars[scalar] != 0.0 && stretch > limit).then_some((stretch, limit))
+            }
+            Of::Block(continuum) => worst_of_block(continuum, x, scalars),
+        };
+        let Some((stretch, limit)) = worst else {
+            return;
+        };
+        let first = self.found.as_ref().map_or(time, |found| found.first);
+        if self
+            .found
+            .as_ref()
+            .is_none_or(|found| found.stretch < stretch)
+        {
+            self.found = Some(OutOfDomain {
+                name: self.name.to_owned(),
+                stretch,
+                limit,
+                time,
+                first,
+            });
+        }
+    }
+}
+
+/// The largest principal stretch at the Gauss points of the elements outside the domain that have a field, and its limit.
+fn worst_of_block(continuum: &Continuum, x: &[Vector], scalars: &[f64]) -> Option<(f64, f64)> {
+    let potentials = continuum.potentials(scalars);
+    let mut worst: Option<(f64, f64)> = None;
+    for (e, nodes) in continuum.solid.mesh.hexahedra.iter().enumerate() {
+        let Some(electric) = continuum.material(e).electric else {
+            continue;
+        };
+        let has_field = nodes.iter().any(|&n| potentials[n] != potentials[nodes[0]]);
+        if !continuum.is_dielectric[e] || !has_field {
+            continue;
+        }
+        let at = nodes.map(|n| x[continuum.vectors[n]]);
+        for g in 0..8 {
+            let F: Matrix = continuum.shapes[e].gradient_of(&at, g);
+            let Some(limit) = largest_stretch(&electric, F.determinant()) else {
+                continue;
+            };
+            // No stretch is larger than the norm of F.
+            if F.norm() <= limit {
+                continue;
+            }
+            let squares = SymmetricEigen::new(F.transpose() * F).eigenvalues;
+            let stretch = squares.max().sqrt();
+            if stretch > limit && worst.is_none_or(|(before, _)| before < stretch) {
+                worst = Some((stretch, limit));
+            }
+        }
+    }
+    worst
+}

@@ -1,0 +1,229 @@
+//! The softest mode of a state of rest: along which direction its potential energy rises least or falls, what moves there,
+//! and what makes it soft.
+
+use crate::dynamics::statics::Statics;
+use crate::math::random::Random;
+use crate::model::system::{Fidelity, JointKind};
+use crate::model::{Coordinates, Model};
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// Up to so many coordinates the stiffness is looked at eigenvalue by eigenvalue.
+const EIGENVALUES: usize = 100;
+/// Steps of the inverse iteration for larger systems.
+const STEPS: usize = 30;
+/// Parts of the largest motion below this are not named.
+const NAMED: f64 = 0.5;
+/// So many parts are named at most.
+const LISTED: usize = 3;
+
+/// What makes a mode soft: the smallest of the three parts of its stiffness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Softening {
+    /// The forces of voltages, as in pull-in.
+    Voltages,
+    /// Weights, as in collapse.
+    Weight,
+    /// Elastic forces, as in buckling.
+    Elastic,
+}
+
+/// The softest mode of a state of rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// Change of each coordinate; the largest is 1 (rad, or lengths of the system).
+    pub direction: Vec<f64>,
+    /// What moves most, in words: joints, or bodies, or a node of a block, then the muscle whose stretch changes most.
+    pub moves: String,
+    /// What makes it soft.
+    pub softening: Softening,
+}
+
+/// Whether the stiffness in joint coordinates can be looked at eigenvalue by eigenvalue.
+fn is_small(model: &Model) -> bool {
+    let motion = &model.action.motion;
+    let joints_alone = motion.tree.is_some() && motion.of_nodes.is_empty();
+    motion.multipliers == 0 && joints_alone && (1..=EIGENVALUES).contains(&motion.unknowns())
+}
+
+/// Eigenvalues and vectors of the stiffness of a small system in joint coordinates, at the state evaluated and factorised last;
+/// ascending.
+fn eigenpairs(statics: &Statics<'_>) -> Option<(Vec<f64>, Vec<f64>)> {
+    let model = statics.model;
+    if !is_small(model) {
+        return None;
+    }
+    let n = model.action.motion.coordinates;
+    let mut matrix = DMatrix::<f64>::zeros(n, n);
+    for ((row, col), value) in statics.entries() {
+        matrix[(row, col)] -= value / model.multiplier_time;
+    }
+    let pairs = SymmetricEigen::new(matrix);
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by(|&i, &j| pairs.eigenvalues[i].total_cmp(&pairs.eigenvalues[j]));
+    let lowest = pairs.eigenvectors.column(order[0]);
+    let values = order.iter().map(|&i| pairs.eigenvalues[i]).collect();
+    Some((values, lowest.iter().copied().collect()))
+}
+
+/// Eigenvalues of the stiffness in joint coordinates of the state evaluated and factorised last, ascending; empty for other
+/// coordinates.
+pub(super) fn stiffness(statics: &Statics<'_>) -> Vec<f64> {
+    eigenpairs(statics).map_or_else(Vec::new, |(values, _)| values)
+}
+
+/// The softest mode of the state evaluated and factorised last.
+pub(super) fn softest(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64]) -> Option<Mode> {
+    let direction = match eigenpairs(statics) {
+        Some((_, lowest)) => lowest,
+        None => inverse_iteration(statics)?,
+    };
+    Some(named(statics, state, voltages, direction))
+}
+
+/// The direction of the lowest eigenvalue of K by B, of the state evaluated last.
+fn inverse_iteration(statics: &mut Statics<'_>) -> Option<Vec<f64>> {
+    let n = statics.scales().len();
+    let size = statics.residual.len();
+    let mut sigma = 0.0;
+    let mut count = 0;
+    while statics.factor_with(sigma).is_err() || statics.unstable() != Some(0) {
+        sigma = match count {
+            0 => 1e-4 * statics.largest_stiffness(),
+            _ => 4.0 * sigma,
+        };
+        count += 1;
+        if count > 40 {
+            return None;
+        }
+    }
+    let mut random = Random::new(1);
+    let mut vector: Vec<f64> = (0..n).map(|_| random.between(-1.0, 1.0)).collect();
+    for _ in 0..STEPS {
+        let mut rhs = vec![0.0; size];
+        for (i, (value, scale)) in vector.iter().zip(statics.scales()).enumerate() {
+            rhs[i] = -value / (scale * scale);
+        }
+        statics.solve(&mut rhs);
+        let largest = rhs[..n].iter().zip(statics.scales());
+        let largest = largest.fold(0.0, |m, (v, s)| f64::max(m, (v / s).abs()));
+        if !(largest.is_finite() && largest > 0.0) {
+            return None;
+        }
+        vector = rhs[..n].iter().map(|v| v / largest).collect();
+    }
+    Some(vector)
+}
+
+/// A direction of length 1 with what it moves.
+fn named(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64], direction: Vec<f64>) -> Mode {
+    let largest = direction.iter().zip(statics.scales());
+    let (v, s) = largest.fold((0.0_f64, 1.0), |(m, s), (v, scale)| {
+        if (v / scale).abs() > (m / s).abs() {
+            (*v, *scale)
+        } else {
+            (m, s)
+        }
+    });
+    let direction: Vec<f64> = direction.iter().map(|d| d * s / v).collect();
+    Mode {
+        moves: moves(statics.model, state, &direction),
+        softening: softening(statics, state, voltages, &direction),
+        direction,
+    }
+}
+
+/// The part of the stiffness along a direction that is smallest.
+fn softening(
+    statics: &mut Statics<'_>,
+    state: &[f64],
+    voltages: &[f64],
+    direction: &[f64],
+) -> Softening {
+    let m = statics.model.action.motion.unknowns();
+    let mut bare = state.to_vec();
+    bare[m..].fill(0.0);
+    let none = vec![0.0; voltages.len()];
+    let weight = statics.weight;
+    let mut along = |weight: f64, state: &[f64], voltages: &[f64]| {
+        statics.weight = weight;
+        statics.evaluate(state, voltages);
+        statics.stiffness_along(direction)
+    };
+    let all = along(weight, state, voltages);
+    let mechanical = along(weight, &bare, &none);
+    let elastic = along(0.0, &bare, &none);
+    statics.weight = weight;
+    statics.evaluate(state, voltages);
+    let parts = [
+        (Softening::Voltages, all - mechanical),
+        (Softening::Weight, mechanical - elastic),
+        (Softening::Elastic, elastic),
+    ];
+    let least = parts.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
+    least.expect("three parts").0
+}
+
+/// What moves along a direction, in words.
+fn moves(model: &Model, state: &[f64], direction: &[f64]) -> String {
+    let motion = &model.action.motion;
+    let mut instant = motion.placed(&state[..motion.unknowns()]);
+    instant.l[..direction.len()].copy_from_slice(direction);
+    motion.along(&mut instant);
+    let mut words = Vec::new();
+    let bodies = &direction[..motion.of_bodies];
+    let mut list: Vec<(String, f64)> = match model.coordinates {
+        Coordinates::Reduced => {
+            let joints = model.gauges.iter().zip(&model.system.joints);
+            let moved = joints.filter_map(|(gauge, joint)| {
+                let scale = match joint.kind {
+                    JointKind::Prismatic { .. } => model.length(),
+                    _ => 1.0,
+                };
+                gauge
+                    .coordinate
+                    .map(|c| (joint.name.clone(), bodies[c].abs() / scale))
+            });
+            moved.collect()
+        }
+        Coordinates::Redundant => {
+            let rates = bodies.chunks(12);
+            let moved = rates
+                .zip(&model.condensed.system.bodies)
+                .map(|(rates, body)| {
+                    let (centre, turn) = rates.split_at(3);
+                    let largest = |part: &[f64]| part.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+                    let moved = f64::max(largest(centre) / model.length(), largest(turn));
+                    (body.name.clone(), moved)
+                });
+            moved.collect()
+        }
+    };
+    list.sort_by(|a, b| b.1.total_cmp(&a.1));
+    if let Some(largest) = list.first().map(|l| l.1).filter(|&l| l > NAMED) {
+        let named = list.iter().filter(|(_, v)| *v >= NAMED * largest);
+        words.extend(named.take(LISTED).map(|(name, _)| name.clone()));
+    }
+    let nodes = motion.of_nodes.iter().zip(&direction[motion.of_bodies..]);
+    let furthest = nodes.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    if let Some((&(node, _), _)) = furthest.filter(|_| words.is_empty()) {
+        let (block, node) = model.node_names[node];
+        let solid = &model.continua[block].solid;
+        let at = solid.mesh.nodes[node];
+        words.push(format!(
+            "block {} around ({:.3}, {:.3}, {:.3}) mm of its reference",
+            solid.name, at.x, at.y, at.z
+        ));
+    }
+    let muscles = model.system.muscles.iter().enumerate();
+    let lumped = muscles.filter(|(_, muscle)| muscle.fidelity == Fidelity::Lumped);
+    let rate = lumped.map(|(m, muscle)| {
+        let (span, along) = (instant.x[model.spans[m]], instant.w[model.spans[m]]);
+        let rate = span.dot(&along) / (span.norm() * muscle.length());
+        (muscle, rate, span.norm() / muscle.length())
+    });
+    let most = rate.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    if let Some((muscle, _, stretch)) = most.filter(|m| m.1.abs() > 1e-9) {
+        words.push(format!("stretch of {} (at {stretch:.4})", muscle.name));
+    }
+    words.join(", ")
+}

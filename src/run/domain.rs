@@ -1,0 +1,61 @@
+//! What leaves the domain of the first-order dielectric, in one note and in `summary.json`.
+
+use serde::Serialize;
+
+use crate::dynamics::OutOfDomain;
+
+/// So many muscles and blocks are written out.
+const LISTED: usize = 4;
+
+/// A muscle or block outside the domain of its first-order dielectric.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Outside {
+    /// The muscle or block.
+    name: String,
+    /// Largest stretch.
+    stretch: f64,
+    /// Stretch beyond which charge and stiffness are negative.
+    limit: f64,
+    /// When it is outside for the first time, in s.
+    first: f64,
+    /// When the stretch is largest, in s.
+    time: f64,
+}
+
+/// As `summary.json` has it.
+pub(super) fn told(list: &[OutOfDomain]) -> Vec<Outside> {
+    let outside = |one: &OutOfDomain| Outside {
+        name: one.name.clone(),
+        stretch: one.stretch,
+        limit: one.limit,
+        first: one.first / 1e3,
+        time: one.time / 1e3,
+    };
+    list.iter().map(outside).collect()
+}
+
+/// One note; with times where there is a motion.
+pub(super) fn note(list: &[Outside], moves: bool) -> Option<String> {
+    if list.is_empty() {
+        return None;
+    }
+    let one = |out: &Outside| {
+        let when = match moves {
+            true => format!(" at {:.4} s, outside from {:.4} s on", out.time, out.first),
+            false => String::new(),
+        };
+        format!(
+            "{} is stretched to {:.4}{when} (the domain ends at {:.4})",
+            out.name, out.stretch, out.limit
+        )
+    };
+    let named: Vec<String> = list.iter().take(LISTED).map(one).collect();
+    let more = match list.len().saturating_sub(LISTED) {
+        0 => String::new(),
+        more => format!("; and {more} more"),
+    };
+    Some(format!(
+        "outside the domain of the first-order dielectric, where charge and stiffness turn negative: {}{more}",
+        named.join("; ")
+    ))
+}
