@@ -116,6 +116,8 @@ fn energy(system: &System, model: &Model, z: &[f64], voltages: &[f64]) -> f64 {
 /// A chain of links upright or hanging, aslant or not, with two muscles about each joint.
 fn chain(random: &mut Random) -> (System, Vec<f64>) {
     let links = 1 + (random.between(0.0, 4.0) as usize);
+    // Half of them are pulled down alone: upright they buckle, where the others bend.
+    let aside = if random.unit() > 0.0 { 2.0 } else { 0.0 };
     let up = if random.unit() > 0.0 { 1 } else { -1 };
     let written = json!({
         "name": "chain",
@@ -123,7 +125,7 @@ fn chain(random: &mut Random) -> (System, Vec<f64>) {
             "density": 1000, "shear_modulus": random.between(5e4, 3e5), "relative_permittivity": 3.0, "viscosity": 500,
         } },
         "chain": {
-            "segments": links, "length": random.between(0.03, 0.06), "radius": 0.02, "mass": random.between(0.005, 0.06),
+            "segments": links, "length": random.between(0.03, 0.06), "radius": 0.02, "mass": random.between(0.01, 0.15),
             "axis": [0, up, 0], "first_joint_axis": [0, 0, 1],
             "muscles": {
                 "material": "m", "arm": random.between(0.01, 0.018), "rest_length": 0.025, "cross_section": [0.01, 0.01],
@@ -131,7 +133,7 @@ fn chain(random: &mut Random) -> (System, Vec<f64>) {
             },
             "tip_marker": "tip",
         },
-        "gravity": [random.between(-2.0, 2.0), -9.81, random.between(-2.0, 2.0)],
+        "gravity": [aside * random.unit(), -9.81, aside * random.unit()],
     });
     let system = scene(&written);
     let voltages = (0..system.muscles.len())
@@ -398,7 +400,7 @@ fn a_muscle_outside_the_domain_is_told() {
     assert_eq!(err.lines().count(), 1, "{err}");
     for word in [
         "first-order dielectric",
-        "m is stretched to 2.24",
+        "m is stretched to 2.236",
         "ends at 1.4553",
     ] {
         assert!(err.contains(word), "{word}: {err}");
