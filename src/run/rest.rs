@@ -8,7 +8,6 @@ use crate::dynamics::{
     EquilibriumError, History, Loss, observations, out_of_domain, stable_equilibrium,
 };
 use crate::ipopt::interrupt;
-use crate::model::system::{Joint, JointKind};
 use crate::model::{Model, System};
 use crate::report::skins::Skins;
 use crate::report::{Run, write_still};
