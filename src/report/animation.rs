@@ -46,7 +46,9 @@ pub fn plot(run: &Run<'_>) -> Plot {
     for &is_charged in &kinds {
         plot.add_trace(stage.blocks(last, is_charged, true));
     }
-    stage.add_paths(&mut plot);
+    if last > 0 {
+        stage.add_paths(&mut plot);
+    }
     for &k in &instants {
         let mut data = Traces::new();
         data.push(stage.bodies(k));

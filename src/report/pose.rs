@@ -308,7 +308,7 @@ impl Drawing<'_> {
                     canvas.disc(first, 2.8, style::PAPER, rim);
                     canvas.disc(last, 2.4, style::INK, rim);
                 }
-                [only] if !self.skins.list.is_empty() => canvas.disc(only, 2.4, style::INK, rim),
+                [only] => canvas.disc(only, 2.4, style::INK, rim),
                 _ => {}
             }
         }
@@ -329,15 +329,15 @@ impl Drawing<'_> {
         };
         let mut rows = vec![];
         match last {
-            0 if has_blocks => {
-                rows.push(("reference".to_owned(), Sample::Swatch(style::GHOST)));
+            0 => {
+                if has_blocks {
+                    rows.push(("reference".to_owned(), Sample::Swatch(style::GHOST)));
+                }
                 rows.push(("at rest".to_owned(), Sample::Swatch(now)));
             }
             _ => {
-                if last > 0 {
-                    let first = format!("at {}", time(0));
-                    rows.push((first, Sample::Swatch(style::GHOST)));
-                }
+                let first = format!("at {}", time(0));
+                rows.push((first, Sample::Swatch(style::GHOST)));
                 let held = if self.is_held { ", held" } else { "" };
                 let end = format!("at {}{held}", time(last));
                 rows.push((end, Sample::Swatch(now)));
@@ -345,7 +345,7 @@ impl Drawing<'_> {
         }
         for marker in self.system.markers.iter().take(3) {
             rows.push(match last {
-                0 if has_blocks => (marker.name.clone(), Sample::Place),
+                0 => (marker.name.clone(), Sample::Place),
                 _ => (format!("path of {}", marker.name), Sample::Path),
             });
         }
