@@ -125,7 +125,7 @@ fn chain(random: &mut Random) -> (System, Vec<f64>) {
             "density": 1000, "shear_modulus": random.between(5e4, 3e5), "relative_permittivity": 3.0, "viscosity": 500,
         } },
         "chain": {
-            "segments": links, "length": random.between(0.03, 0.06), "radius": 0.02, "mass": random.between(0.01, 0.15),
+            "segments": links, "length": random.between(0.03, 0.06), "radius": 0.02, "mass": random.between(0.05, 0.6),
             "axis": [0, up, 0], "first_joint_axis": [0, 0, 1],
             "muscles": {
                 "material": "m", "arm": random.between(0.01, 0.018), "rest_length": 0.025, "cross_section": [0.01, 0.01],
@@ -409,10 +409,13 @@ fn a_muscle_outside_the_domain_is_told() {
     let outside = &told["domain"][0];
     assert_eq!(outside["name"], "m");
     assert_eq!(outside["stretch"], told["stretches"]["m"]);
-    // μ (Λ − 1/Λ²) A = m g, without the voltage.
+    // A W_Λ/V₀ = m g of the weight and half of the muscle, by physics.md 3.1; in N and m, at 1 kV over 50 µm.
     let stretch = outside["stretch"].as_f64().unwrap();
-    let force = 1e5 * (stretch - stretch.powi(-2)) * 25e-6;
-    assert!((force / (0.6 * 9.81) - 1.0).abs() < 0.1, "{force}");
+    let (field, vacuum) = (2e7_f64, 8.854_187_8e-12);
+    let elastic = 1e5 * (stretch - stretch.powi(-2));
+    let electric = vacuum * field * field * (4.0 * stretch + stretch.powi(-3));
+    let force = 25e-6 * (elastic + electric);
+    assert!((force / (0.6005 * 9.81) - 1.0).abs() < 1e-5, "{force}");
     for name in ["configuration.svg", "equilibrium.csv", "report.html"] {
         assert!(
             path.join("results/09_domain").join(name).is_file(),
