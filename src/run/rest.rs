@@ -141,11 +141,9 @@ pub(super) fn at(
         summary: &rows(&rest, status),
     };
     write_still(&folder, "equilibrium.csv", &run)?;
-    let message = summary.message.clone();
-    let notes = message
-        .into_iter()
-        .chain(domain::note(&summary.domain, false));
-    let notes = notes.collect();
+    summary.notes.extend(domain::note(&summary.domain, false));
+    let notes = summary.message.iter().chain(&summary.notes);
+    let notes = notes.cloned().collect();
     let told = match &failure {
         None => Told {
             is_solved: true,
