@@ -26,7 +26,7 @@ const SAME: (f64, f64) = (1e-4, 1e2);
 const JUMP: f64 = 1e3;
 /// Estimated errors along the motion, as parts of its way, from which on it is warned, and refused.
 const COARSE: f64 = 0.05;
-const TOO_COARSE: f64 = 0.25;
+const TOO_COARSE: f64 = 0.15;
 /// A drift from the goal, as a part of the way, from which on it is not held.
 const DRIFTS: f64 = 0.05;
 
