@@ -132,6 +132,7 @@ fn simulation(voltages: &[f64], coordinates: Coordinates) -> Simulation {
     Simulation {
         duration: 600.0,
         step: trunk::STEP,
+        tolerance: None,
         start: State::JointAngles {
             angles: BTreeMap::new(),
             rates: BTreeMap::new(),

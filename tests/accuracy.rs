@@ -274,6 +274,7 @@ fn swing(step: f64) -> Simulation {
     Simulation {
         duration: 1.0,
         step,
+        tolerance: None,
         start: State::JointAngles {
             angles: BTreeMap::new(),
             rates: BTreeMap::new(),

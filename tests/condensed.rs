@@ -27,6 +27,7 @@ fn under(voltages: Vec<f64>, coordinates: Coordinates) -> Simulation {
     Simulation {
         duration: 100.0,
         step: 5.0,
+        tolerance: None,
         start: joints(&[]),
         voltages: Voltages::Constant(voltages),
         coordinates: Some(coordinates),

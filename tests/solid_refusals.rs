@@ -227,6 +227,9 @@ fn far_beyond_pull_in_a_motion_ends_without_nan() {
                 StepError::NoConvergence { time, step, .. }
                 | StepError::Inverted { time, step }
                 | StepError::Reversed { time, step, .. }
+                | StepError::Turned { time, step, .. }
+                | StepError::Unbalanced { time, step, .. }
+                | StepError::Inaccurate { time, step, .. }
                 | StepError::Singular { time, step, .. },
             ) => {
                 assert!(time >= history.times[last] && time < history.times[last] + 0.2);

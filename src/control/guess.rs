@@ -1,6 +1,7 @@
 //! Where the solver starts: interpolated between start and goal, simulated, or an earlier solution.
 
 use crate::control::boundary::Boundary;
+use crate::control::evened::evened;
 use crate::control::problem::{Control, Guess};
 use crate::control::resample::{self, Grids};
 use crate::control::solution::{Costates, Solved};
@@ -139,6 +140,7 @@ fn from_solution(
     control: &Control,
     solved: &Solved,
 ) -> Initial {
+    let solved = &*evened(solved);
     let intervals = control.intervals;
     let before = solved.times[solved.intervals()];
     let duration = control.duration.nearest(before);

@@ -4,6 +4,7 @@ mod boundary;
 mod calls;
 mod ends;
 mod error;
+mod evened;
 mod guess;
 mod limits;
 mod objective;

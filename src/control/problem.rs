@@ -109,6 +109,14 @@ impl Voltages {
             Self::Sampled { solution, .. } => Some(solution),
         }
     }
+
+    /// Times in ms at which they may switch.
+    pub fn switches(&self) -> &[f64] {
+        match self {
+            Self::Constant(_) => &[],
+            Self::Sampled { ends, .. } => ends,
+        }
+    }
 }
 
 /// A forward simulation.
@@ -116,8 +124,11 @@ impl Voltages {
 pub struct Simulation {
     /// Length in ms.
     pub duration: f64,
-    /// Step in ms.
+    /// Step in ms; with a tolerance that of the first attempt.
     pub step: f64,
+    /// Sum of the local errors that the control of the steps allows over the duration, of angles in rad, of lengths relative to
+    /// the system's; `None`: equal steps.
+    pub tolerance: Option<f64>,
     /// Where it starts.
     pub start: State,
     /// What drives it.

@@ -55,6 +55,48 @@ pub enum StepError {
         /// [`Status::Interrupted`] or [`Status::TimeLimit`].
         status: Status,
     },
+    /// A joint turned by more than half a turn or a body by more than a right angle, although the step was halved.
+    #[error(
+        "the step from t = {time} ms turns {what} by {angle:.4} rad, even with a step of {step} ms: too far for a step to tell it from other turns; the motion is too fast for the step: take shorter ones"
+    )]
+    Turned {
+        /// Start of the step in ms.
+        time: f64,
+        /// Smallest step that was tried in ms.
+        step: f64,
+        /// The joint coordinate or the body.
+        what: String,
+        /// How far in rad.
+        angle: f64,
+    },
+    /// The energy balance of the step does not close, although it was halved.
+    #[error(
+        "the energy balance of the step from t = {time} ms does not close, even with a step of {step} ms: {made:+.4e} N mm from nowhere, while {exchanged:.4e} N mm are exchanged; the motion is too fast for the step, as in pull-in or at a bounce: take shorter ones"
+    )]
+    Unbalanced {
+        /// Start of the step in ms.
+        time: f64,
+        /// Smallest step that was tried in ms.
+        step: f64,
+        /// Energy in N mm that the step makes, or loses where negative.
+        made: f64,
+        /// Energy in N mm that is exchanged in the step.
+        exchanged: f64,
+    },
+    /// The local error is beyond what the tolerance allows, although the step was made shorter.
+    #[error(
+        "the step from t = {time} ms has an estimated local error of {error:.1e} where the tolerance allows {allowed:.1e}, even with a step of {step} ms: the motion is too fast for any step, as in pull-in"
+    )]
+    Inaccurate {
+        /// Start of the step in ms.
+        time: f64,
+        /// Smallest step that was tried in ms.
+        step: f64,
+        /// Local error, of angles in rad or of lengths relative to the system's.
+        error: f64,
+        /// What the tolerance allows.
+        allowed: f64,
+    },
     /// The tangent is singular.
     #[error(
         "singular tangent at t = {time} ms with a step of {step} ms: {name} is not determined{}",

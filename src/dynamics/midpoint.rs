@@ -8,6 +8,7 @@
 //!
 //! with the potentials φ of the interval, which have no inertia, by Gauss's law.
 
+use crate::dynamics::resolution::Balance;
 use crate::dynamics::solving::Solving;
 use crate::dynamics::stepper::{Equations, Steps};
 use crate::dynamics::tangent::Entries;
@@ -31,6 +32,10 @@ pub struct Midpoint<'m> {
     /// Rates of the coordinates over the last step, and how they changed, for the first guess.
     rates: Vec<f64>,
     changes: Vec<f64>,
+    /// Sizes of the coordinates.
+    sizes: Vec<f64>,
+    /// Lengths in ms of the last step and of the one before; zero where there was none.
+    lengths: [f64; 2],
     is_first: bool,
     time: f64,
     scratch: Scratch,
@@ -71,6 +76,8 @@ impl<'m> Stepper<'m> {
             momentum_next: momentum.to_vec(),
             rates: vec![0.0; n],
             changes: vec![0.0; n],
+            sizes: scales(model)[..n].to_vec(),
+            lengths: [0.0; 2],
             is_first: true,
             time: 0.0,
             scratch: model.action.scratch(Level::Hessian),
@@ -80,6 +87,11 @@ impl<'m> Stepper<'m> {
         };
         let tangent = entries.tangent(size, model.step_symmetry(), solving.backend);
         Self::by(equations, tangent, scales(model), solving.newton)
+    }
+
+    /// Takes the rates of the coordinates before the first step, for its guess and its error.
+    pub(super) fn began_with(&mut self, rates: &[f64]) {
+        self.equations_mut().rates.copy_from_slice(rates);
     }
 
     /// The instant now.
@@ -109,8 +121,14 @@ impl Equations for Midpoint<'_> {
 
     fn guess(&mut self, h: f64) {
         let n = self.model.action.motion.coordinates;
+        let [last, before] = self.lengths;
+        // Rates belong to the middle of steps; the last change took from the middle of one to that of the other.
+        let ratio = match before > 0.0 {
+            true => (h + last) / (last + before),
+            false => 1.0,
+        };
         for i in 0..n {
-            self.next.z[i] = self.here.z[i] + h * (self.rates[i] + self.changes[i]);
+            self.next.z[i] = self.here.z[i] + h * (self.rates[i] + ratio * self.changes[i]);
         }
         let [multipliers, potentials] = &mut self.saved;
         multipliers.copy_from_slice(&self.here.z[n..]);
@@ -194,9 +212,9 @@ impl Equations for Midpoint<'_> {
         [&self.here, &self.next]
     }
 
-    fn accept(&mut self, h: f64) -> bool {
-        let action = &self.model.action;
+    fn balance(&mut self, h: f64) -> Option<Balance> {
         let Self {
+            model,
             here,
             next,
             scratch,
@@ -207,7 +225,42 @@ impl Equations for Midpoint<'_> {
             sides: Sides::FORWARD,
             ..Interval::given(scalars, h)
         };
+        let action = &model.action;
         action.evaluate_interval(Level::Gradient, [here, next], &interval, scratch);
+        let forces = &scratch.interval.plain.forces;
+        Some(Balance::new(model, [here, next], &interval, forces))
+    }
+
+    /// h³ u‴/12 with the third derivative of the last three rates; before the first step the system moved as at its start.
+    fn local_error(&self, h: f64) -> f64 {
+        let lengths = self.lengths.map(|l| if l > 0.0 { l } else { h });
+        let [last, before] = lengths;
+        let spans = [h + last, last + before].map(|span| 0.5 * span);
+        let mut worst = 0.0_f64;
+        for (i, (from, to)) in self
+            .here
+            .z
+            .iter()
+            .zip(&self.next.z)
+            .enumerate()
+            .take(self.rates.len())
+        {
+            let slope = ((to - from) / h - self.rates[i]) / spans[0];
+            let third = (slope - self.changes[i] / spans[1]) * 2.0 / (spans[0] + spans[1]);
+            worst = worst.max((third / self.sizes[i]).abs());
+        }
+        worst * h.powi(3) / 12.0
+    }
+
+    /// With the forces that the balance evaluated.
+    fn accept(&mut self, h: f64) -> bool {
+        let action = &self.model.action;
+        let Self {
+            here,
+            next,
+            scratch,
+            ..
+        } = self;
         self.momentum_next.fill(0.0);
         let forces = &scratch.interval.plain.forces[1];
         let motion = &action.motion;
@@ -223,6 +276,7 @@ impl Equations for Midpoint<'_> {
             *rate = new;
         }
         self.is_first = false;
+        self.lengths = [h, self.lengths[0]];
         let n = motion.coordinates;
         here.z[n..].copy_from_slice(&next.z[n..]);
         std::mem::swap(&mut self.here, &mut self.next);

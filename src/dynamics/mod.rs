@@ -3,6 +3,7 @@
 //! - `stepper`: Newton on the equations of one step; `midpoint`: those of the midpoint rule; `stages`: those of every other
 //!   method.
 //! - `domain`: where the first-order dielectric ends.
+//! - `resolution`, `spans`: which steps are refused; `local_error`: what those neglect that are not.
 //! - `simulate`, `history`, `observe`, `kinetic`: step after step, recorded and observed.
 //! - `statics`: the rows of rest; `ramp`, `equilibrium`, `continuation`: paths of rest under growing loads; `minimum`: minima
 //!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest`: its softest mode.
@@ -14,10 +15,12 @@ mod equilibrium;
 mod error;
 mod history;
 mod kinetic;
+mod local_error;
 mod midpoint;
 mod minimum;
 mod observe;
 mod ramp;
+mod resolution;
 mod simulate;
 mod softest;
 mod solving;
@@ -36,10 +39,12 @@ pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
 pub use equilibrium::{Equilibrium, Loss, Route, equilibrium};
 pub use error::{EquilibriumError, StepError};
 pub use history::{History, Reading};
+pub use local_error::{LocalError, local_error};
 pub use midpoint::{Midpoint, Stepper};
 pub use observe::{Energies, energies, observations};
 pub use ramp::Load;
-pub use simulate::{Start, simulate, simulate_by};
+pub use resolution::Balance;
+pub use simulate::{Start, StepControl, simulate, simulate_by, simulate_within};
 pub use softest::{Mode, Softening};
 pub use solving::{Integrator, Newton, Solving};
 pub use spans::{muscle_without_length, reversed_muscle};

@@ -1,9 +1,11 @@
 //! What is observed along a motion: stretches, charges, energies, momenta and constraints, one row per instant.
 //!
-//! Charges, energies and momenta belong to intervals; the row of instant k holds those of the interval that ends
-//! there, row 0 those of the start, at q₀ with the rates of its momenta; where a method means them at instants
-//! ([`Reading::Instants`]), every row is read like that. The momenta are the momentum maps of
-//! p⁺ = D₂L_d + f⁺, which an invariant motion conserves exactly; reactions of joints enter with the next interval.
+//! Every row holds what is so at its instant. The midpoint rule sees charges and energies in the middle of intervals: between
+//! two of them they are interpolated linearly (where voltages switch, that is the mean of both sides). Row 0 is read at q₀ with
+//! the rates of its momenta, the last row at q_N under the last voltages, with the kinetic energy carried on from the last two
+//! intervals; all of it is of second order. Where a method means energies at instants ([`Reading::Instants`]), every row is read
+//! like row 0. The momenta are the momentum maps of p⁺ = D₂L_d + f⁺, which an invariant motion conserves exactly; reactions of
+//! joints enter with the next interval.
 
 use crate::dynamics::history::{History, Reading};
 use crate::dynamics::kinetic::Kinetic;
@@ -14,6 +16,7 @@ use crate::math::Vector;
 use crate::model::{Continuum, Model};
 use crate::reduction::{Instant, Interval, Scratch};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use std::ops::Range;
 
 /// Eigenvalues of the mass matrix below this fraction of the largest belong to coordinates without inertia.
 const MASSLESS: f64 = 1e-13;
@@ -63,8 +66,49 @@ pub fn observations(model: &Model, history: &History) -> Observations {
             column.values.push(value);
         }
     }
+    if history.reading == Reading::Intervals && history.intervals() > 0 {
+        let last = observer.last(history);
+        to_instants(&history.times, &mut columns[observer.of_intervals()], &last);
+    }
     observations.columns.extend(columns);
     observations
+}
+
+/// Turns charges, kinetic, potential and total energy in the middle of the intervals that end at the rows into those at the
+/// rows; `last` holds the charges and potential energies of the last one.
+fn to_instants(times: &[f64], columns: &mut [Column], last: &Ends) {
+    let end = times.len() - 1;
+    let length = |k: usize| times[k] - times[k - 1];
+    // Kinetic energy half an interval after the middle of the last one.
+    let of_kinetic = &columns[last.charges.len()].values;
+    let kinetic = match end {
+        1 => 2.0 * of_kinetic[1] - of_kinetic[0],
+        _ => {
+            let slope = (of_kinetic[end] - of_kinetic[end - 1]) / (length(end) + length(end - 1));
+            of_kinetic[end] + slope * length(end)
+        }
+    };
+    let kinetic = kinetic.max(0.0);
+    let total = kinetic + last.potential.iter().sum::<f64>();
+    for column in &mut *columns {
+        for k in 1..end {
+            let (before, after) = (length(k), length(k + 1));
+            let sum = column.values[k] * after + column.values[k + 1] * before;
+            column.values[k] = sum / (before + after);
+        }
+    }
+    let ends = last.charges.iter().copied().chain([kinetic]);
+    let ends = ends.chain(last.potential.iter().copied()).chain([total]);
+    for (column, value) in columns.iter_mut().zip(ends) {
+        column.values[end] = value;
+    }
+}
+
+/// Charges and potential energies at the last instant.
+#[derive(Debug)]
+struct Ends {
+    charges: Vec<f64>,
+    potential: Vec<f64>,
 }
 
 /// The storage to observe one instant after the other.
@@ -91,6 +135,29 @@ impl<'m> Observer<'m> {
             dissipated: 0.0,
             pulls: model.condensed.system.joint_pulls(),
         }
+    }
+
+    /// The columns that the midpoint rule sees in the middle of intervals.
+    fn of_intervals(&self) -> Range<usize> {
+        let columns = self.columns();
+        let total = columns.iter().position(|c| c.name == "total_energy");
+        let total = total.expect("there is a total energy");
+        self.model.system.muscles.len()..total + 1
+    }
+
+    /// Charges and potential energies at the last instant under the last voltages.
+    fn last(&mut self, history: &History) -> Ends {
+        let model = self.model;
+        let scalars = &history.scalars[history.intervals() - 1];
+        self.here.z.copy_from_slice(&history.z[history.intervals()]);
+        model.action.motion.place(&mut self.here);
+        self.before.clone_from(&self.here);
+        let potential = energies(model, &self.here, &self.here, scalars, 1.0).potential;
+        let still = model.continua.iter();
+        let still = still.flat_map(|block| block.still_charges(&self.here.x, scalars));
+        let mut charges: Vec<f64> = still.collect();
+        charges.extend(self.interval(scalars, 1.0).0);
+        Ends { charges, potential }
     }
 
     fn has(&self, kind: Kind) -> bool {

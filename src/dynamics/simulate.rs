@@ -7,6 +7,9 @@ use crate::dynamics::{StepError, Stepper};
 use crate::model::Model;
 use std::ops::ControlFlow;
 
+/// The shortest step that a tolerance may ask for, as a part of the duration.
+const LEAST: f64 = 1e-9;
+
 /// Where a motion starts: coordinates z and the momentum of each coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
@@ -77,13 +80,7 @@ pub fn simulate_by(
     voltages: impl Fn(f64, f64) -> Vec<f64>,
     observer: impl FnMut(usize) -> ControlFlow<()>,
 ) -> (History, Option<StepError>) {
-    let mut history = History {
-        times: vec![0.0],
-        z: vec![start.z.clone()],
-        momenta: vec![start.momentum.clone()],
-        rates: start.rates.clone(),
-        ..History::default()
-    };
+    let mut history = History::at(start);
     let grid = Grid { h, steps };
     let failure = if solving.integrator == Integrator::Midpoint {
         let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
@@ -96,6 +93,109 @@ pub fn simulate_by(
         }
     };
     (history, failure)
+}
+
+/// Lengths of steps that a tolerance controls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepControl<'a> {
+    /// Length of the motion in ms.
+    pub duration: f64,
+    /// Length in ms of the first attempt.
+    pub first: f64,
+    /// Sum of the local errors that is allowed over the duration: of angles in rad, of lengths relative to the system's.
+    pub tolerance: f64,
+    /// Times in ms, growing, at which voltages may switch: steps end there.
+    pub switches: &'a [f64],
+}
+
+/// Integrates by the midpoint rule with steps whose local error, by the change of the last rates, stays below a tolerance per
+/// time. Steps of unequal length keep momentum maps, and no longer the energy over long times.
+///
+/// `voltages` and `observer` are as in [`simulate`].
+pub fn simulate_within(
+    solving: Solving,
+    model: &Model,
+    start: &Start,
+    control: StepControl<'_>,
+    voltages: impl Fn(f64, f64) -> Vec<f64>,
+    mut observer: impl FnMut(usize) -> ControlFlow<()>,
+) -> (History, Option<StepError>) {
+    let StepControl {
+        duration,
+        first,
+        tolerance,
+        switches,
+    } = control;
+    let mut history = History::at(start);
+    let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
+    if let Some(rates) = &start.rates {
+        stepper.began_with(rates);
+    }
+    let n = stepper.momentum().len();
+    let mut wanted = first;
+    let mut failure = None;
+    let (mut time, mut k) = (0.0, 0);
+    while time < duration * (1.0 - 1e-12) {
+        let mut later = switches.iter().filter(|&&at| at > time * (1.0 + 1e-12));
+        let end = later.next().copied().unwrap_or(duration).min(duration);
+        let left = end - time;
+        // The last two steps before an end share what is left.
+        let h = match left / wanted {
+            parts if parts <= 1.0 => left,
+            parts if parts < 2.0 => 0.5 * left,
+            _ => wanted,
+        };
+        let row = voltages(time, time + h);
+        let step = match stepper.step_within(h, LEAST * duration, tolerance / duration, &row) {
+            Ok(step) => step,
+            Err(StepError::Stopped { .. }) => break,
+            Err(error) => {
+                failure = Some(error);
+                break;
+            }
+        };
+        time = if step.taken == left {
+            end
+        } else {
+            time + step.taken
+        };
+        wanted = if step.taken == h {
+            step.next.max(wanted)
+        } else {
+            step.next
+        };
+        history.z[k][n..n + step.multipliers.len()].copy_from_slice(&step.multipliers);
+        history.push(time, &stepper);
+        k += 1;
+        if observer(k).is_break() {
+            break;
+        }
+    }
+    history.report = stepper.report();
+    history.solver = stepper.solver();
+    (history, failure)
+}
+
+impl History {
+    /// A motion that begins.
+    fn at(start: &Start) -> Self {
+        Self {
+            times: vec![0.0],
+            z: vec![start.z.clone()],
+            momenta: vec![start.momentum.clone()],
+            rates: start.rates.clone(),
+            ..Self::default()
+        }
+    }
+
+    /// Takes in the step that ends at a time in ms.
+    fn push<E: Equations>(&mut self, time: f64, stepper: &Steps<E>) {
+        self.times.push(time);
+        self.z.push(stepper.coordinates().to_vec());
+        self.momenta.push(stepper.momentum().to_vec());
+        self.scalars.push(stepper.scalars().to_vec());
+        self.works.extend(stepper.work());
+    }
 }
 
 /// So many steps of h ms.
@@ -120,11 +220,7 @@ fn record<E: Equations>(
         match stepper.step(h, &voltages(from, to)) {
             Ok(multipliers) => {
                 history.z[k][n..n + multipliers.len()].copy_from_slice(&multipliers);
-                history.times.push(to);
-                history.z.push(stepper.coordinates().to_vec());
-                history.momenta.push(stepper.momentum().to_vec());
-                history.scalars.push(stepper.scalars().to_vec());
-                history.works.extend(stepper.work());
+                history.push(to, stepper);
             }
             Err(StepError::Stopped { .. }) => break,
             Err(error) => {

@@ -23,6 +23,15 @@ pub enum Integrator {
 }
 
 impl Integrator {
+    /// Order of the method in the step.
+    pub fn order(self) -> usize {
+        match self {
+            Self::Midpoint | Self::GeneralisedAlpha { .. } => 2,
+            Self::Galerkin { degree } => 2 * degree,
+            Self::ImplicitEuler => 1,
+        }
+    }
+
     /// The word in files and tables.
     pub fn name(self) -> String {
         match self {

@@ -2,6 +2,7 @@
 
 use crate::dynamics::StepError;
 use crate::dynamics::anderson::Anderson;
+use crate::dynamics::resolution::{Balance, turned};
 use crate::dynamics::solving::Newton;
 use crate::dynamics::spans;
 use crate::dynamics::tangent::Tangent;
@@ -73,6 +74,17 @@ pub trait Equations {
     /// The start and the end of the step.
     fn ends(&self) -> [&Place; 2];
 
+    /// Energy balance of the step that the last update led to, where the method has one.
+    fn balance(&mut self, _h: f64) -> Option<Balance> {
+        None
+    }
+
+    /// Local error of the step that the last update led to, relative to the sizes of the coordinates; zero where the method
+    /// has no estimate.
+    fn local_error(&self, _h: f64) -> f64 {
+        0.0
+    }
+
     /// Makes the end of the step the state, unless the momentum does not exist there.
     fn accept(&mut self, h: f64) -> bool;
 
@@ -100,6 +112,22 @@ pub trait Equations {
     }
 }
 
+/// A step of controlled length.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Controlled {
+    /// Its length in ms.
+    pub(super) taken: f64,
+    /// Length in ms that the next one may have.
+    pub(super) next: f64,
+    /// Multipliers at its start.
+    pub(super) multipliers: Vec<f64>,
+}
+
+/// Factor of a step whose local error, of third order, is `used` of what is allowed per time, with some room.
+fn factor(used: f64) -> f64 {
+    (0.9 / used.sqrt()).max(0.1)
+}
+
 /// State at one instant and the means to go on from it.
 #[derive(Debug)]
 pub struct Steps<E> {
@@ -114,6 +142,10 @@ pub struct Steps<E> {
     residual: Vec<f64>,
     /// Size of each unknown; infinite where it says nothing about convergence.
     scales: Vec<f64>,
+    /// Local error that is allowed per ms; none of steps of given length.
+    allowed: Option<f64>,
+    /// Local error of the last attempt as a part of what is allowed.
+    used: f64,
     report: StepperReport,
 }
 
@@ -129,6 +161,8 @@ impl<E: Equations> Steps<E> {
             stale: false,
             residual: vec![0.0; scales.len()],
             scales,
+            allowed: None,
+            used: 0.0,
             report: StepperReport::default(),
         }
     }
@@ -136,6 +170,11 @@ impl<E: Equations> Steps<E> {
     /// The equations.
     pub(super) fn equations(&self) -> &E {
         &self.equations
+    }
+
+    /// The equations.
+    pub(super) fn equations_mut(&mut self) -> &mut E {
+        &mut self.equations
     }
 
     /// The method that factorises.
@@ -201,6 +240,53 @@ impl<E: Equations> Steps<E> {
             }
         }
         Ok(multipliers.unwrap_or_default())
+    }
+
+    /// Goes on by at most `h` ms under constant voltages, with a local error of at most `allowed` per ms; returns how far it
+    /// went and how far it would go next.
+    ///
+    /// # Errors
+    /// Steps down to `least` ms fail; the state is then that of the last accepted step.
+    pub(super) fn step_within(
+        &mut self,
+        h: f64,
+        least: f64,
+        allowed: f64,
+        voltages: &[f64],
+    ) -> Result<Controlled, StepError> {
+        self.allowed = Some(allowed);
+        self.equations.begin(voltages);
+        let mut part = h;
+        loop {
+            self.used = 0.0;
+            let error = match self.attempt(part) {
+                Ok(()) => break,
+                Err(stopped @ StepError::Stopped { .. }) => return Err(stopped),
+                Err(error) => error,
+            };
+            if std::mem::take(&mut self.stale) {
+                self.factored = None;
+                if self.used <= 1.0 {
+                    continue;
+                }
+            }
+            let shorter = part * factor(self.used).min(0.5);
+            if shorter < least {
+                return Err(error);
+            }
+            self.report.halved += 1;
+            part = shorter;
+        }
+        // A step that hardly changes keeps its factorisation.
+        let next = match factor(self.used) {
+            close if (1.0..1.3).contains(&close) => part,
+            other => part * other.min(2.0),
+        };
+        Ok(Controlled {
+            taken: part,
+            next,
+            multipliers: self.equations.multipliers().to_vec(),
+        })
     }
 
     /// One Newton solution; accepted only when it converged.
@@ -291,30 +377,58 @@ impl<E: Equations> Steps<E> {
         })
     }
 
-    /// Makes a solution the instant now; not where the momentum does not exist, nor where a muscle passed through no length on
-    /// the way or an element is crushed.
+    /// Makes a solution the instant now; not where the momentum does not exist, nor where the step does not resolve the
+    /// motion.
     fn accept(&mut self, h: f64) -> Result<bool, StepError> {
         self.equations.place_end();
-        let [start, end] = self.equations.ends();
-        if let Some(muscle) = spans::reversed(self.equations.model(), start, end) {
-            let reversed = StepError::Reversed {
-                time: self.equations.time(),
-                step: h,
-                muscle: self.muscle_name(muscle),
-            };
+        if let Some(refusal) = self.refusal(h) {
             self.equations.restore();
-            return Err(reversed);
-        }
-        if spans::is_inverted(self.equations.model(), end, self.equations.scalars()) {
-            self.equations.restore();
-            return Err(StepError::Inverted {
-                time: self.equations.time(),
-                step: h,
-            });
+            return Err(refusal);
         }
         let accepted = self.equations.accept(h);
         self.report.steps += usize::from(accepted);
         Ok(accepted)
+    }
+
+    /// Why a solution is not accepted: a muscle passed through no length, a joint turned too far, an element is crushed, the
+    /// energy balance does not close.
+    fn refusal(&mut self, step: f64) -> Option<StepError> {
+        let time = self.equations.time();
+        let model = self.equations.model();
+        let [start, end] = self.equations.ends();
+        if let Some(muscle) = spans::reversed(model, start, end) {
+            let muscle = self.muscle_name(muscle);
+            return Some(StepError::Reversed { time, step, muscle });
+        }
+        if let Some((what, angle)) = turned(model, start, end) {
+            return Some(StepError::Turned {
+                time,
+                step,
+                what,
+                angle,
+            });
+        }
+        let refusal = match self.equations.balance(step) {
+            Some(balance) => balance.refusal(self.equations.model(), time, step),
+            None => {
+                let [_, end] = self.equations.ends();
+                let scalars = self.equations.scalars();
+                spans::is_inverted(self.equations.model(), end, scalars)
+                    .then_some(StepError::Inverted { time, step })
+            }
+        };
+        let allowed = self.allowed.filter(|_| refusal.is_none());
+        let Some(allowed) = allowed.map(|allowed| allowed * step) else {
+            return refusal;
+        };
+        let error = self.equations.local_error(step);
+        self.used = error / allowed;
+        (error > allowed).then_some(StepError::Inaccurate {
+            time,
+            step,
+            error,
+            allowed,
+        })
     }
 
     /// The muscle that a failure at this instant is laid to: its name and stretch.

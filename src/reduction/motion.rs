@@ -262,15 +262,22 @@ impl Motion {
         if self.tree.is_some() {
             return instant.tree.poses.clone();
         }
-        let z = &instant.z;
         let pose = |body: usize| {
-            let q = &z[body_offset(body)..body_offset(body) + 12];
+            let q = &instant.z[body_offset(body)..];
             Pose {
                 centre: Vector::new(q[0], q[1], q[2]),
-                directors: Matrix::from_column_slice(&q[3..]),
+                directors: self.directors(instant, body),
             }
         };
         (0..bodies).map(pose).collect()
+    }
+
+    /// Directors of a body at a placed instant.
+    pub fn directors(&self, instant: &Instant, body: usize) -> Matrix {
+        match self.tree {
+            Some(_) => instant.tree.poses[body].directors,
+            None => Matrix::from_column_slice(&instant.z[body_offset(body) + 3..][..9]),
+        }
     }
 }
 

@@ -19,8 +19,9 @@ pub fn trajectory_csv(observations: &Observations, origin: &Origin) -> String {
         (unit, _) => format!("{} [{unit}]", c.name),
     });
     let rows = columns.iter().map(|c| c.values.len()).max().unwrap_or(0);
+    let line = format!("{}; every column at the time of its row", origin.line());
     csv(
-        origin,
+        &line,
         header,
         (0..rows).map(|k| {
             columns
@@ -42,7 +43,7 @@ pub fn controls_csv(trajectory: &Trajectory, system: &System, origin: &Origin) -
         );
     let ends = trajectory.times.windows(2);
     csv(
-        origin,
+        &origin.line(),
         header,
         ends.zip(&trajectory.voltages)
             .map(|(ends, voltages)| ends.iter().chain(voltages).copied()),
@@ -85,7 +86,7 @@ pub fn aligned(rows: &[Vec<String>]) -> String {
 }
 
 fn csv<R>(
-    origin: &Origin,
+    origin: &str,
     header: impl Iterator<Item = String>,
     rows: impl Iterator<Item = R>,
 ) -> String
@@ -93,7 +94,7 @@ where
     R: Iterator<Item = f64>,
 {
     let header: Vec<_> = header.map(|name| quoted(&name)).collect();
-    let mut text = format!("# {}\n{}\n", origin.line(), header.join(","));
+    let mut text = format!("# {origin}\n{}\n", header.join(","));
     for row in rows {
         // The shortest decimal that reads back as the same number.
         let cell = |value: f64| match value.is_finite() {

@@ -6,7 +6,10 @@ use std::time::Instant;
 
 use crate::control::problem::{Afterwards, Simulation, Voltages};
 use crate::control::resolve_start;
-use crate::dynamics::{History, StepError, observations, out_of_domain, simulate_by};
+use crate::dynamics::{
+    History, StepControl, StepError, local_error, observations, out_of_domain, simulate_by,
+    simulate_within,
+};
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::report::skins::Skins;
@@ -24,6 +27,7 @@ use crate::run::progress::{Progress, phase};
 use crate::run::request::{Request, Told};
 use crate::run::solution_file;
 use crate::run::solve::{counted, make_folder};
+use crate::run::steps::told;
 use crate::run::summary::{self, MEASURED, Seconds, Summary};
 
 /// A simulation and how it ended.
@@ -44,7 +48,12 @@ pub struct Simulated {
 /// Number of steps of a simulation, and their length in ms.
 ///
 /// The steps are equal: as long as asked for, or a little shorter where they do not fit the duration.
+///
+/// Where a tolerance controls the steps their number is not known, and the length is that of the first attempt.
 pub fn grid(task: &Simulation) -> (usize, f64) {
+    if task.tolerance.is_some() {
+        return (usize::MAX, task.step);
+    }
     let steps = (task.duration / task.step - 1e-9).ceil().max(1.0) as usize;
     (steps, task.duration / steps as f64)
 }
@@ -65,7 +74,9 @@ pub fn integrate(
     phase("building");
     let model = Model::answering(system.clone(), task.question(system, h))
         .map_err(|error| wrong(error.into()))?;
-    memory::of_motion(file, &model, steps)?;
+    if task.tolerance.is_none() {
+        memory::of_motion(file, &model, steps)?;
+    }
     if let Some(status) = interrupt::stop() {
         return Err(RunError::Stopped(status));
     }
@@ -74,7 +85,18 @@ pub fn integrate(
     let setup = began.elapsed().as_secs_f64();
     phase("ordering and first factorisation");
     let scalars = |from: f64, to: f64| model.scalars(row(&task.voltages, 0.5 * (from + to)));
-    let (history, failure) = simulate_by(task.solving, &model, &start, h, steps, scalars, observer);
+    let (history, failure) = match task.tolerance {
+        Some(tolerance) => {
+            let control = StepControl {
+                duration: task.duration,
+                first: h,
+                tolerance,
+                switches: task.voltages.switches(),
+            };
+            simulate_within(task.solving, &model, &start, control, scalars, observer)
+        }
+        None => simulate_by(task.solving, &model, &start, h, steps, scalars, observer),
+    };
     let seconds = began.elapsed().as_secs_f64() - setup;
     Ok(Simulated {
         model,
@@ -93,6 +115,14 @@ pub(super) fn simulation(
     began: Instant,
 ) -> Result<Told, RunError> {
     let (steps, _) = grid(task);
+    if task.tolerance.is_some() && request.wanted.is_some() {
+        return Err(RunError::Problem {
+            file: request.input.clone(),
+            place: "simulate.step".to_owned(),
+            reason: "steps are halved for --accuracy and --estimate-error: write a step; \"auto\" has a \"tolerance\" instead"
+                .to_owned(),
+        });
+    }
     let folder = request.folder();
     let read = began.elapsed().as_secs_f64();
     let mut unwritable = None;
@@ -133,7 +163,9 @@ pub(super) fn simulation(
         }
     };
     // A finer grid that was stopped leaves the motion on the one before as it is.
-    let stopped = interrupt::stop().filter(|_| history.intervals() < steps);
+    let reached = history.times[history.intervals()];
+    let is_early = reached < task.duration * (1.0 - 1e-12);
+    let stopped = interrupt::stop().filter(|_| is_early);
     drop(watch);
     if let Some(error) = unwritable {
         return Err(error.into());
@@ -142,7 +174,6 @@ pub(super) fn simulation(
     phase("writing");
     let plan = Plan::of(&model, None, MEASURED)
         .map_err(|error| RunError::boundary(&request.input, "simulate", &error.into()))?;
-    let reached = history.times[history.intervals()];
     let status = match (&failure, stopped) {
         (Some(_), _) => "step_failed",
         (None, Some(stopped)) => stopped.word(),
@@ -156,7 +187,10 @@ pub(super) fn simulation(
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = failure.as_ref().map(ToString::to_string);
     summary.accuracy = accuracy;
-    summary.simulation = Some(summary::Simulation::new(&history, task.solving.integrator));
+    let integrator = task.solving.integrator;
+    let neglected = local_error(&model, &history, integrator.order());
+    let simulation = summary::Simulation::new(&history, task, neglected);
+    summary.simulation = Some(simulation);
     summary.plan = plan;
     let observed = observations(&model, &history);
     summary.domain = domain::told(&out_of_domain(&model, &history));
@@ -179,13 +213,21 @@ pub(super) fn simulation(
     let mut notes: Vec<String> = summary.message.iter().cloned().chain(compared).collect();
     summary.notes.extend(afterwards(task));
     summary.notes.extend(domain::note(&summary.domain, true));
+    summary.notes.extend(told(neglected, &history, task));
     notes.extend(summary.notes.iter().cloned());
     summary.write(&folder)?;
+    let method = match task.tolerance {
+        Some(tolerance) => format!(
+            "{}, steps by a tolerance of {tolerance:e} (unequal steps keep momentum maps, not the energy over long times)",
+            integrator.name()
+        ),
+        None => integrator.name(),
+    };
     let mut rows = vec![
         ("status".to_owned(), status.replace('_', " ")),
         ("steps".to_owned(), history.intervals().to_string()),
         ("duration".to_owned(), format!("{} s", reached / 1e3)),
-        ("method".to_owned(), task.solving.integrator.name()),
+        ("method".to_owned(), method),
         (
             "coordinates".to_owned(),
             model.coordinates.name().to_owned(),
@@ -197,6 +239,14 @@ pub(super) fn simulation(
             (format!("estimated error, {name}"), format!("{error:.1e}"))
         };
         a.estimate.iter().map(told)
+    }));
+    rows.extend(neglected.map(|error| {
+        let words = format!(
+            "{:.2e} m, {:.2} % of the path",
+            error.error / 1e3,
+            100.0 * error.relative()
+        );
+        ("sum of the local errors of the steps".to_owned(), words)
     }));
     let run = Run {
         system,

@@ -40,6 +40,7 @@ mod solve;
 mod spy;
 mod starter;
 mod starts;
+mod steps;
 mod stopwatch;
 mod summary;
 mod task;

@@ -107,7 +107,9 @@ impl Progress {
 
     /// Step `step` of so many is done.
     pub(super) fn step(&self, steps: usize, step: usize) {
-        self.bar.set_length(steps as u64);
+        // The number of steps that a tolerance controls is not known.
+        let known = if steps == usize::MAX { step } else { steps };
+        self.bar.set_length(known as u64);
         self.bar.set_position(step as u64);
         let seconds = self.began.elapsed().as_secs_f64() / step.max(1) as f64;
         // Short steps are too many to watch.

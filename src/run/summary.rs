@@ -4,7 +4,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::dynamics::{History, Integrator};
+use crate::control::problem;
+use crate::dynamics::{History, LocalError};
 use crate::report::atomic::{self, WriteError};
 use crate::run::accuracy::Accuracy;
 use crate::run::blocks::Blocks;
@@ -107,8 +108,14 @@ pub(super) struct Simulation {
     pub(super) steps: usize,
     /// Length of the motion in s.
     pub(super) duration: f64,
+    /// Estimate of what the steps neglect; absent where they are too few.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) local_error: Option<Neglected>,
     /// The method.
     pub(super) integrator: String,
+    /// Tolerance that controlled the lengths of the steps; absent of equal ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) tolerance: Option<f64>,
     /// Newton iterations.
     pub(super) newton_iterations: usize,
     /// Steps that had to be halved.
@@ -125,14 +132,47 @@ pub(super) struct Simulation {
     pub(super) solution_seconds: f64,
 }
 
+/// The sum of the local errors of a motion, an estimate of its distance from the exact one.
+#[derive(Debug, Serialize)]
+pub(super) struct Neglected {
+    /// Of the point where it is greatest, in m.
+    pub(super) sum: f64,
+    /// Way of the point that goes farthest, in m.
+    pub(super) path: f64,
+    /// The sum as a part of the path.
+    pub(super) relative: f64,
+    /// Order of the method.
+    pub(super) order: usize,
+    /// Whether differences of the motion fall with their order; otherwise the estimate is no more than a warning.
+    pub(super) is_resolved: bool,
+}
+
+impl Neglected {
+    fn new(error: LocalError) -> Self {
+        Self {
+            sum: error.error / 1e3,
+            path: error.path / 1e3,
+            relative: error.relative(),
+            order: error.order,
+            is_resolved: error.is_resolved,
+        }
+    }
+}
+
 impl Simulation {
     /// Of a motion.
-    pub(super) fn new(history: &History, integrator: Integrator) -> Self {
+    pub(super) fn new(
+        history: &History,
+        task: &problem::Simulation,
+        error: Option<LocalError>,
+    ) -> Self {
         let (steps, report) = (history.intervals(), history.report);
         Self {
             steps,
             duration: history.times[steps] / 1e3,
-            integrator: integrator.name(),
+            local_error: error.map(Neglected::new),
+            integrator: task.solving.integrator.name(),
+            tolerance: task.tolerance,
             newton_iterations: report.iterations,
             halved_steps: report.halved,
             linear_solver: history.solver,

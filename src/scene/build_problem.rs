@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use crate::control::problem::{
     AtRest, Control, Duration, Guess, Objective, Simulation, Solver, State, Task, Voltages,
 };
-use crate::dynamics::Solving;
+use crate::dynamics::{Integrator, Newton, Solving};
 use crate::ipopt::OptionValue;
 use crate::math::random::Random;
 use crate::model::Coordinates;
-use crate::model::system::{Fidelity, Muscle, Source, System};
+use crate::model::system::{Fidelity, Material, Muscle, Source, System};
 use crate::scene::build_limits::limit;
 use crate::scene::build_state::{ELECTRIC_KEYS, driven, goal_state, start_state, voltages};
 use crate::scene::error::SceneError;
@@ -20,11 +20,17 @@ use crate::scene::solution::sampled_voltages;
 use crate::scene::spec_integrator::integrator;
 use crate::scene::spec_problem::{
     ControlSpec, CoordinatesSpec, DurationSpec, GuessSpec, ObjectiveSpec, OptionSpec, ProblemSpec,
-    SimulateSpec, SolverSpec, VoltagesSpec,
+    SimulateSpec, SolverSpec, StepSpec, VoltagesSpec,
 };
 
 /// Most intervals of a control problem; a slip of the pen asks for more.
 const MOST_INTERVALS: usize = 1_000_000;
+/// Tolerance of steps of no given length, where none is written.
+const TOLERANCE: f64 = 1e-3;
+/// Tolerances below this ask for more than rounding allows.
+const LEAST_TOLERANCE: f64 = 1e-9;
+/// The first step that a tolerance controls, as a part of the duration.
+const FIRST: f64 = 1e-2;
 /// Most steps of a simulation.
 const MOST_STEPS: f64 = 1e8;
 /// Most equilibria of a path.
@@ -75,19 +81,8 @@ fn simulation(
     scope: &Scope<'_>,
 ) -> Result<Simulation, SceneError> {
     let duration = scope.key("duration").positive(&spec.duration)?;
-    let place = scope.key("step");
-    let step = place.positive(&spec.step)?;
-    if step > duration {
-        let expected = format!(
-            "a step that is no longer than the duration {}",
-            spec.duration
-        );
-        return Err(place.wrong(spec.step.to_string(), expected));
-    }
-    if duration / step > MOST_STEPS {
-        let found = format!("{}, which makes {:.0e} steps", spec.step, duration / step);
-        return Err(place.wrong(found, format!("no more than {MOST_STEPS:.0e} steps")));
-    }
+    let method = integrator(spec.integrator.as_ref(), system, &scope.key("integrator"))?;
+    let (step, tolerance) = step(spec, duration, method, scope)?;
     let start = match &spec.start {
         Some(start) => start_state(start, system, &scope.key("start"))?,
         None => State::JointAngles {
@@ -106,15 +101,75 @@ fn simulation(
     Ok(Simulation {
         duration,
         step,
+        tolerance,
         start,
         voltages,
         coordinates: coordinates(spec.coordinates, system, scope)?,
         solving: Solving {
-            integrator: integrator(spec.integrator.as_ref(), system, &scope.key("integrator"))?,
-            newton: spec.newton.unwrap_or_default().into(),
+            integrator: method,
+            newton: spec.newton.map_or_else(|| newton(system), Into::into),
             backend: spec.linear_solver.map(Into::into),
         },
     })
+}
+
+/// Length of the steps in ms, of the first attempt where a tolerance controls it, and the tolerance.
+fn step(
+    spec: &SimulateSpec,
+    duration: f64,
+    method: Integrator,
+    scope: &Scope<'_>,
+) -> Result<(f64, Option<f64>), SceneError> {
+    let Some(StepSpec::Given(written)) = &spec.step else {
+        if method != Integrator::Midpoint {
+            let found = format!(
+                "steps of no given length with the integrator {}",
+                method.name()
+            );
+            let expected = "a step, such as \"10 ms\": only the midpoint rule chooses its steps";
+            return Err(scope.wrong(found, expected));
+        }
+        let tolerance = spec.tolerance.unwrap_or(TOLERANCE);
+        if !(LEAST_TOLERANCE..1.0).contains(&tolerance) {
+            let expected = format!("a tolerance from {LEAST_TOLERANCE:.0e} to below 1");
+            return Err(scope
+                .key("tolerance")
+                .wrong(tolerance.to_string(), expected));
+        }
+        return Ok((FIRST * duration, Some(tolerance)));
+    };
+    let place = scope.key("step");
+    let step = place.positive(written)?;
+    if let Some(tolerance) = spec.tolerance {
+        let found = format!("{tolerance} beside steps of {written}");
+        let expected = "a tolerance only where the step is \"auto\" or not written";
+        return Err(scope.key("tolerance").wrong(found, expected));
+    }
+    if step > duration {
+        let expected = format!(
+            "a step that is no longer than the duration {}",
+            spec.duration
+        );
+        return Err(place.wrong(written.to_string(), expected));
+    }
+    if duration / step > MOST_STEPS {
+        let found = format!("{written}, which makes {:.0e} steps", duration / step);
+        return Err(place.wrong(found, format!("no more than {MOST_STEPS:.0e} steps")));
+    }
+    Ok((step, None))
+}
+
+/// When the tangent of a step is factorised, where nothing is written: viscous finite elements have an unsymmetric tangent,
+/// whose factorisation is worth keeping.
+fn newton(system: &System) -> Newton {
+    let is_viscous = |material: &Material| material.viscosity.is_some();
+    let mut solids = system.solids.iter().flat_map(|solid| &solid.materials);
+    let mut muscles = system.muscles.iter();
+    let of_muscles = muscles.any(|m| m.fidelity != Fidelity::Lumped && is_viscous(&m.material));
+    match of_muscles || solids.any(is_viscous) {
+        true => Newton::Reused,
+        false => Newton::Full,
+    }
 }
 
 fn control(spec: &ControlSpec, system: &System, scope: &Scope<'_>) -> Result<Control, SceneError> {

@@ -192,16 +192,11 @@ fn column<'a>(observed: &'a Observations, name: &str) -> Option<&'a [f64]> {
 
 /// Greatest change of the energy with what was dissipated, and how much its mean over the last quarter of the instants differs
 /// from that over the first, both relative to the greatest kinetic energy; none of a system that never moves.
-///
-/// Energies are those in the middle of an interval, so that half of what the interval dissipates belongs to them.
 fn energy(observed: &Observations) -> Option<[f64; 2]> {
     let total = column(observed, "total_energy")?;
     let kinetic = column(observed, "kinetic_energy")?;
     let dissipated = column(observed, "dissipated_energy");
-    let sum = |k: usize| {
-        let until = |k: usize| dissipated.map_or(0.0, |d| d[k]);
-        total[k] + 0.5 * (until(k) + until(k.saturating_sub(1)))
-    };
+    let sum = |k: usize| total[k] + dissipated.map_or(0.0, |d| d[k]);
     let sums: Vec<f64> = (0..total.len()).map(sum).collect();
     let scale = kinetic.iter().fold(0.0_f64, |m, e| m.max(*e));
     let quarter = (sums.len() / 4).max(1);

@@ -1,0 +1,58 @@
+//! A motion in unequal steps, brought to equal ones: what a transcription starts from.
+
+use std::borrow::Cow;
+
+use crate::control::solution::Solved;
+
+/// Deviation of an instant, in mean steps, that is rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// The motion as it is where its steps are equal, otherwise at as many equal ones: coordinates along lines, voltages and
+/// potentials of the step that the middle of an interval is in; costates belong to other rows and are left out.
+pub(super) fn evened(solved: &Solved) -> Cow<'_, Solved> {
+    let intervals = solved.intervals();
+    let end = solved.times[intervals];
+    let time = |k: f64| end * k / intervals as f64;
+    let is_even =
+        |(k, &t): (usize, &f64)| (t - time(k as f64)).abs() <= ROUNDING * end / intervals as f64;
+    if solved.times.iter().enumerate().all(is_even) {
+        return Cow::Borrowed(solved);
+    }
+    let step_at = |time: f64| {
+        let after = solved.times.partition_point(|&t| t <= time);
+        after.clamp(1, intervals) - 1
+    };
+    let along = |rows: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        let row = |k: usize| {
+            let at = time(k as f64);
+            let i = step_at(at);
+            let part = (at - solved.times[i]) / (solved.times[i + 1] - solved.times[i]);
+            let ends = rows[i].iter().zip(&rows[i + 1]);
+            ends.map(|(a, b)| a + part * (b - a)).collect()
+        };
+        (0..=intervals).map(row).collect()
+    };
+    let within = |rows: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        let row = |k: usize| rows.get(step_at(time(k as f64 + 0.5))).cloned();
+        (0..intervals).filter_map(row).collect()
+    };
+    let near = |k: usize| {
+        let at = time(k as f64);
+        let i = step_at(at);
+        i + usize::from(2.0 * at > solved.times[i] + solved.times[i + 1])
+    };
+    Cow::Owned(Solved {
+        coordinates: solved.coordinates,
+        multiplier_time: solved.multiplier_time,
+        hold: solved.hold.clone(),
+        times: (0..=intervals).map(|k| time(k as f64)).collect(),
+        joints: along(&solved.joints),
+        poses: (0..=intervals)
+            .filter_map(|k| solved.poses.get(near(k)).cloned())
+            .collect(),
+        z: along(&solved.z),
+        voltages: within(&solved.voltages),
+        potentials: within(&solved.potentials),
+        costates: None,
+    })
+}

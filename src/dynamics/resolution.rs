@@ -1,0 +1,108 @@
+//! Whether a step resolves the motion: how far it turns joints and bodies, and whether its energy balance closes.
+//!
+//! The midpoint rule reads forces at the middle of a step. What a joint or body does beyond that is seen at the ends alone:
+//! a free turn by θ is found from sin θ = h ω, which has other roots beyond a right angle, and a joint angle is the same
+//! after whole turns. Over a step the potential energy V changes by V(x₁) − V(x₀), while the forces at the middle do the work
+//! −∇V(x̄)·(x₁ − x₀). Their sum is the energy that the step makes or loses, of third order in the step and exactly zero where V
+//! is quadratic, however fast the oscillation. Voltages are constant within a step and supply nothing there; dissipation
+//! takes as much as it does work.
+
+use crate::dynamics::StepError;
+use crate::functional::Kind;
+use crate::math::Vector;
+use crate::model::Model;
+use crate::reduction::{Instant, Interval};
+use std::f64::consts::PI;
+
+/// Part of the energy exchanged in a step that may be made or lost in it.
+const PART: f64 = 0.25;
+/// Relative size of energies that is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// The energy of one step of the midpoint rule, in mJ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Balance {
+    /// Energy that is made (or lost, where negative).
+    made: f64,
+    /// Energy in motion: kinetic at the middle, change of the potential, dissipation.
+    exchanged: f64,
+    /// Size of the energies that were subtracted from each other.
+    size: f64,
+}
+
+impl Balance {
+    /// Of the step between two placed instants; `forces` are those on the vectors at both ends.
+    pub(super) fn new(
+        model: &Model,
+        ends: [&Instant; 2],
+        interval: &Interval<'_>,
+        forces: &[Vec<Vector>; 2],
+    ) -> Self {
+        let [start, end] = ends;
+        let frame = interval.frame(ends);
+        let (mut kinetic, mut viscous, mut change, mut size) = (0.0, 0.0, 0.0, 0.0_f64);
+        for effect in &model.action.intervals.effects {
+            match effect.kind() {
+                Kind::Kinetic => kinetic += effect.energy(&frame),
+                Kind::VirtualWork => viscous += effect.energy(&frame),
+                Kind::Potential => {
+                    let energy = |at| effect.energy(&interval.frame([at, at]));
+                    let (before, after) = (energy(start), energy(end));
+                    change += after - before;
+                    size += before.abs() + after.abs();
+                }
+                Kind::Constraint => {}
+            }
+        }
+        let [a, b] = forces;
+        let ways = start.x.iter().zip(&end.x).map(|(x, y)| y - x);
+        let work: f64 = ways
+            .zip(a.iter().zip(b))
+            .map(|(way, (a, b))| way.dot(&(a + b)))
+            .sum();
+        // The forces of an interval carry its length, viscous ones included.
+        let work = work / interval.h - viscous;
+        Self {
+            made: change + work,
+            exchanged: kinetic + change.abs() + viscous.abs(),
+            size: size + kinetic,
+        }
+    }
+
+    /// Why a step of `step` ms is not accepted: an element is crushed at its end, or the balance does not close. Forces that
+    /// do not exist are not judged.
+    pub(super) fn refusal(&self, model: &Model, time: f64, step: f64) -> Option<StepError> {
+        let &Self {
+            made, exchanged, ..
+        } = self;
+        if !self.size.is_finite() && !model.continua.is_empty() {
+            return Some(StepError::Inverted { time, step });
+        }
+        let allowed = (PART * exchanged).max(ROUNDING * self.size);
+        (made.abs() > allowed).then_some(StepError::Unbalanced {
+            time,
+            step,
+            made,
+            exchanged,
+        })
+    }
+}
+
+/// The first joint that a step turns by more than half a turn, or body that it turns by more than a right angle in space,
+/// between two placed instants; with the angle in rad.
+pub(super) fn turned(model: &Model, start: &Instant, end: &Instant) -> Option<(String, f64)> {
+    let motion = &model.action.motion;
+    let of_joints = motion.tree.as_ref().map_or(0, |tree| tree.coordinates());
+    let turns = |&i: &usize| !((end.z[i] - start.z[i]).abs() <= PI) && !model.is_length(i);
+    if let Some(i) = (0..of_joints).find(turns) {
+        return Some((model.unknown_name(i), (end.z[i] - start.z[i]).abs()));
+    }
+    let bodies = &model.condensed.system.bodies;
+    bodies.iter().enumerate().find_map(|(body, named)| {
+        let [before, after] = [start, end].map(|at| motion.directors(at, body));
+        // 1 + 2 cos θ of the rotation from one to the other.
+        let trace = before.dot(&after);
+        let angle = (0.5 * (trace - 1.0)).clamp(-1.0, 1.0).acos();
+        (trace < 1.0).then(|| (format!("body \"{}\"", named.name), angle))
+    })
+}

@@ -1,0 +1,53 @@
+//! What is told of the steps of a simulation: whether they resolve its motion, and which would.
+
+use crate::control::problem::Simulation;
+use crate::dynamics::{History, LocalError};
+
+/// Part of the path beyond which the estimated error of a motion is warned of.
+const FINE: f64 = 0.01;
+
+/// A warning where the steps do not resolve the motion well, or are too few to tell.
+pub(super) fn told(
+    error: Option<LocalError>,
+    history: &History,
+    task: &Simulation,
+) -> Option<String> {
+    let Some(error) = error else {
+        return (history.intervals() > 0).then(|| {
+            format!(
+                "the error of so few steps cannot be estimated; {} would be enough",
+                task.solving.integrator.order() + 1
+            )
+        });
+    };
+    let (relative, step) = (error.relative(), error.step);
+    if relative <= FINE {
+        return None;
+    }
+    if let Some(tolerance) = task.tolerance {
+        return Some(format!(
+            "steps by a tolerance of {tolerance:e} leave an estimated error of {:.2} mm, {:.1} % of the path of {:.1} mm; a tolerance of {:.1e} would leave {} %",
+            error.error,
+            100.0 * relative,
+            error.path,
+            tolerance * FINE / relative,
+            100.0 * FINE
+        ));
+    }
+    let better = error.step_for(FINE);
+    Some(match error.is_resolved {
+        true => format!(
+            "the steps of {step:.3} ms leave an estimated error of {:.2} mm, {:.1} % of the path of {:.1} mm; steps of {better} ms would leave {} %",
+            error.error,
+            100.0 * relative,
+            error.path,
+            100.0 * FINE
+        ),
+        false => format!(
+            "the steps of {step:.3} ms do not resolve the motion: the estimated error is {:.2} mm, {:.0} % of the path of {:.1} mm; try {better} ms",
+            error.error,
+            100.0 * relative,
+            error.path
+        ),
+    })
+}
