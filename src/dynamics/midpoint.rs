@@ -8,7 +8,7 @@
 //!
 //! with the potentials φ of the interval, which have no inertia, by Gauss's law.
 
-use crate::dynamics::resolution::Balance;
+use crate::dynamics::resolution::{Balance, typical_energy};
 use crate::dynamics::solving::Solving;
 use crate::dynamics::stepper::{Equations, Steps};
 use crate::dynamics::tangent::Entries;
@@ -32,6 +32,8 @@ pub struct Midpoint<'m> {
     /// Rates of the coordinates over the last step, and how they changed, for the first guess.
     rates: Vec<f64>,
     changes: Vec<f64>,
+    /// Energy in mJ beside which rounding is seen.
+    typical_energy: f64,
     /// Sizes of the coordinates.
     sizes: Vec<f64>,
     /// Lengths in ms of the last step and of the one before; zero where there was none.
@@ -76,6 +78,7 @@ impl<'m> Stepper<'m> {
             momentum_next: momentum.to_vec(),
             rates: vec![0.0; n],
             changes: vec![0.0; n],
+            typical_energy: typical_energy(model),
             sizes: scales(model)[..n].to_vec(),
             lengths: [0.0; 2],
             is_first: true,
@@ -219,6 +222,7 @@ impl Equations for Midpoint<'_> {
             next,
             scratch,
             scalars,
+            typical_energy,
             ..
         } = self;
         let interval = Interval {
@@ -228,7 +232,13 @@ impl Equations for Midpoint<'_> {
         let action = &model.action;
         action.evaluate_interval(Level::Gradient, [here, next], &interval, scratch);
         let forces = &scratch.interval.plain.forces;
-        Some(Balance::new(model, [here, next], &interval, forces))
+        Some(Balance::new(
+            model,
+            *typical_energy,
+            [here, next],
+            &interval,
+            forces,
+        ))
     }
 
     /// h³ u‴/12 with the third derivative of the last three rates; before the first step the system moved as at its start.

@@ -26,14 +26,16 @@ pub struct Balance {
     made: f64,
     /// Energy in motion: kinetic at the middle, change of the potential, dissipation.
     exchanged: f64,
-    /// Size of the energies that were subtracted from each other.
+    /// Size of the energies that were subtracted from each other, those of single elements included.
     size: f64,
 }
 
 impl Balance {
-    /// Of the step between two placed instants; `forces` are those on the vectors at both ends.
+    /// Of the step between two placed instants; `forces` are those on the vectors at both ends, `typical` the energy of
+    /// [`typical_energy`].
     pub(super) fn new(
         model: &Model,
+        typical: f64,
         ends: [&Instant; 2],
         interval: &Interval<'_>,
         forces: &[Vec<Vector>; 2],
@@ -65,7 +67,7 @@ impl Balance {
         Self {
             made: change + work,
             exchanged: kinetic + change.abs() + viscous.abs(),
-            size: size + kinetic,
+            size: typical + size + kinetic,
         }
     }
 
@@ -86,6 +88,26 @@ impl Balance {
             exchanged,
         })
     }
+}
+
+/// Energy in mJ that stretches all muscles and blocks of a system to some multiple of their size: the sum of shear modulus times
+/// volume.
+pub(super) fn typical_energy(model: &Model) -> f64 {
+    let muscles = model.system.muscles.iter().map(|muscle| {
+        let [width, depth] = muscle.cross_section;
+        muscle.material.shear_modulus * width * depth * muscle.length()
+    });
+    let solids = model.system.solids.iter().map(|solid| {
+        let volume = (0..3).map(|axis| {
+            let along = solid.mesh.nodes.iter().map(|node| node[axis]);
+            let ends = (f64::INFINITY, f64::NEG_INFINITY);
+            let (low, high) = along.fold(ends, |(low, high), x| (low.min(x), high.max(x)));
+            high - low
+        });
+        let moduli = solid.materials.iter().map(|m| m.shear_modulus);
+        volume.product::<f64>() * moduli.fold(0.0, f64::max)
+    });
+    muscles.chain(solids).sum()
 }
 
 /// The first joint that a step turns by more than half a turn, or body that it turns by more than a right angle in space,

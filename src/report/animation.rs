@@ -30,7 +30,7 @@ const COMPLETE: &str = "an animation step needs no more than its frame";
 pub fn plot(run: &Run<'_>) -> Plot {
     let last = run.trajectory.times.len().saturating_sub(1);
     let instants = match run.skins.list.is_empty() {
-        true => shown(last, 0),
+        true => shown(&run.trajectory.times, 0),
         false => run.skins.instants.clone(),
     };
     let highest = vec![run.skins.highest()];

@@ -45,14 +45,23 @@ pub struct Skins {
     pub list: Vec<Skin>,
 }
 
-/// Instants that a picture of `places` moving places shows of `last` + 1 of them.
-pub fn shown(last: usize, places: usize) -> Vec<usize> {
+/// Instants that a picture of `places` moving places shows: the nearest ones to equal spans of time, the last one always.
+pub fn shown(times: &[f64], places: usize) -> Vec<usize> {
+    let last = times.len().saturating_sub(1);
     let most = PLACES / places.max(1);
     let stride = last.div_ceil(most.clamp(LEAST, FRAMES)).max(1);
-    let mut instants: Vec<_> = (0..=last).step_by(stride).collect();
-    if instants.last() != Some(&last) {
-        instants.push(last);
-    }
+    let nearest = |k: usize| {
+        let time = times[0] + (times[last] - times[0]) * k as f64 / last.max(1) as f64;
+        let after = times.partition_point(|&t| t < time).min(last);
+        let before = after.saturating_sub(1);
+        match time - times[before] < times[after] - time {
+            true => before,
+            false => after,
+        }
+    };
+    let mut instants: Vec<_> = (0..last).step_by(stride).map(nearest).collect();
+    instants.push(last);
+    instants.dedup();
     instants
 }
 
@@ -71,7 +80,7 @@ impl Skins {
             parts.push(Skin::still(continuum, muscle));
         }
         let places = parts.iter().map(|(skin, _)| skin.reference.len()).sum();
-        let instants = shown(history.z.len() - 1, places);
+        let instants = shown(&history.times, places);
         let none = vec![0.0; model.action.intervals.scalars];
         let mut instant = model.action.motion.instant();
         for &k in &instants {

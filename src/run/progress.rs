@@ -114,9 +114,14 @@ impl Progress {
         let seconds = self.began.elapsed().as_secs_f64() / step.max(1) as f64;
         // Short steps are too many to watch.
         if seconds > 0.01 {
-            let left = rough(seconds * steps.saturating_sub(step) as f64);
-            self.bar
-                .set_message(format!("{seconds:.2} s each, about {left} left"));
+            let left = match steps {
+                usize::MAX => String::new(),
+                _ => {
+                    let left = rough(seconds * steps.saturating_sub(step) as f64);
+                    format!(", about {left} left")
+                }
+            };
+            self.bar.set_message(format!("{seconds:.2} s each{left}"));
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::dynamics::{Integrator, Newton, Solving};
 use crate::ipopt::OptionValue;
 use crate::math::random::Random;
 use crate::model::Coordinates;
-use crate::model::system::{Fidelity, Material, Muscle, Source, System};
+use crate::model::system::{Fidelity, Muscle, Source, System};
 use crate::scene::build_limits::limit;
 use crate::scene::build_state::{ELECTRIC_KEYS, driven, goal_state, start_state, voltages};
 use crate::scene::error::SceneError;
@@ -159,14 +159,12 @@ fn step(
     Ok((step, None))
 }
 
-/// When the tangent of a step is factorised, where nothing is written: viscous finite elements have an unsymmetric tangent,
-/// whose factorisation is worth keeping.
+/// When the tangent of a step is factorised, where nothing is written: the factorisation of finite elements is worth keeping,
+/// that of a few joint coordinates is not (benches/README.md).
 fn newton(system: &System) -> Newton {
-    let is_viscous = |material: &Material| material.viscosity.is_some();
-    let mut solids = system.solids.iter().flat_map(|solid| &solid.materials);
     let mut muscles = system.muscles.iter();
-    let of_muscles = muscles.any(|m| m.fidelity != Fidelity::Lumped && is_viscous(&m.material));
-    match of_muscles || solids.any(is_viscous) {
+    let of_muscles = muscles.any(|muscle| muscle.fidelity != Fidelity::Lumped);
+    match of_muscles || !system.solids.is_empty() {
         true => Newton::Reused,
         false => Newton::Full,
     }

@@ -75,7 +75,7 @@ pub struct SimulateSpec {
     /// The method; the midpoint variational integrator where not written.
     #[serde(default)]
     pub integrator: Option<IntegratorSpec>,
-    /// When the tangent of a step is factorised; where not written `reused` with viscous finite elements, otherwise `full`.
+    /// When the tangent of a step is factorised; where not written `reused` with finite elements, otherwise `full`.
     #[serde(default)]
     pub newton: Option<NewtonSpec>,
     /// Who factorises it; the one that is fastest as a rule where not written.
