@@ -243,19 +243,22 @@ fn far_beyond_pull_in_a_motion_ends_without_nan() {
 
 #[test]
 fn a_huge_step_is_halved_or_refused() {
-    // Below the voltage of pull-in, thrown against its clamped face: a step of some periods is halved; after the first of
-    // many periods its end lies where elements are crushed, from where no part of a step leads on.
-    for (h, voltage, expected) in [(1e6, 3e5, None), (5.0, 6e5, None), (1e3, 6e5, Some(1))] {
+    // Below the voltage of pull-in, thrown against its clamped face: a step of some periods is halved, one of very many is
+    // refused, since no part of it closes its energy balance or converges.
+    for (h, voltage, is_refused) in [(1e6, 3e5, true), (5.0, 6e5, false), (1e3, 6e5, true)] {
         let (model, history, failure) = steps(h, 5, voltage, 5.0);
         println!("{h}: {} halved, {failure:?}", history.report.halved);
-        assert_eq!(history.report.halved > 0, voltage > 5e5);
-        assert_eq!(history.scalars.len(), expected.unwrap_or(5));
-        assert_eq!(failure.is_some(), expected.is_some());
+        assert!(history.report.halved > 0);
+        assert_eq!(failure.is_some(), is_refused);
+        assert_eq!(history.scalars.len() < 5, is_refused);
         if let Some(error) = failure {
-            let StepError::NoConvergence { time, step, .. } = error else {
+            let (StepError::NoConvergence { step, .. }
+            | StepError::Unbalanced { step, .. }
+            | StepError::Inverted { step, .. }) = error
+            else {
                 panic!("{error}");
             };
-            assert!(time >= h && time < 2.0 * h && step == h / 1024.0);
+            assert_eq!(step, h / 1024.0);
             let message = error.to_string();
             assert!(
                 message.contains(&format!("even with a step of {step} ms")),

@@ -71,8 +71,10 @@ pub fn local_error(model: &Model, history: &History, order: usize) -> Option<Loc
         let [high, low] = [times, &times[..window]].map(|t| weights(t, h));
         for (point, sum) in sums.iter_mut().enumerate() {
             let difference = |weights: &[f64]| {
+                // The weights sum to zero: what rests leaves no rounding.
+                let first = places[j][point];
                 let terms = weights.iter().zip(&places[j..]);
-                let sum: Vector = terms.map(|(w, at)| at[point] * *w).sum();
+                let sum: Vector = terms.map(|(w, at)| (at[point] - first) * *w).sum();
                 sum.norm()
             };
             let (highest, before) = (difference(&high), difference(&low));

@@ -66,7 +66,7 @@ pub fn observations(model: &Model, history: &History) -> Observations {
             column.values.push(value);
         }
     }
-    if history.reading == Reading::Intervals && history.intervals() > 0 {
+    if history.reading == Reading::Intervals && history.times.len() > 1 {
         let last = observer.last(history);
         to_instants(&history.times, &mut columns[observer.of_intervals()], &last);
     }

@@ -27,7 +27,7 @@ use crate::run::progress::{Progress, phase};
 use crate::run::request::{Request, Told};
 use crate::run::solution_file;
 use crate::run::solve::{counted, make_folder};
-use crate::run::steps::told;
+use crate::run::steps;
 use crate::run::summary::{self, MEASURED, Seconds, Summary};
 
 /// A simulation and how it ended.
@@ -214,6 +214,7 @@ pub(super) fn simulation(
     summary.notes.extend(afterwards(task));
     summary.notes.extend(domain::note(&summary.domain, true));
     summary.notes.extend(told(neglected, &history, task));
+    summary.notes.extend(steps::told(neglected, &history, task));
     notes.extend(summary.notes.iter().cloned());
     summary.write(&folder)?;
     let method = match task.tolerance {
@@ -225,7 +226,7 @@ pub(super) fn simulation(
     };
     let mut rows = vec![
         ("status".to_owned(), status.replace('_', " ")),
-        ("steps".to_owned(), history.intervals().to_string()),
+        ("steps".to_owned(), steps::counted(&history, task)),
         ("duration".to_owned(), format!("{} s", reached / 1e3)),
         ("method".to_owned(), method),
         (

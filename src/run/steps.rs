@@ -20,7 +20,7 @@ pub(super) fn told(
             )
         });
     };
-    let (relative, step) = (error.relative(), error.step);
+    let (relative, step) = (error.relative(), rounded(error.step));
     if relative <= FINE {
         return None;
     }
@@ -37,17 +37,37 @@ pub(super) fn told(
     let better = error.step_for(FINE);
     Some(match error.is_resolved {
         true => format!(
-            "the steps of {step:.3} ms leave an estimated error of {:.2} mm, {:.1} % of the path of {:.1} mm; steps of {better} ms would leave {} %",
+            "the steps of {step} ms leave an estimated error of {:.2} mm, {:.1} % of the path of {:.1} mm; steps of {better} ms would leave {} %",
             error.error,
             100.0 * relative,
             error.path,
             100.0 * FINE
         ),
         false => format!(
-            "the steps of {step:.3} ms do not resolve the motion: the estimated error is {:.2} mm, {:.0} % of the path of {:.1} mm; try {better} ms",
+            "the steps of {step} ms do not resolve the motion: the estimated error is {:.2} mm, {:.0} % of the path of {:.1} mm; try {better} ms",
             error.error,
             100.0 * relative,
             error.path
         ),
     })
+}
+
+/// Three digits of a step.
+fn rounded(step: f64) -> f64 {
+    let digits = 10_f64.powf(2.0 - step.log10().floor());
+    (step * digits).round() / digits
+}
+
+/// The number of steps, and between what their lengths lie where a tolerance controls them.
+pub(super) fn counted(history: &History, task: &Simulation) -> String {
+    let count = history.intervals().to_string();
+    let lengths = history.times.windows(2).map(|ends| ends[1] - ends[0]);
+    let ends = (f64::INFINITY, 0.0_f64);
+    let (least, most) = lengths.fold(ends, |(low, high), h| (low.min(h), high.max(h)));
+    match task.tolerance {
+        Some(_) if least.is_finite() => {
+            format!("{count}, of {} to {} ms", rounded(least), rounded(most))
+        }
+        _ => count,
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::common::{at_reference, placed, trunk as trunk_of};
 use crate::page::{Case, Verdict};
-use crate::program::{difference, largest, points, run};
+use crate::program::{Run, difference, largest, points, run};
 use crate::scenes::*;
 use nalgebra::Vector3;
 use proboscis::dynamics::{Start, Stepper, energies};
@@ -53,6 +53,65 @@ fn a_step_a_thousand_times_too_large_is_halved_then_refused() {
         curves: vec![
             Series::curve("1 ms", points(&times, &fine), hue(0)),
             Series::curve("5 ms", points(&usual.column("time"), &usual.column("joint1")), hue(1)).dashed(Dash::Dashed),
+        ],
+    }
+    .record();
+}
+
+#[test]
+fn steps_between_resolved_and_absurd_are_told() {
+    let scene = trunk(6, silicone());
+    let voltages = json!({ "muscle2": "1.7 kV", "muscle3": "1.6 kV" });
+    let at = |step: usize| {
+        let step = format!("{step} ms");
+        run(&scene, &simulate("2 s", &step, voltages.clone()))
+    };
+    let tip = |run: &Run| ["tip_x", "tip_y", "tip_z"].map(|name| run.column(name));
+    let exact = tip(&at(1).solved());
+    let (mut told, mut truly, mut seen) = (Vec::new(), Vec::new(), Vec::new());
+    for step in [5, 10, 20, 40, 100, 200, 500] {
+        let run = at(step).solved();
+        let estimate = run.number(&["local_error", "sum"]) * 1e3;
+        let relative = run.number(&["local_error", "relative"]);
+        let columns = tip(&run);
+        let distance = |k: usize| {
+            let squares = (0..3).map(|i| (columns[i][k] - exact[i][k * step]).powi(2));
+            squares.sum::<f64>().sqrt()
+        };
+        let error = (0..columns[0].len()).map(distance).fold(0.0, f64::max);
+        let words = run
+            .err
+            .lines()
+            .find(|line| line.contains("the steps of"))
+            .unwrap_or("no word");
+        assert_eq!(relative > 0.01, words != "no word", "{step}: {}", run.err);
+        seen.push(format!(
+            "{step} ms: told {estimate:.2} mm, truly {error:.2} mm; {words}"
+        ));
+        assert!(error > 1e-3, "{error}");
+        // An estimate, and a warning wherever it matters.
+        assert!(
+            words != "no word" || error < 5.0 * estimate,
+            "{step}: {error} of {estimate}"
+        );
+        assert!(words != "no word" || error < 5.0, "{step}: {error}");
+        told.push([step as f64, estimate]);
+        truly.push([step as f64, error]);
+    }
+    println!("{seen:#?}");
+    assert!(seen[0].contains("no word") && !seen[6].contains("no word"));
+    Case {
+        name: "steps-between",
+        title: "The trunk with steps between resolved and absurd",
+        law: "Where the estimated error is above 1 % of the path, the program says so and names a step that would do; where it says nothing, \
+              the tip stays within five times the estimate of the motion with 1 ms.",
+        verdict: Verdict::Answer,
+        seen,
+        x: Axis::log("step [ms]"),
+        y: Axis::log("error of the motion [mm]"),
+        curves: vec![
+            Series::curve("told", told, hue(0)),
+            Series::curve("truly, tip", truly, hue(1)).dashed(Dash::Dashed),
         ],
     }
     .record();
