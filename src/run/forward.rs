@@ -213,7 +213,6 @@ pub(super) fn simulation(
     let mut notes: Vec<String> = summary.message.iter().cloned().chain(compared).collect();
     summary.notes.extend(afterwards(task));
     summary.notes.extend(domain::note(&summary.domain, true));
-    summary.notes.extend(told(neglected, &history, task));
     summary.notes.extend(steps::told(neglected, &history, task));
     notes.extend(summary.notes.iter().cloned());
     summary.write(&folder)?;
