@@ -274,3 +274,96 @@ fn two_differences_have_to_agree_before_an_entry_is_wrong() {
     );
     assert!(!stopped.is_consistent() && stopped.left == 1 && stopped.checked == 0);
 }
+
+#[test]
+fn options_without_a_use_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases: [(&[&str], &str); 7] = [
+        (
+            &["simulate", "pair_constant", "--max-iterations", "3"],
+            "--max-iterations",
+        ),
+        (
+            &["solve", "pair_constant", "--max-iterations", "3"],
+            "--max-iterations",
+        ),
+        (
+            &["solve", "pull_in", "--max-iterations", "3"],
+            "--max-iterations",
+        ),
+        (
+            &["equilibrium", "pull_in", "--accuracy", "1e-3"],
+            "--accuracy",
+        ),
+        (&["solve", "pull_in", "--accuracy", "1e-3"], "--accuracy"),
+        (&["inspect", "pair", "--max-seconds", "3"], "--max-seconds"),
+        (&["check", "pair", "-o", "out"], "-o"),
+    ];
+    for (words, option) in cases {
+        let path = problem(words[1]);
+        let arguments = [&[words[0], path.as_str()], &words[2..]].concat();
+        let (status, out, err) = run(folder.path(), &arguments);
+        assert_eq!(status, 2, "{words:?}: {out}{err}");
+        assert!(err.contains(option), "{words:?}: {err}");
+        assert!(
+            fs::read_dir(folder.path()).unwrap().next().is_none(),
+            "{words:?}"
+        );
+    }
+}
+
+#[test]
+fn the_extent_of_a_robot_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = problem("clamped_stack");
+    let (status, out, err) = run(folder.path(), &["inspect", &path]);
+    assert_eq!(status, 0, "{err}");
+    let extent = "10 × 10 × 40 mm from (0, 0, 0) mm";
+    assert!(
+        out.contains(&format!("extent of the robot: {extent}")),
+        "{out}"
+    );
+    assert!(out.contains(&format!("extent of block: {extent}")), "{out}");
+    assert!(!out.contains("are the units right?"), "{out}");
+    // The same column a thousand times as long.
+    let sized = "scene.solids[0].box.size=[10,10,40]";
+    let arguments = ["inspect", &path, "--set", sized, "--set", SMALL[3]];
+    let (status, out, err) = run(folder.path(), &arguments);
+    assert_eq!(status, 0, "{err}");
+    assert!(
+        out.contains("the robot is 40 m long; are the units right?"),
+        "{out}"
+    );
+    // A trunk of six segments of 50 mm, 20 mm of its muscles below the ground, 20 mm around its axis.
+    let (_, out, _) = run(folder.path(), &["inspect", &problem("elephant_trunk")]);
+    assert!(
+        out.contains("extent of the robot: 40 × 320 × 40 mm from (-20, -20, -20) mm"),
+        "{out}"
+    );
+}
+
+#[test]
+fn a_block_that_the_memory_cannot_hold_is_refused_with_its_numbers() {
+    let machine = fs::read_to_string("/proc/meminfo").unwrap_or_default();
+    let line = machine
+        .lines()
+        .find(|line| line.starts_with("MemAvailable:"));
+    let kilobytes = line.and_then(|line| line.split_whitespace().nth(1)?.parse::<f64>().ok());
+    // A machine may hold it, or not tell.
+    if kilobytes.is_none_or(|kb| kb > 1e8) {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for (command, name) in [
+        ("equilibrium", "clamped_stack"),
+        ("simulate", "clamped_stack_step"),
+    ] {
+        let large = "scene.solids[0].box.elements=[99,99,100]";
+        let (status, out, err) = run(folder.path(), &[command, &problem(name), "--set", large]);
+        assert_eq!(status, 2, "{out}{err}");
+        // Three coordinates and a potential of 100 × 100 × 101 nodes.
+        let told = "980100 elements with about 4040000 unknowns needs 117.6 GB of memory or more";
+        assert!(err.contains(told), "{err}");
+        assert!(fs::read_dir(folder.path()).unwrap().next().is_none());
+    }
+}
