@@ -115,6 +115,31 @@ fn a_goal_beyond_a_limit_is_refused_by_name() {
 }
 
 #[test]
+fn limits_that_contradict_each_other_are_refused_by_name() {
+    let goal = json!({ "joint_angles": { "joint1": 0.0 } });
+    let joint =
+        |side: &str, value: f64| json!({ "joint_angle": { "joint": "joint1", side: value } });
+    let limits = json!([joint("max", -0.1), joint("min", 0.1)]);
+    let words = [
+        "control.limits",
+        "joint1",
+        "at least 0.10000 rad",
+        "at most -0.10000 rad",
+    ];
+    run("solve", &trunk(1, goal.clone(), limits), &[]).is_refused(&words);
+    let stretch =
+        |side: &str, value: f64| json!({ "stretch": { "muscle": "muscle1", side: value } });
+    let limits = json!([stretch("min", 1.1), stretch("max", 0.9)]);
+    let words = [
+        "control.limits",
+        "muscle1",
+        "at least 1.1000",
+        "at most 0.90000",
+    ];
+    run("solve", &trunk(1, goal, limits), &[]).is_refused(&words);
+}
+
+#[test]
 fn a_start_beyond_a_limit_is_refused_by_name() {
     let goal = json!({ "rest_at_voltages": { "muscle1": "1.2 kV" } });
     let start = |mut problem: Value, start: Value| {
@@ -477,4 +502,79 @@ fn bodies_glued_to_elements_rest_in_both_coordinates() {
         reduced > 0.0 && (reduced - redundant).abs() < 1e-3 * reduced,
         "{reduced} {redundant}"
     );
+}
+
+#[test]
+fn an_infeasible_problem_is_explained() {
+    // In haste: the voltages are at their bound most of the time, and the tip falls short.
+    let goal = json!({ "rest_at_voltages": { "muscle1": 1500 } });
+    let mut problem = trunk(1, goal, json!([]));
+    problem["control"]["duration"] = json!("0.016 s");
+    problem["control"]["voltage_bounds"] = json!([0, 1600]);
+    let ran = run("solve", &problem, &[]);
+    assert_eq!(ran.status, 1, "{}{}", ran.out, ran.err);
+    assert!(
+        ran.out.starts_with("not solved (infeasible)"),
+        "{}",
+        ran.out
+    );
+    println!("{}", ran.err);
+    let line = |word: &str| {
+        let found = ran.err.lines().find(|line| line.contains(word));
+        found
+            .unwrap_or_else(|| panic!("no {word:?} in {}", ran.err))
+            .to_owned()
+    };
+    let number = |text: &str, after: &str, before: &str| -> f64 {
+        let (_, rest) = text.split_once(after).unwrap();
+        rest.split_once(before).unwrap().0.parse().unwrap()
+    };
+    let missed = number(&line("comes within"), "comes within ", " mm");
+    assert!(missed > 0.1 && missed < 10.0, "{missed}");
+    let often = number(
+        &line("at its bound of 1600 V"),
+        " V in ",
+        " of 10 intervals",
+    );
+    assert!(often >= 3.0, "{often}");
+    // The duration that is named does.
+    let longer = number(&line("duration free"), "a motion of ", " s");
+    assert!(longer > 0.016);
+    problem["control"]["duration"] = json!(1.02 * longer);
+    run("solve", &problem, &[]).is_solved();
+    // What is told stands in the summary.
+    let notes = ran.read("summary.json")["notes"].to_string();
+    assert!(
+        notes.contains("comes within") && notes.contains("duration free"),
+        "{notes}"
+    );
+}
+
+#[test]
+fn a_robot_that_floats_is_told_how_to_start() {
+    let goal = json!({ "joint_angles": { "hinge": 0.1 } });
+    let mut problem = trunk(1, goal, json!([]));
+    let scene = problem["scene"].as_object_mut().unwrap();
+    scene.remove("chain");
+    scene.insert(
+        "bodies".into(),
+        json!(["a", "b"].map(|name| json!({
+            "name": name, "mass": "30 g", "free": name == "a", "position": [0, if name == "a" { 0.0 } else { 0.05 }, 0],
+            "box": { "size": [0.02, 0.04, 0.02] }
+        }))),
+    );
+    scene.insert(
+        "joints".into(),
+        json!([{ "name": "hinge", "revolute": { "axis": [0, 0, 1] },
+        "parent": "a", "child": "b", "at": [0, 0.025, 0] }]),
+    );
+    let end = |body: &str, y: f64| json!({ "body": body, "at": [0.01, y, 0] });
+    scene.insert(
+        "muscles".into(),
+        json!([{ "name": "muscle", "material": "silicone",
+        "cross_section": [0.01, 0.01], "layer_thickness": 5e-5,
+        "from": end("a", 0.005), "to": end("b", 0.045) }]),
+    );
+    let refused = run("solve", &problem, &[]);
+    refused.is_refused(&["control.start", "\"start\": { \"joint_angles\": {} }"]);
 }

@@ -11,10 +11,11 @@ use crate::control::problem::{Control, Limit, State};
 use crate::control::transcription::Site;
 use crate::energy::{Energy, OutsideBox, SquaredDistance};
 use crate::functional::{Frame, Horizon, Sides};
+use crate::math::significant;
 use crate::model::{Coordinates, Model, Quantity, Region};
 use crate::reduction::Instant;
 
-/// Refuses a start or goal of which it is known that it breaks a limit. `scalars` are voltages and potentials of states of
+/// Refuses limits that contradict each other, and a start or goal of which it is known that it breaks a limit. `scalars` are voltages and potentials of states of
 /// rest at start and goal.
 pub(super) fn check(
     model: &Model,
@@ -22,6 +23,10 @@ pub(super) fn check(
     control: &Control,
     scalars: [Option<Vec<f64>>; 2],
 ) -> Result<(), BoundaryError> {
+    if let Some(reason) = contradiction(model, boundary, control) {
+        let place = "limits";
+        return Err(BoundaryError::Limit { place, reason });
+    }
     let start: Vec<_> = boundary.start.z.iter().copied().map(Some).collect();
     let goal = &boundary.goal.coordinates;
     let [at_start, at_goal] = scalars;
@@ -113,16 +118,7 @@ impl<'a> End<'a> {
             Some(self.model.joints(&instant, &near.collect::<Vec<_>>())[joint])
         };
         let value = self.angles.get(&joint).copied().or_else(of_gauge)?;
-        let name = format!("joint {}", joints[joint].name);
-        let quantity = Quantity::Joint { joint, near: value };
-        let bounded = Bounded {
-            quantity,
-            lower: min,
-            upper: max,
-            place: Place::Everywhere,
-            name,
-        };
-        bounded.broken(value, &self.model.system)
+        of_joint(joint, min, max, self.model).broken(value, &self.model.system)
     }
 
     /// The value of a limited quantity.
@@ -159,6 +155,46 @@ impl<'a> End<'a> {
         };
         is_known.then(|| measure.value(&frame))
     }
+}
+
+/// A joint limit as a bounded quantity, whatever the coordinates.
+fn of_joint(joint: usize, lower: f64, upper: f64, model: &Model) -> Bounded {
+    Bounded {
+        quantity: Quantity::Joint { joint, near: 0.0 },
+        lower,
+        upper,
+        place: Place::Everywhere,
+        name: format!("joint {}", model.system.joints[joint].name),
+    }
+}
+
+/// Two limits of one quantity that leave it no value.
+fn contradiction(model: &Model, boundary: &Boundary, control: &Control) -> Option<String> {
+    let joints = control.limits.iter().filter_map(|limit| match *limit {
+        Limit::JointAngle { joint, min, max } => Some(of_joint(joint, min, max, model)),
+        _ => None,
+    });
+    let is_path = |b: &&Bounded| {
+        b.place == Place::Everywhere && !matches!(b.quantity, Quantity::Joint { .. })
+    };
+    let others = boundary.limits.list.iter().filter(is_path).cloned();
+    let all: Vec<Bounded> = joints.chain(others).collect();
+    let below = all.iter().filter(|bounded| bounded.lower.is_finite());
+    let crossed =
+        |low: &&Bounded, high: &&Bounded| low.quantity == high.quantity && low.lower > high.upper;
+    let mut pairs = below.flat_map(|low| all.iter().map(move |high| (low, high)));
+    let (low, high) = pairs.find(|(low, high)| crossed(low, high))?;
+    let told = |bounded: &Bounded, bound: f64| {
+        let (value, unit) = bounded.quantity.plain(bound, &model.system);
+        format!("{} {unit}", significant(value, 5))
+            .trim_end()
+            .to_owned()
+    };
+    let (least, most) = (told(low, low.lower), told(high, high.upper));
+    let name = &low.name;
+    Some(format!(
+        "{name}: at least {least} in one limit contradicts at most {most} in another"
+    ))
 }
 
 fn region_value(region: &Region, place: &Vector3<f64>) -> f64 {

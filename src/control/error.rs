@@ -41,7 +41,7 @@ pub enum BoundaryError {
     /// What is known of the start or the goal breaks a limit.
     #[error("{place}: {reason}")]
     Limit {
-        /// `start` or `goal`.
+        /// `start` or `goal`, or `limits` that contradict each other.
         place: &'static str,
         /// The limit, the value and the bound.
         reason: String,

@@ -17,7 +17,7 @@ mod unknowns;
 pub use boundary::{Boundary, Goal, resolve_start};
 pub use error::BoundaryError;
 pub use guess::{Initial, guess};
-pub use limits::Limits;
+pub use limits::{Bounded, Limits, Place};
 pub use objective::Cost;
 pub use solution::{Costates, Solved};
 pub use transcription::Transcription;

@@ -190,7 +190,8 @@ impl Sum {
             effect.evaluate(level, frame, out);
         }
         if level == Level::Third {
-            for (measure, &weight) in self.measures.iter().zip(frame.weights) {
+            let weighted = self.measures.iter().zip(frame.weights);
+            for (measure, &weight) in weighted.filter(|(_, weight)| **weight != 0.0) {
                 measure.add_weighted(weight, frame, &mut out.contracted);
             }
         }

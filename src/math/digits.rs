@@ -1,9 +1,16 @@
 //! Numbers as people read them.
 
-/// A number with so many digits that count; trailing zeros stay.
+/// Below this a number is written with an exponent.
+const SMALL: f64 = 1e-4;
+
+/// A number with so many digits that count; trailing zeros stay. Very small ones have an exponent.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
+    }
+    if value.abs() < SMALL {
+        let decimals = digits.saturating_sub(1);
+        return format!("{value:.decimals$e}");
     }
     let before = value.abs().log10().floor() as i64 + 1;
     let decimals = usize::try_from(digits as i64 - before).unwrap_or(0);

@@ -15,6 +15,10 @@ use crate::scene::{SceneError, printable};
 /// Bytes of the longest line that is shown; beyond 65 535 columns nothing could be marked any more.
 const LONGEST_LINE: usize = 2000;
 
+/// How a robot that nothing holds starts.
+const FLOATS: &str =
+    "; a robot that floats starts from its joint angles: \"start\": { \"joint_angles\": {} }";
+
 /// Lines shown before and after a mistake.
 const CONTEXT: usize = 1;
 
@@ -125,7 +129,15 @@ impl RunError {
                         reason,
                     };
                 }
-                (*place, reason)
+                let floats = matches!(
+                    source,
+                    EquilibriumError::Singular { redundant, .. } if redundant.is_empty()
+                );
+                let hint = match *place == "start" && floats {
+                    true => FLOATS,
+                    false => "",
+                };
+                (*place, reason + hint)
             }
             BoundaryError::Inconsistent { place, .. } | BoundaryError::NoLength { place, .. } => {
                 let text = error.to_string();

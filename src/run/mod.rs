@@ -4,12 +4,14 @@
 //! - `starts`: a control problem from several guesses, each in a process of its own; `memory`: what is more than the machine has.
 //! - `grids`: solve and simulate as finely as an accuracy needs; `accuracy`, `estimate`: how that is found, `accuracy_table`: told.
 //! - `resimulate`: what an optimum is worth, by the `distance` of motions; `cure`: finer grids where it is none; `holding`: its end.
+//! - `second_start`, `infeasible`, `active`: what is tried before a problem is called infeasible, why it is, and which bounds it reaches.
 //! - `motion`, `violations`, `effects`, `reasons`, `stopwatch`, `blocks`: what is read from a scene or a result.
 //! - `solution_file`, `summary`: the two JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
 //! - `inspect`, `spy`, `check`, `starter`: the other commands.
 
 pub mod accuracy;
 mod accuracy_table;
+mod active;
 mod blocks;
 mod check;
 mod comparison;
@@ -24,6 +26,7 @@ mod fields;
 mod forward;
 mod grids;
 mod holding;
+mod infeasible;
 mod inspect;
 mod memory;
 mod motion;
@@ -35,6 +38,7 @@ mod request;
 mod resimulate;
 mod rest;
 mod rest_words;
+mod second_start;
 pub mod solution_file;
 mod solve;
 mod spy;
@@ -46,6 +50,7 @@ mod summary;
 mod task;
 mod violations;
 
+pub use active::{Active, active};
 pub use blocks::{BlockSize, Blocks};
 pub use check::check;
 pub use effects::{EffectCounts, Plan, effect_counts};

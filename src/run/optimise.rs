@@ -8,15 +8,17 @@ use std::time::Instant;
 use crate::control::problem::{Control, Duration, Guess};
 use crate::control::{Boundary, Solved, Transcription, guess};
 use crate::dynamics::reversed_muscle;
-use crate::ipopt::{self, Iteration, OptionValue, Options, Solution, Start, interrupt};
+use crate::ipopt::{self, Iteration, OptionValue, Options, Solution, Start, Status, interrupt};
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
+use crate::run::active::{Active, active};
 use crate::run::error::RunError;
 use crate::run::holding;
 use crate::run::memory;
 use crate::run::motion::solved;
 use crate::run::progress::phase;
 use crate::run::resimulate::{Cause, Resimulation, resimulate};
+use crate::run::second_start::{ITERATIONS, displaced, is_infeasible, one_of_both};
 use crate::run::solution_file;
 use crate::run::violations::{Violation, violations};
 
@@ -68,6 +70,10 @@ pub struct Optimum {
     pub resimulation: Option<Resimulation>,
     /// Seconds that the test took.
     pub tested: f64,
+    /// How the first start ended, where a displaced second one found the optimum.
+    pub restarted: Option<Status>,
+    /// Bounds and limits that the motion reaches, the most frequent first; none of a solution.
+    pub active: Vec<Active>,
 }
 
 impl Optimum {
@@ -146,8 +152,27 @@ pub fn optimise(
     };
     phase("ordering and first factorisation");
     tracing::info!(?start, variables = point.x.len(), "solve");
-    let solution = ipopt::solve(&mut program, &point, &options, observer)
-        .map_err(|error| RunError::ipopt(file, &error))?;
+    let mut solve = |program: &mut Transcription<'_>, point: &ipopt::Point, options: &Options| {
+        ipopt::solve(program, point, options, observer)
+            .map_err(|error| RunError::ipopt(file, &error))
+    };
+    let mut solution = solve(&mut program, &point, &options)?;
+    let mut restarted = None;
+    if is_infeasible(solution.status) && start == Start::Cold {
+        phase("a second start from elsewhere");
+        let displaced = displaced(control, &boundary, model.sources.len());
+        let initial = guess(&model, &boundary, &displaced, interval(control), None);
+        let left = |limit: f64| (limit - began.elapsed().as_secs_f64()).max(0.0);
+        let options = Options {
+            max_iterations: options.max_iterations.min(ITERATIONS),
+            max_seconds: allowed.seconds.map(left),
+            ..options
+        };
+        let point = program.start(&initial);
+        let second = solve(&mut program, &point, &options)?;
+        restarted = second.status.is_solved().then_some(solution.status);
+        solution = one_of_both(solution, second);
+    }
     drop(watch);
     let history = program.decode(&solution.x);
     let motion = Solved {
@@ -170,6 +195,10 @@ pub fn optimise(
     let resimulation =
         is_motion.then(|| resimulate(&model, &boundary.start, &motion, control.solver.tolerance));
     let tested = solved.elapsed().as_secs_f64();
+    let active = match solution.status.is_solved() {
+        true => Vec::new(),
+        false => active(&mut program, &solution.x, &model, control),
+    };
     let infeasibility = program.violation(&solution.x);
     let constraints = program.constraints().lower.len();
     let jacobian_nonzeros = program.jacobian_structure().rows.len();
@@ -190,6 +219,8 @@ pub fn optimise(
         stretched,
         resimulation,
         tested,
+        restarted,
+        active,
     })
 }
 

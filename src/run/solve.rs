@@ -9,6 +9,7 @@ use crate::control::problem::{Control, Hold};
 use crate::control::{Boundary, Solved};
 use crate::dynamics::{observations, out_of_domain};
 use crate::ipopt::{Iteration, Status, interrupt};
+use crate::math::significant;
 use crate::model::{Model, System};
 use crate::report::atomic::{self, WriteError};
 use crate::report::skins::Skins;
@@ -22,11 +23,13 @@ use crate::run::error::RunError;
 use crate::run::fields;
 use crate::run::grids::optimise_to;
 use crate::run::holding;
+use crate::run::infeasible::explain;
 use crate::run::motion::{history, solved, trajectory};
 use crate::run::optimise::{Allowed, Optimum};
 use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
 use crate::run::resimulate::{Cause, Resimulation, under_constant_voltages};
+use crate::run::second_start::is_infeasible;
 use crate::run::solution_file;
 use crate::run::summary::{Evaluations, MEASURED, PerInterval, Program, Seconds, Summary};
 use crate::run::violations::Violation;
@@ -142,6 +145,13 @@ pub(super) fn control(
     summary.notes.extend(note.into_iter().chain(coarse));
     summary.notes.extend(not_kept.filter(|_| is_solved));
     summary.notes.extend(optimum.stretched.map(stretched));
+    summary.notes.extend(optimum.restarted.map(restarted));
+    if is_infeasible(solution.status) {
+        let left = allowed.seconds.map(|s| s - began.elapsed().as_secs_f64());
+        let left = left.map(|s| s.max(0.0));
+        let lines = explain(&request.input, system, control, &optimum, left);
+        summary.notes.extend(lines);
+    }
     summary.accuracy = accuracy;
     summary.plan = Plan::of(model, Some(control), MEASURED)
         .map_err(|error| RunError::boundary(&request.input, "control", &error.into()))?;
@@ -293,10 +303,17 @@ fn rows(summary: &Summary) -> Vec<(String, String)> {
 /// A violated row in words.
 fn describe(violation: &Violation) -> String {
     match (violation.violation, violation.scaled) {
-        (Some(distance), Some(scaled)) => format!(
-            "{}: violated by {distance:.4e} ({scaled:.1e} as the solver measures it)",
-            violation.row
-        ),
+        (Some(distance), Some(scaled)) => {
+            let unit = match violation.unit {
+                "" => String::new(),
+                unit => format!(" {unit}"),
+            };
+            format!(
+                "{}: violated by {}{unit} ({scaled:.1e} as the solver measures it)",
+                violation.row,
+                significant(distance, 4)
+            )
+        }
         _ => format!("{}: has no value there", violation.row),
     }
 }
@@ -353,6 +370,11 @@ fn unresolved(model: &Model, interval: usize, muscle: usize) -> String {
          too long for the motion; take more intervals or another guess",
         model.system.muscles[muscle].name
     )
+}
+
+/// What is told of an optimum that the first start did not find.
+fn restarted(first: Status) -> String {
+    format!("found from a displaced second start; the first ended {first}")
 }
 
 /// A further reason why a solve failed, where there is one.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::control::Transcription;
+use crate::control::{Row, Transcription};
 use crate::nlp::Nlp;
 
 /// A row that does not hold.
@@ -10,9 +10,12 @@ use crate::nlp::Nlp;
 pub struct Violation {
     /// What the row says.
     pub row: String,
-    /// Distance to its bounds in the units of the row (g, mm, ms); absent where the row has no value.
+    /// Distance to its bounds in its unit, or where none is named in g, mm and ms; absent where the row has no value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub violation: Option<f64>,
+    /// The unit of a limit or goal.
+    #[serde(skip_serializing_if = "str::is_empty")]
+    pub unit: &'static str,
     /// The same as the solver measures it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scaled: Option<f64>,
@@ -34,9 +37,23 @@ pub fn violations(
     rows.truncate(count);
     let describe = |row: usize| {
         let scaled = Some(excess(row)).filter(|excess| excess.is_finite());
+        let scale = program.row_scale(row);
+        let (violation, unit) = match program.unknowns().rows[row] {
+            Row::Limit { limit, .. } => {
+                let plain = |value: f64| program.plain(limit, value / scale);
+                let bound = match g[row] < bounds.lower[row] {
+                    true => bounds.lower[row],
+                    false => bounds.upper[row],
+                };
+                let (value, unit) = plain(g[row]);
+                ((value - plain(bound).0).abs(), unit)
+            }
+            _ => (excess(row) / scale, ""),
+        };
         Violation {
             row: program.constraint_name(row),
-            violation: scaled.map(|excess| excess / program.row_scale(row)),
+            violation: scaled.map(|_| violation),
+            unit,
             scaled,
         }
     };

@@ -18,7 +18,7 @@ fn a_goal_out_of_reach_is_told_with_its_distance() {
     assert!(
         found
             .err
-            .contains("goal y of marker tip: violated by 1.0000e2"),
+            .contains("goal y of marker tip: violated by 100.0 mm"),
         "{}",
         found.err
     );

@@ -3,6 +3,7 @@
 use crate::page::{Case, Verdict};
 use crate::program::{Run, difference, largest, points, run};
 use crate::scenes::*;
+use proboscis::math::significant;
 use proboscis::report::axes::{Axis, Extent};
 use proboscis::report::lines::Series;
 use proboscis::report::style::{Dash, hue};
@@ -188,7 +189,7 @@ fn an_arm_with_parallel_axes() {
     assert!(
         outside
             .err
-            .contains("goal z of marker tip: violated by 1.0000e1"),
+            .contains("goal z of marker tip: violated by 10.00 mm"),
         "{}",
         outside.err
     );
@@ -300,7 +301,8 @@ fn an_arm_at_the_end_of_its_reach() {
         } else {
             assert_eq!((found.exit, found.status()), (1, "infeasible"));
             let missing = 1e3 * y - 150.0;
-            let row = format!("goal y of marker tip: violated by {missing:.4e}");
+            let missing = significant(missing, 4);
+            let row = format!("goal y of marker tip: violated by {missing} mm");
             assert!(found.err.contains(&row), "{}", found.err);
             seen.push(format!(
                 "{} mm: {}",

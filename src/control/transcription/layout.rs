@@ -71,7 +71,7 @@ impl Layout {
     pub(in crate::control) fn limit(&self, index: usize) -> LimitSite {
         let limit = &self.limits[index];
         LimitSite {
-            is_goal: limit.place == Place::Goal,
+            is_goal: limit.bounded.place == Place::Goal,
             is_of_intervals: limit.site == Site::Intervals,
             at: limit.at.clone(),
             first: self.unknowns.rows.len() - self.limit_rows.len() + limit.first,

@@ -19,6 +19,7 @@ pub(in crate::control) enum Site {
 /// A limit or goal on its way to rows.
 #[derive(Clone, Debug)]
 pub(super) struct LimitRow {
+    pub(super) bounded: Bounded,
     /// Index among the measures of its site.
     pub(super) measure: usize,
     pub(super) site: Site,
@@ -26,16 +27,10 @@ pub(super) struct LimitRow {
     pub(super) at: Range<usize>,
     /// Its first row among those of all limits.
     pub(super) first: usize,
-    pub(super) lower: f64,
-    pub(super) upper: f64,
     /// Entries of its gradient: (side, entry of z) or ([`SCALAR`], scalar).
     pub(super) entries: Vec<(usize, usize)>,
     /// Vectors it reads.
     pub(super) vectors: Vec<usize>,
-    pub(super) name: String,
-    /// When it is read, in front of the number of the instant or interval.
-    pub(super) when: &'static str,
-    pub(super) place: Place,
     pub(super) scale: f64,
 }
 
@@ -92,17 +87,13 @@ pub(super) fn limit_rows(
             _ => 1.0,
         };
         let limit = LimitRow {
+            bounded: bounded.clone(),
             measure,
             site,
             first,
             at,
-            lower: bounded.lower,
-            upper: bounded.upper,
             entries,
             vectors: reads.vectors(),
-            name: bounded.name.clone(),
-            when: bounded.quantity.when(),
-            place: bounded.place,
             scale,
         };
         first += limit.at.len();

@@ -264,6 +264,17 @@ impl<'m> Transcription<'m> {
         &self.unknowns
     }
 
+    /// The limit or goal of a row.
+    pub fn limit(&self, index: usize) -> &Bounded {
+        &self.limits[index].bounded
+    }
+
+    /// What a value of a limit or goal means to people, and its unit.
+    pub fn plain(&self, index: usize, value: f64) -> (f64, &'static str) {
+        let quantity = &self.limits[index].bounded.quantity;
+        quantity.plain(value, &self.model.system)
+    }
+
     /// Scale of a row: scaled row = scale · row.
     pub fn row_scale(&self, row: usize) -> f64 {
         self.row_scales[row]

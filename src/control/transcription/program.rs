@@ -1,7 +1,6 @@
 //! What the solver asks.
 
-use crate::control::limits::Place;
-use crate::control::transcription::limit_rows::LimitRow;
+use crate::control::limits::{Bounded, Place};
 use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
 use crate::control::unknowns::{Row, Variable};
 use crate::functional::Level;
@@ -17,7 +16,8 @@ impl Nlp for Transcription<'_> {
             Row::Equation { .. } | Row::Gauss { .. } => (0.0, 0.0),
             Row::Limit { limit, .. } => {
                 let limit = &self.limits[limit];
-                (limit.lower * limit.scale, limit.upper * limit.scale)
+                let bounded = &limit.bounded;
+                (bounded.lower * limit.scale, bounded.upper * limit.scale)
             }
         };
         let (lower, upper) = self.unknowns.rows.iter().map(bound).unzip();
@@ -164,12 +164,15 @@ impl Nlp for Transcription<'_> {
                 self.model.potential_names[s - self.model.voltages.len()]
             ),
             Row::Limit { limit, k } => {
-                let LimitRow {
-                    name, when, place, ..
-                } = &self.limits[limit];
+                let Bounded {
+                    name,
+                    quantity,
+                    place,
+                    ..
+                } = self.limit(limit);
                 match place {
                     Place::Goal => name.clone(),
-                    Place::Everywhere => format!("{name} {when} {k}"),
+                    Place::Everywhere => format!("{name} {} {k}", quantity.when()),
                 }
             }
         }

@@ -1,0 +1,170 @@
+//! Which bounds and limits a point reaches, and how often.
+
+use std::collections::BTreeMap;
+
+use crate::control::problem::{Control, Duration, Limit};
+use crate::control::{Place, Row, Transcription, Variable};
+use crate::math::significant;
+use crate::model::{JointGauge, Model, joint_unit};
+use crate::nlp::Nlp;
+
+/// A bound that is reached.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Active {
+    /// What reaches it, and its value with unit.
+    pub what: String,
+    /// In how many of its rows.
+    pub count: usize,
+    /// How many rows it has.
+    pub of: usize,
+    /// `interval` or `instant`; nothing of what there is once.
+    pub noun: &'static str,
+    /// Whether it is a bound of voltages.
+    pub is_voltage: bool,
+}
+
+/// A value this near to a bound, relative to the range or the bound, has reached it.
+const NEAR: f64 = 1e-3;
+
+/// The bounds that a point reaches, the most frequent first; that a voltage is not negative is not told.
+pub fn active(
+    program: &mut Transcription<'_>,
+    x: &[f64],
+    model: &Model,
+    control: &Control,
+) -> Vec<Active> {
+    let mut seen = Seen::default();
+    let bounds = program.variables();
+    for (i, variable) in program.unknowns().variables.iter().enumerate() {
+        let [low, high] = [bounds.lower[i], bounds.upper[i]];
+        let side = reached(x[i], low, high);
+        match *variable {
+            Variable::Scalar { s, .. } if s < model.voltages.len() => {
+                let name = &model.sources[model.voltages[s]].name;
+                for (index, is_reached) in side.into_iter().enumerate() {
+                    let volts = control.voltage_bounds[index];
+                    if volts.is_finite() && volts != 0.0 {
+                        let what = format!("{name} at its bound of {} V", significant(volts, 4));
+                        seen.add(what, is_reached, "interval", true);
+                    }
+                }
+            }
+            Variable::Unknown { i, .. } if i < model.coordinate_count() => {
+                let of = |gauge: &JointGauge| gauge.coordinate == Some(i);
+                let Some(joint) = model.gauges.iter().position(of) else {
+                    continue;
+                };
+                for limit in &control.limits {
+                    let Limit::JointAngle { joint: j, min, max } = *limit else {
+                        continue;
+                    };
+                    let (name, unit) = (
+                        &model.system.joints[joint].name,
+                        joint_unit(&model.system, joint),
+                    );
+                    for (bound, is_reached) in [min, max].into_iter().zip(side) {
+                        if j == joint && bound.is_finite() {
+                            let value = significant(bound, 4);
+                            let what = format!("{name} at its limit of {value} {unit}");
+                            seen.add(what, is_reached, "instant", false);
+                        }
+                    }
+                }
+            }
+            Variable::Horizon => {
+                let Duration::Free { min, max, .. } = control.duration else {
+                    continue;
+                };
+                for (bound, is_reached) in [min, max].into_iter().zip(side) {
+                    let seconds = significant(bound / 1e3, 4);
+                    let what = format!("the duration at its bound of {seconds} s");
+                    seen.add(what, is_reached, "", false);
+                }
+            }
+            _ => {}
+        }
+    }
+    let bounds = program.constraints();
+    let mut values = vec![0.0; bounds.lower.len()];
+    program.constraint(x, &mut values);
+    for (r, row) in program.unknowns().rows.iter().enumerate() {
+        let Row::Limit { limit, .. } = *row else {
+            continue;
+        };
+        let bounded = program.limit(limit);
+        if bounded.place == Place::Goal {
+            continue;
+        }
+        let noun = match bounded.quantity.is_of_intervals() {
+            true => "interval",
+            false => "instant",
+        };
+        let side = reached(values[r], bounds.lower[r], bounds.upper[r]);
+        for (bound, is_reached) in [bounded.lower, bounded.upper].into_iter().zip(side) {
+            if bound.is_finite() {
+                let (value, unit) = bounded.quantity.plain(bound, &model.system);
+                let space = if unit.is_empty() { "" } else { " " };
+                let value = significant(value, 4);
+                let what = format!("{} at its limit of {value}{space}{unit}", bounded.name);
+                seen.add(what, is_reached, noun, false);
+            }
+        }
+    }
+    seen.list()
+}
+
+/// Whether a value has reached its lower and its upper bound, or is beyond.
+fn reached(value: f64, low: f64, high: f64) -> [bool; 2] {
+    let range = high - low;
+    let size = |bound: f64| match range.is_finite() {
+        true => range,
+        false => bound.abs().max(1.0),
+    };
+    [
+        value - low <= NEAR * size(low),
+        high - value <= NEAR * size(high),
+    ]
+}
+
+/// Counts by what is told.
+#[derive(Debug, Default)]
+struct Seen(BTreeMap<String, Active>);
+
+impl Seen {
+    fn add(&mut self, what: String, is_reached: bool, noun: &'static str, is_voltage: bool) {
+        let entry = self.0.entry(what).or_insert_with_key(|what| Active {
+            what: what.clone(),
+            count: 0,
+            of: 0,
+            noun,
+            is_voltage,
+        });
+        entry.of += 1;
+        entry.count += usize::from(is_reached);
+    }
+
+    fn list(self) -> Vec<Active> {
+        let reached = self.0.into_values().filter(|active| active.count > 0);
+        let mut list: Vec<Active> = reached.collect();
+        list.sort_by(|a, b| b.count.cmp(&a.count).then_with(|| a.what.cmp(&b.what)));
+        list
+    }
+}
+
+impl Active {
+    /// In words, such as `m1b at its bound of 500 V in 43 of 60 intervals`.
+    pub fn told(&self) -> String {
+        let Self {
+            what,
+            count,
+            of,
+            noun,
+            ..
+        } = self;
+        match *noun {
+            "" => what.clone(),
+            "interval" => format!("{what} in {count} of {of} intervals"),
+            noun => format!("{what} at {count} of {of} {noun}s"),
+        }
+    }
+}
