@@ -80,11 +80,28 @@ impl Distance {
     }
 }
 
-/// In words, as in `0.021 rad, 3.4 mm`.
+/// In words, as in `0.0210 rad, 3.40 mm`.
 impl std::fmt::Display for Distance {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{:.2e} rad, {:.2e} mm", self.angle, 1e3 * self.length)
+        write!(
+            f,
+            "{} rad, {} mm",
+            digits(self.angle),
+            digits(1e3 * self.length)
+        )
     }
+}
+
+/// A number with three digits; rounding, and what is beyond all measure, with its power of ten.
+fn digits(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e4).contains(&value) {
+        return format!("{value:.2e}");
+    }
+    let places = (2.0 - value.log10().floor()).max(0.0) as usize;
+    format!("{value:.places$}")
 }
 
 #[derive(Clone, Copy, Debug)]
