@@ -3,7 +3,7 @@
 //!
 //! The equations of a step have several roots where it does not resolve the motion; an optimum may have taken another one
 //! than a step forward takes. On the grid of the optimum the simulation agrees with it to rounding, or it is another motion;
-//! with finer steps it agrees as far as the grid resolves the motion.
+//! with finer steps it agrees as far as the grid resolves the motion. Steps that a simulation has to halve are finer ones.
 
 use std::ops::ControlFlow;
 
@@ -26,7 +26,7 @@ const SAME: (f64, f64) = (1e-4, 1e2);
 const JUMP: f64 = 1e3;
 /// Estimated errors along the motion, as parts of its way, from which on it is warned, and refused.
 const COARSE: f64 = 0.05;
-const TOO_COARSE: f64 = 0.15;
+const TOO_COARSE: f64 = 0.25;
 /// A drift from the goal, as a part of the way, from which on it is not held.
 const DRIFTS: f64 = 0.05;
 
@@ -136,7 +136,10 @@ pub(super) fn resimulate(
     if own.failure.is_some() || out.cause.is_some() {
         return out;
     }
-    let mut error = 0.0_f64;
+    let mut error = match own.is_halved {
+        true => own.greatest().over(way, model),
+        false => 0.0_f64,
+    };
     for steps in [2, 4] {
         let repeat = Repeat::of(model, start, optimal, steps);
         let deviation = repeat.greatest();
@@ -223,6 +226,8 @@ struct Repeat {
     /// Distances from the optimum at its instants, as far as it goes.
     distances: Vec<Distance>,
     failure: Option<String>,
+    /// Whether some of its steps had to be halved.
+    is_halved: bool,
     /// Whether redundant constraints keep a step forward from being taken at all.
     is_untestable: bool,
 }
@@ -245,6 +250,7 @@ impl Repeat {
             && matches!(&failure, Some(StepError::Singular { redundant, .. }) if !redundant.is_empty());
         Self {
             is_untestable,
+            is_halved: history.report.halved > 0,
             distances: instants.map(of).collect(),
             failure: failure.map(|error| error.to_string()).or(ended),
             history,
@@ -258,6 +264,9 @@ impl Repeat {
 
     /// Why a simulation with the step of the optimum is another motion, where it is by more than `same`.
     fn cause(&self, model: &Model, optimal: &Solved, same: f64) -> Option<Cause> {
+        if self.is_halved && self.failure.is_none() {
+            return None;
+        }
         let sizes: Vec<f64> = self.distances.iter().map(|d| d.size(model)).collect();
         let Some(k) = sizes.iter().position(|&size| !(size <= same)) else {
             let failure = self.failure.clone().filter(|_| !self.is_untestable)?;
