@@ -6,6 +6,7 @@
 
 use crate::dynamics::EquilibriumError;
 use crate::dynamics::equilibrium::{Equilibrium, Route};
+use crate::dynamics::instability::Instability;
 use crate::dynamics::ramp::{Load, Ramp};
 use crate::dynamics::spans::shortest;
 use crate::dynamics::statics::{Outcome, Reach, State, Statics};
@@ -31,45 +32,6 @@ const FLAT: f64 = 1e-6;
 
 /// Least stretch of a muscle on a path: below it the path ends.
 const SHORTEST: f64 = 0.05;
-
-/// How an equilibrium under a growing load is lost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Instability {
-    /// The path turns back: beyond this voltage there is no equilibrium nearby (pull-in).
-    PullIn,
-    /// The path turns back under growing weights: the robot collapses.
-    Collapse,
-    /// The path goes on, but another one branches off and is preferred (buckling).
-    Buckling,
-}
-
-impl Instability {
-    /// The word in files.
-    pub fn key(self) -> &'static str {
-        match self {
-            Self::PullIn => "pull_in",
-            Self::Collapse => "collapse",
-            Self::Buckling => "buckling",
-        }
-    }
-
-    /// The word in sentences.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::PullIn => "pull-in",
-            Self::Collapse => "collapse under weight",
-            Self::Buckling => "buckling",
-        }
-    }
-
-    /// What a limit point of a load is.
-    fn of_turn(load: Load) -> Self {
-        match load {
-            Load::Weight => Self::Collapse,
-            Load::Voltages => Self::PullIn,
-        }
-    }
-}
 
 /// Where an equilibrium is lost.
 #[derive(Clone, Debug, PartialEq)]

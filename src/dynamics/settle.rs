@@ -1,0 +1,92 @@
+//! Energy of states of rest, and the way onto the constraints and to Gauss's law.
+
+use crate::dynamics::statics::{ITERATIONS, State, Statics};
+use crate::functional::{Kind, Level};
+use crate::math::Vector;
+use crate::reduction::{Instant, Interval};
+
+/// Size of the last correction, relative to angles of one radian and the length of the system.
+const UPDATE: f64 = 1e-12;
+
+impl Statics<'_> {
+    /// Potential energy in N mm of a state under voltages, all weights acting; the instant stays placed there.
+    pub(super) fn energy(&mut self, state: &[f64], voltages: &[f64]) -> f64 {
+        let action = &self.model.action;
+        let m = action.motion.unknowns();
+        self.scalars[..voltages.len()].copy_from_slice(voltages);
+        self.scalars[voltages.len()..].copy_from_slice(&state[m..]);
+        self.a.z.copy_from_slice(&state[..m]);
+        action.motion.place(&mut self.a);
+        let interval = Interval::given(&self.scalars, 1.0);
+        let frame = interval.frame([&self.a, &self.a]);
+        let effects = action.intervals.effects.iter();
+        let potential = effects.filter(|effect| effect.kind() == Kind::Potential);
+        potential.map(|effect| effect.energy(&frame)).sum()
+    }
+
+    /// The instant placed last.
+    pub(super) fn instant(&self) -> &Instant {
+        &self.a
+    }
+
+    /// Brings coordinates onto the constraints by the shortest way, and potentials to Gauss's law; `None` where that fails.
+    pub(super) fn settle(&mut self, state: &mut State, voltages: &[f64]) -> Option<()> {
+        let motion = &self.model.action.motion;
+        if motion.multipliers > 0 {
+            self.meet_constraints(state)?;
+        }
+        if self.electric.is_some() {
+            let m = motion.unknowns();
+            self.evaluate(state, voltages);
+            let tangent = self.electric.as_mut()?;
+            tangent.factor(&self.values).ok()?;
+            let mut update = self.residual[m..].to_vec();
+            tangent.solve(&mut update);
+            for (value, update) in state[m..].iter_mut().zip(&update) {
+                *value -= update;
+            }
+        }
+        state.iter().all(|v| v.is_finite()).then_some(())
+    }
+
+    /// Newton on the constraints alone, in the metric of the scales.
+    fn meet_constraints(&mut self, state: &mut State) -> Option<()> {
+        let action = &self.model.action;
+        let (n, m) = (action.motion.coordinates, action.motion.unknowns());
+        for _ in 0..ITERATIONS {
+            let a = &mut self.a;
+            a.z[..n].copy_from_slice(&state[..n]);
+            // The gradients of the constraints alone: no multiplier bends them.
+            a.z[n..].fill(0.0);
+            action.motion.place(a);
+            a.forces.fill(Vector::zeros());
+            self.values.fill(0.0);
+            action.evaluate_instant(Level::Hessian, a, &[], &mut self.scratch);
+            action.pull_back_instant(Level::Hessian, a, 0, &mut self.scratch, &mut self.values);
+            self.residual.fill(0.0);
+            action.rows(a, &self.scratch, &mut self.residual[..m]);
+            self.residual[..n].fill(0.0);
+            let added = self.values[self.added..].iter_mut();
+            for (value, scale) in added.zip(self.scales[..n].iter().chain(&self.scales[m..])) {
+                *value = -1.0 / (scale * scale);
+            }
+            let outcome = self.tangent.factor(&self.values);
+            self.values[self.added..].fill(0.0);
+            outcome.ok()?;
+            let mut update = std::mem::take(&mut self.residual);
+            self.tangent.solve(&mut update);
+            let size = self.size(&update);
+            for (value, update) in state[..n].iter_mut().zip(&update) {
+                *value -= update;
+            }
+            self.residual = update;
+            if size.is_nan() {
+                return None;
+            }
+            if size < UPDATE {
+                return Some(());
+            }
+        }
+        None
+    }
+}
