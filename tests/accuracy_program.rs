@@ -128,7 +128,7 @@ fn a_finer_grid_that_fails_leaves_the_files_of_the_one_before() {
     let trunk = [
         "problems/elephant_trunk_effort.json",
         "--set",
-        "control.intervals=20",
+        "control.intervals=30",
     ];
     let plain = [&["solve"], &trunk[..], &["-o", "plain"]].concat();
     assert_eq!(run(folder.path(), &plain).0, 0);

@@ -544,7 +544,7 @@ fn warm_starts_take_fewer_iterations() {
     };
     let primal = solve(&mut hs071(), &cold.to_point(), &primal, &mut go_on).expect("can be called");
     let dual = Options {
-        start: Start::PRIMAL_DUAL,
+        start: Start::PrimalDual,
         ..Options::default()
     };
     let dual = solve(&mut hs071(), &cold.to_point(), &dual, &mut go_on).expect("can be called");

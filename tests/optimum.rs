@@ -353,7 +353,7 @@ fn warm_starts_are_short() {
             o.solution.iterations.len() - 1
         };
         let from = Some((&first.history, first.h, Some(&first.costates)));
-        let again = count(&solve(&system, &control, from, Start::PRIMAL_DUAL));
+        let again = count(&solve(&system, &control, from, Start::PrimalDual));
         let (history, h) = reference_motion(name);
         let primal = count(&solve(
             &system,
@@ -379,7 +379,7 @@ fn warm_starts_are_short() {
     let [_, redundant] = reduced_and_redundant(&control);
     let first = cold(&system, &redundant);
     let from = Some((&first.history, first.h, Some(&first.costates)));
-    let again = solve(&system, &redundant, from, Start::PRIMAL_DUAL);
+    let again = solve(&system, &redundant, from, Start::PrimalDual);
     println!(
         "redundant: {:?} {}",
         again.solution.status,

@@ -202,7 +202,7 @@ fn starting_costates(start: &Point, kind: Start, n: usize, m: usize) -> Costates
             lower: vec![0.0; n],
             upper: vec![0.0; n],
         },
-        Start::PrimalDual { .. } | Start::Carried { .. } => start
+        Start::PrimalDual => start
             .costates
             .clone()
             .expect("a primal-dual start has multipliers"),

@@ -286,11 +286,8 @@ pub(super) fn prepare<'m>(
         |earlier: &Solved| earlier.intervals() == control.intervals && stretched.is_none();
     let start = match earlier {
         None => Start::Cold,
-        Some(earlier) if is_same_grid(earlier) => match point.costates {
-            Some(_) => Start::PRIMAL_DUAL,
-            None => Start::PRIMAL,
-        },
-        Some(_) if point.costates.is_some() => Start::CARRIED,
+        Some(_) if point.costates.is_some() => Start::PrimalDual,
+        Some(earlier) if is_same_grid(earlier) => Start::PRIMAL,
         Some(_) => RESAMPLED,
     };
     Ok(Prepared {

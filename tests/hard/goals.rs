@@ -24,18 +24,21 @@ fn a_goal_out_of_reach_is_told_with_its_distance() {
     );
     let path = found.column("tip_y");
     assert!((largest(&path) - 300.0).abs() < 1e-3);
-    let times = found.column("time");
+    let across = found.column("tip_x");
+    let reach = (-60..=60).map(|degrees| f64::from(degrees).to_radians());
+    let reach = reach.map(|a| [300.0 * a.sin(), 300.0 * a.cos()]).collect();
     Case {
         name: "unreachable-goal",
         title: "A goal 100 mm out of reach",
         law: "The trunk is 300 mm long; asked to 400 mm the problem is infeasible, the row that misses 100 mm is named, and the closest motion is kept.",
         verdict: Verdict::Refusal,
         seen: vec![found.err.trim().replace('\n', "; ")],
-        x: Axis::linear("time [ms]", Extent::Tight),
+        x: Axis::linear("tip x [mm]", Extent::Padded),
         y: Axis::linear("tip y [mm]", Extent::Padded),
         curves: vec![
-            Series::curve("closest motion", points(&times, &path), hue(0)).marked(Mark::Disc),
-            Series::curve("goal", vec![[0.0, 400.0], [600.0, 400.0]], hue(1)).dashed(Dash::Dashed),
+            Series::curve("reach of the trunk", reach, hue(0)),
+            Series::curve("closest motion, its last instant", vec![[across[20], path[20]]], hue(1)).marked(Mark::Disc).unjoined(),
+            Series::curve("goal", vec![[0.0, 400.0]], hue(2)).marked(Mark::Ring).unjoined(),
         ],
     }
     .record();

@@ -5,7 +5,7 @@ use crate::program::{Run, difference, largest, points, run};
 use crate::scenes::*;
 use proboscis::math::significant;
 use proboscis::report::axes::{Axis, Extent};
-use proboscis::report::lines::Series;
+use proboscis::report::lines::{Mark, Series};
 use proboscis::report::style::{Dash, hue};
 use serde_json::{Value, json};
 
@@ -334,4 +334,80 @@ fn an_arm_at_the_end_of_its_reach() {
 /// Times in ms of the instants of 0.6 s in 20 intervals.
 fn found_times(count: usize) -> Vec<f64> {
     (0..count).map(|k| 30.0 * k as f64).collect()
+}
+
+/// The pendulum IFToMM A01, 1 m long and let go level, as an exact solution has it: time in s, place of the mass in m.
+const BY_OTHERS: [[f64; 3]; 3] = [
+    [1.0, 0.986_291_751_1, -0.165_010_853_1],
+    [5.0, -0.942_305_435_0, -0.334_754_338_4],
+    [10.0, -0.275_087_462_6, -0.961_419_205_1],
+];
+
+#[test]
+fn a_pendulum_goes_where_the_benchmark_of_others_says() {
+    // A point mass has no moments of inertia: so small a sphere has a billionth of m L².
+    let scene = json!({
+        "name": "pendulum", "gravity": [0, -9.81, 0],
+        "bodies": [{ "name": "mass", "mass": "1 kg", "position": [-1, 0, 0], "sphere": { "radius": "50 um" } }],
+        "joints": [{ "name": "hinge", "revolute": { "axis": [0, 0, 1] }, "parent": "ground", "child": "mass", "at": [0, 0, 0] }],
+        "markers": [{ "name": "end", "body": "mass", "at": [-1, 0, 0] }],
+    });
+    let mut seen = Vec::new();
+    let mut curves = Vec::new();
+    for (i, (name, integrator, steps)) in [
+        ("midpoint", json!("midpoint"), [2.5, 1.25]),
+        ("Galerkin, degree 2", json!({ "galerkin": 2 }), [20.0, 10.0]),
+        (
+            "Galerkin, degree 3",
+            json!({ "galerkin": 3 }),
+            [200.0, 100.0],
+        ),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let errors = steps.map(|step: f64| {
+            let mut task = simulate("10 s", &format!("{step} ms"), json!({}));
+            task["simulate"]["integrator"] = integrator.clone();
+            let found = run(&scene, &task).solved();
+            let [x, y] = ["end_x", "end_y"].map(|name| found.column(name));
+            let apart = |&[time, a, b]: &[f64; 3]| {
+                let k = (1e3 * time / step).round() as usize;
+                (x[k] / 1e3 - a).hypot(y[k] / 1e3 - b)
+            };
+            if step == steps[1] && i == 0 {
+                let path = x.iter().zip(&y).take(1900).map(|(x, y)| [x / 1e3, y / 1e3]);
+                curves.push(Series::curve("midpoint", path.collect(), hue(0)));
+            }
+            BY_OTHERS.iter().map(apart).fold(0.0, f64::max)
+        });
+        let order = (errors[0] / errors[1]).log2();
+        seen.push(format!(
+            "{name}, steps of {} and {} ms: {:.1e} and {:.1e} m beside, order {order:.2}",
+            steps[0], steps[1], errors[0], errors[1]
+        ));
+        let expected = [2.0, 4.0, 6.0][i];
+        assert!(
+            (order - expected).abs() < 0.4,
+            "{name}: {errors:?}, {order}"
+        );
+        assert!(errors[1] < 1e-2, "{name}: {errors:?}");
+    }
+    let marks = BY_OTHERS.iter().map(|row| [row[1], row[2]]).collect();
+    curves.push(
+        Series::curve("exact at 1, 5 and 10 s", marks, hue(1))
+            .marked(Mark::Disc)
+            .unjoined(),
+    );
+    Case {
+        name: "pendulum-by-others",
+        title: "The pendulum of the IFToMM benchmark",
+        law: "A01: 1 kg on 1 m, let go level. Three instants of ten seconds are met, with errors that fall with the order of the method.",
+        verdict: Verdict::Answer,
+        seen,
+        x: Axis::linear("x [m]", Extent::Padded),
+        y: Axis::linear("y [m]", Extent::Padded),
+        curves,
+    }
+    .record();
 }

@@ -172,7 +172,7 @@ fn a_joint_written_twice_is_named() {
         seen,
         x: Axis::linear("time [ms]", Extent::Tight),
         y: Axis::linear("crank [rad]", Extent::Padded),
-        curves: vec![Series::curve("written once", points(&once.column("time"), &angle), hue(0))],
+        curves: Vec::new(),
     }
     .record();
 }

@@ -20,3 +20,4 @@ mod rest;
 mod scenes;
 mod steps;
 mod units;
+mod warm;
