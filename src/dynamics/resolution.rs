@@ -15,7 +15,7 @@ use crate::reduction::{Instant, Interval};
 use std::f64::consts::PI;
 
 /// Part of the energy exchanged in a step that may be made or lost in it.
-const PART: f64 = 0.05;
+const PART: f64 = 0.25;
 /// Relative size of energies that is rounding.
 const ROUNDING: f64 = 1e-9;
 
