@@ -58,7 +58,7 @@ impl Progress {
     pub(super) fn of_steps(shown: Shown, steps: usize) -> Self {
         let bar = target(ProgressBar::new(steps as u64), shown);
         bar.set_style(style(
-            "{elapsed_precise} {wide_bar} step {pos} of {len} {msg}",
+            "{elapsed_precise} {bar:20} step {pos} of {len} {msg}",
         ));
         bar.enable_steady_tick(Duration::from_millis(120));
         Self::starting(bar)
@@ -147,6 +147,7 @@ impl Drop for Progress {
         self.bar.finish_and_clear();
         if let Some(line) = &self.before {
             line.reset();
+            line.set_message("finishing");
         }
         LINE.set(self.before.take());
     }
