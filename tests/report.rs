@@ -110,7 +110,7 @@ fn tables_read_back_identical() {
     let mut lines = csv.lines();
     assert_eq!(
         lines.next(),
-        Some(format!("# {}", origin().line()).as_str())
+        Some(format!("# {}; every column at the time of its row", origin().line()).as_str())
     );
     let header = lines.next().unwrap();
     assert!(header.starts_with("time [ms],joint1 [rad],"));
