@@ -1,33 +1,26 @@
 //! The motion in space as a plotly figure: bodies as glass, muscles and blocks coloured by voltage, a slider over time.
 
 use nalgebra::Vector3;
-use plotly::common::{
-    Anchor, ColorBar, ColorScale, ColorScaleElement, DashType, HoverInfo, Line, Marker, Mode, Pad,
-};
-use plotly::layout::update_menu::{ButtonBuilder, UpdateMenu, UpdateMenuDirection, UpdateMenuType};
-use plotly::layout::{
-    Animation, AnimationMode, AnimationOptions, AspectMode, Axis, Camera, Frame, FrameSettings,
-    LayoutScene, Legend, Margin, Slider, SliderCurrentValue, SliderStepBuilder, TransitionSettings,
-};
-use plotly::traces::mesh3d::{IntensityMode, Lighting, Mesh3D};
-use plotly::{Configuration, Plot, Scatter3D, Traces};
+use serde_json::{Value, json};
 
 use crate::model::system::Attachment;
-use crate::report::page::{escape, layout, rgb};
+use crate::report::Run;
+use crate::report::page::escape;
+use crate::report::plotly::{Figure, Frame, Trace, layout, rgb};
 use crate::report::pose::{ANGLES, lumped};
 use crate::report::skins::{Skin, shown};
 use crate::report::solids::{Mesh, Prism};
+use crate::report::style::{self, Colour};
 use crate::report::view::View;
-use crate::report::{Run, style};
 
+/// Titles of the axes in space.
+const TITLES: [&str; 3] = ["x [mm]", "y [mm]", "z [mm]"];
 /// Shortest and longest time in ms that a frame stays.
 const PACE: [f64; 2] = [40.0, 120.0];
-/// Why building a button or a step of the slider cannot fail.
-const COMPLETE: &str = "an animation step needs no more than its frame";
 
 /// The figure: a trace of bodies, one of muscles, one of joints, one of the blocks with potentials and one of those
 /// without where there are any, then the marker paths.
-pub fn plot(run: &Run<'_>) -> Plot {
+pub fn figure(run: &Run<'_>) -> Figure {
     let last = run.trajectory.times.len().saturating_sub(1);
     let instants = match run.skins.list.is_empty() {
         true => shown(&run.trajectory.times, 0),
@@ -39,46 +32,35 @@ pub fn plot(run: &Run<'_>) -> Plot {
     let kinds = [true, false].map(|is| run.skins.list.iter().any(|skin| skin.is_charged == is));
     let kinds = [true, false].into_iter().zip(kinds);
     let kinds: Vec<bool> = kinds.filter_map(|(is, any)| any.then_some(is)).collect();
-    let mut plot = Plot::new();
-    plot.add_trace(stage.bodies(last));
-    plot.add_trace(stage.muscles(last));
-    plot.add_trace(stage.joints(last));
-    for &is_charged in &kinds {
-        plot.add_trace(stage.blocks(last, is_charged, true));
-    }
+    let moving = |k: usize, with_triangles: bool| {
+        let mut traces = vec![stage.bodies(k), stage.muscles(k), stage.joints(k)];
+        traces.extend(kinds.iter().map(|&is| stage.blocks(k, is, with_triangles)));
+        traces
+    };
+    let frame = |&k: &usize| Frame {
+        name: name(k),
+        traces: (0..3 + kinds.len()).collect(),
+        data: moving(k, false),
+    };
+    let mut data = moving(last, true);
     if last > 0 {
-        stage.add_paths(&mut plot);
+        data.extend(stage.paths());
     }
-    for &k in &instants {
-        let mut data = Traces::new();
-        data.push(stage.bodies(k));
-        data.push(stage.muscles(k));
-        data.push(stage.joints(k));
-        for &is_charged in &kinds {
-            data.push(stage.blocks(k, is_charged, false));
-        }
-        let traces = (0..3 + kinds.len()).collect();
-        let frame = Frame::new().name(name(k)).traces(traces);
-        plot.add_frame(frame.data(data));
-    }
-    let duration = run.trajectory.times.last().unwrap_or(&0.0);
-    let pace = (duration / instants.len() as f64).clamp(PACE[0], PACE[1]);
-    let still = layout()
-        .margin(Margin::new().left(0).right(0).top(0).bottom(10))
-        .scene(stage.scene(&instants))
-        .legend(Legend::new().x(0.0).y(0.98));
-    // A state of rest has nothing to play.
-    plot.set_layout(match instants.len() {
-        0 | 1 => still,
-        _ => still
-            .sliders(vec![stage.slider(&instants)])
-            .update_menus(vec![buttons(pace as usize)]),
+    let mut look = json!({
+        "margin": { "l": 0, "r": 0, "t": 0, "b": 10 },
+        "scene": stage.scene(&instants),
+        "legend": { "x": 0, "y": 0.98 },
     });
-    plot.set_configuration(Configuration::new().responsive(true).display_logo(false));
-    plot
+    // A state of rest has nothing to play.
+    if instants.len() > 1 {
+        let duration = run.trajectory.times.last().unwrap_or(&0.0);
+        let pace = (duration / instants.len() as f64).clamp(PACE[0], PACE[1]);
+        look["sliders"] = json!([stage.slider(&instants)]);
+        look["updatemenus"] = json!([buttons(pace)]);
+    }
+    let frames = instants.iter().map(frame).collect();
+    Figure::new(data, layout(look)).animated(frames)
 }
-
-type Surface = Mesh3D<f64, f64, f64>;
 
 fn name(k: usize) -> String {
     format!("instant {k}")
@@ -91,7 +73,7 @@ struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    fn bodies(&self, k: usize) -> Box<Surface> {
+    fn bodies(&self, k: usize) -> Trace {
         let mut mesh = Mesh::default();
         for (body, pose) in self
             .run
@@ -102,15 +84,13 @@ impl Stage<'_> {
         {
             mesh.add_body(&body.shape, pose);
         }
-        surface(&mesh)
-            .name("bodies")
-            .color(rgb(style::BODY))
-            .opacity(0.22)
-            .flat_shading(false)
-            .hover_info(HoverInfo::Skip)
+        surface(
+            &mesh,
+            json!({ "name": "bodies", "color": rgb(style::BODY), "opacity": 0.22, "flatshading": false }),
+        )
     }
 
-    fn muscles(&self, k: usize) -> Box<Surface> {
+    fn muscles(&self, k: usize) -> Trace {
         let trajectory = self.run.trajectory;
         let voltages = trajectory.voltages.get(k.saturating_sub(1));
         let mut mesh = Mesh::default();
@@ -120,34 +100,32 @@ impl Stage<'_> {
             let kilovolts = voltages.map_or(0.0, |v| v[i].abs() / 1e3);
             intensity.resize(mesh.vertices.len(), (kilovolts * 1e4).round() / 1e4);
         }
-        self.by_voltage(surface(&mesh), intensity)
-            .name("muscles")
-            .show_scale(!mesh.vertices.is_empty())
+        let look = self.by_voltage("muscles", !mesh.vertices.is_empty());
+        Trace {
+            intensity,
+            ..surface(&mesh, look)
+        }
     }
 
-    /// A surface with colours by voltage in kV.
-    fn by_voltage(&self, mesh: Box<Surface>, kilovolts: Vec<f64>) -> Box<Surface> {
+    /// A surface with colours by voltage in kV, with or without their bar.
+    fn by_voltage(&self, name: &str, has_bar: bool) -> Value {
         let stops = (0..=6).map(|i| f64::from(i) / 6.0);
-        let colours = stops.map(|s| ColorScaleElement(s, style::voltage(s).hex()));
-        mesh.intensity(kilovolts)
-            .intensity_mode(IntensityMode::Vertex)
-            .color_scale(ColorScale::Vector(colours.collect()))
-            .c_min(0.0)
-            .c_max(self.scale)
-            .color_bar(
-                ColorBar::new()
-                    .title("kV")
-                    .thickness(14)
-                    .len(260)
-                    .len_mode(plotly::common::ThicknessMode::Pixels),
-            )
-            .flat_shading(true)
-            .lighting(Lighting::new().ambient(0.75).diffuse(0.45).specular(0.1))
-            .hover_info(HoverInfo::Skip)
+        let colours: Vec<Value> = stops.map(|s| json!([s, style::voltage(s).hex()])).collect();
+        json!({
+            "name": name,
+            "intensitymode": "vertex",
+            "colorscale": colours,
+            "cmin": 0,
+            "cmax": self.scale,
+            "colorbar": { "title": { "text": "kV" }, "thickness": 14, "len": 260, "lenmode": "pixels" },
+            "showscale": has_bar,
+            "flatshading": true,
+            "lighting": { "ambient": 0.75, "diffuse": 0.45, "specular": 0.1 },
+        })
     }
 
     /// The blocks that have potentials, or those that have none; frames go without the triangles, which stay.
-    fn blocks(&self, k: usize, is_charged: bool, with_triangles: bool) -> Box<Surface> {
+    fn blocks(&self, k: usize, is_charged: bool, with_triangles: bool) -> Trace {
         let skins = self.run.skins;
         let position = skins.position(k);
         let of_kind = |skin: &&Skin| skin.is_charged == is_charged;
@@ -164,29 +142,20 @@ impl Stage<'_> {
                 }
             }
         }
-        let surface = match with_triangles {
-            true => surface(&mesh),
+        let look = match is_charged {
+            true => self.by_voltage("blocks", lumped(self.run.system).next().is_none()),
             false => {
-                let [x, y, z] = columns(&mesh.vertices);
-                Mesh3D::new(x, y, z, None, None, None)
+                json!({ "name": "passive blocks", "color": rgb(style::PASSIVE), "flatshading": true })
             }
         };
-        if is_charged {
-            let has_bar = lumped(self.run.system).next().is_none();
-            self.by_voltage(surface, kilovolts)
-                .name("blocks")
-                .show_scale(has_bar)
-        } else {
-            surface
-                .name("passive blocks")
-                .color(rgb(style::PASSIVE))
-                .flat_shading(true)
-                .hover_info(HoverInfo::Skip)
+        Trace {
+            intensity: if is_charged { kilovolts } else { Vec::new() },
+            ..surface(&mesh, look)
         }
     }
 
     /// Lines from each joint to the centres of its bodies.
-    fn joints(&self, k: usize) -> Box<Scatter3D<f64, f64, f64>> {
+    fn joints(&self, k: usize) -> Trace {
         let poses = &self.run.trajectory.poses[k];
         let mut points = Vec::new();
         for joint in &self.run.system.joints {
@@ -198,41 +167,29 @@ impl Stage<'_> {
             points.push(self.run.trajectory.point(k, &held, self.run.system));
             points.push(poses[joint.child].centre);
         }
-        let [x, y, z] = columns(&points);
-        Scatter3D::new(x, y, z)
-            .name("joints")
-            .mode(Mode::Lines)
-            .line(Line::new().color(rgb(style::INK)).width(4.0))
-            .hover_info(HoverInfo::Skip)
-            .show_legend(false)
+        let look = json!({ "name": "joints", "showlegend": false, "hoverinfo": "skip" });
+        line(&points, look, style::INK, 4, "solid")
     }
 
-    fn add_paths(&self, plot: &mut Plot) {
-        let mut curves = vec![(
-            self.run.name,
-            self.run.trajectory,
-            DashType::Solid,
-            style::INK,
-        )];
-        if let Some((name, trajectory)) = self.run.comparison {
-            curves.push((name, trajectory, DashType::Dot, style::MUTED));
+    /// The path of each marker, of the motion and of the one beside it.
+    fn paths(&self) -> Vec<Trace> {
+        let run = self.run;
+        let mut curves = vec![(run.name, run.trajectory, "solid", style::INK)];
+        if let Some((name, trajectory)) = run.comparison {
+            curves.push((name, trajectory, "dot", style::MUTED));
         }
+        let mut traces = Vec::new();
         for (name, trajectory, dash, colour) in curves {
-            for (m, marker) in self.run.system.markers.iter().enumerate() {
-                let [x, y, z] = columns(&trajectory.path(m));
-                let line = Line::new().color(rgb(colour)).width(3.0).dash(dash.clone());
-                let trace = Scatter3D::new(x, y, z)
-                    .name(escape(&format!("{}, {name}", marker.name)))
-                    .mode(Mode::Lines)
-                    .marker(Marker::new().size(2))
-                    .line(line);
-                plot.add_trace(trace);
+            for (m, marker) in run.system.markers.iter().enumerate() {
+                let look = json!({ "name": escape(&format!("{}, {name}", marker.name)) });
+                traces.push(line(&trajectory.path(m), look, colour, 3, dash));
             }
         }
+        traces
     }
 
     /// Axes that stay while the motion runs, seen as in the figure of the configuration.
-    fn scene(&self, instants: &[usize]) -> LayoutScene {
+    fn scene(&self, instants: &[usize]) -> Value {
         let mut mesh = Mesh::default();
         for &k in instants {
             for (body, pose) in self
@@ -264,82 +221,110 @@ impl Stage<'_> {
         let margin = (0.2 * widest.fold(0.0, f64::max)).min(10.0);
         let axis = |i: usize| {
             let [low, high] = ranges[i];
-            let axis = Axis::new()
-                .title(["x [mm]", "y [mm]", "z [mm]"][i])
-                .grid_color(rgb(style::GRID))
-                .zero_line(false);
-            if low > high {
-                return axis;
+            let mut axis = json!({
+                "title": { "text": TITLES[i] },
+                "gridcolor": rgb(style::GRID),
+                "zeroline": false,
+            });
+            if low <= high {
+                axis["range"] = match margin < 10.0 {
+                    true => json!([low - margin, high + margin]),
+                    false => json!([(low - margin).floor(), (high + margin).ceil()]),
+                };
             }
-            if margin < 10.0 {
-                return axis.range(vec![low - margin, high + margin]);
-            }
-            axis.range(vec![(low - margin).floor(), (high + margin).ceil()])
+            axis
         };
-        let toward = View::axonometric(ANGLES[0], ANGLES[1]).toward * 2.1;
-        LayoutScene::new()
-            .aspect_mode(AspectMode::Data)
-            .x_axis(axis(0))
-            .y_axis(axis(1))
-            .z_axis(axis(2))
-            .camera(
-                Camera::new()
-                    .up((0.0, 1.0, 0.0).into())
-                    .eye((toward.x, toward.y, toward.z).into()),
-            )
+        let toward = View::axonometric(ANGLES[0], ANGLES[1]).toward * 2.4;
+        json!({
+            "aspectmode": "data",
+            "xaxis": axis(0),
+            "yaxis": axis(1),
+            "zaxis": axis(2),
+            "camera": {
+                "up": { "x": 0, "y": 1, "z": 0 },
+                "eye": { "x": toward.x, "y": toward.y, "z": toward.z },
+            },
+        })
     }
 
-    fn slider(&self, instants: &[usize]) -> Slider {
-        let steps = instants.iter().map(|&k| {
-            let options = AnimationOptions::new()
-                .mode(AnimationMode::Immediate)
-                .frame(FrameSettings::new().duration(0).redraw(true))
-                .transition(TransitionSettings::new().duration(0));
-            SliderStepBuilder::new()
-                .label(format!("{:.3}", self.run.trajectory.times[k] / 1e3))
-                .animation(Animation::frames(vec![name(k)]).options(options))
-                .build()
-                .expect(COMPLETE)
-        });
-        Slider::new()
-            .active(instants.len() as i32 - 1)
-            .steps(steps.collect())
-            .x(0.16)
-            .length(0.8)
-            .pad(Pad::new(20, 10, 0))
-            .current_value(SliderCurrentValue::new().prefix("time ").suffix(" s"))
+    fn slider(&self, instants: &[usize]) -> Value {
+        let step = |&k: &usize| {
+            json!({
+                "label": format!("{:.3}", self.run.trajectory.times[k] / 1e3),
+                "method": "animate",
+                "args": [[name(k)], at_once(0.0)],
+            })
+        };
+        json!({
+            "active": instants.len() - 1,
+            "steps": instants.iter().map(step).collect::<Vec<_>>(),
+            "x": 0.16,
+            "len": 0.8,
+            "pad": { "t": 20, "b": 10, "l": 0 },
+            "currentvalue": { "prefix": "time ", "suffix": " s" },
+        })
     }
+}
+
+/// How plotly changes to a frame: without a transition, `duration` ms for each.
+fn at_once(duration: f64) -> Value {
+    json!({
+        "mode": "immediate",
+        "fromcurrent": false,
+        "frame": { "duration": duration, "redraw": true },
+        "transition": { "duration": 0 },
+    })
 }
 
 /// Play and pause.
-fn buttons(pace: usize) -> UpdateMenu {
-    let options = AnimationOptions::new()
-        .mode(AnimationMode::Immediate)
-        .fromcurrent(false)
-        .frame(FrameSettings::new().duration(pace).redraw(true))
-        .transition(TransitionSettings::new().duration(0));
-    let play = Animation::all_frames().options(options);
-    let buttons = [("play", play), ("pause", Animation::pause())];
-    let buttons = buttons.map(|(label, animation)| {
-        let button = ButtonBuilder::new().label(label).animation(animation);
-        button.build().expect(COMPLETE)
-    });
-    UpdateMenu::new()
-        .ty(UpdateMenuType::Buttons)
-        .direction(UpdateMenuDirection::Right)
-        .show_active(false)
-        .buttons(buttons.to_vec())
-        .pad(Pad::new(45, 0, 10))
-        .x(0.0)
-        .x_anchor(Anchor::Left)
-        .y(0.0)
-        .y_anchor(Anchor::Top)
+fn buttons(pace: f64) -> Value {
+    let button =
+        |label: &str, args: Value| json!({ "label": label, "method": "animate", "args": args });
+    let play = json!([null, at_once(pace.round())]);
+    let pause = json!([[null], at_once(0.0)]);
+    json!({
+        "type": "buttons",
+        "direction": "right",
+        "showactive": false,
+        "buttons": [button("play", play), button("pause", pause)],
+        "pad": { "t": 45, "b": 0, "l": 10 },
+        "x": 0,
+        "xanchor": "left",
+        "y": 0,
+        "yanchor": "top",
+    })
 }
 
-fn surface(mesh: &Mesh) -> Box<Surface> {
+/// A surface; what does not say so otherwise answers nothing to the mouse.
+fn surface(mesh: &Mesh, mut look: Value) -> Trace {
+    look["type"] = "mesh3d".into();
+    look["hoverinfo"] = "skip".into();
     let [x, y, z] = columns(&mesh.vertices);
-    let corner = |i: usize| Some(mesh.triangles.iter().map(|t| t[i]).collect());
-    Mesh3D::new(x, y, z, corner(0), corner(1), corner(2))
+    let corner = |i: usize| mesh.triangles.iter().map(|t| t[i]).collect();
+    Trace {
+        look,
+        x,
+        y,
+        z,
+        i: corner(0),
+        j: corner(1),
+        k: corner(2),
+        ..Trace::default()
+    }
+}
+
+fn line(points: &[Vector3<f64>], mut look: Value, colour: Colour, width: u32, dash: &str) -> Trace {
+    look["type"] = "scatter3d".into();
+    look["mode"] = "lines".into();
+    look["line"] = json!({ "color": rgb(colour), "width": width, "dash": dash });
+    let [x, y, z] = columns(points);
+    Trace {
+        look,
+        x,
+        y,
+        z,
+        ..Trace::default()
+    }
 }
 
 /// Coordinates in mm to a thousandth, so that the page stays small.

@@ -11,6 +11,7 @@ pub mod lines;
 pub mod origin;
 pub mod page;
 pub mod paraview;
+pub mod plotly;
 pub mod pose;
 pub mod skin;
 pub mod skins;

@@ -1,12 +1,10 @@
 //! `report.html`: one page that needs nothing else, with the motion in space to turn and to play.
 
-use plotly::color::Rgb;
-use plotly::common::{DashType, Line, LineShape, Mode};
-use plotly::layout::{Axis, HoverMode, Legend, Margin};
-use plotly::{Layout, Plot, Scatter};
+use serde_json::json;
 
 use crate::report::lines::Series;
-use crate::report::style::{self, Colour, Dash};
+use crate::report::plotly::{Figure, Trace, layout, library, rgb};
+use crate::report::style::{self, Dash};
 use crate::report::{Run, animation, joints, voltages};
 
 /// The page of a run.
@@ -19,7 +17,7 @@ pub fn html(run: &Run<'_>) -> String {
     body.push_str(&summary(run.summary));
     let moves = run.trajectory.times.len() > 1;
     let heading = if moves { "Motion" } else { "Configuration" };
-    body.push_str(&section(heading, "motion", 720, &animation::plot(run)));
+    body.push_str(&section(heading, "motion", 720, &animation::figure(run)));
     let mut figures = vec![
         (
             "Voltages",
@@ -53,7 +51,7 @@ pub fn html(run: &Run<'_>) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>{title}</title>\n<style>{}</style>\n{}\n</head>\n<body>\n{body}</body>\n</html>\n",
         sheet(),
-        script()
+        library()
     )
 }
 
@@ -73,40 +71,10 @@ pub fn escape(text: &str) -> String {
     escaped
 }
 
-/// A colour as plotly takes it.
-pub(crate) fn rgb(colour: Colour) -> Rgb {
-    Rgb::new(colour.0, colour.1, colour.2)
-}
-
-/// The look of a plotly figure.
-pub(crate) fn layout() -> Layout {
-    Layout::new()
-        .font(
-            plotly::common::Font::new()
-                .family(style::FONT)
-                .size(13)
-                .color(rgb(style::INK)),
-        )
-        .paper_background_color(rgb(style::PAPER))
-        .plot_background_color(rgb(style::PAPER))
-        .margin(Margin::new().left(70).right(20).top(20).bottom(55))
-}
-
-/// The plotly library itself, from the crate, so that the page works without a network.
-fn script() -> String {
-    const END: &str = "</script>";
-    let sources = Plot::offline_js_sources();
-    // The first script is plotly; formulas, which the second would set, do not occur.
-    match sources.split_once(END) {
-        Some((plotly, _)) => format!("{plotly}{END}"),
-        None => sources,
-    }
-}
-
-fn section(heading: &str, id: &str, height: usize, plot: &Plot) -> String {
+fn section(heading: &str, id: &str, height: usize, figure: &Figure) -> String {
     format!(
         "<h2>{heading}</h2>\n<div class=\"figure\" style=\"height:{height}px\">\n{}\n</div>\n",
-        plot.to_inline_html(Some(id))
+        figure.html(id)
     )
 }
 
@@ -127,53 +95,39 @@ fn summary(rows: &[(String, String)]) -> String {
     format!("<table>\n{rows}</table>\n")
 }
 
-fn over_time(label: &str, series: &[Series]) -> Plot {
-    let mut plot = Plot::new();
-    for series in series {
-        let (x, y) = series
-            .points
-            .iter()
-            .filter(|p| p.iter().all(|v| v.is_finite()))
-            .map(|p| (p[0], p[1]))
-            .unzip();
+fn over_time(label: &str, series: &[Series]) -> Figure {
+    let curve = |series: &Series| {
+        let exists = |p: &&[f64; 2]| p.iter().all(|v| v.is_finite());
+        let points = series.points.iter().filter(exists);
+        let (x, y) = points.map(|p| (p[0], p[1])).unzip();
         let dash = match series.line {
-            Some(Dash::Dashed) => DashType::Dash,
-            _ => DashType::Solid,
+            Some(Dash::Dashed) => "dash",
+            _ => "solid",
         };
-        let line = Line::new()
-            .color(rgb(series.colour))
-            .width(2.0)
-            .dash(dash)
-            .shape(LineShape::Linear);
-        plot.add_trace(
-            Scatter::new(x, y)
-                .name(escape(&series.name))
-                .mode(Mode::Lines)
-                .line(line),
-        );
-    }
-    let axis = |title: &str| {
-        Axis::new()
-            .title(title.to_owned())
-            .grid_color(rgb(style::GRID))
-            .line_color(rgb(style::INK))
-            .show_line(true)
-            .mirror(true)
-            .zero_line(false)
+        Trace {
+            look: json!({
+                "type": "scatter",
+                "name": escape(&series.name),
+                "mode": "lines",
+                "line": { "color": rgb(series.colour), "width": 2, "dash": dash },
+            }),
+            x,
+            y,
+            ..Trace::default()
+        }
     };
-    plot.set_layout(
-        layout()
-            .x_axis(axis("time [s]"))
-            .y_axis(axis(label))
-            .hover_mode(HoverMode::Closest)
-            .legend(Legend::new()),
-    );
-    plot.set_configuration(
-        plotly::Configuration::new()
-            .responsive(true)
-            .display_logo(false),
-    );
-    plot
+    let axis = |title: &str| {
+        json!({
+            "title": { "text": title },
+            "gridcolor": rgb(style::GRID),
+            "linecolor": rgb(style::INK),
+            "showline": true,
+            "mirror": true,
+            "zeroline": false,
+        })
+    };
+    let axes = json!({ "xaxis": axis("time [s]"), "yaxis": axis(label), "hovermode": "closest" });
+    Figure::new(series.iter().map(curve).collect(), layout(axes))
 }
 
 fn sheet() -> String {
