@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use miette::{Diagnostic, GraphicalReportHandler, LabeledSpan, SourceCode};
 use thiserror::Error;
 
 use crate::control::BoundaryError;
@@ -10,17 +9,11 @@ use crate::dynamics::EquilibriumError;
 use crate::ipopt::{IpoptError, Status};
 use crate::report::atomic::WriteError;
 use crate::run::solution_file::SolutionError;
-use crate::scene::{SceneError, printable};
-
-/// Bytes of the longest line that is shown; beyond 65 535 columns nothing could be marked any more.
-const LONGEST_LINE: usize = 2000;
+use crate::scene::SceneError;
 
 /// How a robot that nothing holds starts.
 const FLOATS: &str =
     "; a robot that floats starts from its joint angles: \"start\": { \"joint_angles\": {} }";
-
-/// Lines shown before and after a mistake.
-const CONTEXT: usize = 1;
 
 /// A command ends without an answer.
 #[derive(Debug, Error)]
@@ -90,20 +83,10 @@ impl RunError {
 
     /// The lines of the file around the mistake, marked, where there is such a place.
     pub fn excerpt(&self) -> Option<String> {
-        let Self::Scene(mistake) = self else {
-            return None;
-        };
-        let around = mistake.source_code()?;
-        let span = mistake.span()?.into();
-        let shown = around.read_span(&span, CONTEXT, CONTEXT).ok()?;
-        let mut lines = shown.data().split(|&byte| byte == b'\n');
-        if lines.any(|line| line.len() > LONGEST_LINE) {
-            return None;
+        match self {
+            Self::Scene(mistake) => mistake.excerpt(),
+            _ => None,
         }
-        let mut text = String::new();
-        let handler = GraphicalReportHandler::new().with_context_lines(CONTEXT);
-        handler.render_report(&mut text, &Excerpt(mistake)).ok()?;
-        Some(text)
     }
 
     /// Start or goal of a problem that does not exist; `task` is its key in the file.
@@ -164,20 +147,5 @@ impl RunError {
             place: place.to_owned(),
             reason: error.to_string(),
         }
-    }
-}
-
-/// The marked text of a mistake; what is wrong is told in the line before.
-#[derive(Debug, Error)]
-#[error("{}", printable(.0.path()))]
-struct Excerpt<'a>(&'a SceneError);
-
-impl Diagnostic for Excerpt<'_> {
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.0.source_code()
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        self.0.labels()
     }
 }

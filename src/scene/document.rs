@@ -1,12 +1,11 @@
 //! A JSON file as text and as values: reading, overrides, and mistakes with their place in it.
 
-use miette::NamedSource;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use crate::scene::error::{Mistake, SceneError, is_printable, nearest, printable};
+use crate::scene::error::{Mistake, SceneError, is_printable, nearest};
 use crate::scene::locate::{Place, Step, locate};
 use crate::scene::wording::wording;
 
@@ -135,9 +134,8 @@ impl Document {
         overridden: bool,
     ) -> SceneError {
         let file = self.path.display().to_string();
-        let named = || NamedSource::new(printable(&file), shown(&self.text)).with_language("json");
         Mistake {
-            source: span.map(|span| (named(), span)),
+            source: span.map(|span| (shown(&self.text), span)),
             file,
             path,
             found,

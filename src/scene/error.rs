@@ -1,11 +1,11 @@
 //! What is wrong with a scene or a problem: the place, what was found, what is expected, and the nearest name.
 
-use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 
-/// A mistake in a file or in an override; [`fmt::Display`] is one readable line, miette shows the text around it.
+/// A mistake in a file or in an override; [`fmt::Display`] is one readable line, [`SceneError::excerpt`] the text around it.
 #[derive(Clone, Debug)]
 pub struct SceneError(Box<Mistake>);
 
@@ -22,7 +22,7 @@ pub(crate) struct Mistake {
     /// The nearest name.
     pub(crate) nearest: Option<String>,
     /// Text of the file and the bytes of the value.
-    pub(crate) source: Option<(NamedSource<String>, Range<usize>)>,
+    pub(crate) source: Option<(String, Range<usize>)>,
     /// Whether the value comes from the command line.
     pub(crate) overridden: bool,
 }
@@ -57,6 +57,36 @@ impl SceneError {
     /// Whether the wrong value comes from an override.
     pub(crate) fn is_overridden(&self) -> bool {
         self.0.overridden
+    }
+
+    /// The lines of the file around the mistake, marked, where there is such a place.
+    pub fn excerpt(&self) -> Option<String> {
+        let (text, span) = self.0.source.as_ref()?;
+        let before = text.get(..span.start)?;
+        let from = before
+            .rmatch_indices('\n')
+            .nth(CONTEXT)
+            .map_or(0, |(at, _)| at + 1);
+        let mut after = text.get(span.end..)?.match_indices('\n');
+        let to = after
+            .nth(CONTEXT)
+            .map_or(text.len(), |(at, _)| span.end + at);
+        let shown = &text[from..to];
+        if shown.lines().any(|line| line.len() > LONGEST_LINE) {
+            return None;
+        }
+        let label = format!("expected {}", printable(&self.0.expected));
+        let span = span.start - from..span.end - from;
+        let file = printable(&self.0.file);
+        let snippet = Snippet::source(shown)
+            .path(file.as_ref())
+            .line_start(1 + text[..from].matches('\n').count())
+            .fold(shown.lines().count() > UNFOLDED)
+            .annotation(AnnotationKind::Primary.span(span).label(label));
+        Some(
+            Renderer::plain()
+                .render(&[Level::ERROR.no_name().secondary_title("").element(snippet)]),
+        )
     }
 
     /// Bytes of the wrong value in the file.
@@ -94,24 +124,6 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
-impl Diagnostic for SceneError {
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        let (source, _) = self.0.source.as_ref()?;
-        Some(source)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let label = format!("expected {}", printable(&self.0.expected));
-        let span = LabeledSpan::at(self.span()?, label);
-        Some(Box::new([span].into_iter()))
-    }
-
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        let nearest = self.0.nearest.as_ref()?;
-        Some(Box::new(format!("did you mean {nearest:?}?")))
-    }
-}
-
 /// Whether a character only shows itself: a control character can command a terminal, and marks of direction can make a line
 /// read as what it does not say.
 pub(crate) fn is_printable(c: char) -> bool {
@@ -130,6 +142,12 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(escaped.collect())
 }
 
+/// Lines shown before and after a mistake.
+const CONTEXT: usize = 1;
+/// Of mistakes that are longer than so many lines, the first and the last lines are shown.
+const UNFOLDED: usize = 8;
+/// Bytes of the longest line that is shown.
+const LONGEST_LINE: usize = 2000;
 /// Characters of a path or of what was found that are told.
 const TOLD: usize = 400;
 
