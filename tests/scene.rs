@@ -1004,8 +1004,8 @@ proptest! {
             let length = text.len().max(SCENE.len());
             prop_assert!(error.span().is_none_or(|span| span.start <= span.end && span.end <= length));
             prop_assert!(!error.found().is_empty() && !error.expected().is_empty(), "{error}");
-            // The pictures of miette are drawn too.
-            let _ = format!("{:?}", miette::Report::new(error));
+            // The marked excerpt is drawn too.
+            let _ = error.excerpt();
         }
     }
 
