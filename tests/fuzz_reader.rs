@@ -556,7 +556,7 @@ fn what_the_memory_cannot_hold_is_refused_before_it_is_filled() {
         (
             "simulate",
             "elephant_trunk_constant",
-            "simulate.step=1e-8 s",
+            "simulate.step=1e-6 s",
             redundant[1].as_str(),
         ),
         (

@@ -347,9 +347,9 @@ fn a_point_that_fails_is_listed_and_drawn_nowhere_and_the_others_go_on() {
         "problem": "problems/pair.json",
         "methods": [{ "name": "reduced" }],
         "refine": {
-            "name": "intervals", "sizes": [5, 10, 20, 40],
+            "name": "intervals", "sizes": [20, 40, 80, 160],
             "set": {
-                "control.intervals": [5, 10, 20, 40],
+                "control.intervals": [20, 40, 80, 160],
                 "control.solver.max_iterations": [500, 2, 500, 500]
             }
         },

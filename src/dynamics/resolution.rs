@@ -71,6 +71,16 @@ impl Balance {
         }
     }
 
+    /// Energy that the step makes, or loses where negative.
+    pub(super) fn made(&self) -> f64 {
+        self.made
+    }
+
+    /// Energy in motion during the step.
+    pub(super) fn exchanged(&self) -> f64 {
+        self.exchanged
+    }
+
     /// Why a step of `step` ms is not accepted: an element is crushed at its end, or the balance does not close. Forces that
     /// do not exist are not judged.
     pub(super) fn refusal(&self, model: &Model, time: f64, step: f64) -> Option<StepError> {

@@ -43,6 +43,10 @@ pub struct StepperReport {
     pub factorisation: f64,
     /// Seconds in solutions with them.
     pub solution: f64,
+    /// Energy in mJ that the steps made, or lost where negative, where the method has a balance of energy.
+    pub made: f64,
+    /// Greatest energy in mJ that one step exchanged.
+    pub exchanged: f64,
 }
 
 /// The equations that lead from one instant to the next.
@@ -146,6 +150,8 @@ pub struct Steps<E> {
     allowed: Option<f64>,
     /// Local error of the last attempt as a part of what is allowed.
     used: f64,
+    /// Energy balance of the last attempt, where the method has one.
+    balance: Option<Balance>,
     report: StepperReport,
 }
 
@@ -163,6 +169,7 @@ impl<E: Equations> Steps<E> {
             scales,
             allowed: None,
             used: 0.0,
+            balance: None,
             report: StepperReport::default(),
         }
     }
@@ -386,7 +393,13 @@ impl<E: Equations> Steps<E> {
             return Err(refusal);
         }
         let accepted = self.equations.accept(h);
-        self.report.steps += usize::from(accepted);
+        if accepted {
+            self.report.steps += 1;
+            if let Some(balance) = self.balance {
+                self.report.made += balance.made();
+                self.report.exchanged = self.report.exchanged.max(balance.exchanged());
+            }
+        }
         Ok(accepted)
     }
 
@@ -408,7 +421,8 @@ impl<E: Equations> Steps<E> {
                 angle,
             });
         }
-        let refusal = match self.equations.balance(step) {
+        self.balance = self.equations.balance(step);
+        let refusal = match self.balance {
             Some(balance) => balance.refusal(self.equations.model(), time, step),
             None => {
                 let [_, end] = self.equations.ends();

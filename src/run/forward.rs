@@ -214,6 +214,7 @@ pub(super) fn simulation(
     summary.notes.extend(afterwards(task));
     summary.notes.extend(domain::note(&summary.domain, true));
     summary.notes.extend(steps::told(neglected, &history, task));
+    summary.notes.extend(steps::unbalanced(&history));
     notes.extend(summary.notes.iter().cloned());
     summary.write(&folder)?;
     let method = match task.tolerance {

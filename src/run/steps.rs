@@ -2,9 +2,29 @@
 
 use crate::control::problem::Simulation;
 use crate::dynamics::{History, LocalError};
+use crate::math::significant;
 
 /// Part of the path beyond which the estimated error of a motion is warned of.
 const FINE: f64 = 0.01;
+
+/// Part of the greatest energy that a step exchanged beyond which the energy that all of them made is warned of.
+const BALANCED: f64 = 0.05;
+
+/// A warning where the steps make or lose energy of their own.
+pub(super) fn unbalanced(history: &History) -> Option<String> {
+    let report = history.report;
+    let part = report.made / report.exchanged;
+    let count = history.intervals();
+    let step = rounded(history.times.last()? / count.max(1) as f64);
+    (count > 0 && part.abs() > BALANCED).then(|| {
+        format!(
+            "the steps of {step} ms {} {} mJ, {:.0} % of the energy that moves at most: shorter steps keep the balance",
+            if part > 0.0 { "make" } else { "lose" },
+            significant(report.made.abs(), 3),
+            100.0 * part.abs()
+        )
+    })
+}
 
 /// A warning where the steps do not resolve the motion well, or are too few to tell.
 pub(super) fn told(
