@@ -328,7 +328,7 @@ fn a_grid_that_resolves_no_motion_is_refined() {
     assert!(answer.is_solved, "{answer:?}");
     let summary = read(&folder.path().join("summary.json"));
     let intervals = summary["intervals"].as_u64().unwrap();
-    assert!(intervals > 3 && intervals % 3 == 0, "{summary}");
+    assert!(intervals > 3 && intervals.is_multiple_of(3), "{summary}");
     let note = format!("solved again on {intervals} intervals");
     assert!(
         answer.notes.iter().any(|line| line.contains(&note)),

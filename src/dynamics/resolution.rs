@@ -125,7 +125,10 @@ pub(super) fn typical_energy(model: &Model) -> f64 {
 pub(super) fn turned(model: &Model, start: &Instant, end: &Instant) -> Option<(String, f64)> {
     let motion = &model.action.motion;
     let of_joints = motion.tree.as_ref().map_or(0, |tree| tree.coordinates());
-    let turns = |&i: &usize| !((end.z[i] - start.z[i]).abs() <= PI) && !model.is_length(i);
+    let turns = |&i: &usize| {
+        let turn = (end.z[i] - start.z[i]).abs();
+        (turn > PI || turn.is_nan()) && !model.is_length(i)
+    };
     if let Some(i) = (0..of_joints).find(turns) {
         return Some((model.unknown_name(i), (end.z[i] - start.z[i]).abs()));
     }

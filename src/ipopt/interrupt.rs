@@ -20,7 +20,7 @@ thread_local! {
     static LIMIT: Cell<Option<Limit>> = const { Cell::new(None) };
 }
 
-/// Makes Ctrl-C end the solves of this process with [`Status::Interrupted`](crate::ipopt::Status::Interrupted), and says so
+/// Makes Ctrl-C end the solves of this process with [`Status::Interrupted`], and says so
 /// on standard error; the second Ctrl-C ends the process with exit status 130.
 ///
 /// Only the first call has an effect.

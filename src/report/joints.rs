@@ -73,7 +73,7 @@ pub fn charge_svg(mut charges: Vec<Series>, origin: &Origin) -> String {
     points.for_each(|p| p[1] *= factor);
     LinePlot::new(
         Axis::linear("time [s]", Extent::Tight),
-        Axis::linear(&format!("charge [{unit}]"), Extent::Padded),
+        Axis::linear(format!("charge [{unit}]"), Extent::Padded),
         charges,
     )
     .svg(origin)

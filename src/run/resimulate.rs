@@ -268,13 +268,13 @@ impl Repeat {
             return None;
         }
         let sizes: Vec<f64> = self.distances.iter().map(|d| d.size(model)).collect();
-        let Some(k) = sizes.iter().position(|&size| !(size <= same)) else {
+        let Some(k) = sizes.iter().position(|&size| size > same || size.is_nan()) else {
             let failure = self.failure.clone().filter(|_| !self.is_untestable)?;
             return Some(Cause::Ends { steps: 1, failure });
         };
         let k = k.max(1);
         let before = sizes[k - 1].max(f64::EPSILON);
-        if !(sizes[k] < JUMP * before) {
+        if sizes[k] >= JUMP * before || sizes[k].is_nan() {
             return Some(Cause::Root {
                 interval: k - 1,
                 time: optimal.times[k - 1] / 1e3,
