@@ -287,10 +287,10 @@ fn dampers_agree_to_second_order() {
         }));
         all
     });
-    for i in 0..differences[0].len() {
-        let [a, b, c] = [0, 1, 2].map(|n| differences[n][i]);
+    let [coarse, middle, fine] = &differences;
+    for (i, ((a, b), c)) in coarse.iter().zip(middle).zip(fine).enumerate() {
         println!("{i}: {a:e} {b:e} {c:e}");
-        assert!(a < 1e-2 && c > 1e-9, "{i}: {a:e} {c:e}");
+        assert!(*a < 1e-2 && *c > 1e-9, "{i}: {a:e} {c:e}");
         assert!(((b / c).log2() - 2.0).abs() < 0.2, "{i}: {a:e} {b:e} {c:e}");
     }
 }
