@@ -307,7 +307,7 @@ fn an_arm_at_the_end_of_its_reach() {
                 .nth(1)
                 .and_then(|text| text.split(' ').next());
             let told: f64 = told.expect("the row is named").parse().unwrap();
-            assert!((told - missing).abs() < 1e-3 * missing, "{}", found.err);
+            assert!((told - missing).abs() < 5e-5 * missing, "{}", found.err);
             seen.push(format!(
                 "{} mm: {}",
                 1e3 * y,
