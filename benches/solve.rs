@@ -95,8 +95,10 @@ fn solve(
         extra,
         ..Options::default()
     };
-    ipopt::solve(program, start, &options, &mut |_| ControlFlow::Continue(()))
-        .expect("Ipopt can be called")
+    ipopt::solve(program, start, &options, &mut |_, _| {
+        ControlFlow::Continue(())
+    })
+    .expect("Ipopt can be called")
 }
 
 fn of_solution(solution: &Solution, intervals: usize) -> Cost {

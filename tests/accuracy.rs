@@ -10,13 +10,14 @@ use proboscis::control::problem::{
     Control, Duration, Guess, Objective, Simulation, Solver, State, Task, Voltages,
 };
 use proboscis::control::{Boundary, Transcription, guess};
-use proboscis::dynamics::Solving;
+use proboscis::dynamics::{History, Solving};
 use proboscis::ipopt::{self, Options};
 use proboscis::kinematics::MaterialVector;
+use proboscis::model::Model;
 use proboscis::model::system::{JointKind, System};
 use proboscis::run::accuracy::{Attempt, Refined, Wanted, refine};
 use proboscis::run::estimate::Sample;
-use proboscis::run::{Allowed, integrate_to, optimise_to};
+use proboscis::run::{Allowed, Iterate, integrate_to, optimise_to};
 use proboscis::scene::read_problem;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -83,7 +84,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
         ..Options::default()
     };
     let start = program.start(&initial);
-    let solution = ipopt::solve(&mut program, &start, &options, &mut |_| {
+    let solution = ipopt::solve(&mut program, &start, &options, &mut |_, _| {
         ControlFlow::Continue(())
     })
     .unwrap();
@@ -296,7 +297,7 @@ fn a_pendulum_is_where_elliptic_functions_say_to_the_accuracy_asked_for() {
             &swing(0.05),
             Wanted::Below(request),
             None,
-            &mut |_, _| ControlFlow::Continue(()),
+            &mut |_, _, _| ControlFlow::Continue(()),
         )
         .unwrap();
         let accuracy = &found.accuracy;
@@ -327,7 +328,9 @@ fn a_pendulum_is_where_elliptic_functions_say_to_the_accuracy_asked_for() {
 
 #[test]
 fn a_motion_stopped_on_a_finer_grid_is_kept_as_it_was_on_the_one_before() {
-    let stop_at_80 = &mut |steps: usize, step: usize| match steps == 80 && step == 7 {
+    let stop_at_80 = &mut |steps: usize, _: &Model, history: &History| match steps == 80
+        && history.intervals() == 7
+    {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     };
@@ -356,11 +359,12 @@ fn an_optimum_stopped_on_a_finer_grid_is_kept_as_it_was_on_the_one_before() {
     let Task::Control(control) = loaded.task else {
         panic!("a control problem");
     };
-    let stop_at_80 =
-        &mut |intervals: usize, at: &ipopt::Iteration| match intervals == 80 && at.iteration == 3 {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        };
+    let stop_at_80 = &mut |intervals: usize, at: &Iterate<'_>| match intervals == 80
+        && at.report.iteration == 3
+    {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    };
     let wanted = Wanted::Below(1e-4);
     let allowed = Allowed::default();
     let found = optimise_to(&file, &loaded.system, &control, wanted, allowed, stop_at_80).unwrap();

@@ -83,7 +83,7 @@ fn optimum(
         tolerance: 1e-11,
         ..Options::default()
     };
-    let solution = ipopt::solve(&mut program, &start, &options, &mut |_| {
+    let solution = ipopt::solve(&mut program, &start, &options, &mut |_, _| {
         ControlFlow::Continue(())
     })
     .unwrap();

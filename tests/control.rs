@@ -76,7 +76,7 @@ fn solve(name: &str, segments: usize, coordinates: Coordinates) {
         ..Options::default()
     };
     let clock = std::time::Instant::now();
-    let solution = ipopt::solve(&mut program, &start, &options, &mut |_| {
+    let solution = ipopt::solve(&mut program, &start, &options, &mut |_, _| {
         ControlFlow::Continue(())
     })
     .unwrap();

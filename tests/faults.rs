@@ -155,7 +155,7 @@ fn solve(program: &mut Transcription<'_>, start: &Point, faults: &Faults) -> Sol
         tolerance: 1e-10,
         ..Options::default()
     };
-    let mut observer = |_: &Iteration| match faults.strikes(Callback::Observer) {
+    let mut observer = |_: &Iteration, _: &[f64]| match faults.strikes(Callback::Observer) {
         Some(_) => ControlFlow::Break(()),
         None => ControlFlow::Continue(()),
     };
@@ -315,7 +315,7 @@ fn swing(
     effects.insert(0, Box::new(failing));
     let scalars = model.scalars(&[0.0, 1700.0]);
     let voltages = |_: f64, _: f64| scalars.clone();
-    let go_on = |_| ControlFlow::Continue(());
+    let go_on = |_: &_| ControlFlow::Continue(());
     let (history, failure) = simulate(&model, &start, 10.0, STEPS, voltages, go_on);
     (history, failure, calls.load(Ordering::SeqCst))
 }

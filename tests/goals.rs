@@ -5,7 +5,7 @@ mod random_goals;
 use proboscis::control::problem::Task;
 use proboscis::dynamics::simulate;
 use proboscis::ipopt::Status;
-use proboscis::run::{Allowed, optimise};
+use proboscis::run::{Allowed, Iterate, optimise};
 use proboscis::scene::read_problem;
 use random_goals::{Goal, Goals, Kind, trunk};
 use std::ops::ControlFlow;
@@ -28,7 +28,7 @@ fn solve(goal: &Goal, kind: Kind) -> bool {
     let Task::Control(control) = loaded.task else {
         panic!("a problem of control");
     };
-    let mut go_on = |_: &_| ControlFlow::Continue(());
+    let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
     let allowed = Allowed {
         iterations: Some(200),
         seconds: None,

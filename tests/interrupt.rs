@@ -26,7 +26,7 @@ fn solves_until_interrupted() {
         x: HS071_START.to_vec(),
         costates: None,
     };
-    let mut wait = |_: &_| {
+    let mut wait = |_: &_, _: &[f64]| {
         thread::sleep(Duration::from_millis(20));
         ControlFlow::Continue(())
     };

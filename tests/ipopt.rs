@@ -33,7 +33,7 @@ fn with(extra: &[(&str, OptionValue)]) -> Options {
     }
 }
 
-fn go_on(_: &Iteration) -> ControlFlow<()> {
+fn go_on(_: &Iteration, _: &[f64]) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
@@ -104,7 +104,7 @@ fn duplicate_hessian_entries_are_summed() {
 #[test]
 fn the_account_of_a_solve_adds_up() {
     let mut told = Vec::new();
-    let mut observer = |iteration: &Iteration| {
+    let mut observer = |iteration: &Iteration, _: &[f64]| {
         told.push(*iteration);
         thread::sleep(Duration::from_millis(2));
         ControlFlow::Continue(())
@@ -335,7 +335,7 @@ fn a_panic_in_any_function_comes_through_and_harms_nothing() {
 
 #[test]
 fn a_panic_of_the_observer_comes_through() {
-    let mut observer = |iteration: &Iteration| {
+    let mut observer = |iteration: &Iteration, _: &[f64]| {
         assert!(iteration.iteration < 3, "enough at {}", iteration.iteration);
         ControlFlow::Continue(())
     };
@@ -415,7 +415,7 @@ fn programs_without_variables_are_errors() {
 
 #[test]
 fn the_observer_can_stop_and_the_iterate_is_returned() {
-    let mut observer = |iteration: &Iteration| match iteration.iteration {
+    let mut observer = |iteration: &Iteration, _: &[f64]| match iteration.iteration {
         4 => ControlFlow::Break(()),
         _ => ControlFlow::Continue(()),
     };
@@ -458,7 +458,7 @@ fn a_stop_within_the_restoration_phase_returns_its_iterate() {
         hess: Box::new(|_, _, y, values| values[0] = 2.0 * y[0]),
     };
     let mut restored = 0;
-    let mut observer = |iteration: &Iteration| {
+    let mut observer = |iteration: &Iteration, _: &[f64]| {
         restored += usize::from(iteration.restoration);
         if restored == 3 {
             ControlFlow::Break(())

@@ -86,7 +86,7 @@ fn check(system: &System, control: &Control, factor: f64) {
         ..Options::default()
     };
     let mut program = Program { of, factor };
-    ipopt::solve(&mut program, &start, &options, &mut |_| {
+    ipopt::solve(&mut program, &start, &options, &mut |_, _| {
         ControlFlow::Continue(())
     })
     .unwrap();

@@ -57,7 +57,7 @@ fn solve(
     };
     let mut program = Transcription::new(&model, &boundary, control, &initial).unwrap();
     let point = program.start(&initial);
-    let solution = ipopt::solve(&mut program, &point, &options, &mut |_| {
+    let solution = ipopt::solve(&mut program, &point, &options, &mut |_, _| {
         ControlFlow::Continue(())
     })
     .unwrap();

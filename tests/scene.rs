@@ -365,7 +365,7 @@ fn simulation_and_solution_are_checked() {
             ends: vec![500.0, 1000.0],
             rows,
             afterwards: Afterwards::OfLastInterval,
-            solution: folder.path().join("solution.json"),
+            solution: Some(folder.path().join("solution.json")),
         }
     );
     let State::JointAngles { angles, rates } = simulation.start else {
@@ -373,6 +373,65 @@ fn simulation_and_solution_are_checked() {
     };
     assert!(angles.is_empty());
     assert_eq!((rates[&0], rates[&1]), (0.002, 3.0));
+}
+
+/// The voltages of a simulation with a table in place of them.
+fn with_table(table: &str) -> Result<Voltages, String> {
+    let problem = r#"{ "scene": "scene.json", "simulate": { "duration": "1 s", "step": "10 ms", "voltages": TABLE } }"#;
+    let (_folder, path) = folder(SCENE, &problem.replace("TABLE", table));
+    match read_problem(&path, &[]) {
+        Ok(loaded) => match loaded.task {
+            Task::Simulate(simulation) => Ok(simulation.voltages),
+            _ => panic!("a simulation"),
+        },
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+#[test]
+fn voltages_may_be_a_table() {
+    let table = r#"{ "time": [0, "500 ms", 1], "voltages": { "muscle1": [100, "0.2 kV"] }, "hold": { "muscle1": 50 } }"#;
+    let voltages = with_table(table).unwrap();
+    let rows = vec![vec![100.0, 0.0], vec![200.0, 0.0], vec![50.0, 0.0]];
+    assert_eq!(
+        voltages,
+        Voltages::Sampled {
+            ends: vec![500.0, 1000.0],
+            rows,
+            afterwards: Afterwards::Held,
+            solution: None,
+        }
+    );
+    let at = |time| voltages.at(time)[0];
+    assert_eq!([at(499.0), at(501.0), at(1500.0)], [100.0, 200.0, 50.0]);
+    for (wrong, told) in [
+        (r#"{ "time": [0, 1] }"#, "a table without \"voltages\""),
+        (r#"{ "voltages": {} }"#, "a table without \"time\""),
+        (
+            r#"{ "muscle1": 1, "time": [0, 1], "voltages": {} }"#,
+            "a table beside voltages by name",
+        ),
+        (
+            r#"{ "time": [0.1, 1], "voltages": {} }"#,
+            "found 0.1 s, expected 0",
+        ),
+        (
+            r#"{ "time": [0, 1, 1], "voltages": {} }"#,
+            "increasing times",
+        ),
+        (r#"{ "time": [0], "voltages": {} }"#, "2 instants or more"),
+        (
+            r#"{ "time": [0, 1], "voltages": { "muscle1": [1, 2] } }"#,
+            "found 2 voltages, expected 1",
+        ),
+        (
+            r#"{ "time": [0, 1], "voltages": { "muscle7": [1] } }"#,
+            "muscle7",
+        ),
+    ] {
+        let message = with_table(wrong).unwrap_err();
+        assert!(message.contains(told), "{wrong}: {message}");
+    }
 }
 
 #[test]

@@ -168,7 +168,7 @@ fn reused_tangents_and_other_solvers_give_the_same_motion() {
             let model = Model::new(stack(entry), None, 0.5, &[]).unwrap();
             let start = Start::at_rest(&model, model.coordinates_at(&[]));
             let constant = |_: f64, _: f64| vec![3e5];
-            let observer = |_: usize| ControlFlow::Continue(());
+            let observer = |_: &_| ControlFlow::Continue(());
             let (history, failure) =
                 simulate_by(solving, &model, &start, 0.5, steps, constant, observer);
             assert_eq!(failure, None);

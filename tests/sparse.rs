@@ -420,7 +420,7 @@ fn ipopt_calls_mumps() -> usize {
         x: HS071_START.to_vec(),
         costates: None,
     };
-    let mut go_on = |_: &ipopt::Iteration| ControlFlow::Continue(());
+    let mut go_on = |_: &ipopt::Iteration, _: &[f64]| ControlFlow::Continue(());
     let solution = ipopt::solve(&mut program, &start, &Options::default(), &mut go_on).unwrap();
     assert!(solution.status.is_solved());
     assert!((solution.objective - HS071_OPTIMUM).abs() < 1e-6);

@@ -5,7 +5,7 @@ mod signals;
 use assert_cmd::Command;
 use proboscis::control::problem::Task;
 use proboscis::dynamics::simulate;
-use proboscis::run::{Allowed, integrate, optimise, trajectory};
+use proboscis::run::{Allowed, Iterate, integrate, optimise, trajectory};
 use proboscis::scene::read_problem;
 use proboscis::study::limit::{How, limit, observed_order};
 use proboscis::study::read::read_study;
@@ -241,8 +241,13 @@ fn each_point_runs_again_from_its_overrides_to_the_last_bit() {
             let Task::Simulate(task) = &loaded.task else {
                 panic!("a simulation");
             };
-            let moved =
-                integrate(&path, &loaded.system, task, |_| ControlFlow::Continue(())).unwrap();
+            let moved = integrate(
+                &path,
+                &loaded.system,
+                task,
+                |_, _| ControlFlow::Continue(()),
+            )
+            .unwrap();
             let kept = proboscis::run::solved(&moved.model, &moved.history, None);
             let places = trajectory(&moved.model, &kept).path(0);
             let last = places.last().unwrap();
@@ -296,7 +301,7 @@ fn optimal_voltages_are_put_to_the_test_on_a_finer_grid() {
     let Task::Control(task) = &loaded.task else {
         panic!("a control problem");
     };
-    let mut on = |_: &_| ControlFlow::Continue(());
+    let mut on = |_: &Iterate<'_>| ControlFlow::Continue(());
     let optimum = optimise(
         &path,
         &loaded.system,

@@ -409,7 +409,7 @@ fn solved_field(problem: &Value) -> (f64, f64) {
     let initial = guess(&model, &boundary, &control, h, None);
     let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
     let start = program.start(&initial);
-    let solution = ipopt::solve(&mut program, &start, &Options::default(), &mut |_| {
+    let solution = ipopt::solve(&mut program, &start, &Options::default(), &mut |_, _| {
         ControlFlow::Continue(())
     })
     .unwrap();

@@ -38,7 +38,13 @@ fn motion_of(file: &Path, step: Option<f64>) -> Simulated {
         step: step.unwrap_or(task.step),
         ..task
     };
-    integrate(file, &loaded.system, &task, |_| ControlFlow::Continue(())).unwrap()
+    integrate(
+        file,
+        &loaded.system,
+        &task,
+        |_, _| ControlFlow::Continue(()),
+    )
+    .unwrap()
 }
 
 /// Greatest distance in mm of the markers of two motions, at the instants of the first, which has so many times fewer steps.
@@ -230,7 +236,7 @@ fn slider(h: f64, integrator: Integrator, steps: usize) -> (Model, History) {
         integrator,
         ..Solving::default()
     };
-    let go_on = |_| ControlFlow::Continue(());
+    let go_on = |_: &_| ControlFlow::Continue(());
     let (history, failure) = simulate_by(
         solving,
         &model,
@@ -302,7 +308,7 @@ fn energies_and_dissipation_belong_to_the_instants_of_their_rows() {
         let model = Model::new(trunk(2), Some(Coordinates::Reduced), h, &[]).unwrap();
         let start = Start::at_rest(&model, at_reference(&model));
         let scalars = model.scalars(&[2000.0, 0.0, 700.0, 1500.0]);
-        let go_on = |_| ControlFlow::Continue(());
+        let go_on = |_: &_| ControlFlow::Continue(());
         let (history, _) = simulate_by(
             Solving::default(),
             &model,
@@ -368,7 +374,7 @@ fn steps_by_a_tolerance_keep_it() {
             |_| ControlFlow::Continue(()),
         )
     };
-    let go_on = |_| ControlFlow::Continue(());
+    let go_on = |_: &_| ControlFlow::Continue(());
     let (exact, _) = simulate_by(
         Solving::default(),
         &model,

@@ -15,7 +15,7 @@ use programs::{HS071_START, Program, hs071, one_variable};
 use serde_json::Value;
 use std::fs;
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -61,7 +61,7 @@ fn a_step_is_stopped_between_its_iterations() {
     let z = model.coordinates_at(&vec![0.0; model.gauges.len()]);
     let start = Start::at_rest(&model, z);
     let voltages = |_: f64, _: f64| model.scalars(&[3e5]);
-    let three = |_: usize| ControlFlow::Continue(());
+    let three = |_: &_| ControlFlow::Continue(());
     let steps = || simulate(&model, &start, 0.5, 3, voltages, three);
 
     let (history, failure) = steps();
@@ -100,7 +100,7 @@ fn a_solve_is_stopped_at_the_next_question() {
         max_seconds: Some(0.15),
         ..Options::default()
     };
-    let mut go_on = |_: &_| ControlFlow::Continue(());
+    let mut go_on = |_: &_, _: &[f64]| ControlFlow::Continue(());
     let solution = solve(&mut slow(), &start, &options, &mut go_on).unwrap();
     assert_eq!(solution.status, Status::TimeLimit);
     assert_eq!(solution.evaluations.hessian, 1);
@@ -142,7 +142,7 @@ fn a_program_that_was_stopped_is_evaluated_anew() {
         max_seconds: Some(0.0),
         ..Options::default()
     };
-    let mut go_on = |_: &_| ControlFlow::Continue(());
+    let mut go_on = |_: &_, _: &[f64]| ControlFlow::Continue(());
     let solution = solve(&mut stopped, &start, &options, &mut go_on).unwrap();
     assert_eq!(solution.status, Status::TimeLimit);
     assert!(solution.constraints.iter().all(|g| g.is_finite()));
@@ -366,4 +366,70 @@ fn a_block_that_the_memory_cannot_hold_is_refused_with_its_numbers() {
         assert!(err.contains(told), "{err}");
         assert!(fs::read_dir(folder.path()).unwrap().next().is_none());
     }
+}
+
+/// Runs the program until it has written `unfinished.json` and kills it; the folder of its results.
+fn killed(folder: &Path, arguments: &[&str]) -> PathBuf {
+    let results = folder.join("results");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_proboscis"))
+        .args(arguments)
+        .arg("-o")
+        .arg(&results)
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let began = Instant::now();
+    while !results.join("unfinished.json").exists() {
+        let ended = child.try_wait().unwrap();
+        assert!(ended.is_none(), "too short a run: {ended:?}");
+        assert!(began.elapsed() < Duration::from_secs(120), "nothing kept");
+        thread::sleep(Duration::from_millis(20));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(!results.join("solution.json").exists());
+    results
+}
+
+#[test]
+fn a_solve_that_is_killed_leaves_an_iterate_to_go_on_from() {
+    let folder = tempfile::tempdir().unwrap();
+    let problem = problem("elephant_trunk_effort");
+    let fine = ["--set", "control.intervals=4000"];
+    let results = killed(folder.path(), &[&["solve", &problem][..], &fine].concat());
+    let kept = json(&results.join("unfinished.json"));
+    assert_eq!(kept["time"].as_array().unwrap().len(), 4001);
+    // It is a guess like any solution, and goes when a run has written its results.
+    let guess = format!(
+        "control.guess={{\"solution\":{:?}}}",
+        results.join("unfinished.json")
+    );
+    let out = results.to_str().unwrap();
+    let (status, said, errors) = run(
+        folder.path(),
+        &["solve", &problem, "--set", &guess, "-o", out],
+    );
+    assert_eq!(status, 0, "{said}{errors}");
+    assert!(results.join("solution.json").exists());
+    assert!(!results.join("unfinished.json").exists());
+}
+
+#[test]
+fn a_simulation_that_is_killed_leaves_its_steps() {
+    let folder = tempfile::tempdir().unwrap();
+    let problem = problem("fe_trunk");
+    let long = ["--set", "simulate.duration=100 s"];
+    let results = killed(
+        folder.path(),
+        &[&["simulate", &problem][..], &long].concat(),
+    );
+    let kept = json(&results.join("unfinished.json"));
+    let steps = kept["time"].as_array().unwrap().len();
+    assert!(steps > 2, "{steps} instants");
+    let voltages = kept["voltages"].as_object().unwrap();
+    assert!(
+        voltages
+            .values()
+            .all(|v| v.as_array().unwrap().len() == steps - 1)
+    );
 }

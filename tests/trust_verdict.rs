@@ -119,7 +119,7 @@ fn a_guess_changes_nothing_that_is_asked() {
     let Task::Simulate(task) = loaded.task else {
         panic!("a simulation")
     };
-    let simulated = integrate(Path::new("problem"), &loaded.system, &task, |_| {
+    let simulated = integrate(Path::new("problem"), &loaded.system, &task, |_, _| {
         ControlFlow::Continue(())
     });
     let simulated = simulated.unwrap();
@@ -306,7 +306,10 @@ fn beside(folder: &Path, problem: &Value, steps: usize) -> (f64, f64) {
     let Task::Simulate(task) = loaded.task else {
         panic!("a simulation")
     };
-    let found = integrate(&again, &loaded.system, &task, |_| ControlFlow::Continue(())).unwrap();
+    let found = integrate(&again, &loaded.system, &task, |_, _| {
+        ControlFlow::Continue(())
+    })
+    .unwrap();
     let motion = solved(&found.model, &found.history, None);
     let (mut way, mut apart) = (0.0_f64, 0.0_f64);
     for (j, joint) in loaded.system.joints.iter().enumerate() {

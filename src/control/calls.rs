@@ -5,17 +5,14 @@
 
 use std::collections::BTreeSet;
 
-use crate::control::problem::{AtRest, Control, Limit, Simulation, State, Voltages};
+use crate::control::problem::{AtRest, Control, Limit, Simulation, State};
 use crate::model::system::{Attachment, System};
 use crate::model::{Question, Stirred};
 
 impl Simulation {
     /// The question of a motion in steps of `step` ms.
     pub fn question(&self, system: &System, step: f64) -> Question {
-        let drives: Vec<&[f64]> = match &self.voltages {
-            Voltages::Constant(row) => vec![row],
-            Voltages::Sampled { rows, .. } => rows.iter().map(Vec::as_slice).collect(),
-        };
+        let drives = self.voltages.rows();
         let is_driven = |s: usize| drives.iter().any(|row| row[s] != 0.0);
         let mut spoken = Spoken::new(system);
         spoken.of_start(&self.start);

@@ -10,7 +10,7 @@ use crate::control::limits::{Bounded, Place};
 use crate::control::problem::{Control, Limit, State};
 use crate::control::transcription::Site;
 use crate::energy::{Energy, OutsideBox, SquaredDistance};
-use crate::functional::{Frame, Horizon, Sides};
+use crate::functional::Frame;
 use crate::math::significant;
 use crate::model::{Coordinates, Model, Quantity, Region};
 use crate::reduction::Instant;
@@ -143,16 +143,7 @@ impl<'a> End<'a> {
             && measure.scalars().iter().all(|&s| self.scalars[s].is_some());
         let scalars: Vec<f64> = self.scalars.iter().map(|s| s.unwrap_or(0.0)).collect();
         let x = &self.instant.x[..];
-        let frame = Frame {
-            vectors: [x, x],
-            along: [x, x],
-            scalars: &scalars,
-            scalars_along: &[],
-            h: 1.0,
-            horizon: Horizon::Given,
-            sides: Sides::ALL,
-            weights: &[],
-        };
+        let frame = Frame::of_instant(x, &scalars);
         is_known.then(|| measure.value(&frame))
     }
 }

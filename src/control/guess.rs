@@ -42,21 +42,22 @@ pub fn guess(
     match (&control.guess, earlier) {
         (_, Some(solved)) => from_solution(model, boundary, control, solved),
         (Guess::Simulate(voltages), _) => {
-            let mut voltages = voltages.clone();
-            for (&source, &voltage) in &control.given {
-                voltages[source] = voltage;
-            }
-            let scalars = model.scalars(&voltages);
+            let scalars = |from: f64, to: f64| {
+                let mut voltages = voltages.at(0.5 * (from + to)).to_vec();
+                for (&source, &voltage) in &control.given {
+                    voltages[source] = voltage;
+                }
+                model.scalars(&voltages)
+            };
             let start = &boundary.start;
-            let constant = |_: f64, _: f64| scalars.clone();
-            let (mut history, _) = simulate(model, start, h, intervals, constant, |_| {
+            let (mut history, _) = simulate(model, start, h, intervals, scalars, |_| {
                 ControlFlow::Continue(())
             });
             // A simulation that ends early is held where it ended.
             while history.intervals() < intervals {
                 history.z.push(history.z[history.z.len() - 1].clone());
                 let last = history.scalars.last().cloned();
-                let still = || with_potentials(model, scalars.clone());
+                let still = || with_potentials(model, scalars(0.0, h));
                 history.scalars.push(last.unwrap_or_else(still));
             }
             Initial {

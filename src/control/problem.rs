@@ -87,16 +87,16 @@ pub enum Voltages {
         rows: Vec<Vec<f64>>,
         /// What the last row is.
         afterwards: Afterwards,
-        /// The solution they were read from.
-        solution: PathBuf,
+        /// The solution they were read from; none of a table in the problem.
+        solution: Option<PathBuf>,
     },
 }
 
-/// Voltages after the end of a solution.
+/// Voltages after the end of a solution or table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Afterwards {
-    /// Those that hold its goal, as it says.
-    OfGoal,
+    /// Those that it says are held: of a solution those of its goal.
+    Held,
     /// Those of its last interval: it names no others.
     OfLastInterval,
 }
@@ -106,7 +106,26 @@ impl Voltages {
     pub fn solution(&self) -> Option<&Path> {
         match self {
             Self::Constant(_) => None,
-            Self::Sampled { solution, .. } => Some(solution),
+            Self::Sampled { solution, .. } => solution.as_deref(),
+        }
+    }
+
+    /// Voltages of the sources at a time in ms.
+    pub fn at(&self, time: f64) -> &[f64] {
+        match self {
+            Self::Constant(row) => row,
+            Self::Sampled { ends, rows, .. } => {
+                let k = ends.iter().position(|&end| time < end);
+                &rows[k.unwrap_or(ends.len())]
+            }
+        }
+    }
+
+    /// All rows of voltages there are.
+    pub fn rows(&self) -> Vec<&[f64]> {
+        match self {
+            Self::Constant(row) => vec![row],
+            Self::Sampled { rows, .. } => rows.iter().map(Vec::as_slice).collect(),
         }
     }
 
@@ -304,8 +323,8 @@ pub enum Side {
 pub enum Guess {
     /// Smooth interpolation 3s² − 2s³ between start and goal; rest voltages of the goal plus 100 V.
     Interpolate,
-    /// A simulation under constant voltages (V, one per muscle).
-    Simulate(Vec<f64>),
+    /// A simulation under given voltages.
+    Simulate(Voltages),
     /// An earlier `solution.json`, also from another grid.
     Solution(PathBuf),
 }

@@ -9,7 +9,7 @@
 //! so that they meet the constraints; without constraints this is M v = p.
 
 use crate::dynamics::tangent::{Entries, Tangent};
-use crate::functional::{Blocks, Frame, Horizon, Kind, Level, Part, Sides};
+use crate::functional::{Blocks, Frame, Kind, Level, Part, Sides};
 use crate::math::Vector;
 use crate::model::Model;
 use crate::reduction::{Instant, Scratch, Target};
@@ -103,16 +103,7 @@ pub(super) fn masses(model: &Model, x: &[Vector]) -> Blocks {
     let action = &model.action.intervals;
     let mut out = action.output(Level::Hessian);
     let scalars = vec![0.0; action.scalars];
-    let frame = Frame {
-        vectors: [x, x],
-        along: [x, x],
-        scalars: &scalars,
-        scalars_along: &[],
-        h: 1.0,
-        horizon: Horizon::Given,
-        sides: Sides::ALL,
-        weights: &[],
-    };
+    let frame = Frame::of_instant(x, &scalars);
     for effect in &action.effects {
         if effect.kind() == Kind::Kinetic {
             effect.evaluate(Level::Hessian, &frame, &mut out);

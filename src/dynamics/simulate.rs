@@ -47,7 +47,7 @@ impl Start {
 
 /// Integrates `steps` steps of `h` ms; `voltages` gives those of the interval between two times, by scalar.
 ///
-/// After each step `observer` sees its number and may end the motion; so may a [watch](crate::ipopt::interrupt::watch), within a
+/// After each step `observer` sees the motion so far and may end it; so may a [watch](crate::ipopt::interrupt::watch), within a
 /// step too.
 ///
 /// The history ends where a step fails; the error says why.
@@ -57,7 +57,7 @@ pub fn simulate(
     h: f64,
     steps: usize,
     voltages: impl Fn(f64, f64) -> Vec<f64>,
-    observer: impl FnMut(usize) -> ControlFlow<()>,
+    observer: impl FnMut(&History) -> ControlFlow<()>,
 ) -> (History, Option<StepError>) {
     simulate_by(
         Solving::default(),
@@ -78,7 +78,7 @@ pub fn simulate_by(
     h: f64,
     steps: usize,
     voltages: impl Fn(f64, f64) -> Vec<f64>,
-    observer: impl FnMut(usize) -> ControlFlow<()>,
+    observer: impl FnMut(&History) -> ControlFlow<()>,
 ) -> (History, Option<StepError>) {
     let mut history = History::at(start);
     let grid = Grid { h, steps };
@@ -118,7 +118,7 @@ pub fn simulate_within(
     start: &Start,
     control: StepControl<'_>,
     voltages: impl Fn(f64, f64) -> Vec<f64>,
-    mut observer: impl FnMut(usize) -> ControlFlow<()>,
+    mut observer: impl FnMut(&History) -> ControlFlow<()>,
 ) -> (History, Option<StepError>) {
     let StepControl {
         duration,
@@ -167,7 +167,7 @@ pub fn simulate_within(
         history.z[k][n..n + step.multipliers.len()].copy_from_slice(&step.multipliers);
         history.push(time, &stepper);
         k += 1;
-        if observer(k).is_break() {
+        if observer(&history).is_break() {
             break;
         }
     }
@@ -210,7 +210,7 @@ fn record<E: Equations>(
     stepper: &mut Steps<E>,
     Grid { h, steps }: Grid,
     voltages: impl Fn(f64, f64) -> Vec<f64>,
-    mut observer: impl FnMut(usize) -> ControlFlow<()>,
+    mut observer: impl FnMut(&History) -> ControlFlow<()>,
     history: &mut History,
 ) -> Option<StepError> {
     let n = stepper.momentum().len();
@@ -228,7 +228,7 @@ fn record<E: Equations>(
                 break;
             }
         }
-        if observer(k + 1).is_break() {
+        if observer(history).is_break() {
             break;
         }
     }

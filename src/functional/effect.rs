@@ -36,6 +36,22 @@ pub struct Frame<'a> {
     pub weights: &'a [f64],
 }
 
+impl<'a> Frame<'a> {
+    /// One instant by itself, in an interval of 1 ms that begins and ends there.
+    pub fn of_instant(vectors: &'a [Vector], scalars: &'a [f64]) -> Self {
+        Self {
+            vectors: [vectors, vectors],
+            along: [vectors, vectors],
+            scalars,
+            scalars_along: &[],
+            h: 1.0,
+            horizon: Horizon::Given,
+            sides: Sides::ALL,
+            weights: &[],
+        }
+    }
+}
+
 /// What the interval length is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Horizon {

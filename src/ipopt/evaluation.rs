@@ -22,7 +22,7 @@ const RESERVED_ITERATIONS: usize = 4096;
 /// matters for Ipopt before 3.14, which has no call for it.
 pub(super) struct Evaluator<'a> {
     nlp: &'a mut dyn Nlp,
-    observer: &'a mut dyn FnMut(&Iteration) -> ControlFlow<()>,
+    observer: &'a mut dyn FnMut(&Iteration, &[f64]) -> ControlFlow<()>,
     jacobian: Entries,
     hessian: Entries,
     /// Factor of f in all that Ipopt sees.
@@ -53,7 +53,7 @@ impl<'a> Evaluator<'a> {
     /// Answers for `nlp`, whose structures are given, in a solve that begins now at `start`.
     pub(super) fn new(
         nlp: &'a mut dyn Nlp,
-        observer: &'a mut dyn FnMut(&Iteration) -> ControlFlow<()>,
+        observer: &'a mut dyn FnMut(&Iteration, &[f64]) -> ControlFlow<()>,
         jacobian: Entries,
         hessian: Entries,
         start: &[f64],
@@ -168,7 +168,7 @@ impl<'a> Evaluator<'a> {
         self.record.iterations.push(*iteration);
         self.record.latest.copy_from_slice(&self.derivatives_at);
         let verdict = timed(&mut self.record.seconds.observer, || {
-            (self.observer)(iteration)
+            (self.observer)(iteration, &self.derivatives_at)
         });
         if verdict.is_break() {
             self.record.stopped = Some(Status::Interrupted);

@@ -59,7 +59,7 @@ fn hint(nearest: Option<&str>) -> String {
 
 /// Solves `nlp` from `start`.
 ///
-/// `observer` hears of every iterate and may ask to stop; so may Ctrl-C, see [`interrupt`]. A panic of `nlp` or `observer`
+/// `observer` hears of every iterate and its x, and may ask to stop; so may Ctrl-C, see [`interrupt`]. A panic of `nlp` or `observer`
 /// goes on when Ipopt has returned.
 ///
 /// # Errors
@@ -74,7 +74,7 @@ pub fn solve(
     nlp: &mut dyn Nlp,
     start: &Point,
     options: &Options,
-    observer: &mut dyn FnMut(&Iteration) -> ControlFlow<()>,
+    observer: &mut dyn FnMut(&Iteration, &[f64]) -> ControlFlow<()>,
 ) -> Result<Solution, IpoptError> {
     let (variables, constraints) = (nlp.variables(), nlp.constraints());
     let (jacobian, hessian) = (nlp.jacobian_structure(), nlp.hessian_structure());

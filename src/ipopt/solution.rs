@@ -1,5 +1,7 @@
 //! Where a solve starts, what it passes through and what it returns.
 
+use std::ops::AddAssign;
+
 use crate::ipopt::Status;
 
 /// Multipliers of constraints and bounds, in the sign convention of Ipopt:
@@ -86,6 +88,19 @@ pub struct Seconds {
     pub observer: f64,
 }
 
+impl AddAssign for Seconds {
+    fn add_assign(&mut self, other: Self) {
+        self.total += other.total;
+        self.solver += other.solver;
+        self.objective += other.objective;
+        self.gradient += other.gradient;
+        self.constraints += other.constraints;
+        self.jacobian += other.jacobian;
+        self.hessian += other.hessian;
+        self.observer += other.observer;
+    }
+}
+
 /// How often Ipopt asked for each quantity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Evaluations {
@@ -99,6 +114,16 @@ pub struct Evaluations {
     pub jacobian: usize,
     /// Times the Hessian of the Lagrangian was evaluated.
     pub hessian: usize,
+}
+
+impl AddAssign for Evaluations {
+    fn add_assign(&mut self, other: Self) {
+        self.objective += other.objective;
+        self.gradient += other.gradient;
+        self.constraints += other.constraints;
+        self.jacobian += other.jacobian;
+        self.hessian += other.hessian;
+    }
 }
 
 /// What a solve returns, whatever its status.

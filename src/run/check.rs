@@ -170,7 +170,7 @@ fn as_control(task: Task, system: &System) -> Control {
         },
         limits: Vec::new(),
         coordinates,
-        guess: Guess::Simulate(voltages),
+        guess: Guess::Simulate(Voltages::Constant(voltages)),
         solver: Solver {
             tolerance: 1e-10,
             max_iterations: 0,
@@ -188,13 +188,7 @@ fn as_control(task: Task, system: &System) -> Control {
                 coordinates,
                 ..
             } = simulation;
-            let row = match voltages {
-                Voltages::Constant(row) => row,
-                Voltages::Sampled { rows, .. } => rows
-                    .into_iter()
-                    .next()
-                    .unwrap_or_else(|| vec![0.0; system.sources().len()]),
-            };
+            let row = voltages.at(0.0).to_vec();
             Control {
                 given: silent.into_iter().map(|source| (source, 0.0)).collect(),
                 ..without_goal(start, step, row, coordinates)

@@ -5,10 +5,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::control::problem::Control;
-use crate::ipopt::{Iteration, interrupt};
+use crate::ipopt::interrupt;
 use crate::model::System;
 use crate::run::error::RunError;
-use crate::run::optimise::{Allowed, Optimum, optimise};
+use crate::run::optimise::{Allowed, Iterate, Optimum, optimise};
 
 /// How many times the intervals of the problem are tried.
 const TIMES: [usize; 3] = [2, 4, 8];
@@ -35,7 +35,7 @@ pub(super) fn reproduced(
     system: &System,
     control: &Control,
     allowed: Allowed,
-    observer: &mut dyn FnMut(usize, &Iteration) -> ControlFlow<()>,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Cured, RunError> {
     let began = Instant::now();
     let left = || {
@@ -52,8 +52,8 @@ pub(super) fn reproduced(
             ..allowed
         };
         let earlier = earlier.map(|optimum| &optimum.motion);
-        let found = optimise(file, system, &control, earlier, limits, &mut |iteration| {
-            observer(intervals, iteration)
+        let found = optimise(file, system, &control, earlier, limits, &mut |iterate| {
+            observer(intervals, iterate)
         })?;
         let iterations = found.solution.iterations.len().saturating_sub(1);
         Ok::<_, RunError>((found, iterations))

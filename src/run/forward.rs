@@ -29,6 +29,7 @@ use crate::run::solution_file;
 use crate::run::solve::{counted, make_folder};
 use crate::run::steps;
 use crate::run::summary::{self, MEASURED, Seconds, Summary};
+use crate::run::unfinished::Unfinished;
 
 /// A simulation and how it ended.
 #[derive(Debug)]
@@ -58,7 +59,7 @@ pub fn grid(task: &Simulation) -> (usize, f64) {
     (steps, task.duration / steps as f64)
 }
 
-/// Simulates what a file asks for in memory; `observer` sees the number of every step and may end the motion.
+/// Simulates what a file asks for in memory; after every step `observer` sees the motion so far and may end it.
 ///
 /// # Errors
 /// The model or the start does not exist. A step that fails is no error: see the failure.
@@ -66,7 +67,7 @@ pub fn integrate(
     file: &Path,
     system: &System,
     task: &Simulation,
-    observer: impl FnMut(usize) -> ControlFlow<()>,
+    mut observer: impl FnMut(&Model, &History) -> ControlFlow<()>,
 ) -> Result<Simulated, RunError> {
     let began = Instant::now();
     let (steps, h) = grid(task);
@@ -84,7 +85,8 @@ pub fn integrate(
     let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;
     let setup = began.elapsed().as_secs_f64();
     phase("ordering and first factorisation");
-    let scalars = |from: f64, to: f64| model.scalars(row(&task.voltages, 0.5 * (from + to)));
+    let observer = |history: &History| observer(&model, history);
+    let scalars = |from: f64, to: f64| model.scalars(task.voltages.at(0.5 * (from + to)));
     let (history, failure) = match task.tolerance {
         Some(tolerance) => {
             let control = StepControl {
@@ -126,6 +128,7 @@ pub(super) fn simulation(
     let folder = request.folder();
     let read = began.elapsed().as_secs_f64();
     let mut unwritable = None;
+    let mut unfinished = Unfinished::of(&folder);
     let watch = interrupt::watch(request.max_seconds.map(|s| s - read));
     let (
         Simulated {
@@ -138,12 +141,15 @@ pub(super) fn simulation(
         accuracy,
     ) = {
         let progress = Progress::of_steps(request.progress, steps);
-        let mut observer = |steps: usize, step: usize| {
+        let mut observer = |steps: usize, model: &Model, history: &History| {
+            let step = history.intervals();
             progress.step(steps, step);
             // A folder that cannot be made is told before a long run, not after it.
             if step == 1 && unwritable.is_none() {
                 unwritable = make_folder(&folder).err();
             }
+            // The steps so far are final; those of a finer grid begin anew.
+            unfinished.consider(model, 0.0, || solved(model, history, None));
             match unwritable {
                 Some(_) => ControlFlow::Break(()),
                 None => ControlFlow::Continue(()),
@@ -152,7 +158,9 @@ pub(super) fn simulation(
         let file = &request.input;
         match request.wanted {
             None => {
-                let run = integrate(file, system, task, |step| observer(steps, step))?;
+                let run = integrate(file, system, task, |model, history| {
+                    observer(steps, model, history)
+                })?;
                 (run, None)
             }
             Some(wanted) => {
@@ -262,6 +270,7 @@ pub(super) fn simulation(
         summary: &rows,
     };
     write_run(&folder, &run)?;
+    unfinished.done();
     let mut is_solved = status == "simulated";
     let mut word = match is_solved {
         true => "simulated".to_owned(),
@@ -296,25 +305,21 @@ fn afterwards(task: &Simulation) -> Option<String> {
         return None;
     };
     let end = ends[ends.len() - 1];
-    let path = solution.display();
+    let named = solution.as_ref().map(|path| path.display().to_string());
+    let of_solution = named.is_some();
+    let source = named.unwrap_or_else(|| "the table".to_owned());
     (task.duration > end * (1.0 + 1e-9)).then(|| match afterwards {
-        Afterwards::OfGoal => {
-            format!("after {} s the voltages that hold the goal of {path} are held", end / 1e3)
+        Afterwards::Held if of_solution => {
+            format!("after {} s the voltages that hold the goal of {source} are held", end / 1e3)
         }
+        Afterwards::Held => format!("after {} s the voltages of \"hold\" are held", end / 1e3),
+        Afterwards::OfLastInterval if of_solution => format!(
+            "after {} s the voltages of the last interval are held: {source} has no \"hold\", voltages that hold its goal",
+            end / 1e3
+        ),
         Afterwards::OfLastInterval => format!(
-            "after {} s the voltages of the last interval are held: {path} has no \"hold\", voltages that hold its goal",
+            "after {} s the voltages of the last interval are held: {source} has no \"hold\"",
             end / 1e3
         ),
     })
-}
-
-/// Voltages at a time in ms.
-fn row(voltages: &Voltages, time: f64) -> &[f64] {
-    match voltages {
-        Voltages::Constant(row) => row,
-        Voltages::Sampled { ends, rows, .. } => {
-            let k = ends.iter().position(|&end| time < end);
-            &rows[k.unwrap_or(ends.len())]
-        }
-    }
 }

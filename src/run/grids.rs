@@ -5,14 +5,15 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::control::problem::{Control, Duration, Simulation, Voltages};
-use crate::ipopt::{Iteration, interrupt};
-use crate::model::System;
+use crate::dynamics::History;
+use crate::ipopt::interrupt;
+use crate::model::{Model, System};
 use crate::run::accuracy::{Attempt, Refined, Wanted, refine};
 use crate::run::error::RunError;
 use crate::run::estimate::Sample;
 use crate::run::forward::{Simulated, grid, integrate};
 use crate::run::motion;
-use crate::run::optimise::{Allowed, Optimum, optimise};
+use crate::run::optimise::{Allowed, Iterate, Optimum, optimise};
 
 /// The solver's tolerance as a part of the accuracy asked for, where the problem names no smaller one.
 const SOLVER: f64 = 1e-2;
@@ -33,7 +34,7 @@ pub fn optimise_to(
     control: &Control,
     wanted: Wanted,
     allowed: Allowed,
-    observer: &mut dyn FnMut(usize, &Iteration) -> ControlFlow<()>,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Refined<Optimum>, RunError> {
     let began = Instant::now();
     let left = || {
@@ -54,8 +55,8 @@ pub fn optimise_to(
             let seconds = left();
             let limits = Allowed { seconds, ..allowed };
             let earlier = before.map(|optimum| &optimum.motion);
-            let mut run = optimise(file, system, &control, earlier, limits, &mut |iteration| {
-                observer(control.intervals, iteration)
+            let mut run = optimise(file, system, &control, earlier, limits, &mut |iterate| {
+                observer(control.intervals, iterate)
             })?;
             // What the guess of the problem became belongs to all grids.
             run.stretched = before.map_or(run.stretched, |optimum| optimum.stretched);
@@ -79,7 +80,7 @@ pub fn optimise_to(
 }
 
 /// Simulates with the step of the task, then with half of it and so on, until every error is estimated below what is wanted;
-/// or estimates the error with its own step. `observer` sees the number of steps and each step.
+/// or estimates the error with its own step. `observer` sees the number of steps, and the motion after each step.
 ///
 /// # Errors
 /// As of [`integrate`].
@@ -89,7 +90,7 @@ pub fn integrate_to(
     task: &Simulation,
     wanted: Wanted,
     seconds: Option<f64>,
-    observer: &mut dyn FnMut(usize, usize) -> ControlFlow<()>,
+    observer: &mut dyn FnMut(usize, &Model, &History) -> ControlFlow<()>,
 ) -> Result<Refined<Simulated>, RunError> {
     let began = Instant::now();
     let left = || seconds.map(|s| s - began.elapsed().as_secs_f64());
@@ -109,7 +110,9 @@ pub fn integrate_to(
                 step: task.duration / steps as f64,
                 ..task.clone()
             };
-            let run = integrate(file, system, &task, |step| observer(steps, step))?;
+            let run = integrate(file, system, &task, |model, history| {
+                observer(steps, model, history)
+            })?;
             let is_complete = run.failure.is_none() && run.history.intervals() == steps;
             let status = match (&run.failure, stop(left())) {
                 _ if is_complete => "simulated",

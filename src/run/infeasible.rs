@@ -9,7 +9,7 @@ use crate::dynamics::simulate;
 use crate::math::{Vector, significant};
 use crate::model::{Model, System, joint_unit};
 use crate::reduction::Instant;
-use crate::run::optimise::{Allowed, Optimum, optimise};
+use crate::run::optimise::{Allowed, Iterate, Optimum, optimise};
 use crate::run::second_start::is_infeasible;
 
 /// Bounds told at most.
@@ -172,7 +172,7 @@ fn longer(
         iterations: Some(ITERATIONS),
         seconds: Some(seconds.map_or(patience, |left| left.min(patience))),
     };
-    let mut go_on = |_: &_| ControlFlow::Continue(());
+    let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
     let Ok(found) = optimise(file, system, &free, None, allowed, &mut go_on) else {
         return Longer::Unknown;
     };

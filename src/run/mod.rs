@@ -48,6 +48,7 @@ mod steps;
 mod stopwatch;
 mod summary;
 mod task;
+mod unfinished;
 mod violations;
 
 pub use active::{Active, active};
@@ -59,7 +60,7 @@ pub use forward::{Simulated, grid, integrate};
 pub use grids::{integrate_to, optimise_to};
 pub use inspect::inspect;
 pub use motion::{solved, trajectory};
-pub use optimise::{Allowed, Optimum, optimise};
+pub use optimise::{Allowed, Iterate, Optimum, optimise};
 pub use progress::Shown;
 pub(crate) use progress::progress_bar;
 pub use reasons::{Absent, EFFECTS, absent};

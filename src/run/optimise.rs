@@ -1,6 +1,7 @@
 //! A control problem solved in memory: boundary, guess, program, solver.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
@@ -119,7 +120,23 @@ impl Optimum {
     }
 }
 
-/// Solves a control problem of a file, from an `earlier` solution where one is given; `observer` sees every iteration.
+/// A point that the solver has come to.
+pub struct Iterate<'a> {
+    /// What the solver tells of it.
+    pub report: &'a Iteration,
+    /// The model.
+    pub model: &'a Model,
+    /// Its motion.
+    pub motion: &'a dyn Fn() -> Solved,
+}
+
+impl fmt::Debug for Iterate<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.report.fmt(f)
+    }
+}
+
+/// Solves a control problem of a file, from an `earlier` solution where one is given; `observer` sees every iterate.
 ///
 /// # Errors
 /// Start, goal, guess or an option of the solver is wrong. A problem without a solution is no error: see the status.
@@ -129,7 +146,7 @@ pub fn optimise(
     control: &Control,
     earlier: Option<&Solved>,
     allowed: Allowed,
-    observer: &mut dyn FnMut(&Iteration) -> ControlFlow<()>,
+    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Optimum, RunError> {
     let began = Instant::now();
     let watch = interrupt::watch(allowed.seconds);
@@ -153,7 +170,16 @@ pub fn optimise(
     phase("ordering and first factorisation");
     tracing::info!(?start, variables = point.x.len(), "solve");
     let mut solve = |program: &mut Transcription<'_>, point: &ipopt::Point, options: &Options| {
-        ipopt::solve(program, point, options, observer)
+        let decoder = program.decoder();
+        let mut observer = |report: &Iteration, x: &[f64]| {
+            let motion = || solved(&model, &decoder.decode(x), None);
+            observer(&Iterate {
+                report,
+                model: &model,
+                motion: &motion,
+            })
+        };
+        ipopt::solve(program, point, options, &mut observer)
             .map_err(|error| RunError::ipopt(file, &error))
     };
     let mut solution = solve(&mut program, &point, &options)?;

@@ -1,7 +1,7 @@
 //! A second start from elsewhere, before a problem is called infeasible.
 
 use crate::control::Boundary;
-use crate::control::problem::{Control, Guess};
+use crate::control::problem::{Control, Guess, Voltages};
 use crate::ipopt::{Solution, Status};
 
 /// Iterations of the second start; what is found from it is found soon.
@@ -18,12 +18,12 @@ pub(super) fn displaced(control: &Control, boundary: &Boundary, sources: usize) 
     let [low, high] = control.voltage_bounds;
     let guess = match (&control.guess, &boundary.rest[1]) {
         (Guess::Simulate(_), _) => Guess::Interpolate,
-        (_, Some(hold)) => Guess::Simulate(hold.clone()),
+        (_, Some(hold)) => Guess::Simulate(Voltages::Constant(hold.clone())),
         (_, None) => {
             // Without bounds nothing is known of the size of voltages.
             let half = 0.5 * (low + high);
             let half = if half.is_finite() { half } else { 0.0 };
-            Guess::Simulate(vec![half; sources])
+            Guess::Simulate(Voltages::Constant(vec![half; sources]))
         }
     };
     Control {
@@ -43,21 +43,8 @@ pub(super) fn one_of_both(first: Solution, second: Solution) -> Solution {
         true => other.iterations.into_iter().chain(iterations).collect(),
         false => iterations.into_iter().chain(other.iterations).collect(),
     };
-    let (a, b) = (&mut kept.seconds, other.seconds);
-    a.total += b.total;
-    a.solver += b.solver;
-    a.objective += b.objective;
-    a.gradient += b.gradient;
-    a.constraints += b.constraints;
-    a.jacobian += b.jacobian;
-    a.hessian += b.hessian;
-    a.observer += b.observer;
-    let (a, b) = (&mut kept.evaluations, other.evaluations);
-    a.objective += b.objective;
-    a.gradient += b.gradient;
-    a.constraints += b.constraints;
-    a.jacobian += b.jacobian;
-    a.hessian += b.hessian;
+    kept.seconds += other.seconds;
+    kept.evaluations += other.evaluations;
     kept.failed_evaluations += other.failed_evaluations;
     kept
 }

@@ -8,7 +8,7 @@ use std::time::Instant;
 use crate::control::problem::{Control, Hold};
 use crate::control::{Boundary, Solved};
 use crate::dynamics::{observations, out_of_domain};
-use crate::ipopt::{Iteration, Status, interrupt};
+use crate::ipopt::{Status, interrupt};
 use crate::math::significant;
 use crate::model::{Model, System};
 use crate::report::atomic::{self, WriteError};
@@ -25,13 +25,14 @@ use crate::run::grids::optimise_to;
 use crate::run::holding;
 use crate::run::infeasible::explain;
 use crate::run::motion::{history, solved, trajectory};
-use crate::run::optimise::{Allowed, Optimum};
+use crate::run::optimise::{Allowed, Iterate, Optimum};
 use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
 use crate::run::resimulate::{Cause, Resimulation, under_constant_voltages};
 use crate::run::second_start::is_infeasible;
 use crate::run::solution_file;
 use crate::run::summary::{Evaluations, MEASURED, PerInterval, Program, Seconds, Summary};
+use crate::run::unfinished::Unfinished;
 use crate::run::violations::Violation;
 
 /// Length of the motion under constant voltages that is drawn beside the optimal one, in durations.
@@ -45,6 +46,7 @@ pub(super) fn control(
 ) -> Result<Told, RunError> {
     let folder = request.folder();
     let mut unwritable = None;
+    let mut unfinished = Unfinished::of(&folder);
     let read = began.elapsed().as_secs_f64();
     let allowed = Allowed {
         iterations: request.max_iterations,
@@ -62,12 +64,14 @@ pub(super) fn control(
             system,
             control,
             allowed,
-            &mut |intervals, iteration| {
-                progress.iteration(intervals, iteration);
+            &mut |intervals, iterate| {
+                let Iterate { report, model, .. } = *iterate;
+                progress.iteration(intervals, report);
                 // A folder that cannot be made is told before a long solve, not after it.
-                if iteration.iteration == 0 && unwritable.is_none() {
+                if report.iteration == 0 && unwritable.is_none() {
                     unwritable = make_folder(&folder).err();
                 }
+                unfinished.consider(model, report.primal_infeasibility, iterate.motion);
                 match unwritable {
                     Some(_) => ControlFlow::Break(()),
                     None => ControlFlow::Continue(()),
@@ -166,6 +170,7 @@ pub(super) fn control(
         hessian: seconds.hessian,
     };
     write_files(request, &folder, model, boundary, kept, &mut summary)?;
+    unfinished.done();
     Ok(told(&summary, violated, &folder))
 }
 
@@ -185,7 +190,7 @@ fn find(
     system: &System,
     control: &Control,
     allowed: Allowed,
-    observer: &mut dyn FnMut(usize, &Iteration) -> ControlFlow<()>,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Found, RunError> {
     let file = &request.input;
     let Some(wanted) = request.wanted else {

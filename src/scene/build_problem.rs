@@ -16,7 +16,7 @@ use crate::scene::build_state::{ELECTRIC_KEYS, driven, goal_state, start_state, 
 use crate::scene::error::SceneError;
 use crate::scene::graph::{has_free_part, tree_freedoms};
 use crate::scene::scope::Scope;
-use crate::scene::solution::sampled_voltages;
+use crate::scene::solution::{of_solution, of_table};
 use crate::scene::spec_integrator::integrator;
 use crate::scene::spec_problem::{
     ControlSpec, CoordinatesSpec, DurationSpec, GuessSpec, ObjectiveSpec, OptionSpec, ProblemSpec,
@@ -91,13 +91,7 @@ fn simulation(
         },
     };
     let place = scope.key("voltages");
-    let voltages = match &spec.voltages {
-        VoltagesSpec::Constant(map) => Voltages::Constant(voltages(map, system, &place)?),
-        VoltagesSpec::Solution(solution) => {
-            let path = existing(&solution.solution, &place.key("solution"))?;
-            sampled_voltages(&path, system)?
-        }
-    };
+    let voltages = over_time(&spec.voltages, system, &place)?;
     Ok(Simulation {
         duration,
         step,
@@ -111,6 +105,22 @@ fn simulation(
             backend: spec.linear_solver.map(Into::into),
         },
     })
+}
+
+/// Voltages of a simulation.
+fn over_time(
+    spec: &VoltagesSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Voltages, SceneError> {
+    match spec {
+        VoltagesSpec::Constant(map) => voltages(map, system, scope).map(Voltages::Constant),
+        VoltagesSpec::Solution(solution) => {
+            let path = existing(&solution.solution, &scope.key("solution"))?;
+            of_solution(&path, system)
+        }
+        VoltagesSpec::Table(table) => of_table(table, system, scope),
+    }
 }
 
 /// Length of the steps in ms, of the first attempt where a tolerance controls it, and the tolerance.
@@ -378,14 +388,17 @@ fn guess(
     type Build<'a> = Box<dyn FnOnce() -> Result<Guess, SceneError> + 'a>;
     let simulate = spec.simulate.as_ref().map(|simulate| -> Build<'_> {
         let scope = scope.key("simulate").key("voltages");
-        Box::new(move || voltages(&simulate.voltages, system, &scope).map(Guess::Simulate))
+        Box::new(move || over_time(&simulate.voltages, system, &scope).map(Guess::Simulate))
     });
     let solution = spec.solution.as_ref().map(|solution| -> Build<'_> {
         let scope = scope.key("solution");
         Box::new(move || existing(solution, &scope).map(Guess::Solution))
     });
     let random = spec.random.as_ref().map(|random| -> Build<'_> {
-        Box::new(|| Ok(Guess::Simulate(drawn(random.seed, system, bounds))))
+        Box::new(|| {
+            let voltages = drawn(random.seed, system, bounds);
+            Ok(Guess::Simulate(Voltages::Constant(voltages)))
+        })
     });
     let build = scope.exactly_one([
         ("simulate", simulate),

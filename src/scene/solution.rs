@@ -1,15 +1,16 @@
-//! Voltages over time from an earlier `solution.json`.
+//! Voltages over time: from an earlier `solution.json`, or a table in the problem.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::control::problem::{Afterwards, Voltages};
 use crate::model::system::System;
-use crate::scene::build_state::driven;
+use crate::scene::build_state::{driven, voltages};
 use crate::scene::document::Document;
 use crate::scene::error::SceneError;
 use crate::scene::scope::Scope;
+use crate::scene::spec_problem::TableSpec;
 
 /// What is read of a solution.
 #[derive(Debug, Deserialize)]
@@ -25,49 +26,100 @@ struct Solution {
 
 /// Voltages of a solution, then those that hold its goal, or where it names none the last ones; 0 for sources that it does
 /// not know.
-pub(crate) fn sampled_voltages(path: &Path, system: &System) -> Result<Voltages, SceneError> {
+pub(crate) fn of_solution(path: &Path, system: &System) -> Result<Voltages, SceneError> {
     let document = &Document::read(path)?;
     let solution: Solution = document.parse()?;
     let scope = Scope::of(document);
+    let instants: Vec<f64> = solution.time.iter().map(|time| 1e3 * time).collect();
+    let rows = rows(&instants, &solution.voltages, system, &scope)?;
+    let hold = match &solution.hold {
+        Some(hold) => {
+            let sources = system.sources();
+            let mut row = vec![0.0; sources.len()];
+            for (name, &voltage) in hold {
+                row[driven(name, &sources, &scope.key("hold").key(name))?] = voltage;
+            }
+            Some(row)
+        }
+        None => None,
+    };
+    Ok(sampled(&instants, rows, hold, Some(path.to_owned())))
+}
+
+/// Voltages of a table, then those that it says are held, or the last ones; 0 for sources that it does not name.
+pub(crate) fn of_table(
+    table: &TableSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Voltages, SceneError> {
+    let instants: Vec<f64> = table.time.iter().map(|time| time.value()).collect();
+    let histories = table.voltages.iter().map(|(name, history)| {
+        let history: Vec<f64> = history.iter().map(|voltage| voltage.value()).collect();
+        (name.clone(), history)
+    });
+    let rows = rows(&instants, &histories.collect(), system, scope)?;
+    if instants[0] != 0.0 {
+        let found = format!("{} s", instants[0] / 1e3);
+        return Err(scope.key("time").index(0).wrong(found, "0"));
+    }
+    let hold = match &table.hold {
+        Some(hold) => Some(voltages(hold, system, &scope.key("hold"))?),
+        None => None,
+    };
+    Ok(sampled(&instants, rows, hold, None))
+}
+
+/// A row of voltages for each interval between instants in ms.
+fn rows(
+    instants: &[f64],
+    histories: &BTreeMap<String, Vec<f64>>,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<Vec<f64>>, SceneError> {
     let place = scope.key("time");
-    if solution.time.len() < 2 {
-        let found = format!("{} instants", solution.time.len());
+    if instants.len() < 2 {
+        let found = format!("{} instants", instants.len());
         return Err(place.wrong(found, "2 instants or more"));
     }
-    if let Some(index) = solution.time.windows(2).position(|pair| pair[0] >= pair[1]) {
-        let found = solution.time[index + 1].to_string();
+    if let Some(index) = instants.windows(2).position(|pair| pair[0] >= pair[1]) {
+        let found = format!("{} s", instants[index + 1] / 1e3);
         return Err(place.index(index + 1).wrong(found, "increasing times"));
     }
-    let ends: Vec<f64> = solution.time[1..].iter().map(|time| 1e3 * time).collect();
+    let intervals = instants.len() - 1;
     let sources = system.sources();
-    let mut rows = vec![vec![0.0; sources.len()]; ends.len()];
-    for (name, history) in &solution.voltages {
+    let mut rows = vec![vec![0.0; sources.len()]; intervals];
+    for (name, history) in histories {
         let place = scope.key("voltages").key(name);
         let source = driven(name, &sources, &place)?;
-        if history.len() != ends.len() {
+        if history.len() != intervals {
             let found = format!("{} voltages", history.len());
-            let expected = format!("{}, one per interval", ends.len());
+            let expected = format!("{intervals}, one per interval");
             return Err(place.wrong(found, expected));
         }
         for (row, voltage) in rows.iter_mut().zip(history) {
             row[source] = *voltage;
         }
     }
-    let (last, afterwards) = match &solution.hold {
-        Some(hold) => {
-            let mut row = vec![0.0; sources.len()];
-            for (name, &voltage) in hold {
-                row[driven(name, &sources, &scope.key("hold").key(name))?] = voltage;
-            }
-            (row, Afterwards::OfGoal)
-        }
-        None => (rows[ends.len() - 1].clone(), Afterwards::OfLastInterval),
+    Ok(rows)
+}
+
+/// Rows of voltages, and those afterwards.
+fn sampled(
+    instants: &[f64],
+    mut rows: Vec<Vec<f64>>,
+    hold: Option<Vec<f64>>,
+    solution: Option<PathBuf>,
+) -> Voltages {
+    let afterwards = match hold {
+        Some(_) => Afterwards::Held,
+        None => Afterwards::OfLastInterval,
     };
-    rows.push(last);
-    Ok(Voltages::Sampled {
-        ends,
+    let last = rows[rows.len() - 1].clone();
+    rows.push(hold.unwrap_or(last));
+    Voltages::Sampled {
+        ends: instants[1..].to_vec(),
         rows,
         afterwards,
-        solution: path.to_owned(),
-    })
+        solution,
+    }
 }

@@ -63,7 +63,7 @@ pub struct SimulateSpec {
     /// robot's size; 1e-3 where not written.
     #[serde(default)]
     pub tolerance: Option<f64>,
-    /// Constant voltages, or those of a solution; 0 where not written.
+    /// Constant voltages, those of a solution, or a table; 0 where not written.
     #[serde(default)]
     pub voltages: VoltagesSpec,
     /// Where it starts; the reference configuration at rest where not written.
@@ -365,9 +365,9 @@ pub enum OptionSpec {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GuessSimulationSpec {
-    /// Constant voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
+    /// Constant voltages, those of a solution, or a table, as of a simulation; 0 where not written.
     #[serde(default)]
-    pub voltages: VoltageMap,
+    pub voltages: VoltagesSpec,
 }
 
 /// A random guess.
@@ -382,7 +382,7 @@ pub struct RandomGuessSpec {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GuessObjectSpec {
-    /// A simulation under constant voltages.
+    /// A simulation under given voltages.
     #[serde(default)]
     pub simulate: Option<GuessSimulationSpec>,
     /// Path of a `solution.json`, relative to this file or to the current folder.
@@ -437,12 +437,14 @@ impl Default for GuessSpec {
     }
 }
 
-/// Constant voltages by muscle or driven electrode, or `{"solution": path}`.
+/// Constant voltages by muscle or driven electrode, `{"solution": path}`, or `{"time": [...], "voltages": {...}}`.
 #[derive(Clone, Debug, JsonSchema)]
 #[serde(untagged)]
 pub enum VoltagesSpec {
     /// Those of a `solution.json`.
     Solution(SolutionSpec),
+    /// A table.
+    Table(TableSpec),
     /// Constant.
     Constant(VoltageMap),
 }
@@ -453,6 +455,20 @@ pub enum VoltagesSpec {
 pub struct SolutionSpec {
     /// Path of a `solution.json`, relative to this file or to the current folder.
     pub solution: String,
+}
+
+/// Voltages that are constant in intervals of time.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TableSpec {
+    /// Start and end of the intervals, growing, the first of them 0; SI unit s.
+    pub time: Vec<Quantity<Time>>,
+    /// A voltage for each interval by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not
+    /// named.
+    pub voltages: BTreeMap<String, Vec<Quantity<Voltage>>>,
+    /// Voltages after the last interval; those of the last interval where not written.
+    #[serde(default)]
+    pub hold: Option<VoltageMap>,
 }
 
 impl Default for VoltagesSpec {
@@ -481,27 +497,47 @@ impl<'de> Visitor<'de> for VoltagesVisitor {
     type Value = VoltagesSpec;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("voltages by name or an object with \"solution\"")
+        f.write_str(
+            "voltages by name, an object with \"solution\", or one with \"time\" and \"voltages\"",
+        )
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<VoltagesSpec, A::Error> {
         let mut constant = VoltageMap::new();
-        let mut solution = None;
+        let (mut solution, mut time, mut voltages, mut hold) = (None, None, None, None);
         while let Some(key) = map.next_key::<String>()? {
-            if key == "solution" {
-                solution = Some(map.next_value()?);
-            } else {
-                constant.insert(key, map.next_value()?);
+            match key.as_str() {
+                "solution" => solution = Some(map.next_value()?),
+                "time" => time = Some(map.next_value()?),
+                "voltages" => voltages = Some(map.next_value()?),
+                "hold" => hold = Some(map.next_value()?),
+                _ => drop(constant.insert(key, map.next_value()?)),
             }
         }
-        match solution {
-            None => Ok(VoltagesSpec::Constant(constant)),
-            Some(solution) if constant.is_empty() => {
+        let is_constant = !constant.is_empty();
+        match (solution, time, voltages, hold) {
+            (None, None, None, None) => Ok(VoltagesSpec::Constant(constant)),
+            (Some(solution), None, None, None) if !is_constant => {
                 Ok(VoltagesSpec::Solution(SolutionSpec { solution }))
             }
-            Some(_) => {
+            (None, Some(time), Some(voltages), hold) if !is_constant => {
+                Ok(VoltagesSpec::Table(TableSpec {
+                    time,
+                    voltages,
+                    hold,
+                }))
+            }
+            (Some(_), ..) => {
                 let found = Unexpected::Other("\"solution\" beside voltages");
                 Err(A::Error::invalid_value(found, &self))
+            }
+            (None, time, voltages, _) => {
+                let lacks = match (time, voltages) {
+                    (None, _) => "a table without \"time\"",
+                    (_, None) => "a table without \"voltages\"",
+                    _ => "a table beside voltages by name",
+                };
+                Err(A::Error::invalid_value(Unexpected::Other(lacks), &self))
             }
         }
     }

@@ -11,7 +11,9 @@ use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{EquilibriumError, observations, simulate, stable_equilibrium};
 use crate::ipopt::interrupt;
 use crate::model::Model;
-use crate::run::{Allowed, Cause, Optimum, RunError, Simulated, integrate, optimise, trajectory};
+use crate::run::{
+    Allowed, Cause, Iterate, Optimum, RunError, Simulated, integrate, optimise, trajectory,
+};
 use crate::study::measure::Measure;
 use crate::study::read::Point;
 
@@ -66,7 +68,7 @@ fn control(
     began: Instant,
 ) -> (Ended, Option<Seen>) {
     let system = &point.loaded.system;
-    let mut on = |_: &_| ControlFlow::Continue(());
+    let mut on = |_: &Iterate<'_>| ControlFlow::Continue(());
     let found = optimise(
         &point.problem,
         system,
@@ -139,7 +141,7 @@ fn motion(
     began: Instant,
 ) -> (Ended, Option<Seen>) {
     let mut interrupted = false;
-    let found = integrate(&point.problem, &point.loaded.system, task, |_| {
+    let found = integrate(&point.problem, &point.loaded.system, task, |_, _| {
         interrupted = interrupt::requested();
         match interrupted {
             true => ControlFlow::Break(()),

@@ -7,6 +7,37 @@ use crate::control::unknowns::Variable;
 use crate::dynamics::History;
 use crate::ipopt;
 
+/// Tells the motion of a point: what is given with what the variables are.
+#[derive(Clone, Debug)]
+pub struct Decoder {
+    z: Vec<Vec<f64>>,
+    scalars: Vec<Vec<f64>>,
+    h: f64,
+    variables: Vec<Variable>,
+    scales: Vec<f64>,
+}
+
+impl Decoder {
+    /// The motion of a point of the program.
+    pub fn decode(&self, x: &[f64]) -> History {
+        let (mut z, mut scalars, mut h) = (self.z.clone(), self.scalars.clone(), self.h);
+        for ((variable, scale), x) in self.variables.iter().zip(&self.scales).zip(x) {
+            let value = scale * x;
+            match *variable {
+                Variable::Unknown { k, i } => z[k][i] = value,
+                Variable::Scalar { k, s } => scalars[k][s] = value,
+                Variable::Horizon => h = value,
+            }
+        }
+        History {
+            times: (0..z.len()).map(|k| k as f64 * h).collect(),
+            z,
+            scalars,
+            ..History::default()
+        }
+    }
+}
+
 impl Transcription<'_> {
     /// The variables of a motion with interval length h (ms).
     pub fn encode(&self, history: &History, h: f64) -> Vec<f64> {
@@ -24,11 +55,14 @@ impl Transcription<'_> {
     }
 
     /// The motion of a point of the program.
-    pub fn decode(&mut self, x: &[f64]) -> History {
-        self.load(x);
+    pub fn decode(&self, x: &[f64]) -> History {
+        self.decoder().decode(x)
+    }
+
+    /// What tells the motion of a point without the program, which a solver has while it works.
+    pub fn decoder(&self) -> Decoder {
         let scalar_count = self.model.action.layout().interval_scalars;
-        History {
-            times: (0..=self.intervals).map(|k| k as f64 * self.h).collect(),
+        Decoder {
             z: self
                 .instants
                 .iter()
@@ -37,7 +71,9 @@ impl Transcription<'_> {
             scalars: (0..self.intervals)
                 .map(|k| self.scalars[k * scalar_count..(k + 1) * scalar_count].to_vec())
                 .collect(),
-            ..History::default()
+            h: self.h,
+            variables: self.unknowns.variables.clone(),
+            scales: self.variable_scales.clone(),
         }
     }
 
