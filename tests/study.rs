@@ -180,7 +180,17 @@ fn a_wheel_that_is_slowed_down_converges_to_its_closed_form() {
     // What the hub dissipates is accounted for, to the order of the rule.
     for method in record["methods"].as_array().unwrap() {
         let order = method["orders"]["energy_balance"].as_f64().unwrap();
-        // The energy of the last instant is carried on from the intervals before, which shows on the coarsest grid.
+        // The greatest error is that of t₁ = h, where energies of two intervals are interpolated: h²/8 E″(h), and E″ falls like
+        // exp(−8 h/s). Two steps h and h/2 show 2 − 4 h/(s ln 2), which is 1.71 for the coarsest two and 1.96 for the finest.
+        let points = method["points"].as_array().unwrap();
+        let error = |k: usize| points[k]["errors"]["energy_balance"].as_f64().unwrap();
+        for k in 0..4 {
+            let step = 0.05 * 0.5_f64.powi(k as i32);
+            let here = (error(k) / error(k + 1)).log2();
+            let seen = 2.0 - 4.0 * step / std::f64::consts::LN_2;
+            // To the next order in the step.
+            assert!((here - seen).abs() < 1.5 * step, "{here} against {seen}");
+        }
         assert!((order - 2.0).abs() < 0.15, "{order}");
         assert!(
             method["points"][0]["errors"]["energy_balance"]
@@ -459,6 +469,52 @@ fn tables_figures_and_page_say_the_same() {
         assert!(svg.contains(words), "{words}");
     }
     assert!(page.contains("## What accuracy costs") && page.contains("**"));
+    let said = record["conclusion"].as_str().unwrap();
+    let second = page.split("\n\n").nth(1).unwrap();
+    assert_eq!(second, format!("**Conclusion.** {said}"));
+    for words in [
+        "Greatest error along the path: ",
+        "`angle`",
+        "Observed order",
+    ] {
+        assert!(said.contains(words), "{words:?} in {said}");
+    }
+}
+
+#[test]
+fn a_point_whose_steps_are_halved_says_so_and_enters_no_order() {
+    let folder = wheel();
+    let mut study = steps();
+    // 50 rad/s in steps of 50 ms are more than a right angle at once.
+    study["set"] =
+        json!({ "simulate.start.joint_rates.hub": "50 rad/s", "simulate.duration": "0.2 s" });
+    study["methods"] = json!([{ "name": "angle", "set": { "simulate.coordinates": "reduced" } }]);
+    study["refine"]["set"]["simulate.step"] =
+        json!(["50 ms", "10 ms", "5 ms", "2.5 ms", "1.25 ms"]);
+    study["measures"] = json!(["end"]);
+    let record = results(folder.path(), &study, "1");
+    let points = record["methods"][0]["points"].as_array().unwrap();
+    assert!(points[0]["halved_steps"].as_u64().unwrap() > 0);
+    assert!(
+        points[1..]
+            .iter()
+            .all(|point| point.get("halved_steps").is_none())
+    );
+    assert!(points[0]["errors"]["end"].as_f64().unwrap() > 0.0);
+    // Four points are left of five.
+    let orders = of(&record, "end")["references"][0]["orders"]
+        .as_array()
+        .unwrap();
+    assert_eq!(orders.len(), 2);
+    let order = record["methods"][0]["orders"]["end"].as_f64().unwrap();
+    assert!((order - 2.0).abs() < 0.2, "{order}");
+    let said = record["conclusion"].as_str().unwrap();
+    assert!(
+        said.contains("Steps were halved") && said.contains("step 50 ms"),
+        "{said}"
+    );
+    let text = fs::read_to_string(folder.path().join("out/table.txt")).unwrap();
+    assert!(text.contains("halved"), "{text}");
 }
 
 #[test]
@@ -733,6 +789,8 @@ fn limits_and_orders_of_made_up_sequences() {
     let sizes = [1.0, 0.5, 0.25];
     let of = |values: [f64; 3]| limit(&sizes, &values.map(|x| vec![x]), 1).unwrap();
     assert_eq!(of([1.0, 2.0, 1.0]).how, How::NoOrder);
+    // Values that go to and fro show no order, however quickly they calm down.
+    assert_eq!(of([1.0, 5.0, 4.0]).how, How::NoOrder);
     assert_eq!(of([1.0, 2.0, 4.0]).value, [4.0]);
     assert_eq!(of([5.0, 7.0, 7.0 + 1e-14]).how, How::Rounding);
     assert_eq!(

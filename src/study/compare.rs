@@ -99,6 +99,7 @@ fn against(study: &Study, results: &Results<'_>, measure: Measure, instants: &[f
     let limit_of = |points: &[Done<'_>]| {
         let there = points
             .iter()
+            .filter(|done| done.halved() == 0)
             .filter_map(|done| Some((done.point.size, of(done)?)));
         let (sizes, values): (Vec<_>, Vec<_>) = there.unzip();
         limit(&sizes, &values, width)
@@ -171,9 +172,11 @@ fn alone(results: &Results<'_>, measure: Measure) -> Judged {
     }
 }
 
+/// The order that points show which are of their size: steps that were halved are not.
 fn order(points: &[Done<'_>], errors: &[Option<f64>], floor: f64) -> Option<f64> {
     let pairs = points.iter().zip(errors);
     let shown: Vec<_> = pairs
+        .filter(|(done, _)| done.halved() == 0)
         .filter_map(|(done, error)| Some([done.point.size, (*error)?]))
         .collect();
     observed_order(&shown, floor)

@@ -6,7 +6,7 @@
 //! |x₁ − x₂| / |x₂ − x₃| = (h₁ᵖ − h₂ᵖ) / (h₂ᵖ − h₃ᵖ),     x = x₃ + (x₃ − x₂) h₃ᵖ / (h₂ᵖ − h₃ᵖ),
 //! ```
 //!
-//! the first of which gives p, whether or not the ratio of the steps is the same.
+//! the first of which gives p, whether or not the ratio of the steps is the same. Values that turn back show no order.
 
 /// Orders that are believed.
 const SENSIBLE: [f64; 2] = [0.5, 8.0];
@@ -92,7 +92,7 @@ pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<Limit> 
         .iter()
         .map(|(h, x)| {
             let apart = [(0, 1), (1, 2)].map(|(i, j)| distance(&x[i], &x[j], width));
-            order([h[0], h[1], h[2]], apart, rounding)
+            order([h[0], h[1], h[2]], apart, rounding).filter(|_| is_one_way(&x[0], &x[1], &x[2]))
         })
         .collect();
     let extrapolated = |k: usize| {
@@ -142,6 +142,12 @@ pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<Limit> 
         },
     };
     Some(found)
+}
+
+/// Whether values go on as they went before, as errors C hᵖ do.
+fn is_one_way(a: &[f64], b: &[f64], c: &[f64]) -> bool {
+    let steps = a.iter().zip(b).zip(c).map(|((a, b), c)| (b - a) * (c - b));
+    steps.sum::<f64>() > 0.0
 }
 
 /// The order that two successive differences show; none where it is not sensible, or where they are rounding.

@@ -3,14 +3,17 @@
 //! - `read`: the study file and all its problems; `measure`: what is measured of them.
 //! - `outcome`, `schedule`: one run, and all of them in rounds.
 //! - `limit`, `compare`: observed orders and Richardson's limits; errors of all points.
+//! - `price`, `conclusion`: what accuracies cost; what it all says in words.
 //! - `table`, `diagram`, `record`, `page`: what is told.
 
 pub mod compare;
+pub mod conclusion;
 mod diagram;
 pub mod limit;
 pub mod measure;
 pub mod outcome;
 mod page;
+pub mod price;
 pub mod read;
 mod record;
 pub mod schedule;
@@ -24,6 +27,7 @@ use crate::report::atomic;
 use crate::report::origin::Origin;
 use crate::run::{RunError, Shown, Told, make_folder};
 use crate::study::compare::{Judged, judge, moved_marker};
+use crate::study::conclusion::conclusion;
 use crate::study::measure::Asked;
 use crate::study::read::{Study, read_study};
 use crate::study::schedule::{Results, bar, look, time};
@@ -79,8 +83,9 @@ pub fn study(request: &StudyRequest) -> Result<Told, RunError> {
     time(&study, &mut results, runs, &bar);
     bar.finish_and_clear();
     let judged = judge(&study, &results);
-    let table = write(&folder, request, &study, &results, &judged)?;
-    Ok(told(&results, &table, &folder, began))
+    let said = conclusion(&study, &results, &judged);
+    let table = write(&folder, request, &study, &results, &judged, &said)?;
+    Ok(told(&results, &format!("{table}{said}\n"), &folder, began))
 }
 
 /// Writes all files; the table to read.
@@ -90,6 +95,7 @@ fn write(
     study: &Study,
     results: &Results<'_>,
     judged: &[Judged],
+    said: &str,
 ) -> Result<String, RunError> {
     let origin = Origin {
         command: request.command.clone(),
@@ -113,13 +119,14 @@ fn write(
     let text = table::text(study, results, judged);
     put("table.txt", &text)?;
     put("table.csv", &table::csv(study, results, judged, &origin))?;
-    let page = page::markdown(study, results, judged, &figures, &text, &origin);
+    let page = page::markdown(study, results, judged, &figures, said, &text, &origin);
     put("study.md", &page)?;
-    record::write(&folder.join("study.json"), request, study, results, judged)?;
+    let path = folder.join("study.json");
+    record::write(&path, request, study, results, judged, said)?;
     Ok(text)
 }
 
-fn told(results: &Results<'_>, table: &str, folder: &Path, began: Instant) -> Told {
+fn told(results: &Results<'_>, text: &str, folder: &Path, began: Instant) -> Told {
     let points = || results.methods.iter().flatten();
     let solved = points().filter(|done| done.first.is_solved).count();
     let failed = points().filter(|done| !done.first.is_solved);
@@ -135,7 +142,7 @@ fn told(results: &Results<'_>, table: &str, folder: &Path, began: Instant) -> To
     Told {
         is_solved: solved > 0 && !results.is_interrupted,
         result: format!(
-            "{table}{solved} of {} points solved, {:.1} s, {}",
+            "{text}{solved} of {} points solved, {:.1} s, {}",
             points().count(),
             began.elapsed().as_secs_f64(),
             folder.display()

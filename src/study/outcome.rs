@@ -46,6 +46,8 @@ pub struct Seen {
     pub numbers: BTreeMap<Measure, f64>,
     /// Iterations of the solver, or of Newton's method over all steps.
     pub iterations: usize,
+    /// Equal steps that had to be halved: the motion is then one of finer steps in part.
+    pub halved: usize,
 }
 
 /// The status of a run that Ctrl-C ended.
@@ -164,15 +166,20 @@ fn motion(
         seconds,
         is_solved,
     };
-    let conservative = matches!(task.voltages, Voltages::Constant(_));
-    let look = |names: &[String]| of_motion(&simulated, conservative, names);
+    let look = |names: &[String]| of_motion(&simulated, task, names);
     (ended, markers.filter(|_| is_solved).map(look))
 }
 
-fn of_motion(simulated: &Simulated, conservative: bool, names: &[String]) -> Seen {
+fn of_motion(simulated: &Simulated, task: &Simulation, names: &[String]) -> Seen {
     let Simulated { model, history, .. } = simulated;
+    let conservative = matches!(task.voltages, Voltages::Constant(_));
     let mut seen = Seen {
         iterations: history.report.iterations,
+        // Steps by a tolerance have the length that they need.
+        halved: match task.tolerance {
+            None => history.report.halved,
+            Some(_) => 0,
+        },
         ..Seen::of(model, &Trajectory::from_history(model, history), names)
     };
     let observed = observations(model, history);
@@ -252,7 +259,7 @@ fn rest(
         places: vec![marks(&model, &found.z, names)],
         reference: marks(&model, &zero, names),
         iterations: found.iterations,
-        numbers: BTreeMap::new(),
+        ..Seen::default()
     };
     (ended, markers.map(look))
 }

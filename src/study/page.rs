@@ -7,12 +7,10 @@ use crate::report::origin::Origin;
 use crate::study::compare::{Judged, common};
 use crate::study::limit::How;
 use crate::study::measure::{Measure, Unit};
+use crate::study::price;
 use crate::study::read::Study;
 use crate::study::record::{command, machine, of_reference};
-use crate::study::schedule::{Done, Results};
-
-/// Accuracies that are priced, as parts of the scale of a measure.
-const ACCURACIES: [f64; 3] = [1e-2, 1e-4, 1e-6];
+use crate::study::schedule::Results;
 
 /// The page; `figures` are the names of those written, by measure.
 pub(super) fn markdown(
@@ -20,6 +18,7 @@ pub(super) fn markdown(
     results: &Results<'_>,
     judged: &[Judged],
     figures: &[Option<String>],
+    conclusion: &str,
     table: &str,
     origin: &Origin,
 ) -> String {
@@ -31,6 +30,7 @@ pub(super) fn markdown(
     if let Some(about) = &study.about {
         add(about.clone());
     }
+    add(format!("**Conclusion.** {conclusion}"));
     add(how_it_was_run(results));
     if let Some(prices) = prices(study, results, judged) {
         add(prices);
@@ -90,33 +90,25 @@ fn how_it_was_run(results: &Results<'_>) -> String {
 /// What each accuracy costs by each method.
 fn prices(study: &Study, results: &Results<'_>, judged: &[Judged]) -> Option<String> {
     let mut rows = String::new();
-    for judged in judged
-        .iter()
-        .filter(|judged| judged.measure.has_reference())
-    {
-        for accuracy in ACCURACIES {
-            let wanted = accuracy * judged.scale;
-            let costs: Vec<Option<f64>> = (0..study.methods.len())
-                .map(|m| {
-                    // What is below the uncertainty of the reference may be as large as that.
-                    let error = |k: usize| Some(judged.errors[m][k]?.max(judged.floors[m]));
-                    cost(&results.methods[m], error, wanted)
-                })
-                .collect();
-            let Some(least) = costs.iter().flatten().copied().reduce(f64::min) else {
+    for judged in judged.iter().filter(|judged| judged.measure.has_order()) {
+        for price in price::prices(results, judged) {
+            let Some(cheapest) = price.cheapest() else {
                 continue;
             };
-            let cells = costs.iter().map(|cost| match cost {
+            let cells = price.costs.iter().enumerate().map(|(m, cost)| match cost {
                 None => "–".to_owned(),
-                Some(seconds) if *seconds == least && costs.len() > 1 => {
+                Some([_, seconds, _]) if m == cheapest && price.costs.len() > 1 => {
                     format!("**{}**", significant(*seconds, 3))
                 }
-                Some(seconds) => significant(*seconds, 3),
+                Some([_, seconds, _]) => significant(*seconds, 3),
             });
             let cells: Vec<_> = cells.collect();
-            let told = match judged.measure.unit() {
-                Unit::Length => format!("{accuracy:.0e}, {}", length(wanted)),
-                Unit::Relative => format!("{accuracy:.0e}"),
+            let unit = judged.measure.unit();
+            let told = match unit {
+                Unit::Length => {
+                    format!("{:.0e}, {}", price.accuracy, price::told(unit, price.error))
+                }
+                Unit::Relative => price::told(unit, price.error),
             };
             writeln!(
                 rows,
@@ -136,35 +128,6 @@ fn prices(study: &Study, results: &Results<'_>, judged: &[Judged]) -> Option<Str
             "--:|".repeat(names.len())
         )
     })
-}
-
-/// Seconds until errors are `wanted`: between the first point that is so accurate and the one before; those of the first
-/// point, where it is.
-fn cost(points: &[Done<'_>], error: impl Fn(usize) -> Option<f64>, wanted: f64) -> Option<f64> {
-    let known = points.iter().enumerate();
-    let known: Vec<[f64; 2]> = known
-        .filter_map(|(k, done)| Some([done.median()?, error(k)?]))
-        .collect();
-    let first = known.iter().position(|point| point[1] <= wanted)?;
-    let Some(before) = first.checked_sub(1) else {
-        return Some(known[0][0]);
-    };
-    let [[fast, rough], [slow, fine]] = [known[before], known[first]];
-    // An error of exactly zero has no place in the diagram.
-    if fine <= 0.0 {
-        return Some(slow);
-    }
-    let part = (rough / wanted).ln() / (rough / fine).ln();
-    Some(fast * (slow / fast).powf(part))
-}
-
-/// A length in the unit that suits it.
-fn length(millimetres: f64) -> String {
-    match millimetres {
-        x if x >= 0.1 => format!("{} mm", significant(x, 2)),
-        x if x >= 1e-4 => format!("{} µm", significant(1e3 * x, 2)),
-        x => format!("{} nm", significant(1e6 * x, 2)),
-    }
 }
 
 fn section(study: &Study, judged: &Judged, figure: Option<&str>) -> String {

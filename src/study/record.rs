@@ -26,6 +26,8 @@ struct Record<'a> {
     asked: Asked,
     /// `complete` or `interrupted`.
     status: &'static str,
+    /// What the results say, in words.
+    conclusion: &'a str,
     /// Timed runs that were asked for.
     runs: usize,
     markers: &'a [String],
@@ -89,6 +91,9 @@ struct PointRecord<'a> {
     seconds: Option<Seconds<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     iterations: Option<usize>,
+    /// Steps that had to be halved: the point is then none of its step, and enters neither limit nor order.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    halved_steps: Option<usize>,
     values: BTreeMap<Measure, Vec<f64>>,
     errors: BTreeMap<Measure, f64>,
 }
@@ -126,6 +131,7 @@ pub(super) fn write(
     study: &Study,
     results: &Results<'_>,
     judged: &[Judged],
+    conclusion: &str,
 ) -> Result<(), WriteError> {
     let record = Record {
         command: &request.command,
@@ -136,6 +142,7 @@ pub(super) fn write(
             true => "interrupted",
             false => "complete",
         },
+        conclusion,
         runs: request.runs.unwrap_or(study.runs),
         markers: &study.markers,
         instants: common(results),
@@ -247,6 +254,7 @@ fn of_point<'a>(study: &Study, done: &'a Done<'a>) -> PointRecord<'a> {
         message: done.first.message.as_deref(),
         seconds: done.median().and_then(seconds),
         iterations: done.seen.as_ref().map(|seen| seen.iterations),
+        halved_steps: Some(done.halved()).filter(|&count| count > 0),
         values: BTreeMap::new(),
         errors: BTreeMap::new(),
     }

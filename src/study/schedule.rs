@@ -117,6 +117,11 @@ impl Done<'_> {
         bar.inc(1);
     }
 
+    /// Steps that had to be halved in the run that was looked at.
+    pub fn halved(&self) -> usize {
+        self.seen.as_ref().map_or(0, |seen| seen.halved)
+    }
+
     /// The part `fraction` of the runs took no longer than this; none where there was no run.
     pub fn quantile(&self, fraction: f64) -> Option<f64> {
         let last = self.seconds.len().checked_sub(1)?;

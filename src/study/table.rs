@@ -27,6 +27,7 @@ pub(super) fn csv(
         "upper quartile [s]",
         "least [s]",
         "iterations",
+        "halved steps",
     ]
     .map(str::to_owned)
     .into();
@@ -47,6 +48,7 @@ pub(super) fn csv(
             ];
             row.extend(seconds);
             row.push(iterations.unwrap_or_default());
+            row.push(done.halved().to_string());
             row.extend(judged.iter().map(|judged| full(judged.errors[m][k])));
             rows.push(row);
         }
@@ -78,7 +80,10 @@ pub(super) fn text(study: &Study, results: &Results<'_>, judged: &[Judged]) -> S
             let mut row = vec![
                 method.name.clone(),
                 done.point.label.clone(),
-                done.first.status.replace('_', " "),
+                match done.halved() {
+                    0 => done.first.status.replace('_', " "),
+                    halved => format!("{}, {halved} halved", done.first.status.replace('_', " ")),
+                },
                 done.median().map_or_else(dash, |s| significant(s, 3)),
                 iterations.unwrap_or_else(dash),
             ];
