@@ -266,8 +266,8 @@ impl Effect for Failing {
         self.effect.elements()
     }
 
-    fn couple(&mut self, couplings: &mut Couplings) {
-        self.effect.couple(couplings);
+    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
+        self.effect.couple(couplings, slots);
     }
 
     fn kind(&self) -> Kind {
@@ -282,8 +282,8 @@ impl Effect for Failing {
         self.effect.momentum(x, v, out);
     }
 
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output) {
-        self.effect.evaluate(level, frame, out);
+    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output) {
+        self.effect.evaluate(level, frame, slots, out);
         let call = 1 + self.calls.fetch_add(1, Ordering::SeqCst);
         if (self.from..self.until).contains(&call) {
             for forces in &mut out.plain.forces {

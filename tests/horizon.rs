@@ -157,9 +157,9 @@ impl Interval {
         let mut out = action.intervals.output(Level::Hessian);
         let [a, b] = &self.vectors;
         let frame = self.frame([a, b], h, Horizon::Free);
-        for effect in &action.intervals.effects {
+        for (effect, slots) in action.intervals.terms() {
             if effect.kind() != Kind::VirtualWork {
-                effect.evaluate(Level::Hessian, &frame, &mut out);
+                effect.evaluate(Level::Hessian, &frame, slots, &mut out);
             }
         }
         (

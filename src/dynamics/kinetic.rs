@@ -104,9 +104,9 @@ pub(super) fn masses(model: &Model, x: &[Vector]) -> Blocks {
     let mut out = action.output(Level::Hessian);
     let scalars = vec![0.0; action.scalars];
     let frame = Frame::of_instant(x, &scalars);
-    for effect in &action.effects {
+    for (effect, slots) in action.terms() {
         if effect.kind() == Kind::Kinetic {
-            effect.evaluate(Level::Hessian, &frame, &mut out);
+            effect.evaluate(Level::Hessian, &frame, slots, &mut out);
         }
     }
     out.plain.blocks

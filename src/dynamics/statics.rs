@@ -8,7 +8,7 @@
 
 use crate::dynamics::EquilibriumError;
 use crate::dynamics::tangent::{Entries, Tangent};
-use crate::functional::{Effect, Level};
+use crate::functional::Level;
 use crate::ipopt::interrupt;
 use crate::math::Vector;
 use crate::model::Model;
@@ -348,9 +348,9 @@ fn weights(model: &Model) -> Vec<Vector> {
     let interval = Interval::given(&scalars, model.multiplier_time);
     let frame = interval.frame([&instant, &instant]);
     let mut out = model.action.intervals.output(Level::Gradient);
-    let effects = model.action.intervals.effects.iter();
-    for effect in effects.filter(|effect| Effect::name(effect.as_ref()) == "gravity") {
-        effect.evaluate(Level::Gradient, &frame, &mut out);
+    let terms = model.action.intervals.terms();
+    for (gravity, slots) in terms.filter(|(effect, _)| effect.name() == "gravity") {
+        gravity.evaluate(Level::Gradient, &frame, slots, &mut out);
     }
     let [here, there] = &out.plain.forces;
     here.iter().zip(there).map(|(a, b)| a + b).collect()

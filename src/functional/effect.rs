@@ -91,8 +91,8 @@ pub trait Effect: Debug + Send + Sync {
     /// How many elements there are.
     fn elements(&self) -> usize;
 
-    /// Registers the couplings of the elements, and remembers where they lie.
-    fn couple(&mut self, couplings: &mut Couplings);
+    /// Registers the couplings of the elements, and lists the slots that they got in the order in which they are read.
+    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>);
 
     /// What the effect is in the energy balance.
     fn kind(&self) -> Kind;
@@ -113,14 +113,14 @@ pub trait Effect: Debug + Send + Sync {
     /// Adds the momenta ∂T/∂ẋ at vectors x with rates v.
     fn momentum(&self, x: &[Vector], v: &[Vector], out: &mut [Vector]);
 
-    /// Adds the derivatives.
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output);
+    /// Adds the derivatives; `slots` are those of its couplings.
+    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output);
 }
 
 /// A quantity at one site that is read by itself: a path limit, a goal.
 pub trait Measure: Debug + Send + Sync {
-    /// Registers what the quantity couples.
-    fn couple(&mut self, couplings: &mut Couplings);
+    /// Registers what the quantity couples, and lists the slots in the order in which they are read.
+    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>);
 
     /// Vectors it reads.
     fn vectors(&self) -> Vec<usize>;
@@ -137,8 +137,8 @@ pub trait Measure: Debug + Send + Sync {
     /// Adds its gradient.
     fn gradient(&self, frame: &Frame<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]);
 
-    /// Adds its gradient and Hessian times a weight.
-    fn add_weighted(&self, weight: f64, frame: &Frame<'_>, part: &mut Part);
+    /// Adds its gradient and Hessian times a weight; `slots` are those of its couplings.
+    fn add_weighted(&self, weight: f64, frame: &Frame<'_>, slots: &[u32], part: &mut Part);
 }
 
 /// A sum of effects at one site, and the quantities that are measured there.
@@ -150,6 +150,10 @@ pub struct Sum {
     pub measures: Vec<Box<dyn Measure>>,
     /// What couples in them.
     pub couplings: Couplings,
+    /// Slots of the couplings of each effect.
+    effect_slots: Vec<Vec<u32>>,
+    /// Slots of the couplings of each quantity.
+    measure_slots: Vec<Vec<u32>>,
     /// Number of vectors.
     pub vectors: usize,
     /// Number of scalars of the site.
@@ -159,25 +163,36 @@ pub struct Sum {
 impl Sum {
     /// A sum over effects that read `vectors` vectors and `scalars` scalars.
     pub fn new(
-        mut effects: Vec<Box<dyn Effect>>,
-        mut measures: Vec<Box<dyn Measure>>,
+        effects: Vec<Box<dyn Effect>>,
+        measures: Vec<Box<dyn Measure>>,
         vectors: usize,
         scalars: usize,
     ) -> Self {
         let mut couplings = Couplings::default();
-        for effect in &mut effects {
-            effect.couple(&mut couplings);
-        }
-        for measure in &mut measures {
-            measure.couple(&mut couplings);
-        }
+        let mut laid = |couple: &dyn Fn(&mut Couplings, &mut Vec<u32>)| {
+            let mut slots = Vec::new();
+            couple(&mut couplings, &mut slots);
+            slots
+        };
+        let of_effect = |effect: &Box<dyn Effect>| laid(&|c, slots| effect.couple(c, slots));
+        let effect_slots = effects.iter().map(of_effect).collect();
+        let of_measure = |measure: &Box<dyn Measure>| laid(&|c, slots| measure.couple(c, slots));
+        let measure_slots = measures.iter().map(of_measure).collect();
         Self {
             effects,
             measures,
             couplings,
+            effect_slots,
+            measure_slots,
             vectors,
             scalars,
         }
+    }
+
+    /// The effects with the slots of their couplings.
+    pub fn terms(&self) -> impl Iterator<Item = (&dyn Effect, &[u32])> {
+        let effects = self.effects.iter().map(Box::as_ref);
+        effects.zip(self.effect_slots.iter().map(Vec::as_slice))
     }
 
     /// Storage for the derivatives up to a level.
@@ -202,13 +217,15 @@ impl Sum {
         if level == Level::Third {
             out.contracted.clear(true);
         }
-        for effect in &self.effects {
-            effect.evaluate(level, frame, out);
+        for (effect, slots) in self.terms() {
+            effect.evaluate(level, frame, slots, out);
         }
         if level == Level::Third {
-            let weighted = self.measures.iter().zip(frame.weights);
-            for (measure, &weight) in weighted.filter(|(_, weight)| **weight != 0.0) {
-                measure.add_weighted(weight, frame, &mut out.contracted);
+            let measures = self.measures.iter().zip(&self.measure_slots);
+            for ((measure, slots), &weight) in measures.zip(frame.weights) {
+                if weight != 0.0 {
+                    measure.add_weighted(weight, frame, slots, &mut out.contracted);
+                }
             }
         }
     }

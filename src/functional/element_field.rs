@@ -11,15 +11,6 @@ pub struct ElementField {
     nodes: [usize; 8],
     terminals: [Terminal; 8],
     at: Stencil,
-    slots: Slots,
-}
-
-/// Where the pairs of nodes and scalars lie; those of scalars follow the pairs of nodes with a potential.
-#[derive(Debug, Default)]
-struct Slots {
-    vectors: [[usize; 8]; 8],
-    mixed: [[usize; 8]; 8],
-    scalars: [[usize; 8]; 8],
 }
 
 impl ElementField {
@@ -35,7 +26,6 @@ impl ElementField {
             nodes,
             terminals,
             at,
-            slots: Slots::default(),
         }
     }
 
@@ -81,23 +71,17 @@ impl ElementField {
 }
 
 impl Measure for ElementField {
-    fn couple(&mut self, couplings: &mut Couplings) {
+    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
         let nodes = self.nodes;
-        let mut slots = Slots::default();
-        for (i, &a) in nodes.iter().enumerate() {
-            for (j, &b) in nodes.iter().enumerate() {
-                slots.vectors[i][j] = couplings.add_full(a, b);
+        for &a in &nodes {
+            slots.extend(nodes.map(|b| couplings.add_full(a, b) as u32));
+        }
+        for (_, s, _) in self.wired() {
+            slots.extend(nodes.map(|node| couplings.add_mixed(node, s) as u32));
+            for (_, t, _) in self.wired().filter(|&(_, t, _)| t <= s) {
+                slots.push(couplings.add_scalars(s, t) as u32);
             }
         }
-        for (j, s, _) in self.wired() {
-            for (i, &node) in nodes.iter().enumerate() {
-                slots.mixed[i][j] = couplings.add_mixed(node, s);
-            }
-            for (i, t, _) in self.wired() {
-                slots.scalars[i][j] = couplings.add_scalars(s, t);
-            }
-        }
-        self.slots = slots;
     }
 
     fn vectors(&self) -> Vec<usize> {
@@ -123,14 +107,16 @@ impl Measure for ElementField {
         self.add_first(&self.field(frame), 1.0, frame.h, forces, rows);
     }
 
-    fn add_weighted(&self, weight: f64, frame: &Frame<'_>, part: &mut Part) {
+    fn add_weighted(&self, weight: f64, frame: &Frame<'_>, slots: &[u32], part: &mut Part) {
+        let mut slots = slots.iter().map(|&slot| slot as usize);
+        let mut next = || slots.next().expect("a slot for each coupling");
         let field = self.field(frame);
         self.add_first(&field, weight, frame.h, &mut part.forces, &mut part.rows);
         let weights = self.at.weights(frame.h);
         for i in 0..8 {
             for j in 0..8 {
                 let block = field.by_places(i, j) * weight;
-                let to = &mut part.blocks.full[self.slots.vectors[i][j]];
+                let to = &mut part.blocks.full[next()];
                 for side in (0..4).filter(|&side| frame.sides.blocks[side]) {
                     let share = weights[side / 2] * weights[side % 2];
                     if share != 0.0 {
@@ -142,14 +128,13 @@ impl Measure for ElementField {
         for (j, s, factor) in self.wired() {
             for i in 0..8 {
                 let column = field.by_place_and_potential(i, j) * (weight * factor);
-                let to = &mut part.blocks.mixed[self.slots.mixed[i][j]];
+                let to = &mut part.blocks.mixed[next()];
                 to[0] += column * weights[0];
                 to[1] += column * weights[1];
             }
             // Pairs of different scalars are met twice, once in each order, and kept once.
             for (i, _, other) in self.wired().filter(|&(_, t, _)| t <= s) {
-                part.blocks.scalars[self.slots.scalars[i][j]] +=
-                    weight * factor * other * field.by_potentials(i, j);
+                part.blocks.scalars[next()] += weight * factor * other * field.by_potentials(i, j);
             }
         }
     }

@@ -33,7 +33,6 @@ pub struct Group<E, const M: usize, const NV: usize, const NS: usize> {
     scale: f64,
     site: Site,
     elements: Vec<Element<E, NV, NS>>,
-    slots: Vec<Slots<NV, NS>>,
 }
 
 /// Where a group lives in time.
@@ -43,11 +42,29 @@ enum Site {
     Instants,
 }
 
-#[derive(Clone, Debug)]
-struct Slots<const NV: usize, const NS: usize> {
-    vectors: [[usize; NV]; NV],
-    mixed: [[usize; NS]; NV],
-    scalars: [[usize; NS]; NS],
+/// No slot.
+const NONE: u32 = u32::MAX;
+
+/// The slots of one element: pairs of vectors, then of vectors and scalars, then of scalars.
+#[derive(Clone, Copy)]
+struct Slots<'a, const NV: usize, const NS: usize>(&'a [u32]);
+
+impl<const NV: usize, const NS: usize> Slots<'_, NV, NS> {
+    const COUNT: usize = NV * NV + NV * NS + NS * NS;
+
+    fn vectors(self, i: usize, j: usize) -> Option<usize> {
+        let slot = self.0[NV * i + j];
+        (slot != NONE).then_some(slot as usize)
+    }
+
+    fn mixed(self, i: usize, s: usize) -> usize {
+        self.0[NV * NV + NS * i + s] as usize
+    }
+
+    fn scalars(self, s: usize, t: usize) -> Option<usize> {
+        let slot = self.0[NV * NV + NV * NS + NS * s + t];
+        (slot != NONE).then_some(slot as usize)
+    }
 }
 
 impl<E, const M: usize, const NV: usize, const NS: usize> fmt::Debug for Group<E, M, NV, NS> {
@@ -74,8 +91,50 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
             scale,
             site,
             elements,
-            slots: Vec::new(),
         }
+    }
+
+    fn couple_element(
+        &self,
+        element: &Element<E, NV, NS>,
+        couplings: &mut Couplings,
+        slots: &mut Vec<u32>,
+    ) {
+        let has_second = E::DEGREE >= 2;
+        for (i, a) in element.vectors.iter().enumerate() {
+            for (j, b) in element.vectors.iter().enumerate() {
+                slots.push(match (has_second && E::couples(i, j), E::ISOTROPIC) {
+                    (false, _) => NONE,
+                    (true, true) => couplings.add_isotropic(a.vector, b.vector) as u32,
+                    (true, false) => couplings.add_full(a.vector, b.vector) as u32,
+                });
+            }
+        }
+        for a in &element.vectors {
+            slots.extend(element.scalars.map(|s| match has_second {
+                true => couplings.add_mixed(a.vector, s) as u32,
+                false => NONE,
+            }));
+        }
+        // Multipliers do not meet in second derivatives.
+        let has_scalars = has_second && self.site == Site::Intervals;
+        for (i, &s) in element.scalars.iter().enumerate() {
+            for (j, &t) in element.scalars.iter().enumerate() {
+                slots.push(match has_scalars && j <= i {
+                    true => couplings.add_scalars(s, t) as u32,
+                    false => NONE,
+                });
+            }
+        }
+    }
+
+    /// The elements with their slots.
+    fn with_slots<'a>(
+        &'a self,
+        slots: &'a [u32],
+    ) -> impl Iterator<Item = (&'a Element<E, NV, NS>, Slots<'a, NV, NS>)> {
+        let slots = slots.chunks_exact(Slots::<NV, NS>::COUNT).map(Slots);
+        self.elements.iter().zip(slots)
     }
 
     fn factor(&self, h: f64) -> f64 {
@@ -159,7 +218,7 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
     /// Adds `c · hessian` between the vector arguments that pass `keep`, and with and between scalars.
     #[inline]
     fn add_hessian(
-        (element, slots): (&Element<E, NV, NS>, &Slots<NV, NS>),
+        (element, slots): (&Element<E, NV, NS>, Slots<'_, NV, NS>),
         hessian: &nalgebra::SMatrix<f64, M, M>,
         c: f64,
         frame: &Frame<'_>,
@@ -169,11 +228,10 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
         for (i, a) in element.vectors.iter().enumerate() {
             let wa = a.stencil.weights(frame.h);
             for (j, b) in element.vectors.iter().enumerate() {
-                if !keep(i, j) || slots.vectors[i][j] == usize::MAX {
+                let Some(slot) = slots.vectors(i, j).filter(|_| keep(i, j)) else {
                     continue;
-                }
+                };
                 let wb = b.stencil.weights(frame.h);
-                let slot = slots.vectors[i][j];
                 for side in 0..4 {
                     let weight = c * wa[side / 2] * wb[side % 2];
                     if !frame.sides.blocks[side] || weight == 0.0 {
@@ -189,16 +247,15 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
             }
             for s in 0..NS {
                 let column: Vector = hessian.fixed_view::<3, 1>(3 * i, 3 * NV + s) * c;
-                let slot = slots.mixed[i][s];
+                let slot = slots.mixed(i, s);
                 part.blocks.mixed[slot][0] += column * wa[0];
                 part.blocks.mixed[slot][1] += column * wa[1];
             }
         }
         for s in 0..NS {
             for t in 0..=s {
-                if slots.scalars[s][t] != usize::MAX {
-                    part.blocks.scalars[slots.scalars[s][t]] +=
-                        c * hessian[(3 * NV + s, 3 * NV + t)];
+                if let Some(slot) = slots.scalars(s, t) {
+                    part.blocks.scalars[slot] += c * hessian[(3 * NV + s, 3 * NV + t)];
                 }
             }
         }
@@ -219,7 +276,7 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
 
     fn evaluate_element<const ORDER: usize>(
         &self,
-        (element, slots): (&Element<E, NV, NS>, &Slots<NV, NS>),
+        (element, slots): (&Element<E, NV, NS>, Slots<'_, NV, NS>),
         level: Level,
         frame: &Frame<'_>,
         out: &mut Output,
@@ -327,41 +384,10 @@ where
         self.elements.len()
     }
 
-    fn couple(&mut self, couplings: &mut Couplings) {
-        let mut lay = |element: &Element<E, NV, NS>| {
-            let mut slots = Slots {
-                vectors: [[usize::MAX; NV]; NV],
-                mixed: [[usize::MAX; NS]; NV],
-                scalars: [[usize::MAX; NS]; NS],
-            };
-            if E::DEGREE < 2 {
-                return slots;
-            }
-            for i in 0..NV {
-                for j in (0..NV).filter(|&j| E::couples(i, j)) {
-                    let (a, b) = (element.vectors[i].vector, element.vectors[j].vector);
-                    slots.vectors[i][j] = if E::ISOTROPIC {
-                        couplings.add_isotropic(a, b)
-                    } else {
-                        couplings.add_full(a, b)
-                    };
-                }
-                for s in 0..NS {
-                    slots.mixed[i][s] =
-                        couplings.add_mixed(element.vectors[i].vector, element.scalars[s]);
-                }
-            }
-            if self.site == Site::Intervals {
-                for s in 0..NS {
-                    for t in 0..=s {
-                        slots.scalars[s][t] =
-                            couplings.add_scalars(element.scalars[s], element.scalars[t]);
-                    }
-                }
-            }
-            slots
-        };
-        self.slots = self.elements.iter().map(&mut lay).collect();
+    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
+        for element in &self.elements {
+            self.couple_element(element, couplings, slots);
+        }
     }
 
     fn kind(&self) -> Kind {
@@ -411,8 +437,8 @@ where
         }
     }
 
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output) {
-        for pair in self.elements.iter().zip(&self.slots) {
+    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output) {
+        for pair in self.with_slots(slots) {
             match (level, E::VIRTUAL) {
                 (Level::Gradient, _) => self.evaluate_element::<1>(pair, level, frame, out),
                 (Level::Third, 0) => self.evaluate_element::<3>(pair, level, frame, out),
@@ -426,8 +452,8 @@ impl<E, const M: usize, const NV: usize, const NS: usize> Measure for Group<E, M
 where
     E: Energy<M>,
 {
-    fn couple(&mut self, couplings: &mut Couplings) {
-        Effect::couple(self, couplings);
+    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
+        Effect::couple(self, couplings, slots);
     }
 
     fn vectors(&self) -> Vec<usize> {
@@ -470,8 +496,8 @@ where
         }
     }
 
-    fn add_weighted(&self, weight: f64, frame: &Frame<'_>, part: &mut Part) {
-        for (element, slots) in self.elements.iter().zip(&self.slots) {
+    fn add_weighted(&self, weight: f64, frame: &Frame<'_>, slots: &[u32], part: &mut Part) {
+        for (element, slots) in self.with_slots(slots) {
             let (p, w) = Self::arguments(element, frame, Level::Gradient);
             let jet = element.energy.jet::<2>(&p, &w);
             let c = self.scale * weight;

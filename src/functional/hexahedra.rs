@@ -36,6 +36,8 @@ pub struct Terminal {
 
 /// How the potentials of an element are wired to the scalars of an interval.
 pub trait Wired: Field {
+    /// Whether the nodes have potentials.
+    const HAS_POTENTIALS: bool;
     /// One terminal a node, or nothing.
     type Terminals: Clone + fmt::Debug + Send + Sync;
 
@@ -57,6 +59,7 @@ pub trait Wired: Field {
 }
 
 impl Wired for Passive {
+    const HAS_POTENTIALS: bool = false;
     type Terminals = ();
 
     fn wires((): &()) -> &[Terminal] {
@@ -67,6 +70,7 @@ impl Wired for Passive {
 }
 
 impl Wired for Dielectric {
+    const HAS_POTENTIALS: bool = true;
     type Terminals = [Terminal; 8];
 
     fn wires(terminals: &[Terminal; 8]) -> &[Terminal] {
@@ -78,25 +82,13 @@ impl Wired for Dielectric {
     }
 }
 
-/// Where the blocks of an element lie.
-#[derive(Clone, Debug)]
-struct Slots {
-    vectors: [[u32; 8]; 8],
-    /// Empty for a passive element.
-    electric: Vec<ElectricSlots>,
-}
-
-#[derive(Clone, Debug)]
-struct ElectricSlots {
-    mixed: [[u32; 8]; 8],
-    scalars: [[u32; 8]; 8],
-}
+/// Slots of a table of all pairs of the eight nodes of an element.
+const PAIRS: usize = 64;
 
 /// Hexahedra of one kind.
 pub struct Hexahedra<F: Wired> {
     name: String,
     elements: Vec<Hexahedron<F>>,
-    slots: Vec<Slots>,
     locals: Stretches<Local<F>>,
 }
 
@@ -117,9 +109,13 @@ impl<F: Wired> Hexahedra<F> {
         Self {
             name: name.to_owned(),
             elements,
-            slots: Vec::new(),
             locals: Stretches::default(),
         }
+    }
+
+    /// Number of slots of an element: pairs of nodes, and of nodes and potentials, and of potentials.
+    const fn slots() -> usize {
+        if F::HAS_POTENTIALS { 3 * PAIRS } else { PAIRS }
     }
 
     fn potentials(element: &Hexahedron<F>, scalars: &[f64]) -> F::Potentials {
@@ -179,14 +175,15 @@ impl<F: Wired> Hexahedra<F> {
 
     /// Adds `−h` times second derivatives.
     fn add_second(
-        (element, slots): (&Hexahedron<F>, &Slots),
+        (element, slots): (&Hexahedron<F>, &[u32]),
         local: &mut Local<F>,
         frame: &Frame<'_>,
         part: &mut Part,
     ) {
         let c = -0.25 * frame.h;
         let sides = || (0..4).filter(|&side| frame.sides.blocks[side]);
-        for (row, stiffness) in slots.vectors.iter().zip(&local.stiffness) {
+        let (vectors, electric_slots) = slots.split_at(PAIRS);
+        for (row, stiffness) in vectors.chunks_exact(8).zip(&local.stiffness) {
             for (&slot, k) in row.iter().zip(stiffness) {
                 let block = &mut part.blocks.full[slot as usize];
                 for side in sides() {
@@ -194,9 +191,10 @@ impl<F: Wired> Hexahedra<F> {
                 }
             }
         }
-        let (Some(electric), [at]) = (F::electric(&mut local.electric), &slots.electric[..]) else {
+        let Some(electric) = F::electric(&mut local.electric) else {
             return;
         };
+        let (mixed, scalars) = electric_slots.split_at(PAIRS);
         let wires = F::wires(&element.terminals);
         for (j, wire) in wires.iter().enumerate() {
             let Some((s, factor)) = wire.scalar else {
@@ -204,7 +202,7 @@ impl<F: Wired> Hexahedra<F> {
             };
             for i in 0..8 {
                 let column = electric.coupling[i][j] * (-0.5 * frame.h * factor);
-                let block = &mut part.blocks.mixed[at.mixed[i][j] as usize];
+                let block = &mut part.blocks.mixed[mixed[8 * i + j] as usize];
                 block[0] += column;
                 block[1] += column;
             }
@@ -213,7 +211,7 @@ impl<F: Wired> Hexahedra<F> {
                 if let Some((t, other)) = other.scalar
                     && t <= s
                 {
-                    part.blocks.scalars[at.scalars[j][i] as usize] -=
+                    part.blocks.scalars[scalars[8 * j + i] as usize] -=
                         frame.h * factor * other * electric.permittivity[i][j];
                 }
             }
@@ -226,12 +224,15 @@ impl<F: Wired> Hexahedra<F> {
         local: &mut Local<F>,
         level: Level,
         frame: &Frame<'_>,
+        slots: &[u32],
         part: &mut Part,
     ) {
         let element = &self.elements[index];
         Self::add_first(element, local, frame, part);
         if level >= Level::Hessian {
-            Self::add_second((element, &self.slots[index]), local, frame, part);
+            let count = Self::slots();
+            let slots = &slots[count * index..count * (index + 1)];
+            Self::add_second((element, slots), local, frame, part);
         }
     }
 
@@ -254,33 +255,29 @@ impl<F: Wired> Effect for Hexahedra<F> {
         self.elements.len()
     }
 
-    fn couple(&mut self, couplings: &mut Couplings) {
-        let slots = |element: &Hexahedron<F>| {
+    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
+        for element in &self.elements {
+            for &a in &element.nodes {
+                slots.extend(element.nodes.map(|b| couplings.add_full(a, b) as u32));
+            }
+            if !F::HAS_POTENTIALS {
+                continue;
+            }
             let wires = F::wires(&element.terminals);
             let scalar = |i: usize| wires[i].scalar.map(|(s, _)| s);
-            let vectors = element
-                .nodes
-                .map(|a| element.nodes.map(|b| couplings.add_full(a, b) as u32));
-            let mut electric = Vec::new();
-            if !wires.is_empty() {
-                let mut slots = ElectricSlots {
-                    mixed: [[NONE; 8]; 8],
-                    scalars: [[NONE; 8]; 8],
-                };
-                for j in 0..8 {
-                    let Some(s) = scalar(j) else { continue };
-                    for (i, &node) in element.nodes.iter().enumerate() {
-                        slots.mixed[i][j] = couplings.add_mixed(node, s) as u32;
-                        if let Some(t) = scalar(i).filter(|&t| t <= s) {
-                            slots.scalars[j][i] = couplings.add_scalars(s, t) as u32;
-                        }
+            let (mut mixed, mut scalars) = ([NONE; PAIRS], [NONE; PAIRS]);
+            for j in 0..8 {
+                let Some(s) = scalar(j) else { continue };
+                for (i, &node) in element.nodes.iter().enumerate() {
+                    mixed[8 * i + j] = couplings.add_mixed(node, s) as u32;
+                    if let Some(t) = scalar(i).filter(|&t| t <= s) {
+                        scalars[8 * j + i] = couplings.add_scalars(s, t) as u32;
                     }
                 }
-                electric.push(slots);
             }
-            Slots { vectors, electric }
-        };
-        self.slots = self.elements.iter().map(slots).collect();
+            slots.extend(mixed);
+            slots.extend(scalars);
+        }
     }
 
     fn kind(&self) -> Kind {
@@ -295,11 +292,7 @@ impl<F: Wired> Effect for Hexahedra<F> {
     }
 
     fn energy_parts(&self) -> Vec<String> {
-        let is_dielectric = self
-            .elements
-            .iter()
-            .any(|element| !F::wires(&element.terminals).is_empty());
-        match is_dielectric {
+        match F::HAS_POTENTIALS {
             true => ["elastic", "electric"]
                 .map(|part| format!("{} {part}", self.name))
                 .to_vec(),
@@ -321,13 +314,13 @@ impl<F: Wired> Effect for Hexahedra<F> {
 
     fn momentum(&self, _x: &[Vector], _v: &[Vector], _out: &mut [Vector]) {}
 
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output) {
+    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output) {
         if level < Level::Third {
             let compute = |element: &Hexahedron<F>, local: &mut Local<F>| {
                 Self::local(element, level, frame, local);
             };
             self.locals.each(&self.elements, compute, |index, local| {
-                self.add(index, local, level, frame, &mut out.plain);
+                self.add(index, local, level, frame, slots, &mut out.plain);
             });
             return;
         }
@@ -341,8 +334,8 @@ impl<F: Wired> Effect for Hexahedra<F> {
             element
                 .law
                 .third(shape, &x, &potentials, &w, &rates, &mut plain, &mut along);
-            self.add(index, &mut plain, level, frame, &mut out.plain);
-            self.add(index, &mut along, level, frame, &mut out.contracted);
+            self.add(index, &mut plain, level, frame, slots, &mut out.plain);
+            self.add(index, &mut along, level, frame, slots, &mut out.contracted);
         }
     }
 }

@@ -35,7 +35,6 @@ impl Mass {
 pub struct Inertia {
     name: String,
     masses: Vec<Mass>,
-    slots: Vec<[usize; 2]>,
 }
 
 impl Inertia {
@@ -44,7 +43,6 @@ impl Inertia {
         Self {
             name: name.to_owned(),
             masses,
-            slots: Vec::new(),
         }
     }
 }
@@ -58,12 +56,11 @@ impl Effect for Inertia {
         self.masses.len()
     }
 
-    fn couple(&mut self, couplings: &mut Couplings) {
-        let slot = |m: &Mass| {
+    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
+        for m in &self.masses {
             let slot = couplings.add_isotropic(m.vectors[0], m.vectors[1]);
-            [slot, couplings.transposed_isotropic(slot)]
-        };
-        self.slots = self.masses.iter().map(slot).collect();
+            slots.extend([slot, couplings.transposed_isotropic(slot)].map(|slot| slot as u32));
+        }
     }
 
     fn kind(&self) -> Kind {
@@ -90,12 +87,12 @@ impl Effect for Inertia {
         }
     }
 
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output) {
-        for (m, slots) in self.masses.iter().zip(&self.slots) {
+    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output) {
+        for (m, slots) in self.masses.iter().zip(slots.chunks_exact(2)) {
             let [a, b] = m.vectors;
-            add(level, frame, m.mass, [a, b], slots[0], out);
+            add(level, frame, m.mass, [a, b], slots[0] as usize, out);
             if !m.is_point() {
-                add(level, frame, m.mass, [b, a], slots[1], out);
+                add(level, frame, m.mass, [b, a], slots[1] as usize, out);
             }
         }
     }

@@ -25,7 +25,6 @@ pub struct ViscousHexahedron {
 pub struct ViscousHexahedra {
     name: String,
     elements: Vec<ViscousHexahedron>,
-    slots: Vec<[[u32; 8]; 8]>,
     locals: Stretches<ViscousLocal>,
 }
 
@@ -37,13 +36,17 @@ fn rates(vectors: [&[Vector]; 2], nodes: &[usize; 8], h: f64) -> [Vector; 8] {
 /// Signs of x_k and x_{k+1} in a difference.
 const SIGNS: [f64; 2] = [-1.0, 1.0];
 
+/// Slots of an element: all pairs of its nodes.
+fn of(slots: &[u32], element: usize) -> &[u32] {
+    &slots[64 * element..64 * (element + 1)]
+}
+
 impl ViscousHexahedra {
     /// Hexahedra under one name.
     pub fn new(name: &str, elements: Vec<ViscousHexahedron>) -> Self {
         Self {
             name: name.to_owned(),
             elements,
-            slots: Vec::new(),
             locals: Stretches::default(),
         }
     }
@@ -55,12 +58,12 @@ impl ViscousHexahedra {
 
     /// Adds what `block(i, j, row, col)` gives of the nodes i, j at the instants k + row, k + col.
     fn add_blocks(
-        slots: &[[u32; 8]; 8],
+        slots: &[u32],
         frame: &Frame<'_>,
         blocks: &mut [[Matrix; 4]],
         block: impl Fn(usize, usize, usize, usize) -> Matrix,
     ) {
-        for (i, row) in slots.iter().enumerate() {
+        for (i, row) in slots.chunks_exact(8).enumerate() {
             for (j, &slot) in row.iter().enumerate() {
                 for side in (0..4).filter(|&side| frame.sides.blocks[side]) {
                     blocks[slot as usize][side] += block(i, j, side / 2, side % 2);
@@ -75,6 +78,7 @@ impl ViscousHexahedra {
         local: &ViscousLocal,
         level: Level,
         frame: &Frame<'_>,
+        slots: &[u32],
         out: &mut Output,
     ) {
         let h = frame.h;
@@ -84,7 +88,7 @@ impl ViscousHexahedra {
         }
         if level >= Level::Hessian {
             let blocks = &mut out.plain.blocks.full;
-            Self::add_blocks(&self.slots[index], frame, blocks, |i, j, _, col| {
+            Self::add_blocks(of(slots, index), frame, blocks, |i, j, _, col| {
                 local.by_place[i][j] * (-0.25 * h) - local.by_velocity[i][j] * (0.5 * SIGNS[col])
             });
         }
@@ -95,6 +99,7 @@ impl ViscousHexahedra {
         index: usize,
         s: &ViscousContraction,
         frame: &Frame<'_>,
+        slots: &[u32],
         out: &mut Output,
     ) {
         let h = frame.h;
@@ -105,7 +110,7 @@ impl ViscousHexahedra {
             }
         }
         let blocks = &mut out.contracted.blocks.full;
-        Self::add_blocks(&self.slots[index], frame, blocks, |i, j, row, col| {
+        Self::add_blocks(of(slots, index), frame, blocks, |i, j, row, col| {
             s.place_place[i][j] * (-0.25 * h)
                 - s.place_velocity[i][j] * (0.5 * SIGNS[col])
                 - s.place_velocity[j][i].transpose() * (0.5 * SIGNS[row])
@@ -122,12 +127,12 @@ impl Effect for ViscousHexahedra {
         self.elements.len()
     }
 
-    fn couple(&mut self, couplings: &mut Couplings) {
-        let slots = |element: &ViscousHexahedron| {
-            let nodes = element.nodes;
-            nodes.map(|a| nodes.map(|b| couplings.add_full(a, b) as u32))
-        };
-        self.slots = self.elements.iter().map(slots).collect();
+    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
+        for ViscousHexahedron { nodes, .. } in &self.elements {
+            for &a in nodes {
+                slots.extend(nodes.map(|b| couplings.add_full(a, b) as u32));
+            }
+        }
     }
 
     fn kind(&self) -> Kind {
@@ -144,7 +149,7 @@ impl Effect for ViscousHexahedra {
 
     fn momentum(&self, _x: &[Vector], _v: &[Vector], _out: &mut [Vector]) {}
 
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output) {
+    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output) {
         let compute = |element: &ViscousHexahedron, local: &mut ViscousLocal| {
             let [x, v] = Self::state(element, frame);
             match level {
@@ -155,7 +160,7 @@ impl Effect for ViscousHexahedra {
             }
         };
         self.locals.each(&self.elements, compute, |index, local| {
-            self.add(index, local, level, frame, out);
+            self.add(index, local, level, frame, slots, out);
         });
         if level < Level::Third {
             return;
@@ -167,7 +172,7 @@ impl Effect for ViscousHexahedra {
             element
                 .law
                 .contraction(&element.shape, &x, &v, &w, &mut contraction);
-            self.add_contraction(index, &contraction, frame, out);
+            self.add_contraction(index, &contraction, frame, slots, out);
         }
     }
 }

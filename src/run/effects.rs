@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::control::problem::Control;
 use crate::functional::{Couplings, Effect, Kind};
-use crate::model::{Model, ModelError, Question};
+use crate::model::Model;
 use crate::reduction::Motion;
 use crate::run::reasons::{self, Absent, absent};
 use crate::run::stopwatch;
@@ -47,14 +47,11 @@ pub struct Plan {
 
 impl Plan {
     /// The plan of a model, each effect measured for `spent` seconds or one evaluation.
-    ///
-    /// # Errors
-    /// None for a model that exists: the effects are made a second time from its system.
-    pub fn of(model: &Model, control: Option<&Control>, spent: f64) -> Result<Self, ModelError> {
-        Ok(Self {
-            effects: effect_counts(model, control, spent)?,
+    pub fn of(model: &Model, control: Option<&Control>, spent: f64) -> Self {
+        Self {
+            effects: effect_counts(model, control, spent),
             absent: absent(model, control),
-        })
+        }
     }
 }
 
@@ -71,21 +68,14 @@ enum Matrix {
 
 /// An effect with the pairs of unknowns it couples, the smaller of each pair first, sorted; coordinates by entry, scalars
 /// of the site behind them.
-struct Coupled {
-    effect: Box<dyn Effect>,
+struct Coupled<'a> {
+    effect: &'a dyn Effect,
     pairs: Vec<[u32; 2]>,
 }
 
 /// Counts of all effects of a model, each measured for `spent` seconds or one evaluation; of a control problem in its
 /// program, otherwise in the tangent.
-///
-/// # Errors
-/// None for a model that exists: the effects are made a second time from its system.
-pub fn effect_counts(
-    model: &Model,
-    control: Option<&Control>,
-    spent: f64,
-) -> Result<Vec<EffectCounts>, ModelError> {
+pub fn effect_counts(model: &Model, control: Option<&Control>, spent: f64) -> Vec<EffectCounts> {
     let matrix = match (control, model.question.of_motion) {
         (Some(_), _) => Matrix::Program,
         (None, true) => Matrix::Step,
@@ -97,15 +87,16 @@ pub fn effect_counts(
         sought: model.voltages.iter().map(|s| !given(s)).collect(),
         matrix,
     };
-    let mut times = stopwatch::times(model, spent).into_iter();
-    let mut counts = Vec::new();
-    each(model, |coupled, _| {
-        let mut count = coupled.counts(&unknowns);
-        count.why = reasons::why(&count.name, model);
-        count.microseconds = times.next().unwrap_or(f64::NAN);
-        counts.push(count);
-    })?;
-    Ok(counts)
+    let times = stopwatch::times(model, spent);
+    let count = |(coupled, microseconds): (Coupled<'_>, f64)| {
+        let count = coupled.counts(&unknowns);
+        EffectCounts {
+            why: reasons::why(&count.name, model),
+            microseconds,
+            ..count
+        }
+    };
+    each(model).zip(times).map(count).collect()
 }
 
 /// What is unknown, and where.
@@ -120,34 +111,21 @@ struct Unknowns {
 /// Names of the effects that couple two unknowns: coordinates by entry, scalars of the site behind them.
 pub(super) fn coupling(model: &Model, i: usize, j: usize) -> Vec<String> {
     let pair = [i.min(j) as u32, i.max(j) as u32];
-    let mut names = Vec::new();
-    let found = each(model, |coupled, _| {
-        if coupled.pairs.binary_search(&pair).is_ok() {
-            names.push(coupled.effect.name().to_owned());
-        }
-    });
-    found.map(|()| names).unwrap_or_default()
+    let couple = each(model).filter(|coupled| coupled.pairs.binary_search(&pair).is_ok());
+    couple.map(|c| c.effect.name().to_owned()).collect()
 }
 
-/// Shows the effects of a model one after the other.
-fn each(model: &Model, mut show: impl FnMut(&Coupled, &Motion)) -> Result<(), ModelError> {
-    let question = Question {
-        coordinates: Some(model.coordinates),
-        ..model.question.clone()
-    };
-    let copy = Model::answering(model.system.clone(), question)?;
-    let motion = copy.action.motion;
-    let (intervals, instants) = (copy.action.intervals.effects, copy.action.instants.effects);
-    for effect in intervals.into_iter().chain(instants) {
-        show(&Coupled::new(effect, &motion), &motion);
-    }
-    Ok(())
+/// The effects of a model one after the other.
+fn each(model: &Model) -> impl Iterator<Item = Coupled<'_>> {
+    let sums = [&model.action.intervals, &model.action.instants];
+    let effects = sums.into_iter().flat_map(|sum| &sum.effects);
+    effects.map(|effect| Coupled::new(effect.as_ref(), &model.action.motion))
 }
 
-impl Coupled {
-    fn new(mut effect: Box<dyn Effect>, motion: &Motion) -> Self {
+impl<'a> Coupled<'a> {
+    fn new(effect: &'a dyn Effect, motion: &Motion) -> Self {
         let mut couplings = Couplings::default();
-        effect.couple(&mut couplings);
+        effect.couple(&mut couplings, &mut Vec::new());
         let scalar = |s: usize| motion.coordinates + s;
         let mut pairs: Vec<[u32; 2]> = Vec::new();
         let mut add = |a: usize, b: usize| pairs.push([a.min(b) as u32, a.max(b) as u32]);

@@ -180,8 +180,7 @@ pub(super) fn simulation(
     }
     make_folder(&folder)?;
     phase("writing");
-    let plan = Plan::of(&model, None, MEASURED)
-        .map_err(|error| RunError::boundary(&request.input, "simulate", &error.into()))?;
+    let plan = Plan::of(&model, None, MEASURED);
     let status = match (&failure, stopped) {
         (Some(_), _) => "step_failed",
         (None, Some(stopped)) => stopped.word(),

@@ -33,12 +33,12 @@ pub fn inspect(request: &Request) -> Result<Told, RunError> {
         Task::Simulate(task) => {
             let model = Model::answering(system.clone(), task.question(system, task.step))
                 .map_err(|error| wrong(error.into()))?;
-            of_model(&request.input, &model, None)?
+            of_model(&model, None)
         }
         Task::Equilibrium(task) => {
             let model = Model::answering(system.clone(), task.question(system))
                 .map_err(|error| wrong(error.into()))?;
-            of_model(&request.input, &model, None)?
+            of_model(&model, None)
         }
     };
     Ok(Told {
@@ -60,9 +60,8 @@ pub(super) fn key(task: &Task) -> &'static str {
 /// Time in s that goes into measuring each effect.
 const MEASURED: f64 = 5e-3;
 
-fn of_model(file: &Path, model: &Model, control: Option<&Control>) -> Result<String, RunError> {
-    let plan = Plan::of(model, control, MEASURED)
-        .map_err(|error| RunError::boundary(file, "scene", &error.into()))?;
+fn of_model(model: &Model, control: Option<&Control>) -> String {
+    let plan = Plan::of(model, control, MEASURED);
     let system = &model.system;
     let mut sizes = vec![
         ("bodies", system.bodies.len()),
@@ -87,7 +86,7 @@ fn of_model(file: &Path, model: &Model, control: Option<&Control>) -> Result<Str
         (true, None) => factorisation(model),
         _ => "",
     };
-    Ok(format!(
+    format!(
         "{}, {} coordinates\n\n{}\n{}\n{}\n{}{tangent}{}",
         system.name,
         model.coordinates.name(),
@@ -96,7 +95,7 @@ fn of_model(file: &Path, model: &Model, control: Option<&Control>) -> Result<Str
         missing(&plan),
         numbers(&sizes),
         extent::lines(system)
-    ))
+    )
 }
 
 /// How the tangent of a step is factorised.
@@ -185,7 +184,7 @@ fn of_control(request: &Request, system: &System, control: &Control) -> Result<S
             hessian.rows.len(),
         ),
     ];
-    let mut text = of_model(&request.input, &model, Some(control))?;
+    let mut text = of_model(&model, Some(control));
     text.push_str(&format!(
         "\n{}start of the solver: {start:?}\n",
         numbers(&sizes)

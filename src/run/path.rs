@@ -136,7 +136,7 @@ pub(super) fn follow(
     };
     let word = stopped.map_or("path_followed", Status::word);
     let mut summary = Summary::new(request, word, model.coordinates.name());
-    summary.plan = Plan::of(&model, None, MEASURED).map_err(|error| wrong(error.into()))?;
+    summary.plan = Plan::of(&model, None, MEASURED);
     summary.path = Some(path);
     summary.notes.extend(domain::note(&outside, false));
     summary.domain = outside;

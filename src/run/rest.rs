@@ -118,7 +118,7 @@ pub(super) fn at(
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = failure.map(|loss| lost(&rest, loss, &folder));
     summary.domain = domain::told(&out_of_domain(&model, &state));
-    summary.plan = Plan::of(&model, None, MEASURED).map_err(|error| wrong(error.into()))?;
+    summary.plan = Plan::of(&model, None, MEASURED);
     summary.blocks = Blocks::of(&model).map(|b| b.after(&model, &observed, written));
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),

@@ -157,8 +157,7 @@ pub(super) fn control(
         summary.notes.extend(lines);
     }
     summary.accuracy = accuracy;
-    summary.plan = Plan::of(model, Some(control), MEASURED)
-        .map_err(|error| RunError::boundary(&request.input, "control", &error.into()))?;
+    summary.plan = Plan::of(model, Some(control), MEASURED);
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),
         setup: read + optimum.setup,

@@ -32,18 +32,25 @@ pub(super) fn times(model: &Model, spent: f64) -> Vec<f64> {
         (&action.instants, &of_instant),
     ] {
         let mut output = sum.output(Level::Hessian);
-        let effects = sum.effects.iter();
-        times.extend(effects.map(|e| 1e6 * time(e.as_ref(), frame, &mut output, spent)));
+        times.extend(
+            sum.terms()
+                .map(|term| 1e6 * time(term, frame, &mut output, spent)),
+        );
     }
     times
 }
 
 /// Time of one evaluation in s.
-fn time(effect: &dyn Effect, frame: &Frame<'_>, output: &mut Output, spent: f64) -> f64 {
+fn time(
+    (effect, slots): (&dyn Effect, &[u32]),
+    frame: &Frame<'_>,
+    output: &mut Output,
+    spent: f64,
+) -> f64 {
     let mut run = |count: u32| {
         let began = Instant::now();
         for _ in 0..count {
-            effect.evaluate(Level::Hessian, black_box(frame), output);
+            effect.evaluate(Level::Hessian, black_box(frame), slots, output);
         }
         black_box(&output);
         began.elapsed().as_secs_f64() / f64::from(count)
