@@ -74,6 +74,7 @@ fn block(n: usize, viscosity: Option<f64>) -> System {
         mesh,
     };
     System {
+        components: Default::default(),
         name: "block".into(),
         bodies: Vec::new(),
         joints: Vec::new(),

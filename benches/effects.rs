@@ -337,6 +337,7 @@ fn block(driven: bool, change: impl Fn(&mut Material)) -> System {
     };
     change(&mut material);
     System {
+        components: Default::default(),
         name: "block".into(),
         bodies: Vec::new(),
         joints: Vec::new(),

@@ -11,8 +11,8 @@ use nalgebra::{SMatrix, SVector};
 use num_dual::{Dual, Dual64, DualNum, HyperDual};
 use proboscis::energy::{
     Angle, AngularDamper, Coincidence, CoordinateDamper, DielectricCell, ElasticCell, Energy,
-    Gravity, LinearDamper, Orthogonality, OutsideBox, Place, Projection, SectionInertia,
-    SquaredDistance, SquaredField, ViscousCell,
+    Gravity, LinearDamper, LinearSpring, Orthogonality, OutsideBox, Place, Projection,
+    SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
 };
 use proboscis::math::{Jet, Vector};
 
@@ -94,6 +94,20 @@ impl Formula<9> for ViscousCell {
         // −1.5 η V₀ Λ̇ δΛ/Λ²; no length at rest is left in it.
         let of = |direction| along(r, direction, |r| stretch(r, 0.7));
         -of(v) * of(delta) / stretch(r, 0.7).powi(2) * self.coefficient
+    }
+}
+
+impl Formula<3> for LinearSpring {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 3]) -> D {
+        (squared_length(*p).sqrt() - self.length).powi(2) * (0.5 * self.stiffness)
+    }
+}
+
+impl Formula<9> for SpanDamper {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 9]) -> D {
+        let (delta, r, v) = (three(p, 0), three(p, 3), three(p, 6));
+        let of = |direction| along(r, direction, |r| squared_length(r).sqrt());
+        -of(v) * of(delta) * self.coefficient
     }
 }
 
@@ -444,6 +458,12 @@ fn jets_are_the_derivatives_of_naive_formulas() {
         0.4,
         1.2,
     );
+    let spring = LinearSpring {
+        stiffness: 0.8,
+        length: 0.9,
+    };
+    law("spring", &spring, 0.4, 1.2);
+    law("damper", &SpanDamper { coefficient: 1.4 }, 0.4, 1.2);
     law("viscous", &ViscousCell { coefficient: 1.4 }, 0.4, 1.2);
     law(
         "angular damper",

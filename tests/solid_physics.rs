@@ -341,6 +341,7 @@ fn sledge(slenderness: usize, fidelity: Fidelity) -> System {
     let end = Vector3::new(0.0, 0.0, length);
     let attachment = |body, at| Attachment { body, at };
     System {
+        components: Default::default(),
         bodies: vec![Body {
             name: "sledge".into(),
             mass: 10.0,

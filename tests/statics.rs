@@ -20,6 +20,7 @@ fn single(shear_modulus: f64, electric: Electric) -> System {
     let axis = Vector3::z();
     let end = |z: f64, body| Attachment { body, at: axis * z };
     System {
+        components: Default::default(),
         name: "single muscle".into(),
         bodies: vec![Body {
             name: "weight".into(),

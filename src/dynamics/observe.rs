@@ -209,6 +209,11 @@ impl<'m> Observer<'m> {
             }
         }
         add("constraint_violation".to_owned(), "");
+        for component in system.components.iter() {
+            for (quantity, unit) in component.columns() {
+                add(format!("{}_{quantity}", component.name()), unit);
+            }
+        }
         columns
     }
 
@@ -276,6 +281,15 @@ impl<'m> Observer<'m> {
             row.extend(map.iter());
         }
         row.push(self.violation());
+        if model.system.components.iter().next().is_some() {
+            let bodies = model.poses(&self.here);
+            let reference = |body: usize| model.system.bodies[body].pose();
+            for component in model.system.components.iter() {
+                let points = component.points();
+                let places = points.iter().map(|point| point.place(&bodies, reference));
+                row.extend(component.observe(&places.collect::<Vec<_>>()));
+            }
+        }
         std::mem::swap(&mut self.before, &mut self.here);
         row
     }

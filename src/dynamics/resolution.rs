@@ -117,7 +117,9 @@ pub(super) fn typical_energy(model: &Model) -> f64 {
         let moduli = solid.materials.iter().map(|m| m.shear_modulus);
         volume.product::<f64>() * moduli.fold(0.0, f64::max)
     });
-    muscles.chain(solids).sum()
+    let components = model.system.components.iter();
+    let components = components.map(|component| component.typical_energy());
+    muscles.chain(solids).chain(components).sum()
 }
 
 /// The first joint that a step turns by more than half a turn, or body that it turns by more than a right angle in space,

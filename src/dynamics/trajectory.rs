@@ -58,10 +58,7 @@ impl Trajectory {
 
     /// Place in mm of a material point at instant `k`: c + R R₀ᵀ (X − c₀); points of the ground stay.
     pub fn point(&self, k: usize, point: &Attachment, system: &System) -> Vector3<f64> {
-        match point.body {
-            Some(body) => self.poses[k][body].point(&system.bodies[body].pose().local(&point.at)),
-            None => point.at,
-        }
+        point.place(&self.poses[k], |body| system.bodies[body].pose())
     }
 
     /// Path in mm of a marker of the system, instant by instant.

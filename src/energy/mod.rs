@@ -5,6 +5,8 @@ mod damper;
 mod gravity;
 mod limit;
 mod muscle;
+mod spring;
+mod tendon;
 mod viscosity;
 
 pub use constraint::{Coincidence, Orthogonality};
@@ -12,6 +14,8 @@ pub use damper::{AngularDamper, CoordinateDamper, LinearDamper};
 pub use gravity::Gravity;
 pub use limit::{Angle, OutsideBox, Place, Projection, SquaredDistance, SquaredField};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
+pub use spring::{LinearSpring, SpanDamper};
+pub use tendon::Cable;
 pub use viscosity::ViscousCell;
 
 use crate::math::Jet;

@@ -122,6 +122,14 @@ impl Condensed {
         self.places.iter().zip(reference).map(pose).collect()
     }
 
+    /// Body of the condensed system that carries what is fixed to a body of the scene; `None` is the ground.
+    pub fn carrier(&self, body: Option<usize>) -> Option<usize> {
+        match self.places[body?] {
+            Place::Ground => None,
+            Place::Body(to) | Place::Welded { to, .. } => Some(to),
+        }
+    }
+
     /// Values by joint of the condensed system from values by joint of the scene.
     pub fn by_joint(&self, values: &[f64]) -> Vec<f64> {
         self.joints.iter().map(|&j| values[j]).collect()

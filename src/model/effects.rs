@@ -4,13 +4,14 @@ use crate::energy::{
     AngularDamper, CoordinateDamper, DielectricCell, ElasticCell, Gravity, LinearDamper,
     SectionInertia, ViscousCell,
 };
-use crate::functional::{Effect, Element, Group, Inertia, Mass, Stencil, VectorArg};
+use crate::functional::{Effect, Element, Group, Inertia, Mass};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::Coordinates;
 use crate::model::continua::Continua;
 use crate::model::joints::{JointGauge, Measure};
 use crate::model::system::{Attachment, Fidelity, Muscle, System};
+use crate::model::terms::{mid, rate};
 
 /// A list of effects on its way to a sum.
 pub(super) type Effects = Vec<Box<dyn Effect>>;
@@ -34,20 +35,6 @@ pub(super) struct Builder<'a> {
 fn is_lumped(muscle: &Muscle) -> bool {
     let is_still = muscle.from.body.is_none() && muscle.to.body.is_none();
     muscle.fidelity == Fidelity::Lumped && (!is_still || muscle.material.electric.is_some())
-}
-
-fn mid(vector: usize) -> VectorArg {
-    VectorArg {
-        vector,
-        stencil: Stencil::Mid,
-    }
-}
-
-fn rate(vector: usize) -> VectorArg {
-    VectorArg {
-        vector,
-        stencil: Stencil::Rate,
-    }
 }
 
 /// A group of elements as an effect, unless there are none.

@@ -1,6 +1,9 @@
 //! Where physics meets indices: from a checked system to sums of effects over its coordinates.
 
+mod attachment;
 mod blocks;
+mod component;
+pub mod components;
 mod condensed;
 mod constraints;
 mod continua;
@@ -19,7 +22,9 @@ mod redundancy;
 mod solid_effects;
 mod still;
 pub mod system;
+mod terms;
 
+pub use component::Component;
 pub use condensed::{Condensed, Place};
 pub use continuum::Continuum;
 pub use error::ModelError;
@@ -30,6 +35,7 @@ pub use quantity::{FieldPlace, Quantity, Region, joint_unit};
 pub use question::{Question, Stirred};
 pub use still::Still;
 pub use system::{System, VACUUM_PERMITTIVITY};
+pub use terms::{LeftOut, Present, Terms, mid, rate};
 
 use crate::functional::{Kind, Sum};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
@@ -103,6 +109,10 @@ pub struct Model {
     pub multiplier_time: f64,
     graph: Graph,
     reference: Vec<Pose>,
+    /// Terms of components, and what calls for them.
+    pub present: Vec<Present>,
+    /// Terms that components could have and have not.
+    pub left_out: Vec<LeftOut>,
     nodes: Vec<NodePlace>,
     /// Block and node of the mesh of each node with coordinates.
     pub node_names: Vec<(usize, usize)>,
@@ -158,12 +168,18 @@ impl Model {
             &continua,
             &mut vectors,
         );
-        let intervals = parts.intervals(question.of_motion);
+        let mut intervals = parts.intervals(question.of_motion);
         let (instants, multiplier_names) = match coordinates {
             Coordinates::Reduced => (Vec::new(), Vec::new()),
             Coordinates::Redundant => parts.constraints(question.interval),
         };
         let spans = parts.spans;
+        let mut terms = Terms::new(&condensed, &reference, question.of_motion, &mut vectors);
+        for component in system.components.iter() {
+            component.build(&mut terms);
+        }
+        let (of_components, present, left_out) = terms.finish();
+        intervals.extend(of_components);
         let point = |a: &Attachment| MaterialVector::point(a.body, &a.at, &reference);
         let markers = rest
             .markers
@@ -220,6 +236,8 @@ impl Model {
             multiplier_time: question.interval,
             graph,
             reference,
+            present,
+            left_out,
             system,
             question,
             condensed,

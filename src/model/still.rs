@@ -50,6 +50,16 @@ pub(super) fn still(system: &System, question: &Question) -> Still {
     }
     let weighs = system.gravity.is_some();
     let mut moved: Vec<usize> = Vec::new();
+    for component in system.components.iter() {
+        let points = component.points();
+        let bodies: Vec<usize> = points.iter().filter_map(|point| point.body).collect();
+        for pair in bodies.windows(2) {
+            parts.join(Some(pair[0]), Some(pair[1]));
+        }
+        if component.is_prestressed() {
+            moved.extend(bodies);
+        }
+    }
     let bodies = (0..of_bodies).filter(|b| weighs || stirred.bodies.contains(b));
     moved.extend(bodies);
     for (s, solid) in system.solids.iter().enumerate() {

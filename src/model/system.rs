@@ -2,6 +2,8 @@
 
 use crate::kinematics::Pose;
 use crate::mesh::Mesh;
+pub use crate::model::attachment::Attachment;
+use crate::model::components::Components;
 use nalgebra::{Matrix3, Vector3};
 
 /// A mechanical system; `None` for a body index is the ground.
@@ -21,6 +23,8 @@ pub struct System {
     pub markers: Vec<Marker>,
     /// Acceleration of gravity in mm/ms², where there is gravity.
     pub gravity: Option<Vector3<f64>>,
+    /// Parts that answer for themselves: springs, tendons.
+    pub components: Components,
 }
 
 /// What a voltage drives, and the name of the voltage.
@@ -184,15 +188,6 @@ pub enum JointKind {
     Spherical,
     /// Nothing.
     Fixed,
-}
-
-/// A material point of a body, or of the ground.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Attachment {
-    /// The body; `None` is the ground.
-    pub body: Option<usize>,
-    /// Place in the reference configuration in mm, in the ground frame.
-    pub at: Vector3<f64>,
 }
 
 /// A stacked dielectric elastomer between two material points.

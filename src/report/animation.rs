@@ -11,6 +11,7 @@ use crate::report::pose::{ANGLES, lumped};
 use crate::report::skins::{Skin, shown};
 use crate::report::solids::{Mesh, Prism};
 use crate::report::style::{self, Colour};
+use crate::report::ties;
 use crate::report::view::View;
 
 /// Titles of the axes in space.
@@ -35,11 +36,13 @@ pub fn figure(run: &Run<'_>) -> Figure {
     let moving = |k: usize, with_triangles: bool| {
         let mut traces = vec![stage.bodies(k), stage.muscles(k), stage.joints(k)];
         traces.extend(kinds.iter().map(|&is| stage.blocks(k, is, with_triangles)));
+        traces.extend(stage.ties(k));
         traces
     };
+    let has_ties = usize::from(run.system.components.iter().next().is_some());
     let frame = |&k: &usize| Frame {
         name: name(k),
-        traces: (0..3 + kinds.len()).collect(),
+        traces: (0..3 + kinds.len() + has_ties).collect(),
         data: moving(k, false),
     };
     let mut data = moving(last, true);
@@ -171,6 +174,18 @@ impl Stage<'_> {
         line(&points, look, style::INK, 4, "solid")
     }
 
+    /// Springs, tendons and other components; none where there are none.
+    fn ties(&self, k: usize) -> Option<Trace> {
+        let lines = ties::lines(self.run.system, self.run.trajectory, k);
+        let gap = Vector3::repeat(f64::NAN);
+        let points = lines
+            .into_iter()
+            .flat_map(|line| line.into_iter().chain([gap]));
+        let points: Vec<_> = points.collect();
+        let look = json!({ "name": "springs and tendons", "hoverinfo": "skip" });
+        (!points.is_empty()).then(|| line(&points, look, style::TIE, 4, "solid"))
+    }
+
     /// The path of each marker, of the motion and of the one beside it.
     fn paths(&self) -> Vec<Trace> {
         let run = self.run;
@@ -204,6 +219,8 @@ impl Stage<'_> {
             for i in lumped(self.run.system) {
                 mesh.add_prism(&Prism::muscle(self.run.system, self.run.trajectory, k, i));
             }
+            let lines = ties::lines(self.run.system, self.run.trajectory, k);
+            mesh.vertices.extend(lines.into_iter().flatten());
             let position = self.run.skins.position(k);
             for skin in &self.run.skins.list {
                 mesh.vertices.extend(&skin.places[position]);

@@ -18,6 +18,7 @@ pub mod skins;
 pub mod solids;
 pub mod style;
 pub mod table;
+mod ties;
 pub mod tip_path;
 pub mod view;
 pub mod voltages;

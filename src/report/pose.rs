@@ -13,6 +13,7 @@ use crate::report::skin::{self, Paint};
 use crate::report::skins::{Skin, Skins};
 use crate::report::solids::{Prism, circle, slice};
 use crate::report::style::{self, Colour};
+use crate::report::ties;
 use crate::report::view::View;
 
 /// Turn about y and elevation of the view in rad.
@@ -54,6 +55,7 @@ pub fn svg(
         for skin in &skins.list {
             points.extend(&skin.places[skins.position(k)]);
         }
+        points.extend(ties::lines(system, trajectory, k).into_iter().flatten());
     }
     if last == 0 {
         points.extend(skins.list.iter().flat_map(|skin| &skin.reference));
@@ -121,8 +123,10 @@ pub(super) fn lumped(system: &System) -> impl Iterator<Item = usize> + '_ {
 /// A disc in the ground below the points that are held by it, in mm; empty where nothing is.
 fn ground_plate(system: &System) -> Vec<Vector3<f64>> {
     let muscles = system.muscles.iter().flat_map(|m| [m.from, m.to]);
+    let components = system.components.iter().flat_map(|c| c.points());
     let joints = system.joints.iter().filter(|j| j.parent.is_none());
     let held: Vec<_> = muscles
+        .chain(components)
         .filter(|point| point.body.is_none())
         .map(|point| point.at)
         .chain(joints.map(|j| j.at))
@@ -213,6 +217,7 @@ impl Drawing<'_> {
         };
         behind.iter().for_each(|(_, inside)| draw(inside));
         self.joints(canvas, k, tint);
+        self.ties(canvas, k, tint);
         before.iter().for_each(|(_, inside)| draw(inside));
         for (body, pose) in &bodies {
             draw_front(canvas, view, &body.shape, pose, tint);
@@ -295,6 +300,17 @@ impl Drawing<'_> {
         }
         for place in places {
             canvas.disc(place, 2.6, style::PAPER, Stroke::solid(ink, 1.1));
+        }
+    }
+
+    /// Springs, tendons and other components.
+    fn ties(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
+        let ink = match tint {
+            Tint::Ghost => style::GHOST,
+            Tint::Coloured => style::TIE,
+        };
+        for line in ties::lines(self.system, self.trajectory, k) {
+            canvas.line(&self.view.places(&line), Stroke::solid(ink, 1.0));
         }
     }
 

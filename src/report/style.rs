@@ -31,6 +31,8 @@ pub const PAPER: Colour = Colour(0xff, 0xff, 0xff);
 pub const BODY: Colour = Colour(0x6f, 0x8f, 0xb0);
 /// Elastic blocks without potentials.
 pub const PASSIVE: Colour = Colour(0xd9, 0xcf, 0xbc);
+/// Springs and tendons.
+pub const TIE: Colour = Colour(0x8a, 0x5a, 0x2b);
 /// The initial configuration.
 pub const GHOST: Colour = Colour(0xc4, 0xc8, 0xcd);
 

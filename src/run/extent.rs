@@ -72,9 +72,11 @@ fn places(system: &System) -> impl Iterator<Item = Vector3<f64>> + '_ {
     });
     let ends = system.muscles.iter().flat_map(|m| [m.from.at, m.to.at]);
     let joints = system.joints.iter().map(|joint| joint.at);
+    let components = system.components.iter();
+    let points = components.flat_map(|component| component.points().into_iter().map(|p| p.at));
     let nodes = system
         .solids
         .iter()
         .flat_map(|s| s.mesh.nodes.iter().copied());
-    bodies.chain(ends).chain(joints).chain(nodes)
+    bodies.chain(ends).chain(joints).chain(points).chain(nodes)
 }

@@ -1,7 +1,5 @@
 //! What a problem consists of, before it is solved.
 
-use std::path::Path;
-
 use crate::control::problem::{Control, Task};
 use crate::model::{Model, System};
 use crate::nlp::Nlp;
@@ -72,6 +70,14 @@ fn of_model(model: &Model, control: Option<&Control>) -> String {
         ("multipliers of an instant", model.multiplier_names.len()),
         ("voltages of an interval", model.voltages.len()),
     ];
+    let components = &system.components;
+    let kinds = [
+        ("springs", components.springs.len()),
+        ("tendons", components.tendons.len()),
+        ("other components", components.others.len()),
+    ];
+    let kinds = kinds.into_iter().filter(|(_, count)| *count > 0);
+    sizes.splice(3..3, kinds);
     if !system.solids.is_empty() {
         sizes.insert(3, ("elastic blocks", system.solids.len()));
     }

@@ -41,6 +41,10 @@ pub const EFFECTS: [&str; 16] = [
 
 /// What calls for an effect that a model has.
 pub(super) fn why(effect: &str, model: &Model) -> String {
+    if let Some(present) = model.present.iter().find(|present| present.term == effect) {
+        let names: Vec<&str> = present.of.iter().map(String::as_str).collect();
+        return format!("{} of {}", present.why, listed(&names));
+    }
     let scene = Scene { model };
     let of = |what: &str, names: Vec<&str>| format!("{what} of {}", listed(&names));
     let joints = &model.condensed.system.joints;
@@ -97,6 +101,9 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
     let mut add = |name: String, why: String| list.push(Absent { name, why });
     for effect in EFFECTS.iter().filter(|name| !there(name)) {
         add((*effect).to_owned(), scene.why_not(effect));
+    }
+    for left_out in &model.left_out {
+        add(left_out.term.to_owned(), left_out.why.to_owned());
     }
     let names = |sources: &[usize]| {
         let names = sources.iter().map(|&s| model.sources[s].name.as_str());

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use std::cell::Cell;
 
+use crate::model::components::Components;
 use crate::model::system::{Attachment, Joint, JointKind, Material, System};
 use crate::scene::build_body::{body, unit_axis};
 use crate::scene::build_electrodes::number_sources;
@@ -10,6 +11,7 @@ use crate::scene::build_marker::marker;
 use crate::scene::build_material::materials;
 use crate::scene::build_muscle::{MOST_ELEMENTS, ModelSpec, fidelity, muscle, positive_sides};
 use crate::scene::build_solid::solid;
+use crate::scene::components::{spring, tendon};
 use crate::scene::error::SceneError;
 use crate::scene::expand::expanded;
 use crate::scene::graph::check_connected;
@@ -38,7 +40,16 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     let solid_names = names(&scene.solids, |solid| &solid.name);
     bodies.unique(&body_names, &["ground"])?;
     joints.unique(&names(&scene.joints, |joint| &joint.name), &[])?;
-    muscles.unique(&muscle_names, &["solution"])?;
+    muscles.unique(&muscle_names, &["solution", "time", "voltages", "hold"])?;
+    let springs = Entries::new(scope, "springs", scene.springs.len());
+    let tendons = Entries::new(scope, "tendons", scene.tendons.len());
+    let spring_names = names(&scene.springs, |spring| &spring.name);
+    let tendon_names = names(&scene.tendons, |tendon| &tendon.name);
+    springs.unique(&spring_names, &[])?;
+    tendons.unique(
+        &tendon_names,
+        &spring_names.iter().map(String::as_str).collect::<Vec<_>>(),
+    )?;
     // Blocks and muscles share files and names of voltages.
     let all = [muscle_names, solid_names.clone()].concat();
     let place = |index: usize| scope.key("solids").index(index - scene.muscles.len());
@@ -70,6 +81,15 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
             .as_ref()
             .map(vector)
             .filter(|g| g.norm() > 0.0),
+        components: Components {
+            springs: springs.build(&scene.springs, |spec, scope| {
+                spring(spec, &body_names, scope)
+            })?,
+            tendons: tendons.build(&scene.tendons, |spec, scope| {
+                tendon(spec, &body_names, scope)
+            })?,
+            others: Vec::new(),
+        },
         name: scene.name,
     };
     check_connected(&scene.bodies, &system.joints, |index| bodies.scope(index))?;

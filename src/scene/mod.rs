@@ -2,6 +2,7 @@
 //!
 //! - `quantity`, `unit`: numbers with units, converted once to g, mm, ms, N, MPa, V.
 //! - `spec_scene`, `spec_solids`, `spec_problem`, `spec_integrator`, `spec_limits`, `either`: the serde types of the two files; `expand`: the chain shorthand.
+//! - `components`: kinds of parts of which each has one file for both.
 //! - `spec_study`: the serde types of a study of variants of a problem.
 //! - `document`, `locate`, `wording`, `error`, `set`: text, places in it, mistakes, overrides.
 //! - `build_*`, `graph`, `scope`, `solution`: from what is written to [`System`] and [`Task`].
@@ -18,6 +19,7 @@ mod build_problem;
 mod build_scene;
 mod build_solid;
 mod build_state;
+pub mod components;
 mod document;
 mod either;
 mod error;

@@ -105,6 +105,8 @@ measures! {
     RotationalDamping: si::angular_momentum::Dimension, [0, -1], "a rotational damping", "\"1e-4 N m s/rad\"";
     /// Damping of a translation: N s/m, N ms/mm inside.
     Damping: si::mass_rate::Dimension, [0], "a damping", "\"0.5 N s/m\"";
+    /// Stiffness of a spring: N/m, N/mm inside.
+    Stiffness: si::surface_tension::Dimension, [0], "a stiffness", "\"200 N/m\"";
     /// Force, for messages.
     Force: si::force::Dimension, [0], "a force", "\"1 N\"";
     /// Area, for messages.

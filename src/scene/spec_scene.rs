@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+use crate::scene::components::{SpringSpec, TendonSpec};
 use crate::scene::quantity::{
     Acceleration, Density, JointDamping, Length, Mass, MomentOfInertia, Permittivity, Quantity,
     Stress, Viscosity,
@@ -37,6 +38,12 @@ pub struct SceneSpec {
     /// Elastic blocks of finite elements.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub solids: Vec<SolidSpec>,
+    /// Springs and dampers between two points.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub springs: Vec<SpringSpec>,
+    /// Elastic cables through points.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tendons: Vec<TendonSpec>,
     /// Points whose motion is reported.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub markers: Vec<MarkerSpec>,

@@ -6,6 +6,7 @@ use proboscis::control::problem::{
     Control, Duration, Guess, Limit, Objective, Rest, Side, Solver, State,
 };
 use proboscis::mesh::grid::Grid;
+use proboscis::model::components::{Spring, Tendon};
 use proboscis::model::system::{
     Attachment, Body, Discretisation, Electric, Electrode, ElementKind, Fidelity, Glue, Joint,
     JointKind, Marker, Material, Muscle, Potential, Shape, Solid, Support, System,
@@ -25,6 +26,46 @@ pub struct Case {
     pub system: System,
     /// The problem, in reduced coordinates.
     pub control: Control,
+}
+
+/// A prestressed spring with a damper from the ground to the second segment of a trunk, a damper between both segments, and a
+/// taut tendon through all three.
+pub fn tied(mut system: System) -> System {
+    let point = |body, x: f64, y: f64, z: f64| Attachment {
+        body,
+        at: Vector3::new(x, y, z),
+    };
+    let spring = |name: &str, stiffness, from, to| Spring {
+        name: name.into(),
+        from,
+        to,
+        stiffness,
+        damping: Some(0.4),
+        rest_length: 40.0,
+    };
+    let (low, high) = (
+        point(None, 30.0, -10.0, 4.0),
+        point(Some(1), 5.0, 80.0, 12.0),
+    );
+    let across = point(Some(0), -8.0, 20.0, 9.0);
+    system.components.springs = vec![
+        spring("stay", Some(0.02), low, high),
+        spring("dashpot", None, across, high),
+    ];
+    let through = vec![
+        point(None, -12.0, -30.0, 3.0),
+        point(None, -12.0, -5.0, 3.0),
+        point(Some(0), -12.0, 12.0, 5.0),
+        point(Some(0), -11.0, 40.0, 6.0),
+        point(Some(1), -10.0, 75.0, 2.0),
+    ];
+    system.components.tendons = vec![Tendon {
+        name: "cord".into(),
+        through,
+        stiffness: 0.01,
+        rest_length: 80.0,
+    }];
+    system
 }
 
 /// The joint coordinates of a goal.
@@ -151,6 +192,7 @@ pub fn branched() -> System {
         fidelity: Default::default(),
     };
     System {
+        components: Default::default(),
         name: "branched".into(),
         bodies: vec![
             body("stem", [0.0, 25.0, 0.0], 0.0),
@@ -469,6 +511,11 @@ pub fn cases() -> Vec<Case> {
             ),
             &|c| c.goal = joints(&[(1, 0.2)]),
         ),
+        case("springs and a tendon", tied(trunk(2)), &|_| {}),
+        case("springs and a tendon, free time", tied(trunk(2)), &|c| {
+            c.duration = free;
+            c.objective = every_objective;
+        }),
         case("branched tree", branched(), &|_| {}),
         case("blocks", blocks(), &|c| c.goal = corner_goal()),
         case("blocks, marker at rest, free time", blocks(), &|c| {

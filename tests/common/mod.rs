@@ -52,6 +52,7 @@ pub(crate) fn trunk(segments: usize) -> System {
         viscosity: Some(1.0),
     };
     let mut system = System {
+        components: Default::default(),
         name: "trunk".into(),
         bodies: Vec::new(),
         joints: Vec::new(),
@@ -159,6 +160,7 @@ pub(crate) fn joint(
 /// Bodies and joints without muscles; any coherent units do.
 pub(crate) fn bare(bodies: Vec<Body>, joints: Vec<Joint>, gravity: Option<Vector3<f64>>) -> System {
     System {
+        components: Default::default(),
         name: "bare".into(),
         bodies,
         joints,

@@ -95,6 +95,7 @@ pub(crate) const DRIVEN: Potential = Potential::Driven {
 /// A system of blocks alone.
 pub(crate) fn system(solids: Vec<Solid>) -> System {
     System {
+        components: Default::default(),
         name: "blocks".into(),
         bodies: Vec::new(),
         joints: Vec::new(),

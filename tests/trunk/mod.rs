@@ -49,6 +49,7 @@ pub(crate) fn system(count: usize) -> System {
         }
     };
     System {
+        components: Default::default(),
         name: "elephant trunk".to_owned(),
         bodies: (0..count)
             .map(|i| Body {

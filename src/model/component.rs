@@ -1,0 +1,46 @@
+//! A part of a scene that answers for itself: what it ties together, which terms of the action it makes and why, what is
+//! observed of it.
+
+use crate::model::attachment::Attachment;
+use crate::model::terms::Terms;
+use nalgebra::Vector3;
+use std::fmt::Debug;
+
+/// A part of a scene between material points of bodies.
+///
+/// [`Spring`](crate::model::components::Spring) and [`Tendon`](crate::model::components::Tendon) are two; other crates may add
+/// their own to a system as [`Other`](crate::model::components::Other).
+pub trait Component: Debug + Send + Sync {
+    /// Name, unique among the components of a scene.
+    fn name(&self) -> &str;
+
+    /// The points that it ties together, in the order in which a picture joins them by lines.
+    fn points(&self) -> Vec<Attachment>;
+
+    /// Whether it exerts a force in the reference configuration: then it may move what it ties, otherwise nothing starts to
+    /// move because of it.
+    fn is_prestressed(&self) -> bool;
+
+    /// Makes its terms, with reasons; or says why one is left out.
+    fn build(&self, terms: &mut Terms<'_>);
+
+    /// Names and units of what is tabulated of it at every instant: `[("length", "mm")]`.
+    fn columns(&self) -> Vec<(&'static str, &'static str)> {
+        Vec::new()
+    }
+
+    /// Values of these columns where its points are at the given places in mm.
+    fn observe(&self, _places: &[Vector3<f64>]) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Whether pictures draw a coil between its two points, in place of a line.
+    fn is_coiled(&self) -> bool {
+        false
+    }
+
+    /// Energy in mJ that is typical of it, where it can store any.
+    fn typical_energy(&self) -> f64 {
+        0.0
+    }
+}

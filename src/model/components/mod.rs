@@ -1,0 +1,41 @@
+//! Parts of a scene that answer for themselves.
+
+mod spring;
+mod tendon;
+
+pub use spring::Spring;
+pub use tendon::Tendon;
+
+use crate::model::component::Component;
+use std::sync::Arc;
+
+/// The components of a system.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Components {
+    /// Springs and dampers.
+    pub springs: Vec<Spring>,
+    /// Tendons.
+    pub tendons: Vec<Tendon>,
+    /// Those that a user of the library defines.
+    pub others: Vec<Other>,
+}
+
+impl Components {
+    /// All of them, kind by kind.
+    pub fn iter(&self) -> impl Iterator<Item = &dyn Component> {
+        let springs = self.springs.iter().map(|spring| spring as &dyn Component);
+        let tendons = self.tendons.iter().map(|tendon| tendon as &dyn Component);
+        let others = self.others.iter().map(|other| other.0.as_ref());
+        springs.chain(tendons).chain(others)
+    }
+}
+
+/// A component of another crate; equal to itself only.
+#[derive(Clone, Debug)]
+pub struct Other(pub Arc<dyn Component>);
+
+impl PartialEq for Other {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}

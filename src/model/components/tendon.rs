@@ -1,0 +1,85 @@
+//! A tendon through any number of points.
+
+use crate::energy::Cable;
+use crate::functional::Path;
+use crate::model::attachment::Attachment;
+use crate::model::component::Component;
+use crate::model::terms::Terms;
+use nalgebra::Vector3;
+
+/// An elastic cable that slides without friction through points and takes no compression: tension `k max(L − ℓ, 0)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tendon {
+    /// Unique name.
+    pub name: String,
+    /// The points, two or more: the ends, and those that it slides through.
+    pub through: Vec<Attachment>,
+    /// Stiffness k in N/mm.
+    pub stiffness: f64,
+    /// Length ℓ in mm up to which it is slack.
+    pub rest_length: f64,
+}
+
+const ELASTICITY: &str = "tendon elasticity";
+
+/// Sum of the distances of neighbours.
+fn path_length(places: impl Iterator<Item = Vector3<f64>> + Clone) -> f64 {
+    let next = places.clone().skip(1);
+    places.zip(next).map(|(a, b)| (b - a).norm()).sum()
+}
+
+impl Tendon {
+    fn energy(&self) -> Cable {
+        Cable {
+            stiffness: self.stiffness,
+            length: self.rest_length,
+        }
+    }
+
+    fn length(&self) -> f64 {
+        path_length(self.through.iter().map(|point| point.at))
+    }
+}
+
+impl Component for Tendon {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn points(&self) -> Vec<Attachment> {
+        self.through.clone()
+    }
+
+    fn is_prestressed(&self) -> bool {
+        self.length() > self.rest_length
+    }
+
+    fn build(&self, terms: &mut Terms<'_>) {
+        let mut energy = self.energy();
+        let mut spans = Vec::new();
+        for pair in self.through.windows(2) {
+            match terms.span(&pair[0], &pair[1]) {
+                Some(span) => spans.push(span),
+                // What never changes its length leaves the rest to the others.
+                None => energy.length -= (pair[1].at - pair[0].at).norm(),
+            }
+        }
+        match spans.is_empty() {
+            true => terms.without(ELASTICITY, "no tendon that moves"),
+            false => terms.add_path(ELASTICITY, "stiffness", &self.name, Path { energy, spans }),
+        }
+    }
+
+    fn columns(&self) -> Vec<(&'static str, &'static str)> {
+        vec![("length", "mm"), ("tension", "N")]
+    }
+
+    fn observe(&self, places: &[Vector3<f64>]) -> Vec<f64> {
+        let length = path_length(places.iter().copied());
+        vec![length, self.energy().of_length(length)[1]]
+    }
+
+    fn typical_energy(&self) -> f64 {
+        0.5 * self.stiffness * self.length() * self.length()
+    }
+}
