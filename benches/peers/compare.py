@@ -73,9 +73,33 @@ def median(runs):
     }
 
 
+def conclusion(rows):
+    """What the table says: solves and set-up by CasADi as multiples of those by proboscis."""
+    own = {row["intervals"]: row for row in rows if row["program"] == "proboscis"}
+    parts = []
+    for name in NAMES:
+        others = [row for row in rows if row["program"] == name != "proboscis"]
+        if others:
+            ratios = [row["solve"] / own[row["intervals"]]["solve"] for row in others]
+            setups = [row["setup"] for row in others]
+            parts.append(f"{NAMES[name]}, takes {span(ratios, '.2g')} times as long to solve and {span(setups, '.3g')} s to set up")
+    apart = max(row["apart"] for row in rows)
+    same = all(row["iterations"] == own[row["intervals"]]["iterations"] for row in rows)
+    return (f"**Conclusion.** Objectives agree to {apart:.0e}{', in equally many iterations' if same else ''}. " + "; ".join(parts)
+            + f"; proboscis sets up in {span([row['setup'] for row in own.values()], '.1g')} s.")
+
+
+def span(values, digits):
+    """Least and greatest of some numbers, or the one that they round to."""
+    least, most = format(min(values), digits), format(max(values), digits)
+    return least if least == most else f"{least} to {most}"
+
+
 def markdown(rows, about):
     lines = [
         "# The elephant trunk, proboscis beside CasADi",
+        "",
+        conclusion(rows),
         "",
         f"{about['processor']}, one core; proboscis {about['proboscis']}, CasADi {about['casadi']}; load of the machine "
         f"{about['load'][0]:.1f} before and {about['load'][1]:.1f} after. Times are medians over the repeats; both solve the "

@@ -9,10 +9,12 @@ use crate::study::price::{Price, prices, surely, told};
 use crate::study::read::{Point, Study};
 use crate::study::record::of_reference;
 use crate::study::schedule::{Done, Results};
+use crate::study::words::{Grouped, list, name, names, seconds, several};
 
 /// Times that differ by less than this factor do not differ clearly.
 const CLEAR: f64 = 1.2;
-/// Measures that tell most, the first one first; where a study has none of them, all that fall with refinement are told.
+/// Measures that tell most, the first one first; where a study has none of them, the costs of all that fall with refinement
+/// are told, and the orders of the first of these.
 const FIRST: [Measure; 4] = [
     Measure::Path,
     Measure::End,
@@ -29,10 +31,12 @@ const LISTED: usize = 3;
 /// The conclusion of a study: plain sentences, names of methods in backticks.
 pub fn conclusion(study: &Study, results: &Results<'_>, judged: &[Judged]) -> String {
     let mut sentences = Vec::new();
-    for judged in chosen(judged) {
+    for (index, judged) in chosen(judged).into_iter().enumerate() {
         sentences.extend(cost(study, results, judged));
-        sentences.extend(orders(study, results, judged));
-        sentences.extend(references(study, judged));
+        if index == 0 {
+            sentences.extend(orders(study, results, judged));
+            sentences.extend(references(study, judged));
+        }
     }
     sentences.extend(unanswered(study, results));
     sentences.extend(halved(study, results));
@@ -107,16 +111,27 @@ fn paid(study: &Study, price: &Price, cheapest: usize, unit: Unit) -> String {
     if !several(study) {
         return format!("{error} costs {time}");
     }
-    let names = names(study, &alike);
-    match (next, others.len() + 1 - alike.len()) {
-        _ if others.is_empty() => format!("only {names} reaches {error}, in {time}"),
-        (Some((m, cost)), _) => format!(
-            "{error} costs least by {names}{} ({time}; {} takes {} times as long)",
-            if alike.len() > 1 { " alike" } else { "" },
+    let reached = names(study, &alike);
+    match (next, alike.as_slice()) {
+        (None, [_]) => format!("only {reached} reaches {error}, in {time}"),
+        (Some((m, cost)), [_]) => format!(
+            "{error} costs least by {reached} ({time}; {} takes {} times as long)",
             name(study, *m),
             significant(cost[1] / median, 2)
         ),
-        (None, _) => format!("{error} costs {time} by {names} alike"),
+        (_, [.., last]) => {
+            let most = price.costs[*last].map_or(f64::NAN, |cost| cost[1]);
+            let range = match seconds(most) {
+                same if same == time => time,
+                most => format!("{time} to {most}"),
+            };
+            let beyond = next.map_or(String::new(), |(m, cost)| {
+                let times = significant(cost[1] / median, 2);
+                format!(" ({} takes {times} times as long)", name(study, *m))
+            });
+            format!("{error} costs least by {reached}, {range} without a clear difference{beyond}")
+        }
+        (_, []) => String::new(),
     }
 }
 
@@ -132,7 +147,8 @@ fn least(judged: &Judged) -> Option<(usize, f64)> {
 /// Orders that are observed, and errors that show none.
 fn orders(study: &Study, results: &Results<'_>, judged: &Judged) -> Option<String> {
     let mut shown = Grouped::default();
-    let mut odd = Grouped::default();
+    let mut odd = Vec::new();
+    let mut rising = Grouped::default();
     for (m, points) in results.methods.iter().enumerate() {
         let known = known(judged, points, m);
         let expected = expected(points, judged.measure);
@@ -142,14 +158,14 @@ fn orders(study: &Study, results: &Results<'_>, judged: &Judged) -> Option<Strin
             shown.add(format!("{order:.2}{beside}"), m);
         }
         match risen(judged, &known) {
-            Some(risen) => odd.add(risen, m),
+            Some(risen) => rising.add(risen, m),
             None if judged.orders[m].is_none() && known.len() > 1 => {
                 let slopes = known.windows(2).map(|pair| format!("{:.1}", slope(pair)));
-                let slopes: Vec<_> = slopes.collect();
-                let beside =
-                    expected.map_or(String::new(), |p| format!(" (where {p} is expected)"));
-                let words = "show no single order, but from point to point";
-                odd.add(format!("{words} {}{beside}", slopes.join(", ")), m);
+                let slopes = slopes.collect::<Vec<_>>().join(", ");
+                odd.push(match several(study) {
+                    true => format!("{} ({slopes})", name(study, m)),
+                    false => slopes,
+                });
             }
             None => {}
         }
@@ -163,14 +179,23 @@ fn orders(study: &Study, results: &Results<'_>, judged: &Judged) -> Option<Strin
         let each: Vec<_> = each.collect();
         parts.push(format!("Observed order: {}", each.join(", ")));
     }
-    let errors = |methods: &[usize]| match several(study) {
-        true => format!("errors of {}", names(study, methods)),
-        false => "errors".to_owned(),
-    };
+    if !odd.is_empty() {
+        let of = match several(study) {
+            true => format!(" of {}", list(odd)),
+            false => format!(" ({})", odd.concat()),
+        };
+        parts.push(format!(
+            "errors{of} show no single order from point to point"
+        ));
+    }
     parts.extend(
-        odd.0
+        rising
+            .0
             .iter()
-            .map(|(words, methods)| format!("{} {words}", errors(methods))),
+            .map(|(words, methods)| match several(study) {
+                true => format!("errors of {} {words}", names(study, methods)),
+                false => format!("errors {words}"),
+            }),
     );
     let text = parts.join("; ");
     let first = text.chars().next()?;
@@ -317,46 +342,4 @@ fn listed(
         all.push(format!("{} more", count - LISTED));
     }
     (count > 0).then(|| (count, all.join("; ")))
-}
-
-/// Methods of which the same is said.
-#[derive(Debug, Default)]
-struct Grouped(Vec<(String, Vec<usize>)>);
-
-impl Grouped {
-    fn add(&mut self, words: String, method: usize) {
-        match self.0.iter_mut().find(|(other, _)| *other == words) {
-            Some((_, methods)) => methods.push(method),
-            None => self.0.push((words, vec![method])),
-        }
-    }
-}
-
-fn several(study: &Study) -> bool {
-    study.methods.len() > 1
-}
-
-fn name(study: &Study, method: usize) -> String {
-    format!("`{}`", study.methods[method].name)
-}
-
-fn names(study: &Study, methods: &[usize]) -> String {
-    list(methods.iter().map(|&m| name(study, m)).collect())
-}
-
-/// Names one after the other, with an "and" before the last.
-fn list(mut names: Vec<String>) -> String {
-    match (names.pop(), names.is_empty()) {
-        (Some(last), false) => format!("{} and {last}", names.join(", ")),
-        (last, _) => last.unwrap_or_default(),
-    }
-}
-
-/// A time in the unit that suits it.
-fn seconds(seconds: f64) -> String {
-    match seconds {
-        x if x >= 1.0 => format!("{} s", significant(x, 2)),
-        x if x >= 1e-3 => format!("{} ms", significant(1e3 * x, 2)),
-        x => format!("{} µs", significant(1e6 * x, 2)),
-    }
 }

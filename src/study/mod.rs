@@ -3,7 +3,7 @@
 //! - `read`: the study file and all its problems; `measure`: what is measured of them.
 //! - `outcome`, `schedule`: one run, and all of them in rounds.
 //! - `limit`, `compare`: observed orders and Richardson's limits; errors of all points.
-//! - `price`, `conclusion`: what accuracies cost; what it all says in words.
+//! - `price`, `conclusion`, `words`: what accuracies cost; what it all says in words.
 //! - `table`, `diagram`, `record`, `page`: what is told.
 
 pub mod compare;
@@ -18,6 +18,7 @@ pub mod read;
 mod record;
 pub mod schedule;
 mod table;
+mod words;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;

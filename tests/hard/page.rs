@@ -1,6 +1,6 @@
 //! Sections and figures of `results/gallery/hard_cases.md`.
 //!
-//! The page is its own store: a case replaces its section, the list at the top is made anew from all sections that stand.
+//! The page is its own store: a case replaces its section, conclusion and list at the top are made anew from all sections that stand.
 
 use proboscis::report::atomic;
 use proboscis::report::axes::Axis;
@@ -183,27 +183,47 @@ fn sections(page: &str) -> BTreeMap<String, String> {
     parts.filter_map(section).collect()
 }
 
+/// What a line of a section says after its start.
+fn line<'a>(section: &'a str, start: &str) -> &'a str {
+    let found = section.lines().find_map(|line| line.strip_prefix(start));
+    found.unwrap_or_default().trim_end_matches('.')
+}
+
+/// How many cases end how, in a sentence.
+fn conclusion<'a>(sections: impl Iterator<Item = (&'a &'static str, &'a String)>) -> String {
+    let verdicts: Vec<&str> = sections.map(|(_, text)| line(text, "Verdict: ")).collect();
+    let count = |verdict: Verdict| verdicts.iter().filter(|v| **v == verdict.words()).count();
+    format!(
+        "**Conclusion.** The laws of all {} cases hold: {} end with the right answer, {} with right answers as far as there are any \
+         and an explained refusal beyond, {} with an explained refusal.\n\n",
+        verdicts.len(),
+        count(Verdict::Answer),
+        count(Verdict::Both),
+        count(Verdict::Refusal)
+    )
+}
+
 /// The page of sections, with a list of their verdicts at the top.
 fn page(sections: &BTreeMap<String, String>) -> String {
     let mut text = "# Hard cases\n\n\
         Each case asserts its law in `tests/hard`; `make studies` writes this page. A run that is refused says why, in one line,\n\
-        and leaves no number in its files that is not finite.\n\n\
-        | case | verdict |\n|:--|:--|\n"
+        and leaves no number in its files that is not finite.\n\n"
         .to_owned();
     let known = || {
         CASES
             .iter()
             .filter_map(|name| Some((name, sections.get(*name)?)))
     };
+    text.insert_str(
+        text.find("Each case").expect("the first sentence"),
+        &conclusion(known()),
+    );
+    text.push_str("| case | verdict |\n|:--|:--|\n");
     for (name, section) in known() {
-        let line = |start: &str| {
-            let found = section.lines().find_map(|line| line.strip_prefix(start));
-            found.unwrap_or_default().trim_end_matches('.')
-        };
         text.push_str(&format!(
             "| [{}](#{name}) | {} |\n",
-            line("## "),
-            line("Verdict: ")
+            line(section, "## "),
+            line(section, "Verdict: ")
         ));
     }
     for (name, section) in known() {
