@@ -569,8 +569,12 @@ fn conclusion(mut factors: Vec<(&str, f64)>, [by_hand, again]: [f64; 2]) -> Stri
     let dearest = factors.iter().take(3);
     let dearest = dearest.map(|(effect, factor)| format!("{effect} ({factor:.1} times as long)"));
     let dearest: Vec<_> = dearest.collect();
+    let absent = match (by_hand - 1.0).abs() < 0.05 {
+        true => "costs nothing that can be measured",
+        false => "costs time",
+    };
     format!(
-        "An effect that a scene does not call for costs nothing: its step takes {:.3} of the time of one written by hand without it, \
+        "An effect that a scene does not call for {absent}: a step takes {:.3} of the time of one written by hand without it, \
          where the same step timed twice gives {again:.3}. {close} of {} effects change the time of a step by less than a tenth; \
          those that cost most are {}.",
         1.0 / by_hand,
