@@ -22,7 +22,7 @@ help:
 	@echo 'make fuzz          look for files that the reader does not survive, for FUZZ_SECONDS=$(FUZZ_SECONDS)'
 	@echo 'make check         formatting, lints, documentation'
 	@echo 'make bench         measure; rewrite the tables of benches/README.md'
-	@echo 'make studies       what accuracy costs, hard cases, effects, random goals, a peer: rewrite their pages in $(GALLERY)'
+	@echo 'make studies       what accuracy costs, hard cases, effects, random goals, warm starts, a peer: rewrite their pages in $(GALLERY)'
 	@echo 'make try-fresh     run both commands of the README in bare roots of Debian (debootstrap, as root)'
 	@echo 'make install-deps  install what is missing (make trunk and make test do so by themselves)'
 	@echo 'make clean         remove what was built'
@@ -67,6 +67,7 @@ studies: build
 	@PROBOSCIS_WRITE_PAGES=1 $(CARGO) test --release --locked --test hard -- --include-ignored
 	@$(CARGO) bench --locked --bench effects -- --write
 	@$(CARGO) bench --locked --bench goals -- --write
+	@$(CARGO) bench --locked --bench warm -- --write
 	@benches/peers/run.sh
 
 install-deps:

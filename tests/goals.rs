@@ -103,6 +103,47 @@ fn random_goals_are_reached_or_refused_with_a_word() {
 }
 
 #[test]
+fn a_simulation_as_a_guess_saves_iterations() {
+    let mut goals = Goals::new(1);
+    let mut all = [Vec::new(), Vec::new()];
+    for _ in 0..5 {
+        let goal = goals.draw(Kind::Rest).json;
+        let voltages = &goal["rest_at_voltages"];
+        let guesses = [
+            r#""interpolate""#.to_owned(),
+            format!(r#"{{"simulate":{{"voltages":{voltages}}}}}"#),
+        ];
+        let mut objectives = Vec::new();
+        for (guess, counts) in guesses.iter().zip(&mut all) {
+            let changes = [
+                format!("control.goal={goal}"),
+                format!("control.guess={guess}"),
+            ];
+            let loaded = read_problem(&trunk(), &changes).expect("a goal");
+            let Task::Control(control) = loaded.task else {
+                panic!("a problem of control");
+            };
+            let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
+            let system = &loaded.system;
+            let allowed = Allowed::default();
+            let optimum = optimise(&trunk(), system, &control, None, allowed, &mut go_on);
+            let solution = optimum.expect("a reachable goal").solution;
+            assert!(solution.status.is_solved(), "{goal}");
+            counts.push(solution.iterations.len() - 1);
+            objectives.push(solution.objective);
+        }
+        let [a, b] = [objectives[0], objectives[1]];
+        assert!(b < a * (1.0 + 1e-6), "{b} in place of {a}");
+    }
+    let [cold, simulated] = all.map(|mut counts| {
+        println!("{counts:?}");
+        counts.sort_unstable();
+        counts[2]
+    });
+    assert!(simulated < cold, "{simulated} and {cold}");
+}
+
+#[test]
 fn equal_seeds_draw_equal_goals() {
     let draw = |seed| Goals::new(seed).draw(Kind::Rest).json;
     assert_eq!(draw(5), draw(5));

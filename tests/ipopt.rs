@@ -563,6 +563,48 @@ fn warm_starts_take_fewer_iterations() {
 }
 
 #[test]
+fn a_centred_start_lies_on_the_path_of_the_barrier() {
+    // Where the bound pushes, where it does not, and from above; the slope is linear, so that one variable is found at once.
+    type Of = fn(f64) -> f64;
+    let pushed: [Of; 2] = [|x| 1.5 * x * x - 2.0 * x, |x| 3.0 * x - 2.0];
+    let flat: [Of; 2] = [|x| 1.5 * (x - 1.0).powi(2), |x| 3.0 * (x - 1.0)];
+    let above: [Of; 2] = [|x| 1.5 * x * x - 5.0 * x, |x| 3.0 * x - 5.0];
+    let (lower, upper) = ((1.0, f64::INFINITY), (f64::NEG_INFINITY, 1.0));
+    for (name, bound, [f, slope], x, mu) in [
+        ("on the bound", lower, pushed, 1.0, 1e-4),
+        ("away from it", lower, pushed, 1.5, 3e-4),
+        ("without a slope", lower, flat, 1.0, 1e-4),
+        ("from above", upper, above, 1.0, 1e-4),
+        ("from afar below", upper, above, 0.5, 3e-4),
+    ] {
+        let point = Point {
+            x: vec![x],
+            costates: Some(Costates {
+                constraints: vec![],
+                lower: vec![7.0],
+                upper: vec![7.0],
+            }),
+        };
+        let options = Options {
+            start: Start::Centred,
+            ..Options::default()
+        };
+        let mut first = None;
+        let mut program = one_variable(bound, f, slope, |_| 3.0);
+        let solution = solve(&mut program, &point, &options, &mut |iteration, x| {
+            first.get_or_insert((x[0], iteration.dual_infeasibility));
+            ControlFlow::Continue(())
+        });
+        assert_eq!(solution.expect("can be called").status, Status::Solved);
+        let (x, infeasibility) = first.expect("a starting point");
+        let apart = ((x - 1.0) * slope(x) - mu).abs();
+        // Ipopt moves bounds by 1e-8.
+        assert!(apart < 1e-7, "{name}: {x}, {apart:e}");
+        assert!(infeasibility < 1e-7, "{name}: {infeasibility:e}");
+    }
+}
+
+#[test]
 fn threads_take_turns() {
     thread::scope(|scope| {
         let solves: Vec<_> = (0..4)

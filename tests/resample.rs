@@ -4,10 +4,11 @@ mod common;
 
 use common::cases::{joints, rest_to_rest};
 use common::trunk;
-use proboscis::control::problem::{Control, Duration, Limit, Objective};
+use proboscis::control::problem::{Control, Duration, Limit, Objective, Task};
 use proboscis::control::{Boundary, Costates, Initial, Row, Transcription, Variable, guess};
 use proboscis::model::Coordinates;
-use proboscis::run::{Allowed, Optimum, optimise};
+use proboscis::run::{Allowed, Iterate, Optimum, optimise};
+use proboscis::scene::read_problem;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -210,5 +211,74 @@ fn a_coarser_grid_and_one_that_fits_nowhere_are_reached_as_well() {
         assert!(count(&from) < count(&cold));
         let (a, b) = (from.solution.objective, cold.solution.objective);
         assert!((a - b).abs() < 1e-6 * b, "{a} and {b}");
+    }
+}
+
+#[test]
+fn voltages_keep_their_mean_and_stay_between_their_neighbours() {
+    let solved = solve(&problem(Coordinates::Reduced, 40));
+    let old = &solved.motion.voltages;
+    for intervals in [20, 33, 57, 80] {
+        let (initial, ..) = carried(&problem(Coordinates::Reduced, intervals), &solved);
+        let new = &initial.history.scalars;
+        for s in 0..old[0].len() {
+            let mean =
+                |rows: &[Vec<f64>]| rows.iter().map(|row| row[s]).sum::<f64>() / rows.len() as f64;
+            let (a, b) = (mean(old), mean(new));
+            assert!((a - b).abs() < 1e-9 * 1350.0, "{intervals}: {a} and {b}");
+            let range = |rows: &[Vec<f64>]| {
+                let column = rows.iter().map(|row| row[s]);
+                column.fold([f64::MAX, f64::MIN], |[a, b], v| [a.min(v), b.max(v)])
+            };
+            let ([low, high], [a, b]) = (range(old), range(new));
+            assert!(
+                a >= low - 1e-9 && b <= high + 1e-9,
+                "{intervals}: {a} to {b}"
+            );
+        }
+    }
+    let most = old.iter().flatten().fold(0.0, |a: f64, &b| a.max(b));
+    assert!(most > 100.0, "{most} V");
+}
+
+#[test]
+fn least_effort_is_found_from_other_grids_and_durations_sooner_and_as_good() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/elephant_trunk_effort.json");
+    let solve = |changes: &[&str], from: Option<&Optimum>| {
+        let changes: Vec<String> = changes.iter().map(|&change| change.to_owned()).collect();
+        let loaded = read_problem(&file, &changes).unwrap();
+        let Task::Control(control) = loaded.task else {
+            panic!("a problem of control")
+        };
+        let motion = from.map(|optimum| &optimum.motion);
+        let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
+        let allowed = Allowed::default();
+        let found = optimise(&file, &loaded.system, &control, motion, allowed, &mut go_on);
+        let found = found.unwrap();
+        assert!(found.solution.status.is_solved());
+        found
+    };
+    let count = |optimum: &Optimum| optimum.solution.iterations.len() - 1;
+    let first = solve(&[], None);
+    assert!(count(&solve(&[], Some(&first))) <= 1);
+    // Voltages that jump at other instants on each grid.
+    for (change, most) in [
+        ("control.intervals=20", 27),
+        ("control.intervals=80", 24),
+        ("control.duration=0.63 s", 22),
+    ] {
+        let cold = solve(&[change], None);
+        let warm = solve(&[change], Some(&first));
+        let (a, b) = (cold.solution.objective, warm.solution.objective);
+        println!(
+            "{change}: {} iterations, cold {}",
+            count(&warm),
+            count(&cold)
+        );
+        assert!(
+            count(&warm) <= most && count(&warm) < count(&cold),
+            "{change}"
+        );
+        assert!(b <= a * (1.0 + 1e-6), "{change}: {b} in place of {a}");
     }
 }

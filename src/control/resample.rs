@@ -1,4 +1,4 @@
-//! A solution carried to another number of intervals: coordinates and costates along smooth curves, voltages along lines.
+//! A solution carried to another number of intervals: coordinates and costates along smooth curves, voltages by their means.
 //!
 //! What belongs to an instant or interval by itself is carried by value: coordinates, voltages, potentials, costates of
 //! momentum balances and of Gauss's laws. What is summed over a step goes with its length: impulses of constraints, costates
@@ -37,14 +37,21 @@ impl Grids {
         self.from as f64 / self.to as f64 * self.stretch
     }
 
-    /// Values in the middle of new interval k, on the lines between the middles of the old ones.
+    /// Means over new interval k of what the old intervals have. Within an old one the value runs along the flatter of the lines
+    /// to its neighbours, or is constant beside a peak and at the ends: smooth voltages stay smooth, jumps stay jumps, and
+    /// a jump within a new interval keeps its impulse.
     pub(super) fn mean(self, rows: &[Vec<f64>], k: usize) -> Vec<f64> {
-        let place = ((2 * k + 1) * self.from).saturating_sub(self.to);
-        let i = place / (2 * self.to);
-        let part = (place % (2 * self.to)) as f64 / (2 * self.to) as f64;
-        let next = (i + 1).min(self.from - 1);
-        let value = |(a, b): (&f64, &f64)| a + part * (b - a);
-        rows[i].iter().zip(&rows[next]).map(value).collect()
+        let place = |k: usize| (k * self.from) as f64 / self.to as f64;
+        let (begin, end) = (place(k), place(k + 1));
+        let first = k * self.from / self.to;
+        let last = ((k + 1) * self.from).div_ceil(self.to);
+        let part = |i: usize, s: usize| {
+            let (a, b) = (begin.max(i as f64), end.min((i + 1) as f64));
+            let middle = 0.5 * (a + b) - i as f64 - 0.5;
+            (b - a) / (end - begin) * (rows[i][s] + middle * slope(rows, i, s))
+        };
+        let mean = |s: usize| (first..last).map(|i| part(i, s)).sum();
+        (0..rows[0].len()).map(mean).collect()
     }
 
     /// Old interval that the middle of new interval k is in.
@@ -73,6 +80,20 @@ impl Grids {
     /// Old instant next to new instant k.
     fn nearest(self, k: usize) -> usize {
         (2 * k * self.from + self.to) / (2 * self.to)
+    }
+}
+
+/// Change of entry s within interval i: the smaller one of those from the interval before and to the next; none where they differ
+/// in sign and at the ends.
+fn slope(rows: &[Vec<f64>], i: usize, s: usize) -> f64 {
+    if i == 0 || i + 1 == rows.len() {
+        return 0.0;
+    }
+    let [before, after] = [(i - 1, i), (i, i + 1)].map(|(a, b)| rows[b][s] - rows[a][s]);
+    match before * after > 0.0 {
+        true if before.abs() < after.abs() => before,
+        true => after,
+        false => 0.0,
     }
 }
 

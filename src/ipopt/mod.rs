@@ -3,6 +3,7 @@
 //! One solve runs at a time in a process, because Ipopt with MUMPS is not made for more: a second call waits. For the
 //! same reason an observer or an [`Nlp`] must not call [`solve`] itself.
 
+mod centre;
 mod evaluation;
 mod ffi;
 pub mod interrupt;
@@ -16,6 +17,7 @@ use thiserror::Error;
 
 use crate::nlp::{Bounds, Entries, Nlp};
 
+use centre::{Structures, centre};
 use evaluation::Evaluator;
 pub use options::{MUMPS_ORDERING, OptionValue, Options, Start};
 pub use solution::{Costates, Evaluations, Iteration, Point, Seconds, Solution};
@@ -94,6 +96,13 @@ pub fn solve(
     let scale = nlp.objective_scale();
     assert!(scale > 0.0, "a positive scale of the objective");
     costates.scale(scale);
+    if options.start == Start::Centred {
+        let structures = Structures {
+            jacobian: &jacobian,
+            hessian: &hessian,
+        };
+        centre(nlp, &structures, &mut x, &mut costates);
+    }
 
     let entries = jacobian.rows.len();
     let mut problem = ffi::Problem::new(&variables, &constraints, entries, hessian.rows.len())
@@ -197,15 +206,15 @@ fn starting_costates(start: &Point, kind: Start, n: usize, m: usize) -> Costates
         "one value per variable in the starting point"
     );
     match kind {
-        Start::Cold | Start::Primal { .. } => Costates {
+        Start::Cold | Start::Simulated | Start::Primal { .. } => Costates {
             constraints: vec![0.0; m],
             lower: vec![0.0; n],
             upper: vec![0.0; n],
         },
-        Start::PrimalDual => start
+        Start::PrimalDual | Start::Centred => start
             .costates
             .clone()
-            .expect("a primal-dual start has multipliers"),
+            .expect("a start with multipliers has them"),
     }
 }
 

@@ -27,8 +27,12 @@ use crate::run::violations::{Violation, violations};
 const NAMED: usize = 5;
 /// A row that the solver could not make smaller than this does not hold.
 const HOLDS: f64 = 1e-6;
-/// First barrier parameter from an earlier solution that was resampled.
+/// Start from an earlier solution that was resampled and has no costates.
 const RESAMPLED: Start = Start::Primal { mu_init: 1e-2 };
+
+/// An earlier solution that violates the equations of another grid or duration by less lies on the right bounds: smooth voltages
+/// violate them by 1e-6 to 1e-4, those that jump at other instants by 4e-4 to 4e-2.
+const FITS: f64 = 2e-4;
 
 /// What a solve may take, in place of what its problem says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -184,7 +188,7 @@ pub fn optimise(
     };
     let mut solution = solve(&mut program, &point, &options)?;
     let mut restarted = None;
-    if is_infeasible(solution.status) && start == Start::Cold {
+    if is_infeasible(solution.status) && matches!(start, Start::Cold | Start::Simulated) {
         phase("a second start from elsewhere");
         let displaced = displaced(control, &boundary, model.sources.len());
         let initial = guess(&model, &boundary, &displaced, interval(control), None);
@@ -301,7 +305,7 @@ pub(super) fn prepare<'m>(
     };
     let earlier = earlier.or(named.as_ref());
     let initial = guess(model, boundary, control, interval(control), earlier);
-    let program = match counted {
+    let mut program = match counted {
         Counted::Yes => Transcription::new(model, boundary, control, &initial)
             .map_err(|error| RunError::boundary(file, "control", &error))?,
         Counted::No => Transcription::of_any(model, boundary, control, &initial),
@@ -310,11 +314,14 @@ pub(super) fn prepare<'m>(
     let stretched = initial.stretched;
     let is_same_grid =
         |earlier: &Solved| earlier.intervals() == control.intervals && stretched.is_none();
-    let start = match earlier {
-        None => Start::Cold,
-        Some(_) if point.costates.is_some() => Start::PrimalDual,
-        Some(earlier) if is_same_grid(earlier) => Start::PRIMAL,
-        Some(_) => RESAMPLED,
+    let start = match (earlier, &point.costates) {
+        (None, _) if matches!(control.guess, Guess::Simulate(_)) => Start::Simulated,
+        (None, _) => Start::Cold,
+        (Some(earlier), Some(_)) if is_same_grid(earlier) => Start::PrimalDual,
+        (Some(_), Some(_)) if program.violation(&point.x) < FITS => Start::PrimalDual,
+        (Some(_), Some(_)) => Start::Centred,
+        (Some(earlier), None) if is_same_grid(earlier) => Start::PRIMAL,
+        (Some(_), None) => RESAMPLED,
     };
     Ok(Prepared {
         program,
