@@ -174,10 +174,10 @@ impl Sum {
             couple(&mut couplings, &mut slots);
             slots
         };
-        let of_effect = |effect: &Box<dyn Effect>| laid(&|c, slots| effect.couple(c, slots));
-        let effect_slots = effects.iter().map(of_effect).collect();
-        let of_measure = |measure: &Box<dyn Measure>| laid(&|c, slots| measure.couple(c, slots));
-        let measure_slots = measures.iter().map(of_measure).collect();
+        let of_effect = |effect: &dyn Effect| laid(&|c, slots| effect.couple(c, slots));
+        let effect_slots = effects.iter().map(Box::as_ref).map(of_effect).collect();
+        let of_measure = |measure: &dyn Measure| laid(&|c, slots| measure.couple(c, slots));
+        let measure_slots = measures.iter().map(Box::as_ref).map(of_measure).collect();
         Self {
             effects,
             measures,
