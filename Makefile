@@ -49,7 +49,7 @@ test: install-deps
 
 # All properties at once, so that each has the whole time.
 fuzz: install-deps
-	@FUZZ_SECONDS=$(FUZZ_SECONDS) $(CARGO) test --release --locked --test fuzz_reader -- \
+	@FUZZ_SECONDS=$(FUZZ_SECONDS) $(CARGO) test --release --locked --test files -- \
 	  --test-threads 16 --nocapture are_read_or_refused are_refused are_taken_or_refused
 
 check: install-deps

@@ -3,7 +3,7 @@
 //! `cargo bench --bench goals -- [GOALS] [--write]`: so many goals of rest, 200 where not said, half as many places of the tip
 //! and an eighth as many goals in haste; with `--write` tables and figure go to `results/gallery/random_goals/`. Each solve is a process, as a user starts it.
 
-#[path = "../tests/random_goals/mod.rs"]
+#[path = "../tests/common/random_goals.rs"]
 mod random_goals;
 
 use proboscis::report::axes::{Axis, Extent};

@@ -3,7 +3,7 @@
 //! `cargo bench --bench warm -- [GOALS] [--write]`: starts from solutions on other grids, of other goals and of another duration, then
 //! so many random goals, 50 where not said, from simulations; with `--write` the page goes to `results/gallery/warm_starts.md`.
 
-#[path = "../tests/random_goals/mod.rs"]
+#[path = "../tests/common/random_goals.rs"]
 mod random_goals;
 
 use random_goals::{Goals, Kind};

@@ -1,7 +1,6 @@
 //! Ctrl-C stops a solve in good order; pressed twice it ends the process.
 
-mod programs;
-mod signals;
+mod common;
 
 use std::env;
 use std::io::{BufRead, BufReader};
@@ -10,8 +9,8 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use common::programs::{HS071_START, hs071};
 use proboscis::ipopt::{Options, Point, Status, interrupt, solve};
-use programs::{HS071_START, hs071};
 
 /// Run in a process of its own by the next test: solves until interrupted, then waits for the second Ctrl-C.
 #[test]
@@ -62,8 +61,8 @@ fn ctrl_c_stops_the_solve_and_the_second_one_the_process() {
     let mut lines = BufReader::new(child.stdout.take().expect("its output")).lines();
     let mut wait_for = |word| lines.any(|line| line.expect("text") == word);
     assert!(wait_for("ready"));
-    signals::interrupt(&child);
+    common::signals::interrupt(&child);
     assert!(wait_for("stopped"));
-    signals::interrupt(&child);
+    common::signals::interrupt(&child);
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
 }

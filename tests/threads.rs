@@ -1,9 +1,9 @@
 //! One thread and two give the same bits.
 
 mod common;
-mod solid;
 
 use common::cases::{blocks, control, open_end, rest_to_rest};
+use common::solid::{DRIVEN, electrode, held};
 use common::trunk;
 use nalgebra::Vector3;
 use proboscis::control::problem::Control;
@@ -13,7 +13,6 @@ use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
 use proboscis::model::system::{Potential, System};
 use proboscis::nlp::Nlp;
-use solid::{DRIVEN, electrode, held};
 use std::ops::ControlFlow;
 
 /// Rows, Jacobian and Hessian of the trunk at a point between guess and noise.
@@ -62,14 +61,14 @@ fn one_thread_and_two_give_the_same_bits() {
 fn large() -> System {
     let size = Vector3::new(16.0, 16.0, 10.0);
     let mesh = Grid::uniform(Vector3::zeros(), size, [8, 8, 5]).mesh();
-    let mut solid = solid::block(mesh, blocks().muscles[0].material);
+    let mut solid = common::solid::block(mesh, blocks().muscles[0].material);
     let mesh = &solid.mesh;
     solid.supports = vec![held(mesh, "z_min", [true; 3])];
     solid.electrodes = vec![
         electrode(mesh, "bottom", 0.0, Potential::Given(0.0)),
         electrode(mesh, "top", 10.0, DRIVEN),
     ];
-    solid::system(vec![solid])
+    common::solid::system(vec![solid])
 }
 
 #[test]

@@ -4,7 +4,12 @@
 
 pub mod cases;
 pub mod force;
+pub mod programs;
 pub mod random;
+pub mod random_goals;
+pub mod signals;
+pub mod solid;
+pub mod trunk;
 
 use nalgebra::{Matrix3, SVector, Vector3};
 use proboscis::dynamics::trajectory::{Observations, Trajectory};

@@ -1,0 +1,578 @@
+//! Limits hold at all instants, start and end included, and select something; what cannot be met is explained.
+
+use crate::common::random::Random;
+use assert_cmd::Command;
+use nalgebra::{Matrix3, Vector3};
+use proboscis::control::problem::{Duration, Task};
+use proboscis::control::{Boundary, Transcription, guess};
+use proboscis::element::{FieldPoint, Shape};
+use proboscis::ipopt::{self, Options};
+use proboscis::mesh::CORNERS;
+use serde_json::{Value, json};
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// A kept problem.
+fn kept(name: &str) -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/trust");
+    serde_json::from_str(&fs::read_to_string(path.join(name)).unwrap()).unwrap()
+}
+
+/// A run of a problem in a folder of its own, with its results in `p`.
+struct Ran {
+    status: i32,
+    out: String,
+    err: String,
+    folder: TempDir,
+}
+
+fn run(task: &str, problem: &Value, more: &[&str]) -> Ran {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("p.json"), problem.to_string()).unwrap();
+    let output = Command::cargo_bin("proboscis")
+        .unwrap()
+        .current_dir(folder.path())
+        .args([task, "p.json", "-o", "p"])
+        .args(more)
+        .output()
+        .unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    Ran {
+        status: output.status.code().unwrap(),
+        out: text(output.stdout),
+        err: text(output.stderr),
+        folder,
+    }
+}
+
+impl Ran {
+    fn read(&self, file: &str) -> Value {
+        let text = fs::read_to_string(self.folder.path().join("p").join(file)).unwrap();
+        serde_json::from_str(&text).unwrap()
+    }
+
+    /// It was refused in one line with these words, and wrote nothing.
+    fn is_refused(&self, words: &[&str]) {
+        assert_eq!(self.status, 2, "{}{}", self.out, self.err);
+        let first = self.err.lines().next().unwrap();
+        for word in words {
+            assert!(first.contains(word), "no {word:?} in {first}");
+        }
+        assert!(!self.folder.path().join("p").exists());
+    }
+
+    fn is_solved(&self) {
+        assert_eq!(self.status, 0, "{}{}", self.out, self.err);
+    }
+}
+
+/// A trunk with a goal and limits.
+fn trunk(segments: usize, goal: Value, limits: Value) -> Value {
+    json!({
+        "scene": {
+            "name": "pair",
+            "materials": { "silicone": {
+                "density": "1000 kg/m^3", "shear_modulus": "100 kPa", "lame_lambda": "400 kPa",
+                "relative_permittivity": 3.0, "viscosity": "1000 Pa s"
+            } },
+            "chain": {
+                "segments": segments, "length": "50 mm", "radius": "20 mm", "mass": "30 g",
+                "axis": [0, 1, 0], "first_joint_axis": [0, 0, 1],
+                "muscles": {
+                    "material": "silicone", "arm": "15 mm", "rest_length": "40 mm",
+                    "cross_section": ["10 mm", "10 mm"], "layer_thickness": "50 um"
+                },
+                "tip_marker": "tip"
+            }
+        },
+        "control": {
+            "duration": "0.2 s", "intervals": 10,
+            "start": { "rest_at_voltages": {} },
+            "goal": goal,
+            "voltage_bounds": ["0 V", "3 kV"],
+            "objective": { "effort": 1.0 },
+            "limits": limits
+        }
+    })
+}
+
+#[test]
+fn a_goal_beyond_a_limit_is_refused_by_name() {
+    for coordinates in ["reduced", "redundant"] {
+        let mut problem = kept("05_limit_violated_by_goal.json");
+        problem["control"]["coordinates"] = json!(coordinates);
+        let words = ["control.goal", "joint1", "0.151", "at most 0.0500", "rad"];
+        run("solve", &problem, &[]).is_refused(&words);
+    }
+    // A named angle, whatever is known of the rest.
+    let joint = json!([{ "joint_angle": { "joint": "joint1", "min": -0.3, "max": 0.05 } }]);
+    let named = trunk(1, json!({ "joint_angles": { "joint1": 0.1 } }), joint);
+    run("solve", &named, &[]).is_refused(&["control.goal", "joint1", "0.1000", "0.0500"]);
+}
+
+#[test]
+fn limits_that_contradict_each_other_are_refused_by_name() {
+    let goal = json!({ "joint_angles": { "joint1": 0.0 } });
+    let joint =
+        |side: &str, value: f64| json!({ "joint_angle": { "joint": "joint1", side: value } });
+    let limits = json!([joint("max", -0.1), joint("min", 0.1)]);
+    let words = [
+        "control.limits",
+        "joint1",
+        "at least 0.10000 rad",
+        "at most -0.10000 rad",
+    ];
+    run("solve", &trunk(1, goal.clone(), limits), &[]).is_refused(&words);
+    let stretch =
+        |side: &str, value: f64| json!({ "stretch": { "muscle": "muscle1", side: value } });
+    let limits = json!([stretch("min", 1.1), stretch("max", 0.9)]);
+    let words = [
+        "control.limits",
+        "muscle1",
+        "at least 1.1000",
+        "at most 0.90000",
+    ];
+    run("solve", &trunk(1, goal, limits), &[]).is_refused(&words);
+}
+
+#[test]
+fn a_start_beyond_a_limit_is_refused_by_name() {
+    let goal = json!({ "rest_at_voltages": { "muscle1": "1.2 kV" } });
+    let start = |mut problem: Value, start: Value| {
+        problem["control"]["start"] = start;
+        problem
+    };
+    // The marker is at (0, 50, 0) mm at the start.
+    let inside = json!([{ "marker": { "marker": "tip", "inside": { "sphere": {
+        "centre": ["0 mm", "36 mm", "0 mm"], "radius": "10 mm" } } } }]);
+    let words = ["control.start", "tip", "14.000 mm", "at most 10.000 mm"];
+    run("solve", &trunk(1, goal.clone(), inside), &[]).is_refused(&words);
+    let stretched = json!([{ "stretch": { "muscle": "muscle2", "min": 0.5, "max": 1.02 } }]);
+    let bent = json!({ "joint_angles": { "joint1": -0.3 } });
+    let problem = start(trunk(1, goal.clone(), stretched), bent);
+    run("solve", &problem, &[]).is_refused(&["control.start", "muscle", "at most 1.0200"]);
+    // A field before the motion begins: 2 kV over 50 um are 40 V/um at rest length.
+    let field = json!([{ "electric_field": { "muscles": "all", "max": "30 V/um" } }]);
+    let held = json!({ "rest_at_voltages": { "muscle1": "2 kV", "muscle2": "2 kV" } });
+    let problem = start(trunk(1, goal, field), held);
+    run("solve", &problem, &[]).is_refused(&[
+        "control.start",
+        "field of muscle1",
+        "at most 30.000",
+    ]);
+}
+
+#[test]
+fn a_goal_of_a_marker_beyond_its_region_is_refused() {
+    let goal = json!({ "markers": { "tip": ["-5 mm", "149 mm", "0 mm"] } });
+    let low = json!(["-4 mm", "0 mm", "-1 mm"]);
+    let high = json!(["4 mm", "160 mm", "1 mm"]);
+    let limits = json!([{ "marker": { "marker": "tip", "inside": { "box": {
+        "min": low, "max": high } } } }]);
+    let words = [
+        "control.goal",
+        "x of marker tip",
+        "-5.0000 mm",
+        "at least -4.0000 mm",
+    ];
+    run("solve", &trunk(3, goal, limits), &[]).is_refused(&words);
+}
+
+/// Largest true field of all muscles in V/mm: at instants under the voltages of both intervals that meet there, and at midpoints
+/// of their spans, from what the files say of the motion.
+fn largest_field(ran: &Ran) -> [f64; 2] {
+    let solution = ran.read("solution.json");
+    let scene = ran.folder.path().join("p.json");
+    let system = proboscis::scene::read_problem(&scene, &[]).unwrap().system;
+    let model = proboscis::model::Model::new(system, None, 1.0, &[]).unwrap();
+    let rows = |value: &Value| -> Vec<f64> {
+        let list = value.as_array().unwrap();
+        list.iter().map(|v| v.as_f64().unwrap()).collect()
+    };
+    let joints: Vec<Vec<f64>> = model
+        .system
+        .joints
+        .iter()
+        .map(|joint| rows(&solution["configuration"]["joints"][&joint.name]))
+        .collect();
+    let instants = joints[0].len();
+    // Ends of each muscle, from the poses of the bodies.
+    let span = |k: usize, muscle: &proboscis::model::system::Muscle| {
+        let values: Vec<f64> = joints.iter().map(|list| list[k]).collect();
+        let mut instant = model.action.motion.instant();
+        instant.z.copy_from_slice(&model.coordinates_at(&values));
+        model.action.motion.place(&mut instant);
+        let poses = model.poses(&instant);
+        let end = |a: &proboscis::model::system::Attachment| match a.body {
+            None => a.at,
+            Some(b) => {
+                let body = &model.system.bodies[b];
+                let local = body.directors.transpose() * (a.at - body.centre);
+                poses[b].centre + poses[b].directors * local
+            }
+        };
+        end(&muscle.to) - end(&muscle.from)
+    };
+    let mut largest = [0.0_f64; 2];
+    for muscle in &model.system.muscles {
+        let volts = rows(&solution["voltages"][&muscle.name]);
+        let spans: Vec<_> = (0..instants).map(|k| span(k, muscle)).collect();
+        let nominal = |k: usize| volts[k] / muscle.layer_thickness * muscle.length();
+        for k in 0..volts.len() {
+            for r in [spans[k], spans[k + 1]] {
+                largest[0] = largest[0].max(nominal(k) / r.norm());
+            }
+            let middle = (spans[k] + spans[k + 1]) * 0.5;
+            largest[1] = largest[1].max(nominal(k) / middle.norm());
+        }
+    }
+    largest
+}
+
+#[test]
+fn fields_keep_their_limit_at_instants_and_midpoints() {
+    let mut problem = kept("10_field_limit_exceeded_at_instants.json");
+    // Its goal itself is beyond the limit.
+    let words = [
+        "control.goal",
+        "field of m2",
+        "45.032 V/um",
+        "at most 43.743 V/um",
+    ];
+    run("solve", &problem, &[]).is_refused(&words);
+    let max = 54e6;
+    problem["control"]["limits"][0]["electric_field"]["max"] = json!(max);
+    let ran = run("solve", &problem, &[]);
+    ran.is_solved();
+    let [at_instants, between] = largest_field(&ran);
+    let max = max / 1e3;
+    assert!(at_instants <= max * (1.0 + 1e-6), "{at_instants} {max}");
+    assert!(between <= max * (1.0 + 1e-6), "{between} {max}");
+    // The limit is what holds it back, and it does so at instants first.
+    assert!(at_instants > 0.9999 * max, "{at_instants} {max}");
+    problem["control"]["limits"] = json!([]);
+    let free = run("solve", &problem, &[]);
+    assert!(largest_field(&free)[0] > 1.02 * max);
+}
+
+#[test]
+fn a_limit_holds_at_an_open_end() {
+    // Joint 3 is open at the end; what it does by itself there is cut in half.
+    for coordinates in ["reduced", "redundant"] {
+        let goal = json!({ "joint_angles": { "joint1": 0.15 } });
+        let mut problem = trunk(3, goal, json!([]));
+        problem["control"]["coordinates"] = json!(coordinates);
+        let end = |ran: &Ran| {
+            ran.is_solved();
+            let joint = &ran.read("solution.json")["configuration"]["joints"]["joint3"];
+            joint.as_array().unwrap().last().unwrap().as_f64().unwrap()
+        };
+        let free = end(&run("solve", &problem, &[]));
+        assert!(free.abs() > 1e-3, "{free}");
+        let (side, half) = (if free > 0.0 { "max" } else { "min" }, 0.5 * free);
+        problem["control"]["limits"] =
+            json!([{ "joint_angle": { "joint": "joint3", side: half } }]);
+        let held = end(&run("solve", &problem, &[]));
+        assert!((held - half).abs() < 1e-6, "{held} {half}");
+    }
+}
+
+/// The true field at a point of an element, over the isoparametric coordinates and without the reference configuration:
+/// −(∂x/∂ξ)⁻ᵀ ∂φ/∂ξ.
+fn naive_field(x: &[Vector3<f64>; 8], phi: &[f64; 8], xi: [f64; 3]) -> Vector3<f64> {
+    let mut slope = Matrix3::zeros();
+    let mut rise = Vector3::zeros();
+    for i in 0..8 {
+        let c = CORNERS[i];
+        for m in 0..3 {
+            let (a, b) = ((m + 1) % 3, (m + 2) % 3);
+            let d = 0.125 * c[m] * (1.0 + c[a] * xi[a]) * (1.0 + c[b] * xi[b]);
+            slope.set_column(m, &(slope.column(m) + x[i] * d));
+            rise[m] += phi[i] * d;
+        }
+    }
+    -(slope.transpose().lu().solve(&rise).unwrap())
+}
+
+/// Centre and Gauss points in isoparametric coordinates.
+fn points() -> Vec<(Option<usize>, [f64; 3])> {
+    let gauss = |g: usize| (Some(g), CORNERS[g].map(|c| c / 3.0_f64.sqrt()));
+    std::iter::once((None, [0.0; 3]))
+        .chain((0..8).map(gauss))
+        .collect()
+}
+
+#[test]
+fn the_field_at_a_point_and_its_derivatives_are_those_of_the_naive_formula() {
+    let mut random = Random(7);
+    let reference = CORNERS.map(|c| Vector3::from(c).map(|v| v + 0.2 * random.unit()));
+    let x = reference.map(|place| place.map(|v| 1.1 * v + 0.2 * random.unit()));
+    let phi: [f64; 8] = std::array::from_fn(|_| 50.0 * random.unit());
+    let shape = Shape::new(&reference).unwrap();
+    for (point, xi) in points() {
+        let gradients = match point {
+            Some(g) => shape.gradients_at(g),
+            None => Shape::central_gradients(&reference).unwrap(),
+        };
+        let limit = 30.0;
+        let at = FieldPoint { gradients, limit };
+        let naive = |x: &[Vector3<f64>; 8], phi: &[f64; 8]| {
+            naive_field(x, phi, xi).norm_squared() / (limit * limit)
+        };
+        let field = at.at(&x, &phi);
+        let value = naive(&x, &phi);
+        assert!(value > 0.01, "{value}");
+        assert!((field.value() - value).abs() < 1e-12 * value);
+        // Central differences, of arguments of size one; potentials in tens of volts.
+        let (step, volts) = (1e-5, 10.0);
+        let moved = |entry: usize, by: f64| {
+            let (mut x, mut phi) = (x, phi);
+            match entry.checked_sub(24) {
+                None => x[entry / 3][entry % 3] += by,
+                Some(i) => phi[i] += volts * by,
+            }
+            (x, phi)
+        };
+        let gradient = |x: &[Vector3<f64>; 8], phi: &[f64; 8]| -> Vec<f64> {
+            let field = at.at(x, phi);
+            let places = (0..8).flat_map(|i| field.by_place(i).iter().copied().collect::<Vec<_>>());
+            places
+                .chain((0..8).map(|i| volts * field.by_potential(i)))
+                .collect()
+        };
+        let exact = gradient(&x, &phi);
+        let size = exact.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        assert!(exact.iter().all(|v| v.abs() > 1e-6 * size));
+        let mut largest = 0.0_f64;
+        for (a, slope) in exact.iter().enumerate() {
+            let [up, down] = [step, -step].map(|by| moved(a, by));
+            let difference = (naive(&up.0, &up.1) - naive(&down.0, &down.1)) / (2.0 * step);
+            assert!(
+                (slope - difference).abs() < 1e-8 * size,
+                "{a}: {slope} {difference}"
+            );
+            let [up, down] = [gradient(&up.0, &up.1), gradient(&down.0, &down.1)];
+            for b in 0..32 {
+                let difference = (up[b] - down[b]) / (2.0 * step);
+                let (i, j) = (a / 3, b / 3);
+                let second = match (a.checked_sub(24), b.checked_sub(24)) {
+                    (None, None) => field.by_places(i, j)[(a % 3, b % 3)],
+                    (None, Some(j)) => volts * field.by_place_and_potential(i, j)[a % 3],
+                    (Some(i), None) => volts * field.by_place_and_potential(j, i)[b % 3],
+                    (Some(i), Some(j)) => volts * volts * field.by_potentials(i, j),
+                };
+                largest = largest.max(second.abs());
+                assert!(
+                    (second - difference).abs() < 1e-7 * size,
+                    "{a} {b}: {second} {difference}"
+                );
+            }
+        }
+        assert!(largest > 0.1 * size);
+    }
+}
+
+/// The lift of the kept problem on two elements, in a given time.
+fn lift(seconds: f64) -> Value {
+    let mut problem = kept("04_fe_lift_rest_reduced_vs_redundant.json");
+    let solid = &mut problem["scene"]["solids"][0];
+    solid["box"]["elements"] = json!([1, 1, 2]);
+    solid["stack"]["layers"] = json!(2);
+    let control = &mut problem["control"];
+    control["duration"] = json!(seconds);
+    control["intervals"] = json!(8);
+    control["voltage_bounds"] = json!([0, 400e3]);
+    control["goal"]["hold"] = json!({ "s.hv": 140e3 });
+    control["guess"] = json!({ "simulate": { "voltages": { "s.hv": 140e3 } } });
+    problem
+}
+
+/// Largest true field of a solved problem in V/mm at centres and Gauss points, at instants under the voltages of both intervals
+/// that meet there and between them, over the deformed elements alone.
+fn solved_field(problem: &Value) -> (f64, f64) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("p.json");
+    fs::write(&path, problem.to_string()).unwrap();
+    let loaded = proboscis::scene::read_problem(&path, &[]).unwrap();
+    let Task::Control(control) = loaded.task else {
+        panic!("a control problem")
+    };
+    let Duration::Given(t) = control.duration else {
+        panic!("a given duration")
+    };
+    let h = t / control.intervals as f64;
+    let (model, boundary) = Boundary::resolve(&loaded.system, &control, h).unwrap();
+    let initial = guess(&model, &boundary, &control, h, None);
+    let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
+    let start = program.start(&initial);
+    let solution = ipopt::solve(&mut program, &start, &Options::default(), &mut |_, _| {
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    assert!(solution.status.is_solved(), "{:?}", solution.status);
+    let history = program.decode(&solution.x);
+    let places: Vec<Vec<Vector3<f64>>> = history
+        .z
+        .iter()
+        .map(|z| {
+            let mut instant = model.action.motion.instant();
+            instant.z.copy_from_slice(z);
+            model.action.motion.vectors(&mut instant);
+            model.continua[0].places(&instant.x)
+        })
+        .collect();
+    let mut largest = 0.0_f64;
+    for (k, scalars) in history.scalars.iter().enumerate() {
+        let phi = model.continua[0].potentials(scalars);
+        let middle: Vec<_> = (0..phi.len())
+            .map(|n| (places[k][n] + places[k + 1][n]) * 0.5)
+            .collect();
+        for nodes in &model.continua[0].solid.mesh.hexahedra {
+            for x in [&places[k], &places[k + 1], &middle] {
+                for (_, xi) in points() {
+                    let field = naive_field(&nodes.map(|n| x[n]), &nodes.map(|n| phi[n]), xi);
+                    largest = largest.max(field.norm());
+                }
+            }
+        }
+    }
+    (largest, solution.objective)
+}
+
+#[test]
+fn fields_of_finite_elements_keep_their_limit() {
+    // So fast that the voltage is higher on the way than at the end.
+    let mut problem = lift(0.009);
+    let (free, cheap) = solved_field(&problem);
+    let max = 1e3 * 0.95 * free;
+    problem["control"]["limits"] = json!([{ "electric_field": { "solid": "s", "max": max } }]);
+    let (held, dear) = solved_field(&problem);
+    println!("{free} {cheap}, {held} {dear}");
+    assert!(held <= 0.95 * free * (1.0 + 1e-6), "{held} {free}");
+    assert!(held > 0.9499 * free && dear > cheap, "{held} {free}");
+}
+
+#[test]
+fn a_limit_that_selects_nothing_is_refused() {
+    let with = |limit: Value| {
+        let mut problem = lift(0.05);
+        problem["control"]["limits"] = json!([{ "electric_field": limit }]);
+        run("solve", &problem, &[])
+    };
+    let place = "control.limits[0].electric_field";
+    let words = |rest: &'static str| [place, rest];
+    with(json!({ "muscles": "all", "max": 1e7 })).is_refused(&words("\"solid\""));
+    with(json!({ "solid": "s", "region": "r", "max": 1e7 })).is_refused(&words("region"));
+    with(json!({ "solids": "all", "region": "r", "max": 1e7 })).is_refused(&words("region"));
+    // A block without electrodes beside the one with them.
+    let mut passive = lift(0.05);
+    let solids = passive["scene"]["solids"].as_array_mut().unwrap();
+    solids.push(json!({
+        "name": "q", "material": "m", "glued": { "z_min": "ground" },
+        "box": { "corner": [0.1, 0, 0], "size": [0.01, 0.01, 0.01], "elements": [1, 1, 1] }
+    }));
+    passive["control"]["limits"] = json!([{ "electric_field": { "solid": "q", "max": 1e7 } }]);
+    run("solve", &passive, &[]).is_refused(&[place, "nothing that a field reaches"]);
+}
+
+#[test]
+fn bodies_glued_to_elements_rest_in_both_coordinates() {
+    let mut ends = Vec::new();
+    for coordinates in ["reduced", "redundant"] {
+        let mut problem = lift(0.05);
+        problem["control"]["coordinates"] = json!(coordinates);
+        let ran = run("solve", &problem, &[]);
+        ran.is_solved();
+        let summary = ran.read("summary.json");
+        println!("{}", summary["resimulation"]);
+        ends.push(summary);
+    }
+    let number = |summary: &Value, path: &str| summary.pointer(path).unwrap().as_f64().unwrap();
+    let [reduced, redundant] = [0, 1].map(|i| number(&ends[i], "/objective"));
+    assert!(
+        (reduced - redundant).abs() < 1e-6 * reduced,
+        "{reduced} {redundant}"
+    );
+    let [reduced, redundant] = [0, 1].map(|i| number(&ends[i], "/resimulation/drift/length"));
+    assert!(
+        reduced > 0.0 && (reduced - redundant).abs() < 1e-3 * reduced,
+        "{reduced} {redundant}"
+    );
+}
+
+#[test]
+fn an_infeasible_problem_is_explained() {
+    // In haste: the voltages are at their bound most of the time, and the tip falls short.
+    let goal = json!({ "rest_at_voltages": { "muscle1": 1500 } });
+    let mut problem = trunk(1, goal, json!([]));
+    problem["control"]["duration"] = json!("0.016 s");
+    problem["control"]["voltage_bounds"] = json!([0, 1600]);
+    let ran = run("solve", &problem, &[]);
+    assert_eq!(ran.status, 1, "{}{}", ran.out, ran.err);
+    assert!(
+        ran.out.starts_with("not solved (infeasible)"),
+        "{}",
+        ran.out
+    );
+    println!("{}", ran.err);
+    let line = |word: &str| {
+        let found = ran.err.lines().find(|line| line.contains(word));
+        found
+            .unwrap_or_else(|| panic!("no {word:?} in {}", ran.err))
+            .to_owned()
+    };
+    let number = |text: &str, after: &str, before: &str| -> f64 {
+        let (_, rest) = text.split_once(after).unwrap();
+        rest.split_once(before).unwrap().0.parse().unwrap()
+    };
+    let missed = number(&line("comes within"), "comes within ", " mm");
+    assert!(missed > 0.1 && missed < 10.0, "{missed}");
+    let often = number(
+        &line("at its bound of 1600 V"),
+        " V in ",
+        " of 10 intervals",
+    );
+    assert!(often >= 3.0, "{often}");
+    // The duration that is named does.
+    let longer = number(&line("duration free"), "a motion of ", " s");
+    assert!(longer > 0.016);
+    problem["control"]["duration"] = json!(1.02 * longer);
+    run("solve", &problem, &[]).is_solved();
+    // What is told stands in the summary.
+    let notes = ran.read("summary.json")["notes"].to_string();
+    assert!(
+        notes.contains("comes within") && notes.contains("duration free"),
+        "{notes}"
+    );
+}
+
+#[test]
+fn a_robot_that_floats_is_told_how_to_start() {
+    let goal = json!({ "joint_angles": { "hinge": 0.1 } });
+    let mut problem = trunk(1, goal, json!([]));
+    let scene = problem["scene"].as_object_mut().unwrap();
+    scene.remove("chain");
+    scene.insert(
+        "bodies".into(),
+        json!(["a", "b"].map(|name| json!({
+            "name": name, "mass": "30 g", "free": name == "a", "position": [0, if name == "a" { 0.0 } else { 0.05 }, 0],
+            "box": { "size": [0.02, 0.04, 0.02] }
+        }))),
+    );
+    scene.insert(
+        "joints".into(),
+        json!([{ "name": "hinge", "revolute": { "axis": [0, 0, 1] },
+        "parent": "a", "child": "b", "at": [0, 0.025, 0] }]),
+    );
+    let end = |body: &str, y: f64| json!({ "body": body, "at": [0.01, y, 0] });
+    scene.insert(
+        "muscles".into(),
+        json!([{ "name": "muscle", "material": "silicone",
+        "cross_section": [0.01, 0.01], "layer_thickness": 5e-5,
+        "from": end("a", 0.005), "to": end("b", 0.045) }]),
+    );
+    let refused = run("solve", &problem, &[]);
+    refused.is_refused(&["control.start", "\"start\": { \"joint_angles\": {} }"]);
+}

@@ -1,0 +1,14 @@
+//! Optimal control: optima, guesses, limits, and the tests that a solution has to stand.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod accuracy;
+mod closed_form;
+mod feasible;
+mod goals;
+mod limits;
+mod optimality;
+mod reference;
+mod resample;
+mod verdicts;

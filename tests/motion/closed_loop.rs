@@ -1,0 +1,487 @@
+//! Joints in directors: closed loops against their reduction by hand, and each joint against a motion that is known.
+
+use crate::common::{
+    at_reference, bare, body, column, columns, distance, joint, motion, placed, richardson,
+    runge_kutta, spin,
+};
+use nalgebra::{Matrix3, Rotation3, SVector, Vector2, Vector3};
+use proboscis::dynamics::trajectory::Trajectory;
+use proboscis::dynamics::{Start, StepError, Stepper, energies, observations};
+use proboscis::model::system::{Attachment, Body, JointKind, Marker, System};
+use proboscis::model::{Coordinates, Model};
+
+/// A right-handed frame whose third axis is along `d3`.
+fn frame(d3: &Vector3<f64>) -> Matrix3<f64> {
+    let d3 = d3.normalize();
+    let d1 = d3
+        .cross(&if d3.x.abs() < 0.6 {
+            Vector3::x()
+        } else {
+            Vector3::y()
+        })
+        .normalize();
+    Matrix3::from_columns(&[d1, d3.cross(&d1), d3])
+}
+
+/// A round bar from `a` to `b`.
+fn bar(name: &str, mass: f64, axial: f64, a: Vector3<f64>, b: Vector3<f64>) -> Body {
+    let transverse = mass * (b - a).norm_squared() / 12.0;
+    body(
+        name,
+        mass,
+        [transverse, transverse, axial],
+        0.5 * (a + b),
+        frame(&(b - a)),
+    )
+}
+
+/// Crank on the ground, coupler on two spherical joints, rocker on the ground.
+struct Loop {
+    axes: [Vector3<f64>; 2],
+    /// Ground, crank–coupler, coupler–rocker, ground.
+    points: [Vector3<f64>; 4],
+    masses: [f64; 3],
+    gravity: Vector3<f64>,
+}
+
+const AXIAL: f64 = 0.01;
+
+impl Loop {
+    fn scene(&self) -> System {
+        let [a, b, c, d] = self.points;
+        let [m1, m2, m3] = self.masses;
+        let bodies = vec![
+            bar("crank", m1, AXIAL, a, b),
+            bar("coupler", m2, AXIAL, b, c),
+            bar("rocker", m3, AXIAL, d, c),
+        ];
+        let revolute = |axis| JointKind::Revolute { axis };
+        let joints = vec![
+            joint("drive", revolute(self.axes[0]), None, 0, a),
+            joint("ball1", JointKind::Spherical, Some(0), 1, b),
+            joint("ball2", JointKind::Spherical, Some(1), 2, c),
+            joint("bearing", revolute(self.axes[1]), None, 2, d),
+        ];
+        bare(bodies, joints, Some(self.gravity))
+    }
+
+    /// Moment of inertia of a bar from `from` to `to` about an axis through `from`.
+    fn inertia(
+        &self,
+        mass: f64,
+        from: &Vector3<f64>,
+        to: &Vector3<f64>,
+        axis: &Vector3<f64>,
+    ) -> f64 {
+        let span = to - from;
+        let along = span.normalize().dot(axis).powi(2);
+        mass * span.norm_squared() / 3.0 * (1.0 - along) + AXIAL * along
+    }
+
+    fn ends(&self, theta: f64, phi: f64) -> [Vector3<f64>; 2] {
+        let turn = |axis: &Vector3<f64>, angle: f64, v: Vector3<f64>| {
+            v * angle.cos()
+                + axis.cross(&v) * angle.sin()
+                + axis * axis.dot(&v) * (1.0 - angle.cos())
+        };
+        let [a, b, c, d] = self.points;
+        [
+            a + turn(&self.axes[0], theta, b - a),
+            d + turn(&self.axes[1], phi, c - d),
+        ]
+    }
+
+    /// The angle of the rocker that closes the loop, near `phi`.
+    fn close(&self, theta: f64, mut phi: f64) -> f64 {
+        let length = (self.points[2] - self.points[1]).norm_squared();
+        for _ in 0..20 {
+            let [b, c] = self.ends(theta, phi);
+            let velocity = self.axes[1].cross(&(c - self.points[3]));
+            phi -= ((c - b).norm_squared() - length) / (2.0 * (c - b).dot(&velocity));
+        }
+        phi
+    }
+
+    /// Inertia m(θ) and potential V(θ) of the one degree of freedom: T = ½ m θ̇², the coupler a uniform bar that does
+    /// not spin about itself.
+    fn reduced(&self, theta: f64, near: f64) -> (f64, f64) {
+        let phi = self.close(theta, near);
+        let [a, b0, c0, d] = self.points;
+        let [b, c] = self.ends(theta, phi);
+        let vb = self.axes[0].cross(&(b - a));
+        let turning = self.axes[1].cross(&(c - d));
+        // (c − b)·(ċ − ḃ) = 0.
+        let ratio = (c - b).dot(&vb) / (c - b).dot(&turning);
+        let vc = turning * ratio;
+        let [m1, m2, m3] = self.masses;
+        let inertia = self.inertia(m1, &a, &b0, &self.axes[0])
+            + m2 / 3.0 * (vb.norm_squared() + vb.dot(&vc) + vc.norm_squared())
+            + ratio * ratio * self.inertia(m3, &d, &c0, &self.axes[1]);
+        let weight = (a + b) * (0.5 * m1) + (b + c) * (0.5 * m2) + (c + d) * (0.5 * m3);
+        (inertia, -self.gravity.dot(&weight))
+    }
+
+    /// θ at `time` from rest at zero: m θ̈ + ½ m′ θ̇² + V′ = 0 with differences of fourth order.
+    fn exact(&self, time: f64, steps: usize) -> f64 {
+        let rate = |y: &Vector2<f64>| {
+            let d = 5e-4;
+            let at = |k: f64| self.reduced(y.x + k * d, self.branch(y.x));
+            let (m, _) = at(0.0);
+            let [a, b, c, e] = [-2.0, -1.0, 1.0, 2.0].map(at);
+            let slope = |f: &dyn Fn((f64, f64)) -> f64| {
+                (f(a) - 8.0 * f(b) + 8.0 * f(c) - f(e)) / (12.0 * d)
+            };
+            let (dm, dv) = (slope(&|x| x.0), slope(&|x| x.1));
+            Vector2::new(y.y, -(0.5 * dm * y.y * y.y + dv) / m)
+        };
+        let mut y = SVector::<f64, 2>::zeros();
+        for _ in 0..steps {
+            y = runge_kutta(&rate, &y, time / steps as f64);
+        }
+        y.x
+    }
+
+    /// An angle of the rocker in the branch of the assembly.
+    fn branch(&self, theta: f64) -> f64 {
+        let steps = 8;
+        (1..=steps).fold(0.0, |phi, k| {
+            self.close(theta * f64::from(k) / f64::from(steps), phi)
+        })
+    }
+
+    fn angle(&self, h: f64, steps: usize) -> f64 {
+        let model = Model::new(self.scene(), None, h, &[]).unwrap();
+        assert_eq!(model.coordinates, Coordinates::Redundant);
+        let start = Start::at_rest(&model, at_reference(&model));
+        let history = motion(&model, &start, h, steps, &[]);
+        let seen = observations(&model, &history);
+        let violation = column(&seen, "constraint_violation")
+            .iter()
+            .fold(0.0_f64, |m, &v| m.max(v));
+        assert!(violation < 1e-13, "{violation:e}");
+        column(&seen, "drive")[steps]
+    }
+}
+
+fn check_loop(linkage: &Loop, exact: f64, time: f64, n: usize, tolerance: f64) {
+    let angles = [n, 2 * n, 4 * n].map(|n| linkage.angle(time / n as f64, n));
+    let errors = angles.map(|a| (a - exact).abs());
+    let limit = richardson(&angles);
+    println!(
+        "loop: {exact} by {errors:?}, limit {:e}",
+        (limit - exact).abs()
+    );
+    assert!(exact.abs() > 0.3);
+    assert!(errors[0] > 1e-6);
+    for pair in errors.windows(2) {
+        assert!(((pair[0] / pair[1]).log2() - 2.0).abs() < 0.1);
+    }
+    assert!((limit - exact).abs() < tolerance, "{limit} against {exact}");
+}
+
+#[test]
+fn a_parallelogram_swings_like_its_pendulum() {
+    // Two bars upright, one across (IFToMM A02 with N = 1, hung up): θ̈ = −[((N+1)/2 + N)/((N+1)/3 + N)] g sin θ.
+    let (sin, cos) = 0.9_f64.sin_cos();
+    let down = Vector3::new(sin, -cos, 0.0);
+    let linkage = Loop {
+        axes: [Vector3::z(); 2],
+        points: [Vector3::zeros(), down, down + Vector3::x(), Vector3::x()],
+        masses: [1.0; 3],
+        gravity: Vector3::new(0.0, -9.81, 0.0),
+    };
+    let time = 1.0;
+    // The bars stand 0.9 rad from the vertical at the start, where the angle of the joint is zero.
+    let pendulum = |y: &Vector2<f64>| Vector2::new(y.y, -1.2 * 9.81 * y.x.sin());
+    let mut y = Vector2::new(0.9, 0.0);
+    for _ in 0..4000 {
+        y = runge_kutta(&pendulum, &y, time / 4000.0);
+    }
+    let exact = y.x - 0.9;
+    // The reduction below is the same pendulum, but for the axial inertia that the pendulum lacks (none about z).
+    assert!((linkage.exact(time, 1000) - exact).abs() < 1e-9);
+    check_loop(&linkage, exact, time, 100, 1e-9);
+}
+
+#[test]
+fn a_spatial_four_bar_moves_like_its_one_degree_of_freedom() {
+    let linkage = Loop {
+        axes: [
+            Vector3::new(0.0, 0.1, 1.0).normalize(),
+            Vector3::new(0.3, 1.0, 0.2).normalize(),
+        ],
+        points: [
+            Vector3::zeros(),
+            Vector3::new(0.5, 0.3, 0.0),
+            Vector3::new(1.6, 0.9, 0.8),
+            Vector3::new(1.5, 0.2, 0.0),
+        ],
+        masses: [1.0, 0.8, 1.5],
+        gravity: Vector3::new(0.0, -9.81, 0.0),
+    };
+    let (time, n) = (0.4, 80);
+    let exact = linkage.exact(time, 2000);
+    assert!((exact - linkage.exact(time, 1000)).abs() < 1e-9);
+    check_loop(&linkage, exact, time, n, 1e-8);
+
+    // Energy at midpoints: bounded by O(h²).
+    let errors = [n, 2 * n, 4 * n].map(|n| {
+        let h = time / n as f64;
+        let model = Model::new(linkage.scene(), None, h, &[]).unwrap();
+        let start = Start::at_rest(&model, at_reference(&model));
+        let history = motion(&model, &start, h, n, &[]);
+        let rest = placed(&model, &start.z);
+        let initial = energies(&model, &rest, &rest, &[], h).total();
+        let energy = |k: usize| {
+            let [a, b] = [k, k + 1].map(|k| placed(&model, &history.z[k]));
+            energies(&model, &a, &b, &[], h)
+        };
+        let kinetic = (0..n).map(|k| energy(k).kinetic).fold(0.0, f64::max);
+        assert!(kinetic > 1.0);
+        (0..n)
+            .map(|k| (energy(k).total() - initial).abs())
+            .fold(0.0, f64::max)
+    });
+    println!("energy of the loop: {errors:?}");
+    for pair in errors.windows(2) {
+        assert!(((pair[0] / pair[1]).log2() - 2.0).abs() < 0.2);
+    }
+}
+
+/// Four parallel hinges: a plane four-bar, overconstrained by three equations, in a plane turned by `turn`.
+fn plane_four_bar(turn: &Rotation3<f64>) -> System {
+    let at = |x: f64, y: f64| turn * Vector3::new(x, y, 0.0);
+    let [o, a, b, c] = [at(0.0, 0.0), at(0.3, -0.8), at(1.1, -1.0), at(1.0, 0.0)];
+    let bodies = vec![
+        bar("crank", 1.0, AXIAL, o, a),
+        bar("coupler", 1.0, AXIAL, a, b),
+        bar("rocker", 1.0, AXIAL, c, b),
+    ];
+    let axis = turn * Vector3::z();
+    let hinge = JointKind::Revolute { axis };
+    let joints = vec![
+        joint("hinge1", hinge, None, 0, o),
+        joint("hinge2", hinge, Some(0), 1, a),
+        joint("hinge3", hinge, Some(1), 2, b),
+        joint("hinge4", hinge, None, 2, c),
+    ];
+    bare(bodies, joints, Some(at(0.0, -9.81)))
+}
+
+#[test]
+fn redundant_constraints_are_refused_by_name() {
+    let h = 0.01;
+    for turn in [
+        Rotation3::identity(),
+        Rotation3::from_euler_angles(0.4, -0.9, 1.3),
+        Rotation3::from_euler_angles(-1.1, 0.2, 0.7),
+    ] {
+        let model = Model::new(plane_four_bar(&turn), None, h, &[]).unwrap();
+        assert_eq!(model.coordinates, Coordinates::Redundant);
+        let start = Start::at_rest(&model, at_reference(&model));
+        let mut stepper = Stepper::new(&model, &start.z, &start.momentum, Default::default());
+        let failure = (0..50).find_map(|_| stepper.step(h, &[]).err());
+        println!(
+            "{failure:?} after {} ms, {:?}",
+            stepper.time(),
+            stepper.report()
+        );
+        assert!(
+            matches!(failure, Some(StepError::Singular { .. })),
+            "{failure:?}"
+        );
+        let message = failure.expect("it failed").to_string();
+        assert!(message.contains("redundant"), "{message}");
+        assert_eq!(stepper.time(), 0.0);
+    }
+}
+
+#[test]
+fn a_spherical_joint_in_its_plane_is_a_hinge() {
+    let bob = body(
+        "bob",
+        2.0,
+        [0.3, 0.5, 0.7],
+        Vector3::new(0.8, -0.4, 0.0),
+        Matrix3::identity(),
+    );
+    let gravity = Some(Vector3::new(0.0, -9.81, 0.0));
+    let run = |kind| {
+        let pivot = joint("pivot", kind, None, 0, Vector3::zeros());
+        let model = Model::new(
+            bare(vec![bob.clone()], vec![pivot], gravity),
+            Some(Coordinates::Redundant),
+            0.01,
+            &[],
+        );
+        let model = model.unwrap();
+        let omega = Vector3::z() * 2.0;
+        let rates = spin(&model.reference()[0], omega.cross(&bob.centre), omega);
+        let start = Start::with_rates(&model, at_reference(&model), &rates);
+        let history = motion(&model, &start, 0.01, 300, &[]);
+        Trajectory::from_history(&model, &history)
+    };
+    let hinge = run(JointKind::Revolute { axis: Vector3::z() });
+    let ball = run(JointKind::Spherical);
+    // It swung, and went round or back.
+    assert!(hinge.joints.iter().any(|u| u[0].abs() > 1.0));
+    let difference = distance(&hinge, &ball, 1.0);
+    println!("ball against hinge: {difference:e}");
+    assert!(difference < 1e-10, "{difference:e}");
+}
+
+#[test]
+fn a_conical_pendulum_circles_at_its_speed() {
+    // A bob without spin inertia on a weightless rod of length l at angle β: ω² = g/(l cos β).
+    let (length, beta, g) = (1.5, 0.6_f64, 9.81);
+    let omega = (g / (length * beta.cos())).sqrt();
+    let centre = Vector3::new(beta.sin(), 0.0, -beta.cos()) * length;
+    let bob = body("bob", 1.0, [1e-12; 3], centre, frame(&centre));
+    let ball = joint("ball", JointKind::Spherical, None, 0, Vector3::zeros());
+    let scene = bare(vec![bob], vec![ball], Some(Vector3::new(0.0, 0.0, -g)));
+    let time = 2.0;
+    let [x, y]: [Vec<f64>; 2] = [0, 1].map(|axis| {
+        let place = |n: usize| {
+            let h = time / n as f64;
+            let model = Model::new(scene.clone(), None, h, &[]).unwrap();
+            let rates = spin(
+                &model.reference()[0],
+                Vector3::z().cross(&centre) * omega,
+                Vector3::z() * omega,
+            );
+            let start = Start::with_rates(&model, at_reference(&model), &rates);
+            let history = motion(&model, &start, h, n, &[]);
+            history.z[n][axis]
+        };
+        [100, 200, 400].map(place).to_vec()
+    });
+    let exact = [(omega * time).cos(), (omega * time).sin()].map(|c| c * length * beta.sin());
+    println!("conical: {x:?} {y:?} against {exact:?}");
+    for (places, exact) in [x, y].iter().zip(exact) {
+        assert!((richardson(places) - exact).abs() < 1e-7);
+    }
+}
+
+#[test]
+fn a_slider_falls_on_a_parabola_without_error() {
+    let axis = Vector3::new(0.6, 0.0, 0.8);
+    let sledge = body(
+        "sledge",
+        5.0,
+        [1.0, 2.0, 3.0],
+        Vector3::new(2.0, 1.0, 0.0),
+        Matrix3::identity(),
+    );
+    let rail = joint(
+        "rail",
+        JointKind::Prismatic { axis },
+        None,
+        0,
+        Vector3::zeros(),
+    );
+    let mut scene = bare(
+        vec![sledge],
+        vec![rail],
+        Some(Vector3::new(0.1, 0.2, -9.81e-3)),
+    );
+    scene.markers.push(Marker {
+        name: "nose".into(),
+        point: Attachment {
+            body: Some(0),
+            at: Vector3::new(3.0, 1.0, 0.0),
+        },
+        solid: None,
+    });
+    let h = 3.0;
+    for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
+        let model = Model::new(scene.clone(), Some(coordinates), h, &[]).unwrap();
+        let start = Start::at_rest(&model, at_reference(&model));
+        let history = motion(&model, &start, h, 100, &[]);
+        let seen = observations(&model, &history);
+        let acceleration = axis.dot(&Vector3::new(0.1, 0.2, -9.81e-3));
+        let nose = columns(&seen, "nose");
+        for (k, (y, t)) in column(&seen, "rail").iter().zip(&history.times).enumerate() {
+            let exact = 0.5 * acceleration * t * t;
+            // Sums of k² terms of size h²: relative rounding grows like k.
+            assert!(
+                (y - exact).abs() <= 1e-13 * exact.abs() + 1e-14 * k as f64,
+                "{y} against {exact}"
+            );
+            let place = Vector3::new(3.0, 1.0, 0.0) + axis * exact;
+            assert!((nose[k] - place).amax() < 1e-12 * (1.0 + exact.abs()));
+        }
+        assert!(column(&seen, "rail")[100] > 1e3);
+    }
+}
+
+#[test]
+fn two_bodies_fixed_together_are_one() {
+    let gravity = Some(Vector3::new(0.2, -9.81, 0.3));
+    let pivot = |axis| {
+        joint(
+            "pivot",
+            JointKind::Revolute { axis },
+            None,
+            0,
+            Vector3::zeros(),
+        )
+    };
+    let axis = Vector3::new(0.2, 0.1, 1.0).normalize();
+    // Two bodies in line along x with parallel principal axes.
+    let (m, n) = (2.0, 0.5);
+    let (c, d) = (Vector3::new(0.5, 0.0, 0.0), Vector3::new(1.3, 0.0, 0.0));
+    let (i, j) = ([0.1, 0.2, 0.25], [0.03, 0.04, 0.02]);
+    let centre = (c * m + d * n) / (m + n);
+    // Steiner: both lie on the x axis.
+    let apart = m * n / (m + n) * (d - c).norm_squared();
+    let merged = [i[0] + j[0], i[1] + j[1] + apart, i[2] + j[2] + apart];
+    let identity = Matrix3::identity();
+    // The directors of the second body are other axes of the same frame, and its inertias follow them.
+    let axes = frame(&Vector3::x());
+    let along_axes = [0, 1, 2].map(|k| j[axes.column(k).iamax()]);
+    let one = bare(
+        vec![body("one", m + n, merged, centre, identity)],
+        vec![pivot(axis)],
+        gravity,
+    );
+    let two = bare(
+        vec![
+            body("first", m, i, c, identity),
+            body("second", n, along_axes, d, axes),
+        ],
+        vec![
+            pivot(axis),
+            joint(
+                "weld",
+                JointKind::Fixed,
+                Some(0),
+                1,
+                Vector3::new(1.0, 0.0, 0.0),
+            ),
+        ],
+        gravity,
+    );
+    let h = 0.01;
+    let run = |scene: &System, coordinates| {
+        let model = Model::new(scene.clone(), Some(coordinates), h, &[]).unwrap();
+        let start = Start::at_rest(&model, at_reference(&model));
+        let history = motion(&model, &start, h, 300, &[]);
+        column(&observations(&model, &history), "pivot").to_vec()
+    };
+    let expected = run(&one, Coordinates::Reduced);
+    assert!(expected.iter().any(|a| a.abs() > 1.0));
+    for (scene, coordinates) in [
+        (&one, Coordinates::Redundant),
+        (&two, Coordinates::Reduced),
+        (&two, Coordinates::Redundant),
+    ] {
+        let angles = run(scene, coordinates);
+        let worst = angles
+            .iter()
+            .zip(&expected)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
+        println!("{} bodies {coordinates:?}: {worst:e}", scene.bodies.len());
+        assert!(worst < 1e-10, "{worst:e}");
+    }
+}

@@ -1,0 +1,15 @@
+//! Motions: what they conserve, their order, closed forms, the same motion in all coordinates, steps that do not resolve one.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod closed_loop;
+mod components;
+mod conserve;
+mod dissipation;
+mod integrators;
+mod observe;
+mod order;
+mod reductions;
+mod reference;
+mod resolution;

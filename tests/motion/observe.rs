@@ -1,0 +1,175 @@
+//! What is observed along a motion is what the formulas say.
+
+use crate::common::{at_reference, bare, body, column, columns, joint, motion, placed, trunk};
+use nalgebra::{Matrix3, Vector3};
+use proboscis::dynamics::trajectory::Trajectory;
+use proboscis::dynamics::{History, Start, observations};
+use proboscis::model::system::{JointKind, VACUUM_PERMITTIVITY};
+use proboscis::model::{Coordinates, Model};
+use std::f64::consts::TAU;
+
+#[test]
+fn stretches_and_charges_follow_their_formulas() {
+    let h = 5.0;
+    for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
+        let model = Model::new(trunk(2), Some(coordinates), h, &[]).unwrap();
+        let voltages = [2000.0, 0.0, 700.0, 1500.0];
+        let start = Start::at_rest(&model, at_reference(&model));
+        let history = motion(&model, &start, h, 40, &model.scalars(&voltages));
+        let seen = observations(&model, &history);
+        let instants: Vec<_> = history.z.iter().map(|z| placed(&model, z)).collect();
+        for (m, muscle) in model.system.muscles.iter().enumerate() {
+            let span = |k: usize| instants[k].x[model.spans[m]];
+            let stretch = column(&seen, &format!("{}_stretch", muscle.name));
+            assert!(stretch.iter().any(|s| (s - 1.0).abs() > 0.01));
+            let charge = column(&seen, &format!("{}_charge", muscle.name));
+            // Q = −2 V₀ [c₁ + c₂ I − ε₀/(2I)] V/t² in the middle between two instants.
+            let between = |k: usize, l: usize| {
+                let i = (0.5 * (span(k) + span(l))).norm_squared() / 1600.0;
+                let bracket = VACUUM_PERMITTIVITY * (-2.0 + i - 0.5 / i);
+                -2.0 * 4000.0 * bracket * voltages[m] / (0.05 * 0.05)
+            };
+            for k in 0..=40 {
+                assert!((stretch[k] - span(k).norm() / 40.0).abs() < 1e-14);
+                // At an instant: the mean of the intervals beside it, at the ends its own.
+                let exact = match k {
+                    0 | 40 => between(k, k),
+                    _ => 0.5 * (between(k - 1, k) + between(k, k + 1)),
+                };
+                assert!((charge[k] - exact).abs() <= 1e-13 * exact.abs());
+                assert!(exact >= 0.0 && (exact > 0.0) == (voltages[m] > 0.0));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_first_row_is_the_start() {
+    let h = 5.0;
+    let rates = [2e-3, -3e-3];
+    for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
+        let mut scene = trunk(2);
+        scene.gravity = Some(Vector3::new(0.0, -9.81e-3, 0.0));
+        let model = Model::new(scene, Some(coordinates), h, &[]).unwrap();
+        let by_coordinate = match coordinates {
+            Coordinates::Reduced => rates.to_vec(),
+            Coordinates::Redundant => model.redundant_rates(&[0.1, 0.2], &rates),
+        };
+        let start = Start::with_rates(&model, model.coordinates_at(&[0.1, 0.2]), &by_coordinate);
+        let history = motion(
+            &model,
+            &start,
+            h,
+            10,
+            &model.scalars(&[1000.0, 0.0, 0.0, 500.0]),
+        );
+        let seen = observations(&model, &history);
+        // ½ p·v, and the momentum of the centres of bodies and muscles, from differences of poses a short time apart.
+        let kinetic: f64 = start
+            .momentum
+            .iter()
+            .zip(&by_coordinate)
+            .map(|(p, v)| 0.5 * p * v)
+            .sum();
+        assert!(kinetic > 1e-3);
+        assert!((column(&seen, "kinetic_energy")[0] - kinetic).abs() < 1e-12 * kinetic);
+        let moved = |t: f64| {
+            let z = model.coordinates_at(&[0.1 + t * rates[0], 0.2 + t * rates[1]]);
+            let instant = placed(&model, &z);
+            let poses = model.poses(&instant);
+            let bodies = model.system.bodies.iter().zip(&poses);
+            let mut moment: Vector3<f64> = bodies.map(|(b, pose)| pose.centre * b.mass).sum();
+            for muscle in &model.system.muscles {
+                for end in [&muscle.from, &muscle.to] {
+                    let place = end.body.map_or(end.at, |b| {
+                        let rest = model.reference()[b];
+                        poses[b].point(&rest.local(&end.at))
+                    });
+                    moment += place * (0.5 * muscle.mass().unwrap());
+                }
+            }
+            moment
+        };
+        let d = 0.01;
+        let exact = (moved(d) - moved(-d)) / (2.0 * d);
+        let linear = columns(&seen, "linear_momentum")[0];
+        assert!(exact.norm() > 0.1);
+        assert!(
+            (linear - exact).norm() < 1e-8 * exact.norm(),
+            "{linear} against {exact}"
+        );
+
+        // Without recorded momenta, as after an optimisation, the first interval tells them.
+        let bare = History {
+            momenta: Vec::new(),
+            ..history.clone()
+        };
+        for (a, b) in seen
+            .columns
+            .iter()
+            .zip(&observations(&model, &bare).columns)
+        {
+            for (x, y) in a.values.iter().zip(&b.values) {
+                assert!(
+                    (x - y).abs() < 1e-9 * (1.0 + x.abs()),
+                    "{}: {x} against {y}",
+                    a.name
+                );
+            }
+        }
+
+        // The total is the sum of its parts.
+        let sum = |k: usize| {
+            [
+                "kinetic_energy",
+                "gravity_energy",
+                "muscle_electroelasticity_energy",
+            ]
+            .iter()
+            .map(|name| column(&seen, name)[k])
+            .sum::<f64>()
+        };
+        for (k, total) in column(&seen, "total_energy").iter().enumerate() {
+            assert!((sum(k) - total).abs() < 1e-12 * total.abs().max(1.0));
+        }
+    }
+}
+
+#[test]
+fn angles_go_on_beyond_a_turn() {
+    let wheel = body(
+        "wheel",
+        1.0,
+        [1.0, 1.0, 2.0],
+        Vector3::zeros(),
+        Matrix3::identity(),
+    );
+    let axle = joint(
+        "axle",
+        JointKind::Revolute { axis: Vector3::z() },
+        None,
+        0,
+        Vector3::zeros(),
+    );
+    let weld = joint("weld", JointKind::Fixed, Some(0), 1, Vector3::x());
+    let rim = body("rim", 0.1, [0.1; 3], Vector3::x(), Matrix3::identity());
+    let scene = bare(vec![wheel, rim], vec![weld, axle], None);
+    let [reduced, redundant] = [Coordinates::Reduced, Coordinates::Redundant].map(|coordinates| {
+        let model = Model::new(scene.clone(), Some(coordinates), 0.5, &[]).unwrap();
+        let rates = match coordinates {
+            Coordinates::Reduced => vec![1.0],
+            Coordinates::Redundant => model.redundant_rates(&[0.0; 2], &[0.0, 1.0]),
+        };
+        let start = Start::with_rates(&model, at_reference(&model), &rates);
+        let history = motion(&model, &start, 0.5, 60, &[]);
+        Trajectory::from_history(&model, &history)
+    });
+    // sin Δθ = h θ̇: a steady turn, a little faster than the exact one.
+    let step = 0.5_f64.asin();
+    for (k, (a, b)) in reduced.joints.iter().zip(&redundant.joints).enumerate() {
+        assert_eq!((a.len(), b.len()), (1, 1));
+        assert!((a[0] - step * k as f64).abs() < 1e-11);
+        assert!((a[0] - b[0]).abs() < 1e-10, "{} against {}", a[0], b[0]);
+    }
+    assert!(redundant.joints[60][0] > 4.0 * TAU);
+}

@@ -1,0 +1,696 @@
+//! The program as its users meet it: files in, one line and files out, an exit status.
+
+use assert_cmd::Command;
+use proboscis::model::system::Fidelity;
+use proboscis::scene::read_problem;
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// A folder with a copy of the kept problems.
+fn workshop() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let problems = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems");
+    fs::create_dir_all(folder.path().join("problems/scenes")).unwrap();
+    for part in ["", "scenes"] {
+        for entry in fs::read_dir(problems.join(part)).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_file() {
+                let name = path.file_name().unwrap();
+                fs::copy(&path, folder.path().join("problems").join(part).join(name)).unwrap();
+            }
+        }
+    }
+    folder
+}
+
+fn proboscis(folder: &Path) -> Command {
+    let mut command = Command::cargo_bin("proboscis").unwrap();
+    command.current_dir(folder);
+    command
+}
+
+/// Exit status, standard output and standard error of a run in a folder.
+fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let output = proboscis(folder).args(arguments).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    let status = output.status.code().unwrap();
+    (status, text(output.stdout), text(output.stderr))
+}
+
+fn read(path: PathBuf) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn summary(folder: &Path, results: &str) -> Value {
+    read(folder.join(results).join("summary.json"))
+}
+
+/// `solve problems/pair.json` with overrides is refused with these words, and nothing is written.
+///
+/// The scene is written out, so that overrides can reach its bodies, joints and muscles.
+fn refused(overrides: &[&str], words: &[&str]) {
+    let folder = workshop();
+    let scene = "problems/scenes/pair.json";
+    let (_, expanded, _) = run(folder.path(), &["expand", scene]);
+    fs::write(folder.path().join(scene), expanded).unwrap();
+    let mut arguments = vec!["solve", "problems/pair.json"];
+    for change in overrides {
+        arguments.extend(["--set", change]);
+    }
+    refused_run(folder.path(), &arguments, words);
+}
+
+fn refused_run(folder: &Path, arguments: &[&str], words: &[&str]) {
+    let (status, out, err) = run(folder, arguments);
+    assert_eq!(status, 2, "{arguments:?}: {out}{err}");
+    assert_eq!(out, "", "{arguments:?}");
+    let first = err.lines().next().unwrap();
+    for word in words {
+        assert!(first.contains(word), "{arguments:?}: no {word:?} in {err}");
+    }
+    assert!(!err.contains("panicked"), "{err}");
+    assert!(!folder.join("results").exists(), "{arguments:?}");
+}
+
+#[test]
+fn wrong_files_are_refused() {
+    let folder = workshop();
+    let path = folder.path();
+    fs::write(path.join("broken.json"), "{ \"scene\": ").unwrap();
+    refused_run(path, &["solve", "broken.json"], &["broken.json", "JSON"]);
+    refused_run(
+        path,
+        &["solve", "nowhere.json"],
+        &["nowhere.json", "no readable file"],
+    );
+    fs::write(path.join("infinite.json"), "{ \"scene\": 1e999 }").unwrap();
+    refused_run(path, &["solve", "infinite.json"], &["scene", "not finite"]);
+    let problem = fs::read_to_string(path.join("problems/pair.json")).unwrap();
+    fs::write(
+        path.join("problems/nan.json"),
+        problem.replace("\"0.2 s\"", "NaN"),
+    )
+    .unwrap();
+    refused_run(path, &["solve", "problems/nan.json"], &["nan.json", "JSON"]);
+}
+
+#[test]
+fn wrong_words_are_refused_with_a_suggestion() {
+    refused(
+        &["control.intervls=3"],
+        &["intervls", "did you mean \"intervals\""],
+    );
+    refused(
+        &["control.goal={\"rest_at_voltages\":{\"muscl2\":\"1 kV\"}}"],
+        &[
+            "control.goal.rest_at_voltages.muscl2",
+            "did you mean \"muscle2\"",
+        ],
+    );
+    refused(
+        &["scene.muscles[0].from.body=segmnt1"],
+        &["muscles[0].from.body", "did you mean \"segment1\""],
+    );
+    refused(&["nonsense"], &["command line", "path=value"]);
+}
+
+#[test]
+fn an_option_that_ipopt_does_not_know_is_refused() {
+    let folder = workshop();
+    let option = "control.solver.ipopt={\"mu_strategi\":\"adaptive\"}";
+    let arguments = ["solve", "problems/pair.json", "--set", option];
+    // Ipopt says a line of its own on standard output.
+    let (status, _, err) = run(folder.path(), &arguments);
+    assert_eq!(status, 2);
+    assert!(
+        err.contains("problems/pair.json: control.solver.ipopt"),
+        "{err}"
+    );
+    assert!(err.contains("did you mean mu_strategy?"), "{err}");
+    assert!(!folder.path().join("results").exists());
+}
+
+#[test]
+fn wrong_quantities_are_refused() {
+    refused(
+        &["control.duration=0.2 mm"],
+        &["control.duration", "a length", "a time"],
+    );
+    refused(
+        &["scene.bodies[0].mass=-30 g"],
+        &["bodies[0].mass", "positive"],
+    );
+    refused(
+        &["control.intervals=0"],
+        &["control.intervals", "1 interval or more"],
+    );
+    refused(&["control.duration=0 s"], &["control.duration", "positive"]);
+    refused(
+        &["control.voltage_bounds=[\"3 kV\",\"0 V\"]"],
+        &["control.voltage_bounds[1]", "lower bound"],
+    );
+}
+
+#[test]
+fn scenes_that_do_not_hold_together_are_refused() {
+    refused(&["scene.joints=[]"], &["segment1", "joint"]);
+    refused(
+        &["scene.muscles[0].to={\"body\":\"segment1\",\"at\":[\"15 mm\",\"-20 mm\",\"0 mm\"]}"],
+        &["muscles[0]"],
+    );
+    refused(
+        &["scene.muscles[1].name=muscle1"],
+        &["muscles[1].name", "a second time"],
+    );
+    refused(
+        &["control.goal={\"markers\":{\"tip\":[0,0.05,0]}}"],
+        &["control.goal", "3 final conditions", "1 degrees of freedom"],
+    );
+}
+
+#[test]
+fn a_goal_beyond_pull_in_has_no_answer() {
+    for state in ["start", "goal"] {
+        let folder = workshop();
+        let change = format!("control.{state}={{\"rest_at_voltages\":{{\"muscle2\":\"9 kV\"}}}}");
+        let bounds = "control.voltage_bounds=[\"0 V\",\"20 kV\"]";
+        let problem = "problems/pair.json";
+        let arguments = ["solve", problem, "--set", &change, "--set", bounds];
+        let (status, _, err) = run(folder.path(), &arguments);
+        // The input is right.
+        assert_eq!(status, 1, "{err}");
+        for word in [
+            problem,
+            &format!("control.{state}"),
+            "no equilibrium",
+            "pull-in",
+            "stretch of muscle2",
+        ] {
+            assert!(err.contains(word), "{word}: {err}");
+        }
+        assert!(!folder.path().join("results").exists());
+    }
+}
+
+#[test]
+fn wrong_solutions_are_refused() {
+    let folder = workshop();
+    let path = folder.path();
+    let guess = "control.guess={\"solution\":\"earlier.json\"}";
+    let refused_solution = |text: String, words: &[&str]| {
+        fs::write(path.join("earlier.json"), text).unwrap();
+        refused_run(
+            path,
+            &["solve", "problems/pair.json", "--set", guess],
+            words,
+        );
+    };
+    let voltages = json!({ "muscle1": [0.0], "muscle2": [0.0] });
+    refused_solution("{".into(), &["earlier.json", "no JSON"]);
+    refused_solution(
+        "{\"scene\": \"x\"}".into(),
+        &["earlier.json", "missing field `time`"],
+    );
+    refused_solution(
+        json!({ "time": [0, 1], "joints": { "hip": [0, 0] }, "voltages": voltages }).to_string(),
+        &["another scene", "no joint \"hip\""],
+    );
+    refused_solution(
+        json!({ "time": [0, 1], "joints": { "joint1": [0, 0] }, "voltages": { "muscle1": [0] } })
+            .to_string(),
+        &["another scene", "muscle2"],
+    );
+    refused_solution(
+        json!({ "time": [0, 1], "joints": { "joint1": [0, null] }, "voltages": voltages })
+            .to_string(),
+        &["joints.joint1[1]", "null"],
+    );
+    refused_solution(
+        json!({ "time": [0, 1], "joints": { "joint1": [0] }, "voltages": voltages }).to_string(),
+        &["joint1 has 1 values for 2 instants"],
+    );
+}
+
+#[test]
+fn an_unreachable_goal_is_named_and_the_files_are_kept() {
+    let folder = workshop();
+    let goal = "control.goal={\"markers\":{\"tip\":[\"0 mm\",\"400 mm\",\"0 mm\"]}}";
+    let arguments = [
+        "solve",
+        "problems/elephant_trunk_effort.json",
+        "--set",
+        goal,
+        "-o",
+        "far",
+    ];
+    let (status, out, err) = run(folder.path(), &arguments);
+    assert_eq!(status, 1, "{out}{err}");
+    assert!(out.starts_with("not solved (infeasible)") && out.lines().count() == 1);
+    // The trunk is 300 mm long: 100 mm are missing.
+    assert!(
+        err.contains("goal y of marker tip: violated by 100.0 mm"),
+        "{err}"
+    );
+    assert!(err.contains("tip comes within 100 mm of its goal"), "{err}");
+    let summary = summary(folder.path(), "far");
+    assert_eq!(summary["status"], "infeasible");
+    assert_eq!(summary["violations"][0]["row"], "goal y of marker tip");
+    for file in [
+        "solution.json",
+        "controls.csv",
+        "trajectory.csv",
+        "report.html",
+    ] {
+        assert!(folder.path().join("far").join(file).is_file(), "{file}");
+    }
+}
+
+#[test]
+fn a_solved_problem_leaves_what_is_promised() {
+    let folder = workshop();
+    let (status, out, err) = run(folder.path(), &["solve", "problems/pair.json"]);
+    let lines: Vec<_> = err.lines().collect();
+    assert!(
+        lines.len() == 1 && lines[0].starts_with("the intervals are long"),
+        "{err}"
+    );
+    assert_eq!(status, 0);
+    assert!(
+        out.starts_with("solved: objective 0.0464461, ") && out.lines().count() == 1,
+        "{out}"
+    );
+    assert!(out.ends_with("results/pair\n"), "{out}");
+    let summary = summary(folder.path(), "results/pair");
+    let keys = [
+        "command",
+        "input",
+        "status",
+        "objective",
+        "iterations",
+        "variables",
+        "constraints",
+        "jacobian_nonzeros",
+        "hessian_nonzeros",
+        "coordinates",
+        "seconds",
+        "effects",
+        "versions",
+        "interval_microseconds",
+        "resimulation",
+    ];
+    for key in keys {
+        assert!(!summary[key].is_null(), "{key} of {summary}");
+    }
+    let seconds = [
+        "total",
+        "setup",
+        "solver",
+        "objective",
+        "gradient",
+        "constraints",
+        "jacobian",
+        "hessian",
+    ];
+    for key in seconds {
+        assert!(summary["seconds"][key].is_f64(), "{key} of {summary}");
+    }
+    assert_eq!(summary["status"], "solved");
+    assert_eq!(summary["input"], "problems/pair.json");
+    assert_eq!(summary["command"], "proboscis solve problems/pair.json");
+    // Source: tests/reference/pair.json.
+    assert!((summary["objective"].as_f64().unwrap() - 0.046_446_126_6).abs() < 1e-8);
+    // The steps of a simulation are converged to 1e-9.
+    let deviation = &summary["resimulation"]["deviation"];
+    assert!(deviation["angle"].as_f64().unwrap() < 1e-8, "{summary}");
+    assert!(summary["resimulation"]["drift"]["angle"].as_f64().unwrap() < 1e-7);
+    for file in [
+        "solution.json",
+        "trajectory.csv",
+        "controls.csv",
+        "configuration.svg",
+        "voltages.svg",
+        "tip_path.svg",
+        "joint_angles.svg",
+        "report.html",
+    ] {
+        let path = folder.path().join("results/pair").join(file);
+        assert!(path.metadata().is_ok_and(|m| m.len() > 100), "{file}");
+    }
+    let controls = fs::read_to_string(folder.path().join("results/pair/controls.csv")).unwrap();
+    assert_eq!(controls.lines().count(), 2 + 20);
+}
+
+/// Solves a problem, starts again from its solution, and returns both summaries.
+fn warm(problem: &str, second: &[&str]) -> (Value, Value) {
+    let folder = workshop();
+    let path = format!("problems/{problem}.json");
+    let (status, ..) = run(folder.path(), &["solve", &path, "-o", "first"]);
+    assert_eq!(status, 0);
+    let guess = "control.guess={\"solution\":\"first/solution.json\"}";
+    let mut arguments = vec!["solve", &path, "-o", "second", "--set", guess];
+    arguments.extend(second);
+    let (status, out, err) = run(folder.path(), &arguments);
+    assert_eq!(status, 0, "{out}{err}");
+    let of = |name| summary(folder.path(), name);
+    (of("first"), of("second"))
+}
+
+fn iterations(summary: &Value) -> u64 {
+    summary["iterations"].as_u64().unwrap()
+}
+
+fn assert_same_objective(a: &Value, b: &Value) {
+    let [a, b] = [a, b].map(|s| s["objective"].as_f64().unwrap());
+    assert!((a - b).abs() < 1e-7 * a.abs(), "{a} against {b}");
+}
+
+#[test]
+fn a_solution_starts_the_same_problem_at_its_end() {
+    for problem in ["pair", "pair_time", "elephant_trunk_effort"] {
+        let (cold, warm) = warm(problem, &[]);
+        assert!(iterations(&cold) > 8, "{cold}");
+        assert!(iterations(&warm) <= 8, "{warm}");
+        assert_same_objective(&cold, &warm);
+    }
+}
+
+#[test]
+fn a_solution_starts_a_finer_grid() {
+    let (coarse, fine) = warm("pair", &["--set", "control.intervals=40"]);
+    assert_eq!(fine["intervals"], 40);
+    let ratio = fine["objective"].as_f64().unwrap() / coarse["objective"].as_f64().unwrap();
+    // The optimum of a grid is that of the continuous problem up to terms that fall with the interval length.
+    assert!((ratio - 1.0).abs() < 0.2, "{ratio}");
+}
+
+#[test]
+fn a_reduced_solution_starts_redundant_coordinates() {
+    let (reduced, redundant) = warm("pair", &["--set", "control.coordinates=redundant"]);
+    assert_eq!(redundant["coordinates"], "redundant");
+    assert_same_objective(&reduced, &redundant);
+}
+
+/// A solution by hand: nodes and voltages of a reference solution without costates.
+fn by_hand(reference: &str) -> Value {
+    let name = format!("tests/reference/{reference}.json");
+    let file = read(Path::new(env!("CARGO_MANIFEST_DIR")).join(name));
+    let control = &file["control"];
+    let h = control["h"].as_f64().unwrap();
+    let rows = |key: &str| -> Vec<Vec<f64>> {
+        serde_json::from_value(control[key].clone()).expect("rows of numbers")
+    };
+    let columns = |name: &str, rows: Vec<Vec<f64>>, factor: f64| -> Value {
+        let column = |i: usize| rows.iter().map(|row| factor * row[i]).collect::<Vec<_>>();
+        (0..rows[0].len())
+            .map(|i| (format!("{name}{}", i + 1), json!(column(i))))
+            .collect::<serde_json::Map<_, _>>()
+            .into()
+    };
+    let angles = rows("theta_rad");
+    json!({
+        "time": (0..angles.len()).map(|k| k as f64 * h).collect::<Vec<_>>(),
+        "joints": columns("joint", angles, 1.0),
+        "voltages": columns("muscle", rows("voltage_kV"), 1e3),
+    })
+}
+
+#[test]
+fn reference_solutions_written_by_hand_start_a_solve() {
+    for (problem, reference) in [
+        ("pair", "pair"),
+        ("pair_time", "pair_time"),
+        ("elephant_trunk_effort", "trunk6"),
+    ] {
+        let folder = workshop();
+        fs::write(
+            folder.path().join("hand.json"),
+            by_hand(reference).to_string(),
+        )
+        .unwrap();
+        let path = format!("problems/{problem}.json");
+        let guess = "control.guess={\"solution\":\"hand.json\"}";
+        let arguments = ["solve", &path, "-o", "warm", "--set", guess];
+        let (status, out, err) = run(folder.path(), &arguments);
+        assert_eq!(status, 0, "{out}{err}");
+        let warm = summary(folder.path(), "warm");
+        assert!(iterations(&warm) <= 15, "{problem}: {warm}");
+    }
+}
+
+#[test]
+fn simulations_and_equilibria_answer() {
+    let folder = workshop();
+    let path = folder.path();
+    let (status, out, err) = run(path, &["simulate", "problems/pair_constant.json"]);
+    assert_eq!(status, 0, "{err}");
+    assert!(
+        out.starts_with("simulated: 200 steps, 1 s of motion"),
+        "{out}"
+    );
+    assert_eq!(summary(path, "results/pair_constant")["steps"], 200);
+    let scene = "problems/scenes/pair.json";
+    for file in ["problems/pair.json", scene] {
+        let arguments = ["equilibrium", file, "--voltages", "muscle2=1.7kV"];
+        let (status, out, _) = run(path, &arguments);
+        assert_eq!(status, 0);
+        let reference =
+            read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/pair.json"));
+        let angle = reference["equilibrium"]["theta_rad"][0].as_f64().unwrap();
+        assert!(out.contains(&format!("{angle:.9}")), "{out}");
+        assert!(out.contains("\nstable equilibrium"), "{out}");
+    }
+    let beyond = ["equilibrium", scene, "--voltages", "muscle2=17kV"];
+    let (status, out, err) = run(path, &beyond);
+    assert_eq!((status, out.trim()), (1, "no equilibrium"));
+    assert!(err.contains("no equilibrium was found"), "{err}");
+    let (status, _, err) = run(path, &["equilibrium", "problems/pair.json"]);
+    assert!(status == 2 && err.contains("--voltages"), "{err}");
+    let wrong = ["equilibrium", scene, "--voltages", "muscl2=1kV"];
+    let (status, _, err) = run(path, &wrong);
+    assert!(
+        status == 2 && err.contains("did you mean \"muscle2\""),
+        "{err}"
+    );
+}
+
+/// A small version of the clamped stack.
+const COARSE: &str = "scene.solids[0].box.elements=[1,1,8]";
+
+#[test]
+fn blocks_leave_what_is_promised() {
+    let folder = workshop();
+    let path = folder.path();
+    let problem = "problems/clamped_stack_step.json";
+    let short = "simulate.duration=2 ms";
+    let arguments = ["simulate", problem, "--set", COARSE, "--set", short];
+    let (status, out, err) = run(path, &arguments);
+    assert_eq!(status, 0, "{out}");
+    assert!(
+        err.starts_with("the steps of 0.5 ms leave an estimated error"),
+        "{err}"
+    );
+    assert_eq!(err.lines().count(), 1, "{err}");
+    let results = path.join("results/clamped_stack_step");
+    for file in [
+        "trajectory.pvd",
+        "fields/0000.vtu",
+        "fields/0004.vtu",
+        "configuration.svg",
+        "charge.svg",
+        "energy.svg",
+        "tip_path.svg",
+        "report.html",
+    ] {
+        assert!(results.join(file).is_file(), "{file}");
+    }
+    let told = summary(path, "results/clamped_stack_step");
+    let block = json!({ "nodes": 36, "elements": 8, "unknowns": 88, "potentials": 16 });
+    assert_eq!(told["blocks"]["block"], block);
+    assert_eq!(told["instants_written"], 5);
+    assert!(told["charges"]["block.stack"].as_f64().unwrap() > 1e-7);
+    let effects = told["effects"].as_array().unwrap();
+    let electric = effects
+        .iter()
+        .find(|e| e["name"] == "block electroelasticity");
+    assert_eq!(electric.unwrap()["equations"], 16);
+
+    let problem = "problems/clamped_stack.json";
+    let arguments = ["equilibrium", problem, "--set", COARSE, "-o", "rest"];
+    let (status, out, err) = run(path, &arguments);
+    assert_eq!((status, err.as_str()), (0, ""));
+    assert!(out.contains("stable equilibrium"), "{out}");
+    let (status, inspected, _) = run(path, &["inspect", problem, "--set", COARSE]);
+    assert!(status == 0 && inspected.contains("potentials of an interval"));
+    for file in ["trajectory.pvd", "fields/0000.vtu", "configuration.svg"] {
+        assert!(path.join("rest").join(file).is_file(), "{file}");
+    }
+    assert!(!path.join("rest/fields/0001.vtu").exists());
+}
+
+#[test]
+fn an_equilibrium_that_is_lost_keeps_its_last_state() {
+    let folder = workshop();
+    let path = folder.path();
+    let high = "block.stack=900kV";
+    let file = "problems/clamped_stack.json";
+    let arguments = ["equilibrium", file, "--set", COARSE, "--voltages", high];
+    let arguments = [&arguments[..], &["-o", "lost"]].concat();
+    let (status, out, err) = run(path, &arguments);
+    assert_eq!((status, out.trim()), (1, "no equilibrium"), "{err}");
+    assert_eq!(err.lines().count(), 1);
+    assert!(err.contains("pull-in at ") && err.contains("lost"), "{err}");
+    let told = summary(path, "lost");
+    assert_eq!(told["status"], "pull_in");
+    let reached = told["voltages"]["block.stack"].as_f64().unwrap();
+    let fraction = told["fraction"].as_f64().unwrap();
+    assert!(fraction > 0.1 && fraction < 0.99, "{fraction}");
+    assert!((reached - 9e5 * fraction).abs() < 1e-3);
+    // Layers are 10 mm thick.
+    assert!(told["largest_nominal_field"].as_f64().unwrap() > 0.99 * reached / 0.01);
+    for file in ["trajectory.pvd", "fields/0000.vtu", "configuration.svg"] {
+        assert!(path.join("lost").join(file).is_file(), "{file}");
+    }
+
+    // A motion that ends early is kept as far as it went.
+    let file = "problems/clamped_stack_step.json";
+    let high = "simulate.voltages={\"block.stack\":\"1200 kV\"}";
+    let arguments = ["simulate", file, "--set", COARSE, "--set", high];
+    let (status, _, err) = run(path, &[&arguments[..], &["-o", "early"]].concat());
+    assert_eq!(status, 1, "{err}");
+    assert_eq!(summary(path, "early")["status"], "step_failed");
+    assert!(path.join("early/trajectory.pvd").is_file());
+    assert!(path.join("early/report.html").is_file());
+}
+
+#[test]
+fn a_block_that_floats_is_refused() {
+    let folder = workshop();
+    let loose = "scene.solids[0].fixed=[{\"face\":\"z_min\",\"directions\":[\"z\"]}]";
+    let file = "problems/clamped_stack.json";
+    let arguments = ["equilibrium", file, "--set", COARSE, "--set", loose];
+    refused_run(
+        folder.path(),
+        &[&arguments[..], &["-o", "results"]].concat(),
+        &[file, "block is not held", "costs nothing"],
+    );
+}
+
+/// Whether a kept problem has finite elements, whose derivatives are too many for differences.
+fn has_elements(name: &str) -> bool {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems");
+    let system = read_problem(&path.join(name), &[]).unwrap().system;
+    let muscles = system.muscles.iter();
+    let mut fidelities = muscles.map(|muscle| muscle.fidelity);
+    !system.solids.is_empty() || fidelities.any(|fidelity| fidelity != Fidelity::Lumped)
+}
+
+#[test]
+fn every_kept_problem_has_right_derivatives() {
+    let folder = workshop();
+    for entry in fs::read_dir(folder.path().join("problems")).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        if path.is_dir() || name.contains("schema") || has_elements(&name) {
+            continue;
+        }
+        let (status, out, err) = run(folder.path(), &["check", path.to_str().unwrap()]);
+        assert_eq!(status, 0, "{name}: {out}{err}");
+        let (status, out, err) = run(folder.path(), &["inspect", path.to_str().unwrap()]);
+        assert!(
+            status == 0 && out.contains("muscle electroelasticity"),
+            "{name}: {out}{err}"
+        );
+    }
+}
+
+#[test]
+fn a_new_trunk_can_be_solved_and_is_not_overwritten() {
+    let folder = workshop();
+    let arguments = ["new", "trunk", "--segments", "2", "mine"];
+    let (status, out, err) = run(folder.path(), &arguments);
+    assert_eq!(status, 0, "{err}");
+    assert_eq!(out.lines().count(), 2);
+    let (status, _, err) = run(folder.path(), &arguments);
+    assert!(status == 2 && err.contains("exists already"), "{err}");
+    let (status, ..) = run(folder.path(), &["solve", "mine/problem.json"]);
+    assert_eq!(status, 0);
+    let (status, out, _) = run(folder.path(), &["expand", "mine/scene.json"]);
+    assert!(status == 0 && out.contains("\"segment2\"") && !out.contains("\"chain\""));
+}
+
+#[test]
+fn kept_schemas_are_those_of_the_program() {
+    let folder = workshop();
+    for file in ["scene", "problem"] {
+        let (_, out, _) = run(folder.path(), &["schema", file]);
+        let kept = read(folder.path().join(format!("problems/{file}.schema.json")));
+        assert_eq!(serde_json::from_str::<Value>(&out).unwrap(), kept);
+    }
+}
+
+#[test]
+fn limits_of_the_command_line_stop_a_solve_with_its_files() {
+    let folder = workshop();
+    let many = [
+        "solve",
+        "problems/elephant_trunk_effort.json",
+        "--set",
+        "control.intervals=400",
+    ];
+    for (limit, value, word) in [
+        ("--max-seconds", "0.05", "time_limit"),
+        ("--max-iterations", "2", "iteration_limit"),
+    ] {
+        let arguments = [&many[..], &[limit, value, "-o", word]].concat();
+        let (status, out, err) = run(folder.path(), &arguments);
+        assert_eq!(status, 1, "{out}{err}");
+        assert!(out.starts_with("not solved ("), "{out}");
+        assert_eq!(summary(folder.path(), word)["status"], word);
+        assert!(folder.path().join(word).join("solution.json").is_file());
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_that_cannot_be_made_is_told() {
+    let folder = workshop();
+    fs::write(folder.path().join("file"), "").unwrap();
+    let arguments = ["solve", "problems/pair.json", "-o", "file/results"];
+    let (status, out, err) = run(folder.path(), &arguments);
+    assert_eq!((status, out.as_str()), (1, ""));
+    assert!(err.starts_with("error: cannot write file/results"), "{err}");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_the_files() {
+    let folder = workshop();
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("proboscis"))
+        .current_dir(folder.path())
+        .args([
+            "solve",
+            "problems/elephant_trunk_effort.json",
+            "-o",
+            "stopped",
+        ])
+        .args(["--set", "control.intervals=1500"])
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let began = Instant::now();
+    // The folder is made when the first iterate is told.
+    while !folder.path().join("stopped").exists() {
+        assert!(
+            began.elapsed() < Duration::from_secs(60),
+            "it does not start"
+        );
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    crate::common::signals::interrupt(&child);
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+    assert_eq!(summary(folder.path(), "stopped")["status"], "interrupted");
+    assert!(folder.path().join("stopped/solution.json").is_file());
+}

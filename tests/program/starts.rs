@@ -1,0 +1,232 @@
+//! Several starting points, each in a process of its own.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use tempfile::tempdir;
+
+fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let mut command = Command::cargo_bin("proboscis").unwrap();
+    let output = command
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    let status = output.status.code().unwrap();
+    (status, text(output.stdout), text(output.stderr))
+}
+
+fn problem(name: &str) -> String {
+    format!("{}/problems/{name}.json", env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+#[test]
+fn the_best_of_several_starts_is_kept_and_can_be_solved_again_alone() {
+    let folder = tempdir().unwrap();
+    let path = folder.path();
+    let pair = problem("pair");
+    let arguments = ["solve", &pair, "--starts", "4", "--seed", "7", "-o", "out"];
+    let (status, out, err) = run(path, &arguments);
+    // What is said of the best start is said once.
+    let lines: Vec<_> = err.lines().collect();
+    assert!(
+        lines.len() == 1 && lines[0].starts_with("the intervals are long"),
+        "{err}"
+    );
+    assert_eq!(status, 0, "{out}");
+    let first = out.lines().next().unwrap();
+    assert!(
+        first.starts_with("solved: objective 0.0464461, 4 of 4 starts solved, 1 distinct optimum"),
+        "{out}"
+    );
+    assert_eq!(out.lines().count(), 2 + 4);
+
+    let summary = read(&path.join("out/summary.json"));
+    let starts = &summary["starts"];
+    assert_eq!(
+        (&starts["count"], &starts["solved"], &starts["best"]),
+        (&4.into(), &4.into(), &1.into())
+    );
+    assert_eq!(starts["distinct_optima"], 1);
+    let each = starts["each"].as_array().unwrap();
+    assert!(
+        each[0]["seed"].is_null() && each[3]["seed"] == 7004,
+        "{starts}"
+    );
+    let objective = |one: &Value| one["objective"].as_f64().unwrap();
+    let iterations: Vec<_> = each
+        .iter()
+        .map(|one| one["iterations"].as_u64().unwrap())
+        .collect();
+    assert!(
+        iterations.iter().any(|count| *count != iterations[0]),
+        "{iterations:?}"
+    );
+    assert!(
+        each.iter()
+            .all(|one| (objective(one) / objective(&summary) - 1.0).abs() < 1e-7)
+    );
+
+    // The files are those of the best start.
+    for file in [
+        "solution.json",
+        "trajectory.csv",
+        "controls.csv",
+        "report.html",
+    ] {
+        let [here, there] =
+            ["out", "out/starts/01"].map(|at| fs::read(path.join(at).join(file)).unwrap());
+        assert!(here == there && here.len() > 100, "{file}");
+    }
+    let table = fs::read_to_string(path.join("out/starts.csv")).unwrap();
+    assert_eq!(table.lines().count(), 2 + 4);
+    assert!(
+        table
+            .lines()
+            .nth(5)
+            .unwrap()
+            .starts_with("4,7004,solved,0.0464461"),
+        "{table}"
+    );
+
+    // A start is an ordinary problem.
+    let guess = "control.guess={\"random\":{\"seed\":7003}}";
+    let (status, ..) = run(path, &["solve", &pair, "--set", guess, "-o", "alone"]);
+    assert_eq!(status, 0);
+    let alone = read(&path.join("alone/summary.json"));
+    assert_eq!(alone["iterations"], each[2]["iterations"]);
+    assert_eq!(alone["objective"], each[2]["objective"]);
+
+    // A shorter command leaves no starts of a longer one.
+    let (status, ..) = run(path, &["solve", &pair, "--starts", "2", "-o", "out"]);
+    assert_eq!(status, 0);
+    assert!(path.join("out/starts/02").exists() && !path.join("out/starts/03").exists());
+}
+
+#[test]
+fn starts_that_all_fail_say_so_and_keep_the_closest() {
+    let folder = tempdir().unwrap();
+    let path = folder.path();
+    let pair = problem("pair");
+    let arguments = ["solve", &pair, "--starts", "3", "-o", "out"];
+    let (status, out, _) = run(path, &[&arguments[..], &["--max-iterations", "3"]].concat());
+    assert_eq!(status, 1, "{out}");
+    assert!(
+        out.starts_with("not solved: 0 of 3 starts solved, 0 distinct optima"),
+        "{out}"
+    );
+    let summary = read(&path.join("out/summary.json"));
+    assert_eq!(summary["status"], "iteration_limit");
+    let starts = &summary["starts"];
+    let infeasibility = |one: &Value| one["infeasibility"].as_f64().unwrap();
+    let best = starts["best"].as_u64().unwrap();
+    for one in starts["each"].as_array().unwrap() {
+        assert_eq!(one["status"], "iteration_limit");
+        assert!(one["optimum"].is_null());
+        let is_closer = infeasibility(one) < infeasibility(&summary);
+        assert!(!is_closer, "start {best} against {one}");
+    }
+}
+
+#[test]
+fn starts_that_make_no_sense_are_refused() {
+    let folder = tempdir().unwrap();
+    let path = folder.path();
+    let [pair, constant] = ["pair", "pair_constant"].map(problem);
+    let unknown = "control.solver.ipopt={\"mu_strategi\":\"adaptive\"}";
+    let cases: [(&[&str], &[&str]); 4] = [
+        (
+            &["solve", &pair, "--starts", "0"],
+            &["--starts", "from 1 to 999"],
+        ),
+        (
+            &["solve", &constant, "--starts", "2"],
+            &["--starts", "asks to simulate"],
+        ),
+        (
+            &[
+                "solve",
+                &pair,
+                "--starts",
+                "2",
+                "--set",
+                "control.intervals=0",
+            ],
+            &["control.intervals", "1 interval or more"],
+        ),
+        (
+            &["solve", &pair, "--starts", "2", "--set", unknown],
+            &[
+                "start ",
+                "control.solver.ipopt",
+                "did you mean mu_strategy?",
+            ],
+        ),
+    ];
+    for (arguments, words) in cases {
+        let (status, out, err) = run(path, arguments);
+        assert_eq!((status, out.as_str()), (2, ""), "{arguments:?}: {err}");
+        for word in words {
+            assert!(err.contains(word), "{arguments:?}: no {word:?} in {err}");
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_all_starts_and_keeps_the_best() {
+    use std::os::unix::process::CommandExt;
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+    let folder = tempdir().unwrap();
+    let path = folder.path();
+    let trunk = problem("elephant_trunk");
+    let cores = std::thread::available_parallelism().unwrap().get();
+    let starts = (cores + 3).to_string();
+    let mut child = Command::new(assert_cmd::cargo::cargo_bin("proboscis"))
+        .current_dir(path)
+        .args([
+            "solve",
+            &trunk,
+            "--starts",
+            &starts,
+            "-o",
+            "out",
+            "--set",
+            "control.intervals=1000",
+        ])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .process_group(0)
+        .spawn()
+        .unwrap();
+    let began = Instant::now();
+    // The folder of a start is made when its first iterate is told.
+    while !path.join("out/starts/01").exists() {
+        assert!(
+            began.elapsed() < Duration::from_secs(60),
+            "it does not start"
+        );
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    // As a terminal does: to the whole group.
+    crate::common::signals::interrupt_group(&child);
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+    let summary = read(&path.join("out/summary.json"));
+    assert_eq!(summary["status"], "interrupted");
+    let each = summary["starts"]["each"].as_array().unwrap();
+    let ended = |word: &str| each.iter().filter(|one| one["status"] == word).count();
+    assert_eq!(each.len(), cores + 3);
+    assert!(
+        ended("interrupted") >= 1 && ended("not_started") >= 1,
+        "{each:?}"
+    );
+    // None of them is left.
+    assert!(!crate::common::signals::group_runs(&child));
+}

@@ -1,0 +1,7 @@
+//! States of rest: equilibria, their stability, and the paths that lead there.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod stable;
+mod trunk;

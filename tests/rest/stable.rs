@@ -1,0 +1,564 @@
+//! Equilibria: a stable one is found where there is one, what is called stable is, and what leaves the domain of its
+//! dielectric is told.
+
+use crate::common::random::Random;
+use nalgebra::Vector3;
+use proboscis::dynamics::{
+    Equilibrium, EquilibriumError, History, Route, Softening, equilibrium, largest_stretch,
+    out_of_domain, stable_equilibrium,
+};
+use proboscis::model::system::{Electric, System};
+use proboscis::model::{Coordinates, Model};
+use proboscis::scene::{driven_voltages, read_system};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A file of `tests/trust`.
+fn file(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("tests/trust/{name}.json"))
+}
+
+/// A scene as it is written.
+fn scene(written: &Value) -> System {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.json");
+    std::fs::write(&path, written.to_string()).unwrap();
+    read_system(&path, &[]).unwrap()
+}
+
+fn model(system: System) -> Model {
+    Model::new(system, None, 1.0, &[]).unwrap()
+}
+
+fn reference(model: &Model) -> Vec<f64> {
+    model.coordinates_at(&vec![0.0; model.gauges.len()])
+}
+
+fn found(model: &Model, voltages: &[f64]) -> Equilibrium {
+    stable_equilibrium(model, &reference(model), voltages).unwrap()
+}
+
+/// The trunk upright under gravity in m/s², with voltages that bend it.
+fn upright(gravity: f64) -> (Model, Vec<f64>) {
+    let set = format!("scene.gravity=[0,-{gravity},0]");
+    let system = read_system(&file("06_solve_refused_earth_gravity"), &[set]).unwrap();
+    let words = ["2=1.7", "6=1.7", "10=1.7", "3=1.6", "7=1.6", "11=1.6"];
+    let words: Vec<String> = words.iter().map(|w| format!("muscle{w}kV")).collect();
+    let voltages = driven_voltages(&words, &system).unwrap();
+    let model = model(system);
+    let voltages = model.scalars(&voltages);
+    (model, voltages)
+}
+
+/// Every strength of gravity between 9.7 and 10 m/s² has the stable equilibrium that an independent continuation finds, and
+/// it changes continuously: it is one family.
+#[test]
+fn the_upright_trunk_rests_bent_under_any_gravity_near_the_earths() {
+    let mut before: Option<Vec<f64>> = None;
+    for step in 0..=30 {
+        let gravity = 9.7 + 0.01 * f64::from(step);
+        let (model, voltages) = upright(gravity);
+        let rest = found(&model, &voltages);
+        assert_eq!(rest.is_stable(), Some(true), "{gravity}");
+        // 0.18 N m/rad.
+        let softest = rest.stiffness[0];
+        assert!((softest - 183.5).abs() < 1.0, "{softest}");
+        if let Some(before) = &before {
+            let change = rest.z.iter().zip(before).map(|(a, b)| (a - b).abs());
+            let change = change.fold(0.0, f64::max);
+            assert!(change > 1e-6 && change < 5e-3, "{gravity}: {change}");
+        }
+        before = Some(rest.z);
+    }
+}
+
+/// Directors with multipliers lead to the same rest as joint coordinates, and its stability is read off a state alike.
+#[test]
+fn redundant_coordinates_rest_where_joint_coordinates_do() {
+    let (reduced, voltages) = upright(9.81);
+    let rest = found(&reduced, &voltages);
+    let redundant = Model::new(
+        reduced.system.clone(),
+        Some(Coordinates::Redundant),
+        1.0,
+        &[],
+    )
+    .unwrap();
+    let other = found(&redundant, &voltages);
+    assert_eq!(other.is_stable(), Some(true));
+    let tip = |model: &Model, rest: &Equilibrium| {
+        let instant = model.action.motion.placed(&rest.z);
+        instant.x[model.markers[0]]
+    };
+    let (a, b) = (tip(&reduced, &rest), tip(&redundant, &other));
+    assert!((a - b).norm() < 1e-6 && a.x.abs() > 100.0, "{a} {b}");
+    for (model, rest) in [(&reduced, &rest), (&redundant, &other)] {
+        let again = Equilibrium::of_state(model, &rest.z, &rest.scalars);
+        assert_eq!(again.is_stable(), Some(true));
+        assert_eq!(again.stiffness.len(), rest.stiffness.len());
+    }
+    // Upright it is in balance too, and falls over.
+    let none = vec![0.0; voltages.len()];
+    let upright = Equilibrium::of_state(&reduced, &reference(&reduced), &none);
+    assert_eq!(upright.is_stable(), Some(false));
+    assert_eq!(upright.softest.unwrap().softening, Softening::Weight);
+}
+
+/// Potential energy in N mm, written out: W(Λ, V) of the lumped muscles by physics.md 3.1, weights of bodies and of halves of
+/// muscles at their ends.
+fn energy(system: &System, model: &Model, z: &[f64], voltages: &[f64]) -> f64 {
+    let instant = model.action.motion.placed(z);
+    let poses = model.poses(&instant);
+    let place = |body: Option<usize>, at: &Vector3<f64>| match body {
+        None => *at,
+        Some(b) => {
+            let turn = poses[b].directors * system.bodies[b].directors.transpose();
+            poses[b].centre + turn * (at - system.bodies[b].centre)
+        }
+    };
+    let g = system.gravity.unwrap_or_default();
+    let mut sum = 0.0;
+    for (b, body) in system.bodies.iter().enumerate() {
+        sum -= body.mass * g.dot(&poses[b].centre);
+    }
+    for (muscle, voltage) in system.muscles.iter().zip(voltages) {
+        let ends = [&muscle.from, &muscle.to].map(|end| place(end.body, &end.at));
+        let length = (muscle.to.at - muscle.from.at).norm();
+        let stretch = (ends[1] - ends[0]).norm() / length;
+        let volume = length * muscle.cross_section[0] * muscle.cross_section[1];
+        let field = voltage / muscle.layer_thickness;
+        let Electric {
+            c1,
+            c2,
+            permittivity,
+        } = muscle.material.electric.unwrap();
+        let square = stretch * stretch;
+        let elastic = 0.5 * muscle.material.shear_modulus * (2.0 / stretch + square - 3.0);
+        let electric = (c1 + c2 * square - 0.5 * permittivity / square) * field * field;
+        sum += volume * (elastic + electric);
+        let mass = muscle.material.density.unwrap_or(0.0) * volume;
+        sum -= 0.5 * mass * g.dot(&(ends[0] + ends[1]));
+    }
+    sum
+}
+
+/// A chain of links upright or hanging, aslant or not, with two muscles about each joint.
+fn chain(random: &mut Random) -> (System, Vec<f64>) {
+    let links = 1 + (random.between(0.0, 4.0) as usize);
+    // Half of them are pulled down alone: upright they buckle, where the others bend.
+    let aside = if random.unit() > 0.0 { 2.0 } else { 0.0 };
+    let up = if random.unit() > 0.0 { 1 } else { -1 };
+    let written = json!({
+        "name": "chain",
+        "materials": { "m": {
+            "density": 1000, "shear_modulus": random.between(5e4, 3e5), "relative_permittivity": 3.0, "viscosity": 500,
+        } },
+        "chain": {
+            "segments": links, "length": random.between(0.03, 0.06), "radius": 0.02, "mass": random.between(0.05, 0.6),
+            "axis": [0, up, 0], "first_joint_axis": [0, 0, 1],
+            "muscles": {
+                "material": "m", "arm": random.between(0.01, 0.018), "rest_length": 0.025, "cross_section": [0.01, 0.01],
+                "layer_thickness": 5e-5,
+            },
+            "tip_marker": "tip",
+        },
+        "gravity": [aside * random.unit(), -9.81, aside * random.unit()],
+    });
+    let system = scene(&written);
+    let voltages = (0..system.muscles.len())
+        .map(|_| f64::max(random.between(-1500.0, 2500.0), 0.0))
+        .collect();
+    (system, voltages)
+}
+
+/// At what is called stable the energy written out has a minimum: no slope and positive curvature by central differences.
+#[test]
+fn what_is_called_stable_is_a_minimum_of_the_energy() {
+    let mut random = Random(11);
+    let (mut stable, mut beyond, mut none) = (0, 0, 0);
+    for case in 0..60 {
+        let (system, voltages) = chain(&mut random);
+        let model = model(system.clone());
+        let rest = match stable_equilibrium(&model, &reference(&model), &model.scalars(&voltages)) {
+            Ok(rest) => rest,
+            Err(EquilibriumError::LimitPoint { .. }) => {
+                none += 1;
+                continue;
+            }
+            Err(error) => panic!("{case}: {error}"),
+        };
+        if rest.is_stable() != Some(true) {
+            none += 1;
+            continue;
+        }
+        stable += 1;
+        beyond += usize::from(rest.route != Route::Loads);
+        let at = |z: &[f64]| energy(&system, &model, z, &voltages);
+        let stiffest = *rest.stiffness.last().unwrap();
+        for _ in 0..4 {
+            let direction: Vec<f64> = rest.z.iter().map(|_| random.unit()).collect();
+            let norm = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+            let moved = |by: f64| {
+                let z = rest.z.iter().zip(&direction);
+                z.map(|(z, d)| z + by * d / norm).collect::<Vec<_>>()
+            };
+            let step = 1e-3;
+            let [less, here, more] = [-step, 0.0, step].map(|by| at(&moved(by)));
+            let slope = (more - less) / (2.0 * step);
+            let curvature = (more - 2.0 * here + less) / (step * step);
+            // The third derivative leaves step²/6 of its size; the difference of energies leaves round-off over the step.
+            assert!(slope.abs() < 1e-4 * stiffest, "{case}: slope {slope}");
+            assert!(
+                curvature > 0.9 * rest.stiffness[0],
+                "{case}: {curvature} of {:?}",
+                rest.stiffness
+            );
+            assert!(
+                curvature < 1.1 * stiffest,
+                "{case}: {curvature} of {:?}",
+                rest.stiffness
+            );
+        }
+    }
+    println!("{stable} stable, {beyond} of them off the path of growing loads, {none} none");
+    assert!(stable > 30 && beyond > 2, "{stable} {beyond}");
+}
+
+/// One link of length ℓ upright, held by a muscle on either side at `arm`.
+fn link(mass: f64) -> System {
+    scene(&json!({
+        "name": "link",
+        "materials": { "m": { "shear_modulus": 1e5, "relative_permittivity": 3.0 } },
+        "chain": {
+            "segments": 1, "length": 0.05, "radius": 0.02, "mass": mass, "axis": [0, 1, 0], "first_joint_axis": [0, 0, 1],
+            "muscles": { "material": "m", "arm": 0.015, "rest_length": 0.04, "cross_section": [0.01, 0.01],
+                "layer_thickness": 5e-5 },
+            "tip_marker": "tip",
+        },
+        "gravity": [0, -9.81, 0],
+    }))
+}
+
+/// A link that is too heavy to stand leans aside, where the energy written out is least; just below that it stands.
+#[test]
+fn a_link_too_heavy_to_stand_leans_aside() {
+    let light = model(link(0.01));
+    let upright = found(&light, &[0.0; 2]);
+    assert_eq!(upright.route, Route::Loads);
+    assert!(upright.z[0].abs() < 1e-12);
+    // Stiffness k − m g ℓ/2 of the upright link: linear in the mass.
+    let at = |mass: f64| found(&model(link(mass)), &[0.0; 2]).stiffness[0];
+    let (a, b) = (at(0.01), at(0.02));
+    let critical = 0.01 + 0.01 * a / (a - b);
+    assert!(critical > 0.1, "{critical}");
+    for (ratio, leans) in [(0.999, false), (1.001, true), (1.2, true), (2.0, true)] {
+        let system = link(ratio * critical);
+        let model = model(system.clone());
+        let rest = found(&model, &[0.0; 2]);
+        assert_eq!(rest.is_stable(), Some(true), "{ratio}");
+        assert_eq!(rest.z[0].abs() > 1e-3, leans, "{ratio}: {}", rest.z[0]);
+        if !leans {
+            continue;
+        }
+        assert!(matches!(rest.route, Route::Minimum(_)), "{:?}", rest.route);
+        // The path of growing loads stays upright, where it is unstable under the weight.
+        let on_path = equilibrium(&model, &reference(&model), &[0.0; 2]).unwrap();
+        assert_eq!(
+            (on_path.is_stable(), on_path.z[0].abs() < 1e-9),
+            (Some(false), true)
+        );
+        let mode = on_path.softest.unwrap();
+        assert_eq!(mode.softening, Softening::Weight);
+        assert!(
+            mode.moves.starts_with("joint1, stretch of muscle"),
+            "{}",
+            mode.moves
+        );
+        // The least energy on a grid of angles.
+        let at = |k: i32| energy(&system, &model, &[1e-4 * f64::from(k)], &[0.0; 2]);
+        let sign = rest.z[0].signum() as i32;
+        let least = (1..12_000)
+            .min_by(|&i, &j| at(sign * i).total_cmp(&at(sign * j)))
+            .unwrap();
+        let expected = 1e-4 * f64::from(sign * least);
+        assert!(
+            (rest.z[0] - expected).abs() < 2e-4,
+            "{ratio}: {} {expected}",
+            rest.z[0]
+        );
+    }
+}
+
+/// What nothing holds is named; what only its weight holds hangs.
+#[test]
+fn joints_without_stiffness_are_named() {
+    let mut written = json!({
+        "name": "loose",
+        "bodies": [{ "name": "bob", "mass": 0.1, "position": [0.05, 0, 0], "sphere": { "radius": 0.005 } }],
+        "joints": [{
+            "name": "pivot", "revolute": { "axis": [0, 0, 1] }, "parent": "ground", "child": "bob", "at": [0, 0, 0],
+        }],
+        "gravity": [0, -9.81, 0],
+    });
+    let pendulum = model(scene(&written));
+    let rest = found(&pendulum, &[]);
+    assert!(
+        (rest.z[0] + std::f64::consts::FRAC_PI_2).abs() < 1e-9,
+        "{:?}",
+        rest.z
+    );
+    assert!((rest.stiffness[0] / (100.0 * 9.81e-3 * 50.0) - 1.0).abs() < 1e-9);
+    written["joints"][0]["revolute"]["axis"] = json!([0, 1, 0]);
+    let turntable = model(scene(&written));
+    written["joints"][0] = json!({
+        "name": "rail", "prismatic": { "axis": [0, 1, 0] }, "parent": "ground", "child": "bob", "at": [0, 0, 0],
+    });
+    let falling = model(scene(&written));
+    for (model, name) in [(turntable, "pivot"), (falling, "rail")] {
+        let refused = stable_equilibrium(&model, &reference(&model), &[]).unwrap_err();
+        assert_eq!(refused, EquilibriumError::NoStiffness(vec![name.into()]));
+        let words = refused.to_string();
+        assert!(
+            words.contains(&format!("no stiffness acts on {name}")),
+            "{words}"
+        );
+    }
+}
+
+/// Charge over voltage of a cell at stretch Λ and volume ratio J: positive inside the domain, negative outside.
+#[test]
+fn the_domain_ends_where_the_permittivity_vanishes() {
+    let vacuum = 8.854e-12;
+    let electric = Electric {
+        c1: -4.0 * vacuum,
+        c2: 2.0 * vacuum,
+        permittivity: vacuum,
+    };
+    // physics.md 2.4: exact zero for ε_r = 5, J = 1.
+    assert!((largest_stretch(&electric, 1.0).unwrap() - 1.4553).abs() < 5e-5);
+    for volume in [0.7, 1.0, 1.3] {
+        let limit = largest_stretch(&electric, volume).unwrap();
+        let permittivity = |l: f64| 4.0 * (2.0 - l * l) + volume / (l * l);
+        assert!(permittivity(0.999 * limit) > 1e-3 && permittivity(1.001 * limit) < -1e-3);
+    }
+    let ideal = Electric {
+        c1: 0.0,
+        c2: 0.0,
+        permittivity: 5.0 * vacuum,
+    };
+    assert_eq!(largest_stretch(&ideal, 1.0), None);
+}
+
+/// A block drawn out by known stretches under voltage, at three instants.
+#[test]
+fn a_block_outside_the_domain_is_told_with_its_instants() {
+    let system = scene(&json!({
+        "name": "block",
+        "materials": { "m": { "density": 1000, "shear_modulus": 1e5, "lame_lambda": 4e5, "relative_permittivity": 5.0 } },
+        "solids": [{
+            "name": "block", "material": "m", "element": "hex8",
+            "box": { "size": [0.01, 0.01, 0.01], "elements": [1, 1, 2] },
+            "electrodes": [
+                { "name": "bottom", "face": "z_min", "potential": "grounded" },
+                { "name": "top", "face": "z_max", "potential": "driven" },
+            ],
+            "fixed": [
+                { "face": "x_min", "directions": ["x"] }, { "face": "y_min", "directions": ["y"] },
+                { "face": "z_min", "directions": ["z"] },
+            ],
+        }],
+    }));
+    let model = model(system);
+    let zero = reference(&model);
+    let stretched = |l: f64| -> Vec<f64> {
+        let axes = model.action.motion.of_nodes.iter().zip(&zero);
+        axes.map(|(&(_, axis), x)| if axis == 2 { l * x } else { x / l.sqrt() })
+            .collect()
+    };
+    let motion = |voltage: f64| History {
+        times: vec![0.0, 1.0, 2.0, 3.0],
+        z: [1.0, 1.46, 1.6, 1.5].map(stretched).to_vec(),
+        scalars: vec![[vec![voltage], vec![0.5 * voltage; model.potentials]].concat(); 3],
+        ..History::default()
+    };
+    assert_eq!(out_of_domain(&model, &motion(0.0)), Vec::new());
+    let outside = out_of_domain(&model, &motion(1e3));
+    let [one] = &outside[..] else {
+        panic!("{outside:?}");
+    };
+    assert_eq!(
+        (one.name.as_str(), one.first, one.time),
+        ("block", 1.0, 2.0)
+    );
+    assert!(
+        (one.stretch - 1.6).abs() < 1e-9 && (one.limit - 1.4553).abs() < 5e-5,
+        "{one:?}"
+    );
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_proboscis"))
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (
+        output.status.code().unwrap(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
+fn summary(folder: &Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap()
+}
+
+/// The muscle drawn out by a weight of 0.6 kg is told, at rest and in motion.
+#[test]
+fn a_muscle_outside_the_domain_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let problem = file("09_domain");
+    let (status, out, err) = run(path, &["equilibrium", problem.to_str().unwrap()]);
+    assert_eq!(status, 0, "{err}");
+    assert!(
+        out.contains("stable equilibrium") && out.contains("N/mm: s, stretch of m"),
+        "{out}"
+    );
+    assert_eq!(err.lines().count(), 1, "{err}");
+    for word in [
+        "first-order dielectric",
+        "m is stretched to 2.236",
+        "ends at 1.4553",
+    ] {
+        assert!(err.contains(word), "{word}: {err}");
+    }
+    let told = summary(&path.join("results/09_domain"));
+    let outside = &told["domain"][0];
+    assert_eq!(outside["name"], "m");
+    assert_eq!(outside["stretch"], told["stretches"]["m"]);
+    // A W_Λ/V₀ = m g of the weight and half of the muscle, by physics.md 3.1; in N and m, at 1 kV over 50 µm.
+    let stretch = outside["stretch"].as_f64().unwrap();
+    let (field, vacuum) = (2e7_f64, 8.854_187_8e-12);
+    let elastic = 1e5 * (stretch - stretch.powi(-2));
+    let electric = vacuum * field * field * (4.0 * stretch + stretch.powi(-3));
+    let force = 25e-6 * (elastic + electric);
+    assert!((force / (0.6005 * 9.81) - 1.0).abs() < 1e-5, "{force}");
+    for name in ["configuration.svg", "equilibrium.csv", "report.html"] {
+        assert!(
+            path.join("results/09_domain").join(name).is_file(),
+            "{name}"
+        );
+    }
+
+    let mut written: Value =
+        serde_json::from_str(&std::fs::read_to_string(&problem).unwrap()).unwrap();
+    written.as_object_mut().unwrap().remove("equilibrium");
+    written["simulate"] = json!({ "duration": "20 ms", "step": "1 ms", "voltages": { "m": 1000 }, "start": { "joint_angles": {} } });
+    std::fs::write(path.join("fall.json"), written.to_string()).unwrap();
+    let (status, _, err) = run(path, &["simulate", "fall.json", "-o", "short"]);
+    assert!(status == 0 && !err.contains("dielectric"), "{err}");
+    let long = [
+        "simulate",
+        "fall.json",
+        "-o",
+        "long",
+        "--set",
+        "simulate.duration=100 ms",
+    ];
+    let (status, _, err) = run(path, &long);
+    assert!(status == 0 && err.contains("outside from 0.0"), "{err}");
+    let outside = &summary(&path.join("long"))["domain"][0];
+    let [first, time] = ["first", "time"].map(|key| outside[key].as_f64().unwrap());
+    // Falling freely it passes the limit later than (2 · 0.455 · 40 mm/g)^½ = 61 ms.
+    assert!(
+        first > 0.02 && first < time && time <= 0.1,
+        "{first} {time}"
+    );
+    assert!(outside["stretch"].as_f64().unwrap() > 1.4553);
+}
+
+/// The path past pull-in has its limit point in table, picture, page and summary alike.
+#[test]
+fn pull_in_is_marked_on_the_path() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let problem = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/pull_in.json");
+    let arguments = ["equilibrium", problem.to_str().unwrap(), "-o", "path"];
+    let (status, out, err) = run(path, &arguments);
+    assert_eq!(status, 0, "{err}");
+    assert!(out.contains("equilibria, path"), "{out}");
+    let results = path.join("path");
+    let told = summary(&results);
+    let lost = &told["path"]["lost"][0];
+    let fraction = lost["fraction"].as_f64().unwrap();
+    assert_eq!(lost["kind"], "pull_in");
+    assert!(
+        err.contains(&format!(
+            "pull-in at {:.6} % of the voltages",
+            100.0 * fraction
+        )),
+        "{err}"
+    );
+    let table = std::fs::read_to_string(results.join("path.csv")).unwrap();
+    let mut lines = table
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').collect::<Vec<_>>());
+    let header = lines.next().unwrap();
+    let column = |name: &str| header.iter().position(|cell| *cell == name).unwrap();
+    let (of_fraction, of_lost) = (column("fraction"), column("stability_lost"));
+    let marked: Vec<f64> = lines
+        .filter(|row| row[of_lost] == "1.0")
+        .map(|row| row[of_fraction].parse().unwrap())
+        .collect();
+    assert_eq!(marked, [fraction]);
+    let label = format!("pull-in at {:.2} %", 100.0 * fraction);
+    let svg = std::fs::read_to_string(results.join("path.svg")).unwrap();
+    assert!(svg.contains(&label), "{label}");
+    for name in ["configuration.svg", "report.html"] {
+        assert!(results.join(name).is_file(), "{name}");
+    }
+}
+
+/// The trunk under the earth's gravity through the program: its control has a start and a goal, and its rest says how it was
+/// found.
+#[test]
+fn the_upright_trunk_answers() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let problem = file("06_solve_refused_earth_gravity");
+    let problem = problem.to_str().unwrap();
+    let voltages =
+        "muscle2=1.7kV,muscle6=1.7kV,muscle10=1.7kV,muscle3=1.6kV,muscle7=1.6kV,muscle11=1.6kV";
+    let arguments = ["equilibrium", problem, "--voltages", voltages, "-o", "rest"];
+    let (status, out, err) = run(path, &arguments);
+    assert_eq!((status, err.as_str()), (0, ""), "{out}");
+    let told = summary(&path.join("rest"));
+    assert_eq!(told["is_stable"], true);
+    let softest = told["stiffness"][0].as_f64().unwrap();
+    assert!((softest - 0.1835).abs() < 1e-3, "{softest}");
+    assert!(
+        out.contains(&format!(
+            "softest mode  {:.6} N mm/rad: joint",
+            1e3 * softest
+        )),
+        "{out}"
+    );
+    let route = told["route"].as_str().unwrap();
+    assert_eq!(
+        out.contains("growing voltages lose theirs") || out.contains("growing weights lose theirs"),
+        route != "growing_loads",
+        "{out}"
+    );
+    let stretches = told["stretches"].as_object().unwrap().values();
+    let stretches: Vec<f64> = stretches.map(|v| v.as_f64().unwrap()).collect();
+    let least = stretches.iter().copied().fold(1.0, f64::min);
+    let most = stretches.iter().copied().fold(1.0, f64::max);
+    assert!(
+        (least - 0.69).abs() < 0.01 && (most - 1.19).abs() < 0.01,
+        "{least} {most}"
+    );
+}

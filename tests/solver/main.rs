@@ -1,0 +1,9 @@
+//! Ipopt, MUMPS and faer behind their interfaces, and callbacks that fail.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod checker;
+mod faults;
+mod ipopt;
+mod sparse;

@@ -1,0 +1,482 @@
+//! What a scene does not call for is not solved for: welded and fixed bodies, what nothing moves, sources without voltage,
+//! inertia and friction at rest. Counts have closed forms, and numbers are those of the scene without it to the last bit.
+
+use crate::common::cases::{GRAVITY, blocks, branched, cases, control, hold, joints};
+use crate::common::solid::{DRIVEN, block, electrode, held};
+use crate::common::{at_reference, bare, body, joint, motion, placed, trunk};
+use nalgebra::{Matrix3, Vector3};
+use proboscis::control::problem::{AtRest, Simulation, State, Voltages};
+use proboscis::control::{Boundary, resolve_start};
+use proboscis::dynamics::{History, Solving, Start, equilibrium, simulate};
+use proboscis::functional::{Effect, Kind};
+use proboscis::mesh::grid::Grid;
+use proboscis::model::system::{Body, JointKind, Potential, System};
+use proboscis::model::{Coordinates, Model, Place, Question};
+use proboscis::run::{EFFECTS, Plan};
+use proboscis::sparse::Symmetry;
+use std::collections::BTreeSet;
+use std::ops::ControlFlow;
+
+const BOTH: [Coordinates; 2] = [Coordinates::Reduced, Coordinates::Redundant];
+
+/// A simulation of 100 ms in steps of 5 ms from the reference configuration under constant voltages.
+fn under(voltages: Vec<f64>, coordinates: Coordinates) -> Simulation {
+    Simulation {
+        duration: 100.0,
+        step: 5.0,
+        tolerance: None,
+        start: joints(&[]),
+        voltages: Voltages::Constant(voltages),
+        coordinates: Some(coordinates),
+        solving: Solving::default(),
+    }
+}
+
+/// The model of a simulation and its motion.
+fn moved(system: &System, task: &Simulation) -> (Model, History) {
+    let question = task.question(system, task.step);
+    let model = Model::answering(system.clone(), question).unwrap();
+    let start = resolve_start(&model, &task.start, "start").unwrap();
+    let Voltages::Constant(row) = &task.voltages else {
+        panic!("constant voltages")
+    };
+    let scalars = model.scalars(row);
+    let steps = (task.duration / task.step) as usize;
+    let (history, failure) = simulate(
+        &model,
+        &start,
+        task.step,
+        steps,
+        |_, _| scalars.clone(),
+        |_| ControlFlow::Continue(()),
+    );
+    assert_eq!(failure, None);
+    (model, history)
+}
+
+fn names(model: &Model) -> BTreeSet<String> {
+    let sums = [&model.action.intervals, &model.action.instants];
+    let effects = sums.into_iter().flat_map(|sum| &sum.effects);
+    effects
+        .map(|e| Effect::name(e.as_ref()).to_owned())
+        .collect()
+}
+
+#[test]
+fn a_muscle_without_voltage_moves_like_a_passive_one_to_the_last_bit() {
+    for coordinates in BOTH {
+        let system = trunk(2);
+        let task = under(vec![0.0, 900.0, 0.0, 700.0], coordinates);
+        let mut passive = system.clone();
+        for muscle in [0, 2] {
+            passive.muscles[muscle].material.electric = None;
+        }
+        let ((model, found), (other, expected)) = (moved(&system, &task), moved(&passive, &task));
+        assert_eq!(
+            (&model.voltages, &other.voltages),
+            (&vec![1, 3], &vec![1, 3])
+        );
+        assert_eq!(model.reached, vec![0, 1, 2, 3]);
+        let way: f64 = found.z[20]
+            .iter()
+            .zip(&found.z[0])
+            .map(|(a, b)| (a - b).abs())
+            .sum();
+        assert!(way > 0.01, "{way}");
+        assert_eq!(found.z, expected.z);
+        assert_eq!(found.momenta, expected.momenta);
+    }
+}
+
+#[test]
+fn an_electrode_without_voltage_is_grounded() {
+    let mesh = Grid::uniform(Vector3::zeros(), Vector3::new(10.0, 12.0, 20.0), [1, 1, 4]).mesh();
+    let material = blocks().muscles[0].material;
+    let with = |middle: Potential, top: Potential| {
+        let mut solid = block(mesh.clone(), material);
+        solid.supports = vec![held(&mesh, "z_min", [true; 3])];
+        solid.electrodes = vec![
+            electrode(&mesh, "bottom", 0.0, Potential::Given(0.0)),
+            electrode(&mesh, "middle", 10.0, middle),
+            electrode(&mesh, "top", 20.0, top),
+        ];
+        crate::common::solid::system(vec![solid])
+    };
+    let second = Potential::Driven {
+        source: 1,
+        factor: 1.0,
+    };
+    let (driven, grounded) = (with(DRIVEN, second), with(Potential::Given(0.0), DRIVEN));
+    let of_reduced = |row| under(row, Coordinates::Reduced);
+    let (model, found) = moved(&driven, &of_reduced(vec![0.0, 3e4]));
+    let (other, expected) = moved(&grounded, &of_reduced(vec![3e4]));
+    // One plane of potentials between middle and top, none below.
+    assert_eq!((model.potentials, other.potentials), (4, 4));
+    assert_eq!((&model.voltages, &model.reached), (&vec![1], &vec![0, 1]));
+    assert!((found.z[20][2] - found.z[0][2]).abs() > 1e-6);
+    assert_eq!(found.z, expected.z);
+    // Without any voltage there is no field, and nothing moves.
+    let (still, rest) = moved(&driven, &of_reduced(vec![0.0, 0.0]));
+    assert_eq!((still.potentials, still.coordinate_count()), (0, 0));
+    assert_eq!((names(&still).len(), rest.intervals()), (0, 20));
+}
+
+#[test]
+fn at_rest_there_is_neither_inertia_nor_friction() {
+    for coordinates in BOTH {
+        for mut system in [trunk(2), blocks(), branched()] {
+            system.gravity = Some(GRAVITY);
+            let volts: Vec<f64> = (1..=system.sources().len())
+                .map(|s| 200.0 * s as f64)
+                .collect();
+            let task = AtRest {
+                voltages: volts.clone(),
+                coordinates: Some(coordinates),
+                path: None,
+            };
+            let of_motion = Question {
+                coordinates: Some(coordinates),
+                ..Question::of_motion(1.0)
+            };
+            let still = Model::answering(system.clone(), task.question(&system)).unwrap();
+            let moving = Model::answering(system.clone(), of_motion).unwrap();
+            let kinds = |model: &Model| -> Vec<Kind> {
+                let effects = model.action.intervals.effects.iter();
+                effects.map(|e| e.kind()).collect()
+            };
+            for kind in [Kind::Kinetic, Kind::VirtualWork] {
+                assert!(kinds(&moving).contains(&kind) && !kinds(&still).contains(&kind));
+            }
+            // Weight needs masses, not inertia.
+            assert!(names(&still).contains("gravity"));
+            assert_eq!(still.coordinate_count(), moving.coordinate_count());
+            let [found, expected] = [&still, &moving].map(|model| {
+                equilibrium(model, &at_reference(model), &model.scalars(&volts)).unwrap()
+            });
+            let away = found
+                .z
+                .iter()
+                .zip(at_reference(&still))
+                .map(|(a, b)| (a - b).abs());
+            assert!(away.fold(0.0, f64::max) > 1e-3);
+            for (a, b) in found
+                .z
+                .iter()
+                .zip(&expected.z)
+                .take(still.coordinate_count())
+            {
+                assert!((a - b).abs() < 1e-9 * (1.0 + a.abs()), "{a} {b}");
+            }
+        }
+    }
+}
+
+/// A box of edges along the axes.
+fn cuboid(name: &str, mass: f64, size: [f64; 3], centre: Vector3<f64>) -> Body {
+    let [a, b, c] = size.map(|edge| edge * edge * mass / 12.0);
+    body(
+        name,
+        mass,
+        [b + c, c + a, a + b],
+        centre,
+        Matrix3::identity(),
+    )
+}
+
+#[test]
+fn two_welded_halves_move_like_the_whole() {
+    let whole = [10.0, 40.0, 20.0];
+    let half = [10.0, 20.0, 20.0];
+    let at = |y: f64| Vector3::new(0.0, y, 3.0);
+    let axis = Vector3::new(0.6, 0.0, 0.8);
+    let root = |child| {
+        joint(
+            "root",
+            JointKind::Revolute { axis },
+            None,
+            child,
+            Vector3::zeros(),
+        )
+    };
+    let one = bare(
+        vec![cuboid("all", 60.0, whole, at(20.0))],
+        vec![root(0)],
+        Some(GRAVITY),
+    );
+    let halves = vec![
+        cuboid("far", 30.0, half, at(30.0)),
+        cuboid("near", 30.0, half, at(10.0)),
+    ];
+    let weld = joint("weld", JointKind::Fixed, Some(1), 0, at(20.0));
+    let two = bare(halves, vec![weld, root(1)], Some(GRAVITY));
+    for coordinates in BOTH {
+        let mut task = under(Vec::new(), coordinates);
+        task.start = joints(&[(0, 0.9)]);
+        let (model, expected) = moved(&one, &task);
+        task.start = joints(&[(1, 0.9)]);
+        let (welded, found) = moved(&two, &task);
+        // One body: 12 coordinates, 6 constraints of its own and 5 of the joint.
+        if coordinates == Coordinates::Redundant {
+            assert_eq!(
+                (welded.coordinate_count(), welded.multiplier_names.len()),
+                (12, 11)
+            );
+        }
+        assert_eq!(welded.coordinate_count(), model.coordinate_count());
+        let place = |model: &Model, z: &[f64]| model.poses(&placed(model, z));
+        let (mut way, mut worst) = (0.0_f64, 0.0_f64);
+        for (a, b) in expected.z.iter().zip(&found.z) {
+            let (all, parts) = (place(&model, a)[0], place(&welded, b));
+            let middle = (parts[0].centre + parts[1].centre) * 0.5;
+            worst = worst.max((all.centre - middle).norm());
+            for part in &parts {
+                worst = worst.max((part.directors - all.directors).norm());
+            }
+            let between = parts[0].centre - parts[1].centre;
+            worst = worst.max((between - all.directors * Vector3::new(0.0, 20.0, 0.0)).norm());
+            way = way.max((all.centre - place(&model, &expected.z[0])[0].centre).norm());
+        }
+        assert!(way > 1.0 && worst < 1e-9, "{way} {worst}");
+    }
+}
+
+#[test]
+fn welded_and_fixed_bodies_have_no_unknown() {
+    // The cap of the branched tree sits on its slider: three bodies, two revolute joints and a slider of 5 constraints each.
+    let redundant = Question {
+        coordinates: Some(Coordinates::Redundant),
+        ..Question::of_motion(1.0)
+    };
+    let model = Model::answering(branched(), redundant.clone()).unwrap();
+    assert_eq!(model.coordinate_count(), 3 * 12);
+    assert_eq!(model.multiplier_names.len(), 3 * 6 + 3 * 5);
+    assert!(matches!(
+        model.condensed.places[3],
+        Place::Welded { to: 1, .. }
+    ));
+    let there = names(&model);
+    assert!(there.contains("joint points") && there.contains("rigid bodies"));
+
+    // A body that is fixed to the ground is ground, whichever way its joint and the next one are written.
+    for flipped in [false, true] {
+        let mut fixed = trunk(3);
+        fixed.joints[0].kind = JointKind::Fixed;
+        // Muscles between two points of the ground do nothing.
+        fixed.muscles.drain(..2);
+        if flipped {
+            let joint = &mut fixed.joints[1];
+            (joint.parent, joint.child) = (Some(1), 0);
+        }
+        let mut expected = trunk(3);
+        expected.muscles.drain(..2);
+        expected.bodies.remove(0);
+        expected.joints.remove(0);
+        let ground = |b: Option<usize>| b.and_then(|b| b.checked_sub(1));
+        for joint in &mut expected.joints {
+            (joint.parent, joint.child) = (ground(joint.parent), joint.child - 1);
+        }
+        for muscle in &mut expected.muscles {
+            (muscle.from.body, muscle.to.body) = (ground(muscle.from.body), ground(muscle.to.body));
+        }
+        expected.markers[0].point.body = Some(1);
+        for coordinates in BOTH {
+            let task = under(vec![0.0, 900.0, 800.0, 0.0], coordinates);
+            let ((model, found), (other, by_hand)) =
+                (moved(&fixed, &task), moved(&expected, &task));
+            assert_eq!(model.coordinate_count(), other.coordinate_count());
+            assert_eq!(model.multiplier_names.len(), other.multiplier_names.len());
+            assert_eq!(model.condensed.places[0], Place::Ground);
+            if !flipped {
+                assert_eq!(found.z, by_hand.z);
+            } else {
+                // The joint goes the other way round.
+                let tips = [(&model, &found), (&other, &by_hand)].map(|(model, history)| {
+                    let z = &history.z[20];
+                    placed(model, z).x[model.markers[0]]
+                });
+                assert!((tips[0] - Vector3::new(0.0, 150.0, 0.0)).norm() > 0.1);
+                let mirrored = model.joints(&placed(&model, &found.z[20]), &[0.0; 3]);
+                let straight = other.joints(&placed(&other, &by_hand.z[20]), &[0.0; 2]);
+                assert!((tips[0] - tips[1]).norm() < 1e-8);
+                assert!((mirrored[1] + straight[0]).abs() < 1e-10 && straight[0].abs() > 1e-4);
+            }
+        }
+    }
+}
+
+/// The first `segments` segments of a trunk, and the rest as a trunk of its own beside it.
+fn beside(segments: usize, others: usize) -> System {
+    let (mut system, mut other) = (trunk(segments), trunk(others));
+    let far = Vector3::new(500.0, 0.0, 0.0);
+    for body in &mut other.bodies {
+        body.name.push_str(" beside");
+        body.centre += far;
+    }
+    for joint in &mut other.joints {
+        joint.name.push_str(" beside");
+        joint.at += far;
+        joint.parent = joint.parent.map(|b| b + segments);
+        joint.child += segments;
+    }
+    for muscle in &mut other.muscles {
+        muscle.name.push_str(" beside");
+        for end in [&mut muscle.from, &mut muscle.to] {
+            end.at += far;
+            end.body = end.body.map(|b| b + segments);
+        }
+    }
+    system.bodies.extend(other.bodies);
+    system.joints.extend(other.joints);
+    system.muscles.extend(other.muscles);
+    system
+}
+
+#[test]
+fn what_nothing_moves_is_not_solved_for() {
+    let (alone, both) = (trunk(2), beside(2, 3));
+    let volts = |count: usize| {
+        let mut row = hold(2);
+        row.resize(count, 0.0);
+        row
+    };
+    for coordinates in BOTH {
+        let (model, found) = moved(&both, &under(volts(10), coordinates));
+        let (other, expected) = moved(&alone, &under(volts(4), coordinates));
+        assert_eq!(model.coordinate_count(), other.coordinate_count());
+        assert_eq!(found.z, expected.z);
+        assert_eq!(found.momenta, expected.momenta);
+        let poses = model.poses(&placed(&model, &found.z[20]));
+        assert_eq!(poses[4], both.bodies[4].pose());
+        let kept = model.joints(&placed(&model, &found.z[20]), &[0.0; 5]);
+        assert!(kept[0].abs() > 1e-3 && kept[2..] == [0.0; 3]);
+
+        // Weight, a voltage, a start in motion or away from the reference bring it back.
+        let count = |change: &dyn Fn(&mut System, &mut Simulation)| {
+            let (mut system, mut task) = (both.clone(), under(volts(10), coordinates));
+            change(&mut system, &mut task);
+            let question = task.question(&system, task.step);
+            let model = Model::answering(system, question).unwrap();
+            model.condensed.system.joints.len()
+        };
+        assert_eq!(count(&|_, _| {}), 2);
+        assert_eq!(count(&|s, _| s.gravity = Some(GRAVITY)), 5);
+        let driven = |_: &mut System, t: &mut Simulation| {
+            let mut row = volts(10);
+            row[9] = 10.0;
+            t.voltages = Voltages::Constant(row);
+        };
+        assert_eq!(count(&driven), 5);
+        assert_eq!(count(&|_, t| t.start = joints(&[(4, 0.1)])), 5);
+        assert_eq!(count(&|_, t| t.start = joints(&[(4, 0.0)])), 2);
+        let rates = |_: &mut System, t: &mut Simulation| {
+            t.start = State::JointAngles {
+                angles: Default::default(),
+                rates: [(4, 1e-3)].into(),
+            };
+        };
+        assert_eq!(count(&rates), 5);
+    }
+    // A control problem whose goal or limits speak of it solves for it; else the voltages beside are given.
+    let mut task = control(&both, 3);
+    task.given = (4..10).map(|s| (s, 0.0)).collect();
+    task.goal = joints(&[(0, 0.05)]);
+    let joints_of = |task: &proboscis::control::problem::Control| {
+        let (model, _) = Boundary::resolve(&both, task, 10.0).unwrap();
+        model.condensed.system.joints.len()
+    };
+    assert_eq!(joints_of(&task), 2);
+    task.goal = joints(&[(3, 0.0)]);
+    assert_eq!(joints_of(&task), 5);
+}
+
+#[test]
+fn a_free_body_at_rest_leaves_the_tree_reduced() {
+    let mut system = trunk(2);
+    let stone = cuboid("stone", 5.0, [4.0; 3], Vector3::new(300.0, 0.0, 0.0));
+    system.bodies.push(stone);
+    let question = under(hold(2), Coordinates::Reduced).question(&system, 5.0);
+    let model = Model::answering(system.clone(), question).unwrap();
+    assert_eq!(model.coordinate_count(), 2);
+    // What a caller may set in motion is not taken for ground.
+    let free = Model::new(system, None, 5.0, &[]).unwrap();
+    assert_eq!(
+        (free.coordinates, free.coordinate_count()),
+        (Coordinates::Redundant, 36)
+    );
+    let mut rates = vec![0.0; 36];
+    rates[24] = 1.0;
+    let start = Start::with_rates(&free, at_reference(&free), &rates);
+    let drift = motion(&free, &start, 5.0, 2, &[0.0; 4]);
+    assert!((drift.z[2][24] - 310.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_tangent_is_symmetric_where_nothing_dissipates() {
+    let mesh = Grid::uniform(Vector3::zeros(), Vector3::new(10.0, 12.0, 20.0), [1, 1, 2]).mesh();
+    let symmetry = |viscosity| {
+        let mut material = blocks().muscles[0].material;
+        material.viscosity = viscosity;
+        let mut solid = block(mesh.clone(), material);
+        solid.supports = vec![held(&mesh, "z_min", [true; 3])];
+        let model = Model::new(crate::common::solid::system(vec![solid]), None, 1.0, &[]).unwrap();
+        model.step_symmetry()
+    };
+    assert_eq!(symmetry(None), Symmetry::Symmetric);
+    assert_eq!(symmetry(Some(1.0)), Symmetry::Unsymmetric);
+}
+
+#[test]
+fn each_effect_is_in_the_plan_once_with_its_reason() {
+    let mut seen = BTreeSet::new();
+    for case in cases() {
+        for coordinates in BOTH {
+            let mut control = case.control.clone();
+            control.coordinates = Some(coordinates);
+            let (model, _) = Boundary::resolve(&case.system, &control, 10.0).unwrap();
+            let plan = Plan::of(&model, Some(&control), 0.0);
+            for effect in &plan.effects {
+                let of_component = model.present.iter().any(|p| p.term == effect.name);
+                let is_named = EFFECTS.contains(&effect.name.as_str()) || of_component;
+                assert!(is_named, "{}", effect.name);
+                assert!(effect.why.len() > 5 && effect.elements > 0, "{effect:?}");
+                assert!(effect.microseconds > 0.0 && effect.hessian.is_some());
+                seen.insert(effect.name.clone());
+            }
+            let absent: Vec<&str> = plan.absent.iter().map(|a| a.name.as_str()).collect();
+            for effect in EFFECTS {
+                let there = plan.effects.iter().any(|e| e.name == effect);
+                assert_ne!(there, absent.contains(&effect), "{effect} of {}", case.name);
+            }
+            assert!(
+                plan.absent.iter().all(|a| a.why.len() > 5),
+                "{:?}",
+                plan.absent
+            );
+        }
+    }
+    let all: BTreeSet<String> = EFFECTS.iter().map(|e| (*e).to_owned()).collect();
+    let of_components = ["spring elasticity", "spring damping", "tendon elasticity"];
+    let all = all.into_iter().chain(of_components.map(str::to_owned));
+    assert_eq!(seen, all.collect());
+}
+
+#[test]
+fn entries_of_the_program_are_those_of_its_effects() {
+    // In a trunk of one segment each effect couples all that there is: one angle, two voltages. An inner interval of the
+    // program has 3 entries of the angle with itself and 2 of each voltage with the angles at its ends; its Hessian 2 of
+    // the angle, 2 of each voltage with the angles, and each voltage with itself.
+    let system = trunk(1);
+    let mut task = control(&system, 4);
+    let plan = |task: &proboscis::control::problem::Control| {
+        let (model, _) = Boundary::resolve(&system, task, 10.0).unwrap();
+        let plan = Plan::of(&model, Some(task), 0.0);
+        let named = |name: &str| {
+            let effect = plan.effects.iter().find(|e| e.name == name).unwrap();
+            (effect.unknowns, effect.jacobian, effect.hessian.unwrap())
+        };
+        [named("body inertia"), named("muscle electroelasticity")]
+    };
+    assert_eq!(plan(&task), [(1, 3, 2), (3, 3 + 2 * 2, 2 + 2 * 2 + 2)]);
+    task.given.insert(0, 500.0);
+    assert_eq!(plan(&task), [(1, 3, 2), (3, 3 + 2, 2 + 2 + 1)]);
+}

@@ -1,0 +1,8 @@
+//! Structure: what a scene does not call for leaves no trace, and imports go downwards.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod condensed;
+mod floors;
+mod trace;
