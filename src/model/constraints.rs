@@ -1,12 +1,19 @@
 //! Constraints that redundant coordinates leave open: rigid bodies and joints, times their multipliers.
 
-use crate::energy::{Coincidence, Orthogonality};
+use crate::energy::{Coincidence, Energy, Orthogonality};
 use crate::functional::{Effect, Element, Group, Stencil, VectorArg};
-use crate::kinematics::{MaterialVector, Vectors};
+use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
-use crate::model::effects::{Builder, Effects, group};
+use crate::model::continua::Continua;
 use crate::model::joints::triad;
-use crate::model::system::{Joint, JointKind};
+use crate::model::plan::{self, LeftOut, Present};
+use crate::model::system::{Glue, Joint, JointKind, System};
+
+/// Terms of constraints.
+const RIGID: &str = "rigid bodies";
+const DIRECTIONS: &str = "joint directions";
+const POINTS: &str = "joint points";
+const GLUE: &str = "glue";
 
 fn here(vector: usize) -> VectorArg {
     VectorArg {
@@ -15,9 +22,62 @@ fn here(vector: usize) -> VectorArg {
     }
 }
 
+/// Makes the constraints of a system.
+pub(super) struct Builder<'a> {
+    pub(super) system: &'a System,
+    pub(super) reference: &'a [Pose],
+    pub(super) vectors: &'a mut Vectors,
+    /// Elastic blocks.
+    pub(super) continua: &'a Continua,
+}
+
+/// Constraints on their way to the action, with the names of their multipliers.
+#[derive(Default)]
+pub(super) struct Made {
+    pub(super) effects: Vec<Box<dyn Effect>>,
+    pub(super) multipliers: Vec<String>,
+    pub(super) present: Vec<Present>,
+    pub(super) left_out: Vec<LeftOut>,
+}
+
+impl Made {
+    /// No constraints: reduced coordinates leave none.
+    pub(super) fn none() -> Self {
+        let why = "reduced coordinates leave no constraint";
+        let left_out = [RIGID, DIRECTIONS, POINTS, GLUE].map(|term| LeftOut { term, why });
+        Self {
+            left_out: left_out.to_vec(),
+            ..Self::default()
+        }
+    }
+
+    /// Adds a term of elements for the parts of the scene that are named; without elements it is left out.
+    fn add<E, const M: usize, const NV: usize, const NS: usize>(
+        &mut self,
+        term: &'static str,
+        scale: f64,
+        elements: Vec<Element<E, NV, NS>>,
+        reason: (&'static str, &[&str]),
+        otherwise: &'static str,
+    ) where
+        E: Energy<M> + 'static,
+    {
+        if elements.is_empty() {
+            let why = otherwise;
+            return self.left_out.push(LeftOut { term, why });
+        }
+        let (why, names) = reason;
+        for name in names {
+            plan::note(&mut self.present, term, why, name);
+        }
+        let group = Group::instants(term, scale, elements);
+        self.effects.push(Box::new(group));
+    }
+}
+
 impl Builder<'_> {
-    /// Constraints of redundant coordinates, `−h₀ λ·g`, and the names of their multipliers.
-    pub(super) fn constraints(&mut self, h0: f64) -> (Effects, Vec<String>) {
+    /// Constraints of redundant coordinates, `−h₀ λ·g`.
+    pub(super) fn constraints(&mut self, h0: f64) -> Made {
         let mut rigid = Constraints::default();
         for (b, body) in self.system.bodies.iter().enumerate() {
             let axis = |i: usize| {
@@ -46,12 +106,29 @@ impl Builder<'_> {
         for (span, name) in &self.continua.ties {
             ties.point(self.vectors, name, span.clone());
         }
-        let mut effects = Effects::new();
-        group!(effects, instants, 7, "rigid bodies", -h0, rigid.dots);
-        group!(effects, instants, 7, "joint directions", -h0, joints.dots);
-        group!(effects, instants, 6, "joint points", -h0, joints.points);
-        group!(effects, instants, 6, "glue", -h0, ties.points);
-        (effects, ties.names)
+        let bodies = self.system.bodies.iter().map(|body| body.name.as_str());
+        let bodies: Vec<&str> = bodies.collect();
+        let named = self.system.joints.iter().map(|joint| joint.name.as_str());
+        let named: Vec<&str> = named.collect();
+        let is_glued = |glue: &Glue| glue.body.is_some();
+        let glued = self.continua.list.iter().filter(|c| !c.is_still);
+        let glued = glued.filter(|c| c.solid.glued.iter().any(is_glued));
+        let glued: Vec<&str> = glued.map(|c| c.solid.name.as_str()).collect();
+        let (directors, ends) = (
+            ("directors of", &bodies[..]),
+            ("redundant coordinates at the ends of", &named[..]),
+        );
+        let mut made = Made {
+            multipliers: ties.names,
+            ..Made::default()
+        };
+        made.add::<_, 7, _, _>(RIGID, -h0, rigid.dots, directors, "no body that moves");
+        let none = "no joint that calls for one";
+        made.add::<_, 7, _, _>(DIRECTIONS, -h0, joints.dots, ends, none);
+        made.add::<_, 6, _, _>(POINTS, -h0, joints.points, ends, none);
+        let none = "no node is glued to a body that moves";
+        made.add::<_, 6, _, _>(GLUE, -h0, ties.points, ("glued nodes of", &glued), none);
+        made
     }
 
     fn joint(&mut self, joint: &Joint, out: &mut Constraints) {

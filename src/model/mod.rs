@@ -1,6 +1,7 @@
 //! Where physics meets indices: from a checked system to sums of effects over its coordinates.
 
 mod attachment;
+mod block_terms;
 mod blocks;
 mod component;
 pub mod components;
@@ -8,18 +9,18 @@ mod condensed;
 mod constraints;
 mod continua;
 mod continuum;
-mod effects;
+mod dampers;
 mod error;
 mod floating;
 mod graph;
 mod joints;
 mod measures;
 mod named;
+pub mod plan;
 mod quantity;
 mod question;
 mod reach;
 mod redundancy;
-mod solid_effects;
 mod still;
 pub mod system;
 mod terms;
@@ -31,11 +32,12 @@ pub use error::ModelError;
 pub use floating::Floating;
 pub use graph::Graph;
 pub use joints::JointGauge;
+pub use plan::{LeftOut, Present};
 pub use quantity::{FieldPlace, Quantity, Region, joint_unit};
 pub use question::{Question, Stirred};
 pub use still::Still;
 pub use system::{System, VACUUM_PERMITTIVITY};
-pub use terms::{LeftOut, Present, Terms, mid, rate};
+pub use terms::{Terms, mid, rate};
 
 use crate::functional::{Kind, Sum};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
@@ -45,7 +47,7 @@ use crate::sparse::Symmetry;
 use continua::Continua;
 use measures::Measures;
 use std::collections::BTreeSet;
-use system::{Attachment, Source};
+use system::{Attachment, Muscle, Source};
 
 /// Coordinates in which a problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -160,26 +162,42 @@ impl Model {
         let ties = coordinates == Coordinates::Redundant;
         let scene = system.solids.len();
         let continua = Continua::new(solids, scene, &reference, &voltages, ties, &mut vectors)?;
-        let mut parts = effects::Builder::new(
-            rest,
-            &reference,
-            coordinates,
-            &voltages,
-            &continua,
-            &mut vectors,
-        );
-        let mut intervals = parts.intervals(question.of_motion);
-        let (instants, multiplier_names) = match coordinates {
-            Coordinates::Reduced => (Vec::new(), Vec::new()),
-            Coordinates::Redundant => parts.constraints(question.interval),
+        let (intervals, mut present, mut left_out, spans) = {
+            let motion = question.of_motion;
+            let mut terms = Terms::new(&condensed, &reference, &voltages, motion, &mut vectors);
+            let span = |m: &Muscle, terms: &mut Terms<'_>| {
+                let span = MaterialVector::span(&terms.point(&m.from), &terms.point(&m.to));
+                terms.vector(span)
+            };
+            let muscles = &system.muscles;
+            let spans: Vec<usize> = muscles.iter().map(|m| span(m, &mut terms)).collect();
+            components::body::build(&rest.bodies, &reference, &mut terms);
+            components::muscle::build(muscles, &spans, &mut terms);
+            continua.build(&mut terms);
+            let no_weight = match system.gravity {
+                None => "the scene names no gravity",
+                Some(_) => "nothing that moves has a mass",
+            };
+            terms.without(plan::GRAVITY, no_weight);
+            dampers::build(rest, &reference, coordinates, &mut terms);
+            system.components.build(&mut terms);
+            let (intervals, present, left_out) = terms.finish();
+            (intervals, present, left_out, spans)
         };
-        let spans = parts.spans;
-        let mut terms = Terms::new(&condensed, &reference, question.of_motion, &mut vectors);
-        for component in system.components.iter() {
-            component.build(&mut terms);
-        }
-        let (of_components, present, left_out) = terms.finish();
-        intervals.extend(of_components);
+        let made = match coordinates {
+            Coordinates::Reduced => constraints::Made::none(),
+            Coordinates::Redundant => constraints::Builder {
+                system: rest,
+                reference: &reference,
+                vectors: &mut vectors,
+                continua: &continua,
+            }
+            .constraints(question.interval),
+        };
+        let (instants, multiplier_names) = (made.effects, made.multipliers);
+        present.extend(made.present);
+        left_out.extend(made.left_out);
+        plan::settle(&present, &mut left_out);
         let point = |a: &Attachment| MaterialVector::point(a.body, &a.at, &reference);
         let markers = rest
             .markers

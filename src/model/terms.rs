@@ -1,54 +1,40 @@
 //! Where components hand over their terms: what reads nothing that moves is left out, what is of one kind is collected, and the
 //! reasons are written down.
 
-use crate::energy::Energy;
-use crate::functional::{Effect, Element, Group, Path, Paths, Stencil, VectorArg};
+use crate::energy::{Energy, Gravity};
+use crate::functional::{
+    Effect, Element, Group, Hexahedra, Hexahedron, Inertia, Mass, Path, Paths, Stencil, VectorArg,
+    ViscousHexahedra, ViscousHexahedron, Wired,
+};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::model::attachment::Attachment;
 use crate::model::condensed::Condensed;
+use crate::model::plan::{self, LeftOut, Present};
 use std::any::Any;
 use std::fmt;
-
-/// A term that is there and why.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Present {
-    /// Name of the term.
-    pub term: &'static str,
-    /// What of its components calls for it.
-    pub why: &'static str,
-    /// Names of these components.
-    pub of: Vec<String>,
-}
-
-/// A term that a component could have and has not.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LeftOut {
-    /// Name of the term.
-    pub term: &'static str,
-    /// Why it is not there.
-    pub why: &'static str,
-}
 
 /// Terms of components on their way to the action.
 pub struct Terms<'a> {
     condensed: &'a Condensed,
     reference: &'a [Pose],
     vectors: &'a mut Vectors,
+    /// Source of each voltage.
+    voltages: &'a [usize],
     of_motion: bool,
     collected: Vec<Collected>,
+    present: Vec<Present>,
     left_out: Vec<LeftOut>,
 }
 
 impl fmt::Debug for Terms<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let present = self.collected.iter().map(|collected| &collected.present);
-        f.debug_list().entries(present).finish()
+        f.debug_list().entries(&self.present).finish()
     }
 }
 
 /// Elements of one type under one name.
 struct Collected {
-    present: Present,
+    term: &'static str,
     /// A vector of the type.
     list: Box<dyn Any>,
     finish: fn(&str, Box<dyn Any>) -> Box<dyn Effect>,
@@ -59,13 +45,47 @@ trait Member: Sized + 'static {
     fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect>;
 }
 
+impl Member for Mass {
+    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect> {
+        Box::new(Inertia::new(name, list))
+    }
+}
+
+impl<F: Wired + 'static> Member for Hexahedron<F>
+where
+    Hexahedra<F>: Effect,
+{
+    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect> {
+        Box::new(Hexahedra::new(name, list))
+    }
+}
+
+impl Member for ViscousHexahedron {
+    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect> {
+        Box::new(ViscousHexahedra::new(name, list))
+    }
+}
+
 impl Member for Path {
     fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect> {
         Box::new(Paths::new(name, list))
     }
 }
 
-/// An element with the number of arguments of its formula.
+/// A kinetic energy with the number of arguments of its formula.
+struct Kinetic<E, const M: usize, const NV: usize, const NS: usize>(Element<E, NV, NS>);
+
+impl<E, const M: usize, const NV: usize, const NS: usize> Member for Kinetic<E, M, NV, NS>
+where
+    E: Energy<M> + 'static,
+{
+    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect> {
+        let elements = list.into_iter().map(|Self(element)| element).collect();
+        Box::new(Group::intervals(name, 1.0, elements))
+    }
+}
+
+/// A potential energy or virtual work with the number of arguments of its formula.
 struct Of<E, const M: usize, const NV: usize, const NS: usize>(Element<E, NV, NS>);
 
 impl<E, const M: usize, const NV: usize, const NS: usize> Member for Of<E, M, NV, NS>
@@ -84,6 +104,7 @@ impl<'a> Terms<'a> {
     pub(super) fn new(
         condensed: &'a Condensed,
         reference: &'a [Pose],
+        voltages: &'a [usize],
         of_motion: bool,
         vectors: &'a mut Vectors,
     ) -> Self {
@@ -91,8 +112,10 @@ impl<'a> Terms<'a> {
             condensed,
             reference,
             vectors,
+            voltages,
             of_motion,
             collected: Vec::new(),
+            present: Vec::new(),
             left_out: Vec::new(),
         }
     }
@@ -102,21 +125,41 @@ impl<'a> Terms<'a> {
         self.of_motion
     }
 
-    /// Index of the vector from one point to another, for [`mid`] and [`rate`]; `None` where no motion of the robot changes it.
+    /// The point as a vector, whose body is the one that carries it.
+    pub fn point(&self, point: &Attachment) -> MaterialVector {
+        let body = self.condensed.carrier(point.body);
+        MaterialVector::point(body, &point.at, self.reference)
+    }
+
+    /// Whether nothing moves the points.
+    pub fn is_immobile(&self, points: &[Attachment]) -> bool {
+        let mut carriers = points.iter().map(|p| self.condensed.carrier(p.body));
+        carriers.all(|carrier| carrier.is_none())
+    }
+
+    /// Index of a vector, for [`mid`] and [`rate`].
+    pub fn vector(&mut self, vector: MaterialVector) -> usize {
+        self.vectors.index(vector)
+    }
+
+    /// Index of the vector from one point to another; `None` where no motion of the robot changes its length.
     pub fn span(&mut self, from: &Attachment, to: &Attachment) -> Option<usize> {
         let [a, b] = [from, to].map(|end| self.condensed.carrier(end.body));
-        if a == b {
-            return None;
-        }
-        let point = |body, end: &Attachment| MaterialVector::point(body, &end.at, self.reference);
-        let span = MaterialVector::span(&point(a, from), &point(b, to));
-        Some(self.vectors.index(span))
+        (a != b).then(|| {
+            let span = MaterialVector::span(&self.point(from), &self.point(to));
+            self.vectors.index(span)
+        })
+    }
+
+    /// Scalar of the voltage of a source; `None` where it is zero all the time, or does nothing.
+    pub fn input(&self, source: usize) -> Option<usize> {
+        self.voltages.iter().position(|&s| s == source)
     }
 
     /// Adds a formula of vectors of the intervals: a potential energy, or where it has virtual displacements a virtual work.
     ///
     /// `term` names the term in reports, which holds all elements of that name; `why` says what of the component `of` calls for
-    /// it: "stiffness".
+    /// it: "stiffness of".
     pub fn add<E, const M: usize, const NV: usize, const NS: usize>(
         &mut self,
         term: &'static str,
@@ -129,6 +172,72 @@ impl<'a> Terms<'a> {
         self.collect(term, why, of, Of::<E, M, NV, NS>(element));
     }
 
+    /// Adds a kinetic energy of vectors and rates of the intervals.
+    pub(super) fn add_kinetic<E, const M: usize, const NV: usize, const NS: usize>(
+        &mut self,
+        term: &'static str,
+        why: &'static str,
+        of: &str,
+        element: Element<E, NV, NS>,
+    ) where
+        E: Energy<M> + 'static,
+    {
+        self.collect(term, why, of, Kinetic::<E, M, NV, NS>(element));
+    }
+
+    /// Adds a constant mass.
+    pub(super) fn add_mass(&mut self, term: &'static str, why: &'static str, of: &str, mass: Mass) {
+        self.collect(term, why, of, mass);
+    }
+
+    /// Adds a constant mass of parts that are [noted](Self::note) by themselves.
+    pub(super) fn add_mass_of_many(&mut self, term: &'static str, mass: Mass) {
+        self.push(term, mass);
+    }
+
+    /// Notes that a part of the scene calls for a term.
+    pub(super) fn note(&mut self, term: &'static str, why: &'static str, of: &str) {
+        plan::note(&mut self.present, term, why, of);
+    }
+
+    /// Adds the weight of a mass in g at a point, where there is gravity.
+    pub(super) fn weigh(&mut self, point: &MaterialVector, mass: f64) {
+        if self.condensed.system.gravity.is_some() {
+            let vector = self.vectors.index(point.clone());
+            self.weigh_vector(vector, mass);
+        }
+    }
+
+    /// Adds the weight of a mass in g at the point of a vector of the list, where there is gravity.
+    pub(super) fn weigh_vector(&mut self, vector: usize, mass: f64) {
+        if let Some(g) = self.condensed.system.gravity {
+            let element = Element {
+                energy: Gravity { weight: g * mass },
+                vectors: [mid(vector)],
+                scalars: [],
+            };
+            self.add(plan::GRAVITY, "gravity of", "the scene", element);
+        }
+    }
+
+    /// Adds a hexahedron with or without a field.
+    pub(super) fn add_hexahedron<F: Wired + 'static>(
+        &mut self,
+        term: &'static str,
+        why: &'static str,
+        of: &str,
+        element: Hexahedron<F>,
+    ) where
+        Hexahedra<F>: Effect,
+    {
+        self.collect(term, why, of, element);
+    }
+
+    /// Adds a viscous hexahedron.
+    pub(super) fn add_viscous(&mut self, term: &'static str, of: &str, element: ViscousHexahedron) {
+        self.collect(term, "viscosity of", of, element);
+    }
+
     /// Adds the energy of the length of a path.
     pub fn add_path(&mut self, term: &'static str, why: &'static str, of: &str, path: Path) {
         self.collect(term, why, of, path);
@@ -136,29 +245,22 @@ impl<'a> Terms<'a> {
 
     /// Says why a term is left out.
     pub fn without(&mut self, term: &'static str, why: &'static str) {
-        let left_out = LeftOut { term, why };
-        if !self.left_out.contains(&left_out) {
-            self.left_out.push(left_out);
-        }
+        self.left_out.push(LeftOut { term, why });
     }
 
     fn collect<T: Member>(&mut self, term: &'static str, why: &'static str, of: &str, element: T) {
-        let of = of.to_owned();
-        for collected in &mut self.collected {
-            if collected.present.term == term
-                && let Some(list) = collected.list.downcast_mut::<Vec<T>>()
-            {
-                list.push(element);
-                collected.present.of.push(of);
-                return;
-            }
+        self.note(term, why, of);
+        self.push(term, element);
+    }
+
+    fn push<T: Member>(&mut self, term: &'static str, element: T) {
+        let mut same = self.collected.iter_mut().filter(|c| c.term == term);
+        if let Some(list) = same.find_map(|c| c.list.downcast_mut::<Vec<T>>()) {
+            list.push(element);
+            return;
         }
         self.collected.push(Collected {
-            present: Present {
-                term,
-                why,
-                of: vec![of],
-            },
+            term,
             list: Box::new(vec![element]),
             finish: |name, list| {
                 let list = list.downcast::<Vec<T>>();
@@ -167,16 +269,13 @@ impl<'a> Terms<'a> {
         });
     }
 
-    /// The terms, what they are there for, and what is left out.
-    pub(super) fn finish(self) -> (Vec<Box<dyn Effect>>, Vec<Present>, Vec<LeftOut>) {
-        let (mut effects, mut present) = (Vec::new(), Vec::new());
-        for collected in self.collected {
-            effects.push((collected.finish)(collected.present.term, collected.list));
-            present.push(collected.present);
-        }
-        let is_there = |left_out: &LeftOut| present.iter().any(|p| p.term == left_out.term);
-        let left_out = self.left_out.into_iter().filter(|l| !is_there(l)).collect();
-        (effects, present, left_out)
+    /// The terms in the order of the plan, what they are there for, and what is left out.
+    pub(super) fn finish(mut self) -> (Vec<Box<dyn Effect>>, Vec<Present>, Vec<LeftOut>) {
+        self.collected
+            .sort_by_key(|collected| plan::rank(collected.term));
+        let collected = self.collected.into_iter();
+        let effects = collected.map(|c| (c.finish)(c.term, c.list));
+        (effects.collect(), self.present, self.left_out)
     }
 }
 

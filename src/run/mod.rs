@@ -63,7 +63,7 @@ pub use motion::{solved, trajectory};
 pub use optimise::{Allowed, Iterate, Optimum, optimise};
 pub use progress::Shown;
 pub(crate) use progress::progress_bar;
-pub use reasons::{Absent, EFFECTS, absent};
+pub use reasons::{Absent, absent};
 pub use request::{Request, Told};
 pub use resimulate::{Cause, Resimulation};
 pub use rest::equilibrium_of_file;

@@ -10,9 +10,10 @@ use proboscis::control::{Boundary, resolve_start};
 use proboscis::dynamics::{History, Solving, Start, equilibrium, simulate};
 use proboscis::functional::{Effect, Kind};
 use proboscis::mesh::grid::Grid;
+use proboscis::model::plan::TERMS;
 use proboscis::model::system::{Body, JointKind, Potential, System};
 use proboscis::model::{Coordinates, Model, Place, Question};
-use proboscis::run::{EFFECTS, Plan};
+use proboscis::run::Plan;
 use proboscis::sparse::Symmetry;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -435,15 +436,13 @@ fn each_effect_is_in_the_plan_once_with_its_reason() {
             let (model, _) = Boundary::resolve(&case.system, &control, 10.0).unwrap();
             let plan = Plan::of(&model, Some(&control), 0.0);
             for effect in &plan.effects {
-                let of_component = model.present.iter().any(|p| p.term == effect.name);
-                let is_named = EFFECTS.contains(&effect.name.as_str()) || of_component;
-                assert!(is_named, "{}", effect.name);
+                assert!(TERMS.contains(&effect.name.as_str()), "{}", effect.name);
                 assert!(effect.why.len() > 5 && effect.elements > 0, "{effect:?}");
                 assert!(effect.microseconds > 0.0 && effect.hessian.is_some());
                 seen.insert(effect.name.clone());
             }
             let absent: Vec<&str> = plan.absent.iter().map(|a| a.name.as_str()).collect();
-            for effect in EFFECTS {
+            for effect in TERMS {
                 let there = plan.effects.iter().any(|e| e.name == effect);
                 assert_ne!(there, absent.contains(&effect), "{effect} of {}", case.name);
             }
@@ -454,10 +453,8 @@ fn each_effect_is_in_the_plan_once_with_its_reason() {
             );
         }
     }
-    let all: BTreeSet<String> = EFFECTS.iter().map(|e| (*e).to_owned()).collect();
-    let of_components = ["spring elasticity", "spring damping", "tendon elasticity"];
-    let all = all.into_iter().chain(of_components.map(str::to_owned));
-    assert_eq!(seen, all.collect());
+    let all: BTreeSet<String> = TERMS.iter().map(|e| (*e).to_owned()).collect();
+    assert_eq!(seen, all);
 }
 
 #[test]

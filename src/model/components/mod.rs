@@ -1,5 +1,7 @@
 //! Parts of a scene that answer for themselves.
 
+pub(super) mod body;
+pub(super) mod muscle;
 mod spring;
 mod tendon;
 
@@ -7,6 +9,7 @@ pub use spring::Spring;
 pub use tendon::Tendon;
 
 use crate::model::component::Component;
+use crate::model::terms::Terms;
 use std::sync::Arc;
 
 /// The components of a system.
@@ -21,6 +24,15 @@ pub struct Components {
 }
 
 impl Components {
+    /// Their terms.
+    pub(super) fn build(&self, terms: &mut Terms<'_>) {
+        self.iter().for_each(|component| component.build(terms));
+        for term in ["spring elasticity", "spring damping"] {
+            terms.without(term, "no spring");
+        }
+        terms.without("tendon elasticity", "no tendon");
+    }
+
     /// All of them, kind by kind.
     pub fn iter(&self) -> impl Iterator<Item = &dyn Component> {
         let springs = self.springs.iter().map(|spring| spring as &dyn Component);

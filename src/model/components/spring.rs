@@ -67,7 +67,7 @@ impl Component for Spring {
                     vectors: [mid(span)],
                     scalars: [],
                 };
-                terms.add(ELASTICITY, "stiffness", &self.name, element);
+                terms.add(ELASTICITY, "stiffness of", &self.name, element);
             }
             None => terms.without(ELASTICITY, "no spring that moves names a stiffness"),
         }
@@ -78,7 +78,7 @@ impl Component for Spring {
                     vectors: [mid(span), mid(span), rate(span)],
                     scalars: [],
                 };
-                terms.add(DAMPING, "damping", &self.name, element);
+                terms.add(DAMPING, "damping of", &self.name, element);
             }
             Some(_) => terms.without(DAMPING, "a state of rest dissipates nothing"),
             None => terms.without(DAMPING, "no spring that moves names a damping"),

@@ -66,7 +66,12 @@ impl Component for Tendon {
         }
         match spans.is_empty() {
             true => terms.without(ELASTICITY, "no tendon that moves"),
-            false => terms.add_path(ELASTICITY, "stiffness", &self.name, Path { energy, spans }),
+            false => terms.add_path(
+                ELASTICITY,
+                "stiffness of",
+                &self.name,
+                Path { energy, spans },
+            ),
         }
     }
 

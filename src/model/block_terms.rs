@@ -1,0 +1,160 @@
+//! Terms of elastic blocks: elements by kind, masses, weights.
+
+use crate::element::Viscosity;
+use crate::functional::{Hexahedron, Mass, ViscousHexahedron};
+use crate::model::Continuum;
+use crate::model::continua::Continua;
+use crate::model::terms::Terms;
+use std::collections::BTreeMap;
+
+const INERTIA: &str = "block inertia";
+const ELASTICITY: &str = "block elasticity";
+const ELECTROELASTICITY: &str = "block electroelasticity";
+const VISCOSITY: &str = "block viscosity";
+
+impl Continua {
+    /// Elements of all blocks of which anything is unknown, as pairs of block and element.
+    fn elements(&self) -> impl Iterator<Item = (&Continuum, usize)> + '_ {
+        self.list
+            .iter()
+            .filter(|continuum| !continuum.is_still)
+            .flat_map(|continuum| (0..continuum.shapes.len()).map(move |e| (continuum, e)))
+    }
+
+    /// Terms of all blocks.
+    pub(super) fn build(&self, terms: &mut Terms<'_>) {
+        let all = [INERTIA, ELASTICITY, ELECTROELASTICITY, VISCOSITY];
+        self.add_inertia(terms);
+        self.add_elements(terms);
+        self.add_viscosity(terms);
+        for term in all {
+            terms.without(
+                term,
+                match self.list.is_empty() {
+                    true => "no elastic block",
+                    false => "no elastic block that moves",
+                },
+            );
+        }
+    }
+
+    /// Consistent masses, and the weight at each node.
+    fn add_inertia(&self, terms: &mut Terms<'_>) {
+        let moving = || self.list.iter().filter(|continuum| !continuum.is_still);
+        let is_heavy = |c: &&Continuum| c.solid.materials.iter().any(|m| m.density.is_some());
+        for (vector, mass) in self.loads() {
+            terms.weigh_vector(vector, mass);
+        }
+        if moving().next().is_none() {
+            return;
+        }
+        if !terms.is_of_motion() {
+            return terms.without(INERTIA, "a state of rest has no inertia");
+        }
+        for mass in self.masses() {
+            terms.add_mass_of_many(INERTIA, mass);
+        }
+        match moving().any(|c| is_heavy(&c)) {
+            true => {
+                for continuum in moving().filter(is_heavy) {
+                    terms.note(INERTIA, "density of", &continuum.solid.name);
+                }
+            }
+            false => terms.without(INERTIA, "no elastic block names a density"),
+        }
+    }
+
+    /// Elastic and dielectric elements.
+    fn add_elements(&self, terms: &mut Terms<'_>) {
+        for (c, e) in self.elements() {
+            let (shape, nodes) = (c.shapes[e].clone(), c.nodes(e));
+            let name = &c.solid.name;
+            match c.is_dielectric[e] {
+                false => {
+                    let element = Hexahedron {
+                        shape,
+                        law: c.passive(e),
+                        nodes,
+                        terminals: (),
+                    };
+                    terms.add_hexahedron(ELASTICITY, "elements without a field of", name, element);
+                    let why = match c.material(e).electric {
+                        None => "no elastic block that moves names electric constants there",
+                        Some(_) => {
+                            "no field between electrodes of different voltages reaches an element"
+                        }
+                    };
+                    terms.without(ELECTROELASTICITY, why);
+                }
+                true => {
+                    let element = Hexahedron {
+                        shape,
+                        law: c.dielectric(e),
+                        nodes,
+                        terminals: c.terminals(e),
+                    };
+                    terms.add_hexahedron(
+                        ELECTROELASTICITY,
+                        "elements in a field of",
+                        name,
+                        element,
+                    );
+                    terms.without(ELASTICITY, "a field reaches every element");
+                }
+            }
+        }
+    }
+
+    /// Viscous elements.
+    fn add_viscosity(&self, terms: &mut Terms<'_>) {
+        for (c, e) in self.elements() {
+            let Some(viscosity) = c.material(e).viscosity else {
+                terms.without(VISCOSITY, "no elastic block names a viscosity");
+                continue;
+            };
+            if !terms.is_of_motion() {
+                terms.without(VISCOSITY, "a state of rest dissipates nothing");
+                continue;
+            }
+            let element = ViscousHexahedron {
+                shape: c.shapes[e].clone(),
+                law: Viscosity { viscosity },
+                nodes: c.nodes(e),
+            };
+            terms.add_viscous(VISCOSITY, &c.solid.name, element);
+        }
+    }
+
+    /// The consistent mass matrix of all blocks.
+    fn masses(&self) -> Vec<Mass> {
+        let mut sums: BTreeMap<[usize; 2], f64> = BTreeMap::new();
+        for (c, e) in self.elements() {
+            let Some(density) = c.material(e).density else {
+                continue;
+            };
+            let (nodes, mass) = (c.nodes(e), c.shapes[e].mass(density));
+            for (i, &a) in nodes.iter().enumerate() {
+                for (j, &b) in nodes.iter().enumerate().filter(|&(_, &b)| a <= b) {
+                    *sums.entry([a, b]).or_default() += mass[i][j];
+                }
+            }
+        }
+        sums.into_iter()
+            .map(|(vectors, mass)| Mass { vectors, mass })
+            .collect()
+    }
+
+    /// Mass at each vector, as gravity sees it.
+    fn loads(&self) -> Vec<(usize, f64)> {
+        let mut sums: BTreeMap<usize, f64> = BTreeMap::new();
+        for (c, e) in self.elements() {
+            let Some(density) = c.material(e).density else {
+                continue;
+            };
+            for (node, part) in c.nodes(e).into_iter().zip(c.shapes[e].loads()) {
+                *sums.entry(node).or_default() += density * part;
+            }
+        }
+        sums.into_iter().collect()
+    }
+}

@@ -1,0 +1,139 @@
+//! Terms of lumped muscles.
+
+use crate::energy::{DielectricCell, ElasticCell, SectionInertia, ViscousCell};
+use crate::functional::{Element, Mass};
+use crate::kinematics::MaterialVector;
+use crate::model::system::{Fidelity, Muscle};
+use crate::model::terms::{Terms, mid, rate};
+
+const INERTIA: &str = "muscle inertia";
+const SECTION: &str = "section inertia";
+const ELASTICITY: &str = "muscle elasticity";
+const ELECTROELASTICITY: &str = "muscle electroelasticity";
+const VISCOSITY: &str = "muscle viscosity";
+
+/// Terms of the muscles of a scene, of which those of finite elements are blocks; `spans` are the vectors of their spans.
+pub(in crate::model) fn build(muscles: &[Muscle], spans: &[usize], terms: &mut Terms<'_>) {
+    for (m, (muscle, &span)) in muscles.iter().zip(spans).enumerate() {
+        if muscle.fidelity == Fidelity::Lumped {
+            lumped(muscle, m, span, terms);
+        }
+    }
+    // What no muscle has said.
+    for term in [INERTIA, SECTION, ELASTICITY, ELECTROELASTICITY, VISCOSITY] {
+        terms.without(term, "no lumped muscle");
+    }
+}
+
+/// Between two points that do not move nothing is left of a muscle without voltage.
+fn lumped(muscle: &Muscle, source: usize, span: usize, terms: &mut Terms<'_>) {
+    let input = terms.input(source);
+    if input.is_none() && terms.is_immobile(&[muscle.from, muscle.to]) {
+        for term in [INERTIA, SECTION, ELASTICITY, ELECTROELASTICITY, VISCOSITY] {
+            terms.without(term, "no lumped muscle that moves");
+        }
+        return;
+    }
+    inertia(muscle, span, terms);
+    elasticity(muscle, input, span, terms);
+    viscosity(muscle, span, terms);
+}
+
+/// A uniform rod: m/6 (|va|² + va·vb + |vb|²) = m/2 |v_mid|² + m/24 |ṙ|², its weight, and the inertia of its section.
+fn inertia(muscle: &Muscle, span: usize, terms: &mut Terms<'_>) {
+    let name = &muscle.name;
+    let Some(mass) = muscle.mass() else {
+        terms.without(INERTIA, "no lumped muscle names a density");
+        return terms.without(SECTION, "no muscle with a density names section_inertia");
+    };
+    let ends = [&muscle.from, &muscle.to].map(|end| terms.point(end));
+    let middle = MaterialVector::combine(0.5, &ends[0], 0.5, &ends[1]);
+    terms.weigh(&middle, mass);
+    if !terms.is_of_motion() {
+        for term in [INERTIA, SECTION] {
+            terms.without(term, "a state of rest has no inertia");
+        }
+        return;
+    }
+    let middle = terms.vector(middle);
+    terms.add_mass(INERTIA, "density of", name, Mass::point(middle, mass));
+    terms.add_mass(INERTIA, "density of", name, Mass::point(span, mass / 12.0));
+    if !muscle.section_inertia {
+        return terms.without(SECTION, "no muscle with a density names section_inertia");
+    }
+    let [x, y] = muscle.cross_section;
+    let energy = SectionInertia {
+        length: muscle.length(),
+        moment: mass * (x * x + y * y) / 192.0,
+    };
+    let element = Element {
+        energy,
+        vectors: [mid(span), rate(span)],
+        scalars: [],
+    };
+    terms.add_kinetic(SECTION, "density and section_inertia of", name, element);
+}
+
+fn elasticity(muscle: &Muscle, input: Option<usize>, span: usize, terms: &mut Terms<'_>) {
+    let elastic = ElasticCell {
+        length: muscle.length(),
+        volume: muscle.volume(),
+        shear_modulus: muscle.material.shear_modulus,
+    };
+    let (vectors, name) = ([mid(span)], &muscle.name);
+    match (muscle.material.electric, input) {
+        (Some(electric), Some(voltage)) => {
+            let energy = DielectricCell {
+                elastic,
+                c1: electric.c1,
+                c2: electric.c2,
+                permittivity: electric.permittivity,
+                layer: muscle.layer_thickness,
+            };
+            let element = Element {
+                energy,
+                vectors,
+                scalars: [voltage],
+            };
+            let why = "electric constants and a voltage of";
+            terms.add(ELECTROELASTICITY, why, name, element);
+            terms.without(ELASTICITY, "every lumped muscle takes a voltage");
+        }
+        (electric, _) => {
+            let why = match electric {
+                Some(_) => "0 V all the time at",
+                None => "no electric constants of",
+            };
+            let element = Element {
+                energy: elastic,
+                vectors,
+                scalars: [],
+            };
+            terms.add(ELASTICITY, why, name, element);
+            terms.without(
+                ELECTROELASTICITY,
+                "no lumped muscle takes a voltage other than 0",
+            );
+        }
+    }
+}
+
+fn viscosity(muscle: &Muscle, span: usize, terms: &mut Terms<'_>) {
+    match muscle.material.viscosity {
+        _ if !terms.is_of_motion() => {
+            terms.without(VISCOSITY, "a state of rest dissipates nothing");
+        }
+        None => terms.without(VISCOSITY, "no lumped muscle names a viscosity"),
+        Some(viscosity) => {
+            let energy = ViscousCell {
+                coefficient: 1.5 * viscosity * muscle.volume(),
+            };
+            let element = Element {
+                energy,
+                vectors: [mid(span), mid(span), rate(span)],
+                scalars: [],
+            };
+            terms.add(VISCOSITY, "viscosity of", &muscle.name, element);
+        }
+    }
+}
