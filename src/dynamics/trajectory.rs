@@ -77,7 +77,7 @@ impl Trajectory {
             let unit = match joint.kind {
                 JointKind::Revolute { .. } => "rad",
                 JointKind::Prismatic { .. } => "mm",
-                JointKind::Spherical | JointKind::Fixed => return None,
+                JointKind::Spherical | JointKind::Floating | JointKind::Fixed => return None,
             };
             Some(Coordinate {
                 name: joint.name.clone(),

@@ -157,6 +157,7 @@ impl Builder<'_> {
             }
         };
         match joint.kind {
+            JointKind::Floating => {}
             JointKind::Spherical => out.point(self.vectors, &joint.name, span),
             JointKind::Fixed => {
                 parallel(self.vectors);

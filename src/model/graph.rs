@@ -1,10 +1,11 @@
 //! The joint graph: a spanning tree from the ground, and the joints that close loops.
 
 use crate::kinematics::{Carrier, MaterialVector, Pose, Term};
-use crate::math::Vector;
+use crate::math::{Matrix, Vector};
 use crate::model::ModelError;
+use crate::model::joints::Screw;
 use crate::model::system::{JointKind, System};
-use crate::reduction::{Motion, Tree, TreeJoint, TreeKind};
+use crate::reduction::{Link, LinkKind, Motion, Tree};
 
 /// Joints in an order from the ground outwards, those that close loops, and bodies that nothing holds.
 #[derive(Clone, Debug)]
@@ -95,67 +96,38 @@ impl Graph {
         Some(ModelError::NoTree { reason })
     }
 
-    /// The spanning tree as kinematics; spherical joints and free bodies stay at their reference pose.
+    /// The spanning tree as kinematics; free bodies are children of the ground by floating joints.
     pub fn tree(&self, system: &System, reference: &[Pose], vectors: &[MaterialVector]) -> Tree {
-        let pose = |body: Option<usize>| body.map_or(Pose::GROUND, |b| reference[b]);
-        let coordinates = self.tree_coordinates(system);
-        let held = |&(j, direction): &(usize, Direction)| {
+        let mut links = Links {
+            reference,
+            list: Vec::new(),
+            frames: system.bodies.len(),
+            charts: 0,
+        };
+        let joints = self.first_coordinates(system);
+        let mut next = self.coordinate_count(system) - 6 * self.free.len();
+        for &body in &self.free {
+            let at = reference[body].centre;
+            links.add(JointKind::Floating, [None, Some(body)], at, 1.0, next);
+            next += 6;
+        }
+        for &(j, direction) in &self.tree {
             let joint = &system.joints[j];
-            let (parent, child) = match direction {
-                Direction::Forward => (joint.parent, joint.child),
-                Direction::Backward => (
-                    Some(joint.child),
-                    joint.parent.expect("the ground is reached first"),
-                ),
-            };
-            let (kind, axis) = match joint.kind {
-                JointKind::Revolute { axis } => (TreeKind::Revolute, axis),
-                JointKind::Prismatic { axis } => (TreeKind::Prismatic, axis),
-                JointKind::Spherical | JointKind::Fixed => (TreeKind::Fixed, Vector::z()),
-            };
             // Walked backwards, the same coordinate moves the other body the other way.
-            let sign = if direction == Direction::Forward {
-                1.0
-            } else {
-                -1.0
+            let (ends, sign) = match direction {
+                Direction::Forward => ([joint.parent, Some(joint.child)], 1.0),
+                Direction::Backward => ([Some(joint.child), joint.parent], -1.0),
             };
-            let (p, c) = (pose(parent), reference[child]);
-            TreeJoint {
-                kind,
-                parent,
-                child,
-                axis: p.directors.tr_mul(&axis) * sign,
-                point: p.local(&joint.at),
-                directors: p.directors.tr_mul(&c.directors),
-                centre: p.directors.tr_mul(&(c.centre - joint.at)),
-                coordinate: coordinates[j],
-            }
-        };
-        let free = |&body: &usize| TreeJoint {
-            kind: TreeKind::Fixed,
-            parent: None,
-            child: body,
-            axis: Vector::z(),
-            point: Vector::zeros(),
-            directors: reference[body].directors,
-            centre: reference[body].centre,
-            coordinate: None,
-        };
-        let joints = self
-            .free
-            .iter()
-            .map(free)
-            .chain(self.tree.iter().map(held))
-            .collect();
-        Tree::new(joints, system.bodies.len(), vectors)
+            links.add(joint.kind, ends, joint.at, sign, joints[j]);
+        }
+        Tree::new(links.list, vectors)
     }
 
     /// Poses at joint coordinates (by joint), along the spanning tree.
     pub fn poses(&self, system: &System, reference: &[Pose], joints: &[f64]) -> Vec<Pose> {
-        let tree = self.tree(system, reference, &[]);
-        let mut state = tree.state();
-        tree.place(&self.coordinates(system, joints), &mut state);
-        state.poses
+        let motion = Motion::articulated(self.tree(system, reference, &[]), &[], &[], 0);
+        let instant = motion.placed(&self.coordinates(system, joints));
+        motion.poses(&instant, system.bodies.len())
     }
 
     /// Rates of the vectors φ, d₁, d₂, d₃ of all bodies at joint coordinates with given rates (by joint).
@@ -190,24 +162,102 @@ impl Graph {
         instant.w.iter().flat_map(|w| [w.x, w.y, w.z]).collect()
     }
 
-    /// Index of the coordinate of each joint of the tree; joints that close loops have none.
-    fn tree_coordinates(&self, system: &System) -> Vec<Option<usize>> {
+    /// Index of the first coordinate of each joint of the tree; joints that close loops have none.
+    fn first_coordinates(&self, system: &System) -> Vec<usize> {
         let mut next = 0;
-        let index = |(j, coordinate): (usize, Option<usize>)| {
-            let in_tree = coordinate.is_some() && !self.loops.contains(&j);
-            in_tree.then(|| {
-                next += 1;
-                next - 1
-            })
+        let first = |j: usize| {
+            let first = next;
+            next += self.freedoms(system, j);
+            first
         };
-        let all = system.joint_coordinates();
-        all.into_iter().enumerate().map(index).collect()
+        (0..system.joints.len()).map(first).collect()
     }
 
-    /// Values of the coordinates of the tree from one value a joint.
+    /// Number of coordinates of a joint of the tree; those that close loops have none.
+    fn freedoms(&self, system: &System, joint: usize) -> usize {
+        match self.loops.contains(&joint) {
+            true => 0,
+            false => system.joints[joint].kind.freedoms(),
+        }
+    }
+
+    /// Number of coordinates of the tree: those of its joints, then six for each free part.
+    fn coordinate_count(&self, system: &System) -> usize {
+        let joints = (0..system.joints.len()).map(|j| self.freedoms(system, j));
+        joints.sum::<usize>() + 6 * self.free.len()
+    }
+
+    /// Values of the coordinates of the tree from one value a joint; those of joints with several and of free bodies are zero.
     fn coordinates(&self, system: &System, joints: &[f64]) -> Vec<f64> {
-        let coordinates = self.tree_coordinates(system);
-        let with_coordinate = coordinates.iter().zip(joints).filter(|(c, _)| c.is_some());
-        with_coordinate.map(|(_, &value)| value).collect()
+        let mut values = vec![0.0; self.coordinate_count(system)];
+        let first = self.first_coordinates(system);
+        for (j, joint) in system.joints.iter().enumerate() {
+            if joint.has_coordinate() && !self.loops.contains(&j) {
+                values[first[j]] = joints[j];
+            }
+        }
+        values
+    }
+}
+
+/// Links of a tree on their way to a list.
+struct Links<'a> {
+    reference: &'a [Pose],
+    list: Vec<Link>,
+    /// Number of frames so far: the bodies, then those between screws.
+    frames: usize,
+    charts: usize,
+}
+
+impl Links<'_> {
+    /// Adds a joint from a parent to a child at a point of the ground frame, with coordinates from `first` that count by `sign`.
+    fn add(
+        &mut self,
+        kind: JointKind,
+        [parent, child]: [Option<usize>; 2],
+        at: Vector,
+        sign: f64,
+        first: usize,
+    ) {
+        let child = child.expect("the ground is reached first");
+        let p = parent.map_or(Pose::GROUND, |b| self.reference[b]);
+        let c = self.reference[child];
+        let (screws, chart) = kind.screws();
+        let last = screws.len().max(1) - 1;
+        let mut before = parent;
+        for i in 0..=last {
+            let (kind, axis) = match screws.get(i) {
+                Some(&Screw::Turn(axis)) => (LinkKind::Turn, axis),
+                Some(&Screw::Slide(axis)) => (LinkKind::Slide, axis),
+                None => (LinkKind::Fixed, Vector::z()),
+            };
+            // Frames between screws lie at the point of the joint, with the directors of the parent.
+            let (to, directors, centre) = match i == last {
+                true => (
+                    child,
+                    p.directors.tr_mul(&c.directors),
+                    p.directors.tr_mul(&(c.centre - at)),
+                ),
+                false => (self.frames, Matrix::identity(), Vector::zeros()),
+            };
+            self.list.push(Link {
+                kind,
+                parent: before,
+                child: to,
+                chart: (chart == Some(i)).then_some(self.charts),
+                axis: p.directors.tr_mul(&axis) * sign,
+                point: if i == 0 {
+                    p.local(&at)
+                } else {
+                    Vector::zeros()
+                },
+                directors,
+                centre,
+                coordinate: (!screws.is_empty()).then_some(first + i),
+            });
+            self.charts += usize::from(chart == Some(i));
+            self.frames += usize::from(i != last);
+            before = Some(to);
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Joint coordinates read from poses.
+//! What joints let move, and joint coordinates read from poses.
 
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
@@ -45,31 +45,60 @@ pub enum Measure {
     None,
 }
 
+/// One degree of freedom of a joint, about or along a unit axis in the ground frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Screw {
+    /// Rotation about the axis.
+    Turn(Vector),
+    /// Translation along the axis.
+    Slide(Vector),
+}
+
+impl JointKind {
+    /// Its screws from the parent outwards, and after how many of them a chart stands, where they tell any rotation.
+    pub fn screws(&self) -> (Vec<Screw>, Option<usize>) {
+        let axes = [Vector::x(), Vector::y(), Vector::z()];
+        match *self {
+            Self::Fixed => (Vec::new(), None),
+            Self::Revolute { axis } => (vec![Screw::Turn(axis)], None),
+            Self::Prismatic { axis } => (vec![Screw::Slide(axis)], None),
+            Self::Spherical => (axes.map(Screw::Turn).to_vec(), Some(0)),
+            Self::Floating => {
+                let slides = axes.map(Screw::Slide).into_iter();
+                (slides.chain(axes.map(Screw::Turn)).collect(), Some(3))
+            }
+        }
+    }
+
+    /// Number of its coordinates.
+    pub fn freedoms(&self) -> usize {
+        self.screws().0.len()
+    }
+}
+
 impl System {
-    /// Index of the coordinate of each joint: revolute and prismatic joints have one, in the order of the scene.
+    /// Index of the coordinate of each joint that has exactly one. The coordinates of the joints stand one joint after the other in the
+    /// order of the scene; those of free bodies follow.
     pub fn joint_coordinates(&self) -> Vec<Option<usize>> {
         let mut next = 0;
-        let index = |joint: &Joint| match joint.kind {
-            JointKind::Revolute { .. } | JointKind::Prismatic { .. } => {
-                next += 1;
-                Some(next - 1)
-            }
-            JointKind::Spherical | JointKind::Fixed => None,
+        let index = |joint: &Joint| {
+            let first = next;
+            next += joint.kind.freedoms();
+            joint.has_coordinate().then_some(first)
         };
         self.joints.iter().map(index).collect()
     }
 
     /// What a unit force on each joint coordinate does to the whole system, as a force and a torque about the origin: between
-    /// two bodies nothing, from the ground the axis of the joint.
+    /// two bodies nothing, from the ground the axis of the joint. Joints with several coordinates take no such force.
     pub fn joint_pulls(&self) -> Vec<[Vector; 2]> {
         let none = [Vector::zeros(); 2];
-        let pull = |joint: &Joint| match (joint.kind, joint.parent) {
-            (JointKind::Revolute { axis }, None) => Some([Vector::zeros(), axis]),
-            (JointKind::Prismatic { axis }, None) => Some([axis, joint.at.cross(&axis)]),
-            (JointKind::Revolute { .. } | JointKind::Prismatic { .. }, Some(_)) => Some(none),
-            (JointKind::Spherical | JointKind::Fixed, _) => None,
+        let pulls = |joint: &Joint| match (joint.kind, joint.parent) {
+            (JointKind::Revolute { axis }, None) => vec![[Vector::zeros(), axis]],
+            (JointKind::Prismatic { axis }, None) => vec![[axis, joint.at.cross(&axis)]],
+            (kind, _) => vec![none; kind.freedoms()],
         };
-        self.joints.iter().filter_map(pull).collect()
+        self.joints.iter().flat_map(pulls).collect()
     }
 }
 
@@ -94,7 +123,7 @@ impl JointGauge {
                     &MaterialVector::point(Some(joint.child), &joint.at, reference),
                 ),
             },
-            JointKind::Spherical | JointKind::Fixed => Measure::None,
+            JointKind::Spherical | JointKind::Floating | JointKind::Fixed => Measure::None,
         };
         Self {
             coordinate,

@@ -186,6 +186,8 @@ pub enum JointKind {
     },
     /// Rotation about a point.
     Spherical,
+    /// Anything: the child is as free as without the joint.
+    Floating,
     /// Nothing.
     Fixed,
 }
@@ -372,10 +374,7 @@ impl Body {
 impl Joint {
     /// Whether it has one coordinate: revolute and prismatic joints do.
     pub fn has_coordinate(&self) -> bool {
-        matches!(
-            self.kind,
-            JointKind::Revolute { .. } | JointKind::Prismatic { .. }
-        )
+        self.kind.freedoms() == 1
     }
 }
 

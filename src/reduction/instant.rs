@@ -6,9 +6,9 @@ use crate::math::Vector;
 /// Data of one instant, allocated once.
 #[derive(Clone, Debug, Default)]
 pub struct Instant {
-    /// Coordinates u, then multipliers λ.
+    /// Coordinates u, then multipliers λ, then the charts of the tree: data that no equation changes.
     pub z: Vec<f64>,
-    /// Direction l: one costate for each entry of `z`.
+    /// Direction l: one costate for each coordinate and multiplier.
     pub l: Vec<f64>,
     /// Material vectors x = F(u).
     pub x: Vec<Vector>,
@@ -26,36 +26,36 @@ pub struct Instant {
     pub tree: TreeState,
 }
 
-/// Poses, joint axes and twists of a kinematic tree at an instant.
+/// Poses, axes and twists of the links of a kinematic tree at an instant.
 #[derive(Clone, Debug, Default)]
 pub struct TreeState {
-    /// Pose of each body.
+    /// Pose of each frame: the bodies, then the frames between screws.
     pub poses: Vec<Pose>,
-    /// Axis a of each joint, in the ground frame.
+    /// Axis a of each link, in the ground frame.
     pub axes: Vec<Vector>,
-    /// Point c of each joint.
+    /// Point c of each link.
     pub points: Vec<Vector>,
     /// Derivatives of the axes along l.
     pub axes_l: Vec<Vector>,
     /// Derivatives of the points along l.
     pub points_l: Vec<Vector>,
-    /// Spatial twist (ω, velocity of the origin) of each body along l.
+    /// Spatial twist (ω, velocity of the origin) of each frame along l.
     pub twists: Vec<[Vector; 2]>,
-    /// Moments N and forces f of the subtree behind each joint, and their derivatives along l.
+    /// Moments N and forces f of the subtree behind each link, and their derivatives along l.
     pub moments: Vec<Moments>,
-    /// Torque about the origin and force on the subtree behind each joint.
+    /// Torque about the origin and force on the subtree behind each link.
     pub wrenches: Vec<[Vector; 2]>,
     /// Terms of all vectors.
     pub terms: Vec<Vector>,
     /// Their derivatives along l.
     pub terms_l: Vec<Vector>,
-    /// Parts of vectors that joints move.
+    /// Parts of vectors that links move.
     pub arms: Vec<Vector>,
     /// Their derivatives along l.
     pub arms_l: Vec<Vector>,
 }
 
-/// Σ v Rᵀ and Σ R over the bodies behind a joint, and their rates along l.
+/// Σ v Rᵀ and Σ R over the bodies behind a link, and their rates along l.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Moments {
     /// Σ v Rᵀ about the origin.

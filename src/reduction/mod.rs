@@ -26,4 +26,4 @@ pub use motion::{Motion, NodePlace};
 pub use pattern::{Layout, Pattern};
 pub use pull_back::Target;
 pub use reduced::{Interval, Reduced, Scratch};
-pub use tree::{Tree, TreeJoint, TreeKind};
+pub use tree::{CHART, Link, LinkKind, Tree};

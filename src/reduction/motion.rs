@@ -128,8 +128,12 @@ impl Motion {
     pub fn instant(&self) -> Instant {
         let zeros = || vec![Vector::zeros(); self.vectors.len()];
         let columns = vec![0.0; self.tree.as_ref().map_or(0, Tree::size)];
+        let mut z = vec![0.0; self.unknowns()];
+        for _ in 0..self.charts() {
+            z.extend([1.0, 0.0, 0.0, 0.0]);
+        }
         Instant {
-            z: vec![0.0; self.unknowns()],
+            z,
             l: vec![0.0; self.unknowns()],
             x: zeros(),
             w: zeros(),
@@ -146,7 +150,27 @@ impl Motion {
         self.coordinates + self.multipliers
     }
 
-    /// An instant placed at coordinates, and multipliers where they are given.
+    /// Number of charts, whose quaternions follow the unknowns in the list of an instant.
+    fn charts(&self) -> usize {
+        self.tree.as_ref().map_or(0, Tree::charts)
+    }
+
+    /// Coordinates that turn behind a chart.
+    pub fn charted(&self) -> Vec<[usize; 3]> {
+        self.tree.as_ref().map_or_else(Vec::new, Tree::charted)
+    }
+
+    /// Moves the charts of a placed instant to where its bodies are: nothing moves, and the coordinates that turn behind a
+    /// chart become zero.
+    pub fn recentre(&self, instant: &mut Instant) {
+        if let Some(tree) = self.tree.as_ref().filter(|tree| tree.charts() > 0) {
+            let (unknowns, charts) = instant.z.split_at_mut(self.unknowns());
+            tree.recentre(unknowns, charts);
+            self.place(instant);
+        }
+    }
+
+    /// An instant placed at coordinates, and multipliers and charts where they are given.
     pub fn placed(&self, z: &[f64]) -> Instant {
         let mut instant = self.instant();
         instant.z[..z.len()].copy_from_slice(z);
@@ -166,7 +190,8 @@ impl Motion {
             z, x, tree: state, ..
         } = instant;
         if let Some(tree) = &self.tree {
-            tree.place(z, state);
+            let (unknowns, charts) = z.split_at(self.unknowns());
+            tree.place(unknowns, charts, state);
             tree.vectors(state, x);
         }
         for &v in &self.linear {
@@ -260,7 +285,7 @@ impl Motion {
     /// Poses of the bodies at an instant.
     pub fn poses(&self, instant: &Instant, bodies: usize) -> Vec<Pose> {
         if self.tree.is_some() {
-            return instant.tree.poses.clone();
+            return instant.tree.poses[..bodies].to_vec();
         }
         let pose = |body: usize| {
             let q = &instant.z[body_offset(body)..];

@@ -334,7 +334,7 @@ impl Reduced {
         let frame = Frame {
             vectors: [&instant.x, &instant.x],
             along: [&instant.w, &instant.w],
-            scalars: &instant.z[n..],
+            scalars: &instant.z[n..self.motion.unknowns()],
             scalars_along: &instant.l[n..],
             h: 1.0,
             horizon: Horizon::Given,

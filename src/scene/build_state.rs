@@ -170,9 +170,9 @@ pub(crate) fn joint_with_coordinate(
 ) -> Result<usize, SceneError> {
     let joints = names(&system.joints, |joint| &joint.name);
     let index = scope.find(name, &joints, "the name of a joint")?;
-    match system.joints[index].kind {
-        JointKind::Revolute { .. } | JointKind::Prismatic { .. } => Ok(index),
-        JointKind::Spherical | JointKind::Fixed => {
+    match system.joints[index].has_coordinate() {
+        true => Ok(index),
+        false => {
             let found = format!("{name:?}, which is neither revolute nor prismatic, or locked");
             Err(scope.wrong(found, "a joint with one coordinate"))
         }

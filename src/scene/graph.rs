@@ -1,6 +1,6 @@
 //! The graph of bodies and joints: what hangs together, whether it is a tree, and how many degrees of freedom a tree has.
 
-use crate::model::system::{Joint, JointKind};
+use crate::model::system::Joint;
 use crate::scene::error::SceneError;
 use crate::scene::scope::Scope;
 use crate::scene::spec_scene::BodySpec;
@@ -41,11 +41,7 @@ pub(crate) fn tree_freedoms(bodies: usize, joints: &[Joint]) -> Option<usize> {
     roots.sort_unstable();
     roots.dedup();
     let free_parts = roots.len() - 1;
-    let coordinates = joints.iter().map(|joint| match joint.kind {
-        JointKind::Revolute { .. } | JointKind::Prismatic { .. } => 1,
-        JointKind::Spherical => 3,
-        JointKind::Fixed => 0,
-    });
+    let coordinates = joints.iter().map(|joint| joint.kind.freedoms());
     let is_tree = joints.len() + free_parts == bodies;
     is_tree.then(|| coordinates.sum::<usize>() + 6 * free_parts)
 }

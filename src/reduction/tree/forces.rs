@@ -2,11 +2,11 @@
 
 use crate::math::Vector;
 use crate::reduction::instant::{Instant, Moments, TreeState};
-use crate::reduction::tree::{Tree, TreeKind};
+use crate::reduction::tree::{LinkKind, Tree};
 
 impl Tree {
-    /// Adds Pᵀ R for the forces on all vectors, without columns: `a·τ` about each joint, gathered from the leaves to the
-    /// root (prismatic: `a·f`).
+    /// Adds Pᵀ R for the forces on all vectors, without columns: `a·τ` about each link, gathered from the leaves to the
+    /// root (slide: `a·f`).
     pub fn pull_back(&self, state: &mut TreeState, forces: &[Vector], rows: &mut [f64]) {
         state.wrenches.fill([Vector::zeros(); 2]);
         for (term, x) in self.terms.iter().zip(&state.terms) {
@@ -15,15 +15,15 @@ impl Tree {
             *torque += x.cross(force);
             *sum += force * term.centre;
         }
-        for (j, joint) in self.joints.iter().enumerate().rev() {
+        for (j, link) in self.links.iter().enumerate().rev() {
             let [torque, force] = state.wrenches[j];
             if let Some(before) = self.before[j] {
                 state.wrenches[before][0] += torque;
                 state.wrenches[before][1] += force;
             }
             let axis = state.axes[j];
-            match (joint.coordinate, joint.kind) {
-                (Some(c), TreeKind::Revolute) => {
+            match (link.coordinate, link.kind) {
+                (Some(c), LinkKind::Turn) => {
                     rows[c] += axis.dot(&(torque - state.points[j].cross(&force)));
                 }
                 (Some(c), _) => rows[c] += axis.dot(&force),
@@ -53,7 +53,7 @@ impl Tree {
                 m.force_l += rate * term.centre;
             }
         }
-        for j in (0..self.joints.len()).rev() {
+        for j in (0..self.links.len()).rev() {
             if let Some(i) = self.before[j] {
                 let m = tree.moments[j];
                 let sum = &mut tree.moments[i];
@@ -76,8 +76,8 @@ impl Tree {
                 of = k;
                 let m = &tree.moments[k];
                 let axis = tree.axes[k];
-                y = match self.joints[k].kind {
-                    TreeKind::Revolute => {
+                y = match self.links[k].kind {
+                    LinkKind::Turn => {
                         let moment = m.moment - tree.points[k] * m.force.transpose();
                         moment * axis - axis * moment.trace()
                     }
@@ -103,8 +103,8 @@ impl Tree {
                 of = k;
                 let m = &tree.moments[k];
                 let (a, a_l) = (tree.axes[k], tree.axes_l[k]);
-                (y, y_l) = match self.joints[k].kind {
-                    TreeKind::Revolute => {
+                (y, y_l) = match self.links[k].kind {
+                    LinkKind::Turn => {
                         let (c, c_l) = (tree.points[k], tree.points_l[k]);
                         let n = m.moment - c * m.force.transpose();
                         let n_l =

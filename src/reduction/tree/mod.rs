@@ -1,15 +1,20 @@
 //! Kinematic trees: joint coordinates, and the derivatives of all vectors by them.
 //!
-//! For a joint j with axis a_j through c_j the column of P on every descendant is `a_j × (φ − c_j)`, `a_j × d_I`
-//! (revolute) or `a_j`, `0` (prismatic). Second derivatives nest, the joint nearest the root outermost:
-//! ∂_i ∂_k x = a_i × (a_k × v). Contracted with forces R one matrix `N_k = Σ v Rᵀ` and one force f_k per joint carry
-//! the curvature (physics.md, 5.3),
+//! A joint is a list of screws, each a turn about an axis or a slide along one; the tree is made of links, one for each
+//! screw, which carry one frame each: a body, or a frame without mass between two screws of a joint. For a link j with
+//! axis a_j through c_j the column of P on every descendant is `a_j × (φ − c_j)`, `a_j × d_I` (turn) or `a_j`, `0` (slide).
+//! Second derivatives nest, the link nearest the root outermost: ∂_i ∂_k x = a_i × (a_k × v). Contracted with forces R one
+//! matrix `N_k = Σ v Rᵀ` and one force f_k per link carry the curvature (physics.md, 5.3),
 //!
 //! ```text
-//! (R·P′)_ik = a_iᵀ N_k a_k − (a_i·a_k) tr N_k          prismatic k:  f_k·(a_i × a_k)
+//! (R·P′)_ik = a_iᵀ N_k a_k − (a_i·a_k) tr N_k          slide k:  f_k·(a_i × a_k)
 //! ```
 //!
 //! and R·P″_l is its derivative along l, in which axes and points move with the twists of their parents.
+//!
+//! Three turns about perpendicular axes tell any rotation, but none of them moves a body alone once the second one is a right
+//! angle. Before such turns stands a chart: a rotation that belongs to the configuration as data, a unit quaternion, so that
+//! the turns stay small. [`Tree::recentre`] puts the turns into the chart; nothing moves.
 
 mod forces;
 mod motion;
@@ -18,26 +23,29 @@ use crate::kinematics::{Carrier, MaterialVector, Pose, Term};
 use crate::math::{Matrix, Vector};
 use crate::reduction::instant::{Moments, TreeState};
 
-/// What a joint of a tree lets move.
+/// What a link of a tree lets move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TreeKind {
+pub enum LinkKind {
     /// Rotation about the axis.
-    Revolute,
+    Turn,
     /// Translation along the axis.
-    Prismatic,
+    Slide,
     /// Nothing.
     Fixed,
 }
 
-/// A joint of a tree; joints stand in an order in which parents come first.
+/// One screw of a joint, or a joint without any, between two frames; links stand in an order in which parents come first.
 #[derive(Clone, Debug)]
-pub struct TreeJoint {
+pub struct Link {
     /// What it lets move.
-    pub kind: TreeKind,
-    /// Parent body; `None` is the ground.
+    pub kind: LinkKind,
+    /// Parent frame; `None` is the ground.
     pub parent: Option<usize>,
-    /// Child body.
+    /// Child frame: the bodies come first, then the frames between screws.
     pub child: usize,
+    /// The chart between the parent and the link, which is the first of three turns in a row; axis and what follows are then
+    /// in the directors that it turned. Charts are numbered in the order of the links.
+    pub chart: Option<usize>,
     /// Unit axis in the parent's directors.
     pub axis: Vector,
     /// Point in the parent's directors, from its centre.
@@ -46,14 +54,17 @@ pub struct TreeJoint {
     pub directors: Matrix,
     /// Centre of the child relative to the point at zero, in the parent's directors.
     pub centre: Vector,
-    /// Index of the joint coordinate; `None` for a fixed joint.
+    /// Index of the joint coordinate; `None` for a fixed link.
     pub coordinate: Option<usize>,
 }
 
-/// A column of an articulated vector: the joint, and the part of the vector that the joint moves.
+/// Numbers of a chart among the data of a configuration: its unit quaternion w, x, y, z.
+pub const CHART: usize = 4;
+
+/// A column of an articulated vector: the link, and the part of the vector that the link moves.
 #[derive(Clone, Copy, Debug)]
 struct Column {
-    joint: usize,
+    link: usize,
     /// The moved part.
     arm: usize,
     /// Where its first component is stored; the others follow at the stride of the vector.
@@ -61,10 +72,10 @@ struct Column {
     stride: usize,
 }
 
-/// A sum of terms of one vector that the same joints move.
+/// A sum of terms of one vector that the same links move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Arm {
-    /// The first term, and the number of terms: those that a joint moves are neighbours.
+    /// The first term, and the number of terms: those that a link moves are neighbours.
     first: usize,
     count: usize,
     /// Sum of their centre coefficients.
@@ -107,10 +118,12 @@ pub(super) const LANES: usize = 4;
 /// A kinematic tree and the vectors on it.
 #[derive(Clone, Debug)]
 pub struct Tree {
-    joints: Vec<TreeJoint>,
-    /// Joint that carries each body.
+    links: Vec<Link>,
+    /// Link that carries each frame.
     carrier: Vec<usize>,
-    /// Joint before each joint on its way to the ground.
+    /// The first of the three turns behind each chart.
+    charts: Vec<usize>,
+    /// Link before each link on its way to the ground.
     before: Vec<Option<usize>>,
     /// Constant part of each vector.
     constants: Vec<Vector>,
@@ -119,27 +132,30 @@ pub struct Tree {
     columns: Vec<Column>,
     packed: Vec<Packed>,
     size: usize,
-    /// Pairs of joints (i, k) on one path, i not behind k.
+    /// Pairs of links (i, k) on one path, i not behind k.
     paths: Vec<(usize, usize)>,
 }
 
 impl Tree {
-    /// The tree of `joints` over `bodies` bodies, each the child of exactly one joint, and the vectors on it.
-    pub fn new(joints: Vec<TreeJoint>, bodies: usize, vectors: &[MaterialVector]) -> Self {
-        let mut carrier = vec![usize::MAX; bodies];
-        for (j, joint) in joints.iter().enumerate() {
-            carrier[joint.child] = j;
+    /// The tree of `links` and the vectors on it; each frame is the child of exactly one link.
+    pub fn new(links: Vec<Link>, vectors: &[MaterialVector]) -> Self {
+        let mut carrier = vec![usize::MAX; links.len()];
+        for (j, link) in links.iter().enumerate() {
+            carrier[link.child] = j;
         }
         assert!(
             carrier.iter().all(|&j| j != usize::MAX),
-            "every body of a tree is carried by a joint"
+            "every frame of a tree is carried by a link"
         );
-        let before = joints
+        let before = links
             .iter()
-            .map(|joint| joint.parent.map(|b| carrier[b]))
+            .map(|link| link.parent.map(|b| carrier[b]))
             .collect();
         let mut tree = Self {
-            joints,
+            charts: (0..links.len())
+                .filter(|&j| links[j].chart.is_some())
+                .collect(),
+            links,
             carrier,
             before,
             constants: Vec::new(),
@@ -162,7 +178,7 @@ impl Tree {
         tree
     }
 
-    /// Joints from the one that carries `body` to the ground.
+    /// Links from the one that carries `body` to the ground.
     fn path(&self, body: usize) -> impl Iterator<Item = usize> + '_ {
         std::iter::successors(Some(self.carrier[body]), |&j| self.before[j])
     }
@@ -191,20 +207,20 @@ impl Tree {
         }
         self.constants.push(constant);
         let mut moved = Vec::new();
-        for (j, joint) in self.joints.iter().enumerate() {
-            let Some(coordinate) = joint.coordinate else {
+        for (j, link) in self.links.iter().enumerate() {
+            let Some(coordinate) = link.coordinate else {
                 continue;
             };
             let is_moved = |&t: &usize| self.path(self.terms[t].body).any(|i| i == j);
             let terms: Vec<usize> = (first_term..self.terms.len()).filter(is_moved).collect();
             let centre: f64 = terms.iter().map(|&t| self.terms[t].centre).sum();
-            let still = joint.kind == TreeKind::Prismatic && centre == 0.0;
+            let still = link.kind == LinkKind::Slide && centre == 0.0;
             let (Some(&first), Some(&last), false) = (terms.first(), terms.last(), still) else {
                 continue;
             };
             assert!(
                 last - first + 1 == terms.len(),
-                "terms that a joint moves are neighbours"
+                "terms that a link moves are neighbours"
             );
             moved.push((
                 j,
@@ -224,14 +240,14 @@ impl Tree {
             stride,
             support,
         });
-        for (place, (joint, _, arm)) in moved.into_iter().enumerate() {
+        for (place, (link, _, arm)) in moved.into_iter().enumerate() {
             let known = self.arms.iter().rposition(|a| *a == arm);
             let arm = known.unwrap_or_else(|| {
                 self.arms.push(arm);
                 self.arms.len() - 1
             });
             self.columns.push(Column {
-                joint,
+                link,
                 arm,
                 place: first + place,
                 stride,
@@ -241,11 +257,11 @@ impl Tree {
 
     fn lay_paths(&mut self) {
         let mut paths = Vec::new();
-        for k in 0..self.joints.len() {
+        for k in 0..self.links.len() {
             for i in std::iter::successors(Some(k), |&j| self.before[j]) {
-                let moving = |j: usize| self.joints[j].kind != TreeKind::Fixed;
-                let turning = self.joints[i].kind == TreeKind::Revolute
-                    && (i != k || self.joints[k].kind == TreeKind::Revolute);
+                let moving = |j: usize| self.links[j].kind != LinkKind::Fixed;
+                let turning = self.links[i].kind == LinkKind::Turn
+                    && (i != k || self.links[k].kind == LinkKind::Turn);
                 if moving(i) && moving(k) && turning {
                     paths.push((i, k));
                 }
@@ -256,10 +272,25 @@ impl Tree {
 
     /// Number of joint coordinates.
     pub fn coordinates(&self) -> usize {
-        self.joints
+        self.links
             .iter()
-            .filter(|j| j.coordinate.is_some())
+            .filter(|link| link.coordinate.is_some())
             .count()
+    }
+
+    /// Number of charts.
+    pub fn charts(&self) -> usize {
+        self.charts.len()
+    }
+
+    /// Coordinates of the three turns behind each chart.
+    pub fn charted(&self) -> Vec<[usize; 3]> {
+        let turn = |j: usize| self.links[j].coordinate.expect("a turn has a coordinate");
+        let turns = self
+            .charts
+            .iter()
+            .map(|&j| [turn(j), turn(j + 1), turn(j + 2)]);
+        turns.collect()
     }
 
     /// Columns of each vector: the structure of P.
@@ -270,9 +301,9 @@ impl Tree {
     /// Coordinates that the curvature couples; both orders are meant.
     pub fn curvature_entries(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let coordinate = |j: usize| {
-            self.joints[j]
+            self.links[j]
                 .coordinate
-                .expect("a moving joint has a coordinate")
+                .expect("a moving link has a coordinate")
         };
         self.paths
             .iter()
@@ -281,16 +312,16 @@ impl Tree {
 
     /// Storage for an instant.
     pub fn state(&self) -> TreeState {
-        let joints = self.joints.len();
+        let links = self.links.len();
         TreeState {
-            poses: vec![Pose::GROUND; self.carrier.len()],
-            axes: vec![Vector::zeros(); joints],
-            points: vec![Vector::zeros(); joints],
-            axes_l: vec![Vector::zeros(); joints],
-            points_l: vec![Vector::zeros(); joints],
-            twists: vec![[Vector::zeros(); 2]; self.carrier.len()],
-            moments: vec![Moments::default(); joints],
-            wrenches: vec![[Vector::zeros(); 2]; joints],
+            poses: vec![Pose::GROUND; links],
+            axes: vec![Vector::zeros(); links],
+            points: vec![Vector::zeros(); links],
+            axes_l: vec![Vector::zeros(); links],
+            points_l: vec![Vector::zeros(); links],
+            twists: vec![[Vector::zeros(); 2]; links],
+            moments: vec![Moments::default(); links],
+            wrenches: vec![[Vector::zeros(); 2]; links],
             terms: vec![Vector::zeros(); self.terms.len()],
             terms_l: vec![Vector::zeros(); self.terms.len()],
             arms: vec![Vector::zeros(); self.arms.len()],

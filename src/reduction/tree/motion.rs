@@ -3,34 +3,37 @@
 use crate::kinematics::Pose;
 use crate::math::Vector;
 use crate::reduction::instant::{Instant, TreeState};
-use crate::reduction::tree::{Column, Tree, TreeKind};
-use nalgebra::{Rotation3, Unit};
+use crate::reduction::tree::{CHART, Column, LinkKind, Tree};
+use nalgebra::{Quaternion, Rotation3, Unit, UnitQuaternion};
 
 impl Tree {
-    /// Poses of all bodies at joint coordinates u, from root to leaves.
-    pub fn place(&self, u: &[f64], state: &mut TreeState) {
-        for (j, joint) in self.joints.iter().enumerate() {
-            let parent = joint.parent.map_or(Pose::GROUND, |b| state.poses[b]);
-            let axis = parent.directors * joint.axis;
-            let point = parent.point(&joint.point);
-            let value = joint.coordinate.map_or(0.0, |c| u[c]);
+    /// Poses of all frames at joint coordinates u before charts, from root to leaves.
+    pub fn place(&self, u: &[f64], charts: &[f64], state: &mut TreeState) {
+        for (j, link) in self.links.iter().enumerate() {
+            let mut parent = link.parent.map_or(Pose::GROUND, |b| state.poses[b]);
+            let point = parent.point(&link.point);
+            if let Some(chart) = link.chart {
+                parent.directors *= rotation(&charts[CHART * chart..]).to_rotation_matrix();
+            }
+            let axis = parent.directors * link.axis;
+            let value = link.coordinate.map_or(0.0, |c| u[c]);
             let mut pose = Pose {
-                centre: point + parent.directors * joint.centre,
-                directors: parent.directors * joint.directors,
+                centre: point + parent.directors * link.centre,
+                directors: parent.directors * link.directors,
             };
-            match joint.kind {
-                TreeKind::Revolute => {
-                    let turn = Rotation3::from_axis_angle(&Unit::new_unchecked(joint.axis), value);
+            match link.kind {
+                LinkKind::Turn => {
+                    let turn = Rotation3::from_axis_angle(&Unit::new_unchecked(link.axis), value);
                     let turned = parent.directors * turn.matrix();
-                    pose.centre = point + turned * joint.centre;
-                    pose.directors = turned * joint.directors;
+                    pose.centre = point + turned * link.centre;
+                    pose.directors = turned * link.directors;
                 }
-                TreeKind::Prismatic => pose.centre += axis * value,
-                TreeKind::Fixed => {}
+                LinkKind::Slide => pose.centre += axis * value,
+                LinkKind::Fixed => {}
             }
             state.axes[j] = axis;
             state.points[j] = point;
-            state.poses[joint.child] = pose;
+            state.poses[link.child] = pose;
         }
     }
 
@@ -50,11 +53,11 @@ impl Tree {
             *value = sum(&state.terms[arm.first..arm.first + arm.count]);
         }
         for column in &self.columns {
-            let axis = state.axes[column.joint];
+            let axis = state.axes[column.link];
             let centre = self.arms[column.arm].centre;
-            let value = match self.joints[column.joint].kind {
-                TreeKind::Revolute => {
-                    axis.cross(&(state.arms[column.arm] - state.points[column.joint] * centre))
+            let value = match self.links[column.link].kind {
+                LinkKind::Turn => {
+                    axis.cross(&(state.arms[column.arm] - state.points[column.link] * centre))
                 }
                 _ => axis * centre,
             };
@@ -71,18 +74,16 @@ impl Tree {
             tree,
             ..
         } = instant;
-        for (j, joint) in self.joints.iter().enumerate() {
-            let [omega, origin] = joint
-                .parent
-                .map_or([Vector::zeros(); 2], |b| tree.twists[b]);
+        for (j, link) in self.links.iter().enumerate() {
+            let [omega, origin] = link.parent.map_or([Vector::zeros(); 2], |b| tree.twists[b]);
             let (axis, point) = (tree.axes[j], tree.points[j]);
             tree.axes_l[j] = omega.cross(&axis);
             tree.points_l[j] = origin + omega.cross(&point);
-            let rate = joint.coordinate.map_or(0.0, |c| l[c]);
-            tree.twists[joint.child] = match joint.kind {
-                TreeKind::Revolute => [omega + axis * rate, origin + point.cross(&axis) * rate],
-                TreeKind::Prismatic => [omega, origin + axis * rate],
-                TreeKind::Fixed => [omega, origin],
+            let rate = link.coordinate.map_or(0.0, |c| l[c]);
+            tree.twists[link.child] = match link.kind {
+                LinkKind::Turn => [omega + axis * rate, origin + point.cross(&axis) * rate],
+                LinkKind::Slide => [omega, origin + axis * rate],
+                LinkKind::Fixed => [omega, origin],
             };
         }
         w.fill(Vector::zeros());
@@ -95,10 +96,10 @@ impl Tree {
             *rate = sum(&tree.terms_l[arm.first..arm.first + arm.count]);
         }
         for column in &self.columns {
-            let (j, arm) = (column.joint, column.arm);
+            let (j, arm) = (column.link, column.arm);
             let centre = self.arms[arm].centre;
-            let value = match self.joints[j].kind {
-                TreeKind::Revolute => {
+            let value = match self.links[j].kind {
+                LinkKind::Turn => {
                     let reach = tree.arms[arm] - tree.points[j] * centre;
                     let reach_l = tree.arms_l[arm] - tree.points_l[j] * centre;
                     tree.axes_l[j].cross(&reach) + tree.axes[j].cross(&reach_l)
@@ -121,5 +122,26 @@ impl Column {
         columns[self.place] = value.x;
         columns[self.place + self.stride] = value.y;
         columns[self.place + 2 * self.stride] = value.z;
+    }
+}
+
+/// The rotation of a chart.
+fn rotation(chart: &[f64]) -> UnitQuaternion<f64> {
+    UnitQuaternion::new_unchecked(Quaternion::new(chart[0], chart[1], chart[2], chart[3]))
+}
+
+impl Tree {
+    /// Puts the turns behind each chart into the chart: the configuration stays, these coordinates become zero.
+    pub fn recentre(&self, u: &mut [f64], charts: &mut [f64]) {
+        for (&first, chart) in self.charts.iter().zip(charts.chunks_exact_mut(CHART)) {
+            let mut turned = rotation(chart);
+            for link in &self.links[first..first + 3] {
+                let value = link.coordinate.map_or(0.0, |c| std::mem::take(&mut u[c]));
+                turned *= UnitQuaternion::from_axis_angle(&Unit::new_unchecked(link.axis), value);
+            }
+            turned.renormalize();
+            let turned = turned.quaternion();
+            chart.copy_from_slice(&[turned.w, turned.i, turned.j, turned.k]);
+        }
     }
 }
