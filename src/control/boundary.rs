@@ -6,7 +6,7 @@ use crate::control::limits::Limits;
 use crate::control::problem::{Control, Rest, State};
 use crate::dynamics::{Equilibrium, Start, muscle_without_length, stable_equilibrium};
 use crate::functional::Level;
-use crate::model::{Condensed, Coordinates, Model, Quantity, Question, System};
+use crate::model::{Condensed, Coordinates, Graph, Model, Quantity, Question, System};
 
 /// A control problem's model with its start and goal.
 #[derive(Debug)]
@@ -26,6 +26,8 @@ pub struct Boundary {
 pub struct Goal {
     /// Given coordinates; `None` where the optimisation decides.
     pub coordinates: Vec<Option<f64>>,
+    /// Charts of the final configuration, where its coordinates are given; none otherwise, and where there are none.
+    pub charts: Vec<f64>,
     /// Whether the nodes of elastic blocks rest too.
     pub nodes_rest: bool,
     /// The equilibrium that it is, where it is one under voltages that are named.
@@ -93,12 +95,14 @@ impl Boundary {
         };
         let n = model.coordinate_count();
         let mut given = vec![None; n];
+        let mut charts = Vec::new();
         let mut at_goal = None;
         match &control.goal {
             State::RestAtVoltages(voltages) => {
                 let rest = rest_at(&model, voltages, "goal")?;
                 scalars[1] = Some(rest.scalars.clone());
                 given = rest.z[..n].iter().copied().map(Some).collect();
+                charts = rest.z[model.action.motion.unknowns()..].to_vec();
                 at_goal = Some(rest);
             }
             State::JointAngles { angles, .. } if redundant && all_joints => {
@@ -130,6 +134,7 @@ impl Boundary {
             start,
             goal: Goal {
                 coordinates: given,
+                charts,
                 nodes_rest: !matches!(
                     control.goal,
                     State::Markers {
@@ -147,14 +152,14 @@ impl Boundary {
     }
 }
 
-/// Whether a goal gives the coordinates of all joints of a tree.
+/// Whether a goal gives all coordinates of a tree, each the only one of its joint.
 fn all_joints_given(system: &System, goal: &State) -> bool {
     let State::JointAngles { angles, .. } = goal else {
         return false;
     };
     let coordinates = system.joint_coordinates();
     let named = |(j, c): (usize, &Option<usize>)| c.is_none() || angles.contains_key(&j);
-    Model::choose(system, Some(Coordinates::Reduced)).is_ok()
+    Graph::new(system).has_one_coordinate_a_joint(system)
         && coordinates.iter().enumerate().all(named)
 }
 

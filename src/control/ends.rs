@@ -30,12 +30,14 @@ pub(super) fn check(
     let start: Vec<_> = boundary.start.z.iter().copied().map(Some).collect();
     let goal = &boundary.goal.coordinates;
     let [at_start, at_goal] = scalars;
+    let first = model.action.motion.unknowns();
+    let charts = [&boundary.start.z[first..], &boundary.goal.charts];
     let ends = [
-        ("start", &start, at_start, &control.start),
-        ("goal", goal, at_goal, &control.goal),
+        ("start", &start, charts[0], at_start, &control.start),
+        ("goal", goal, charts[1], at_goal, &control.goal),
     ];
-    for (place, coordinates, scalars, state) in ends {
-        let mut end = End::new(model, control, coordinates, scalars);
+    for (place, coordinates, charts, scalars, state) in ends {
+        let mut end = End::new(model, control, coordinates, charts, scalars);
         match state {
             State::JointAngles { angles, .. } => end.angles = angles.clone(),
             State::Markers { places, .. } => end.places = places.clone(),
@@ -74,6 +76,7 @@ impl<'a> End<'a> {
         model: &'a Model,
         control: &Control,
         coordinates: &[Option<f64>],
+        charts: &[f64],
         scalars: Option<Vec<f64>>,
     ) -> Self {
         let count = model.coordinate_count();
@@ -83,6 +86,11 @@ impl<'a> End<'a> {
         for (z, (value, reference)) in instant.z[..count].iter_mut().zip(values) {
             *z = value.unwrap_or(reference);
         }
+        let first = model.action.motion.unknowns();
+        instant.z[first..]
+            .iter_mut()
+            .zip(charts)
+            .for_each(|(value, chart)| *value = *chart);
         model.action.motion.vectors(&mut instant);
         let given = |s: usize| control.given.get(model.voltages.get(s)?).copied();
         let all = model.voltages.len() + model.potentials;

@@ -3,13 +3,15 @@
 use std::borrow::Cow;
 
 use crate::control::solution::Solved;
+use crate::reduction::Motion;
 
 /// Deviation of an instant, in mean steps, that is rounding.
 const ROUNDING: f64 = 1e-6;
 
 /// The motion as it is where its steps are equal, otherwise at as many equal ones: coordinates along lines, voltages and
-/// potentials of the step that the middle of an interval is in; costates belong to other rows and are left out.
-pub(super) fn evened(solved: &Solved) -> Cow<'_, Solved> {
+/// potentials of the step that the middle of an interval is in; costates belong to other rows and are left out. `motion` is
+/// what the coordinates mean, where they are those of the model.
+pub(super) fn evened<'s>(solved: &'s Solved, motion: Option<&Motion>) -> Cow<'s, Solved> {
     let intervals = solved.intervals();
     let end = solved.times[intervals];
     let time = |k: f64| end * k / intervals as f64;
@@ -32,6 +34,20 @@ pub(super) fn evened(solved: &Solved) -> Cow<'_, Solved> {
         };
         (0..=intervals).map(row).collect()
     };
+    let configurations = || {
+        let mut z = along(&solved.z);
+        let Some(motion) = motion else {
+            return z;
+        };
+        for (k, z) in z.iter_mut().enumerate() {
+            let at = time(k as f64);
+            let i = step_at(at);
+            let part = (at - solved.times[i]) / (solved.times[i + 1] - solved.times[i]);
+            let ends = [(1.0 - part, &*solved.z[i]), (part, &*solved.z[i + 1])];
+            motion.mean_of_charts(&ends, z);
+        }
+        z
+    };
     let within = |rows: &[Vec<f64>]| -> Vec<Vec<f64>> {
         let row = |k: usize| rows.get(step_at(time(k as f64 + 0.5))).cloned();
         (0..intervals).filter_map(row).collect()
@@ -50,7 +66,7 @@ pub(super) fn evened(solved: &Solved) -> Cow<'_, Solved> {
         poses: (0..=intervals)
             .filter_map(|k| solved.poses.get(near(k)).cloned())
             .collect(),
-        z: along(&solved.z),
+        z: configurations(),
         voltages: within(&solved.voltages),
         potentials: within(&solved.potentials),
         costates: None,

@@ -6,7 +6,9 @@ use crate::control::problem::{Control, Guess};
 use crate::control::resample::{self, Grids};
 use crate::control::solution::{Costates, Solved};
 use crate::dynamics::{History, simulate};
-use crate::model::{Coordinates, Model};
+use crate::kinematics::Pose;
+use crate::model::{Coordinates, Graph, Model};
+use nalgebra::Rotation3;
 use std::ops::ControlFlow;
 
 /// Added to the rest voltages, in their unit: at zero the motion does not depend on a voltage to first order.
@@ -81,6 +83,11 @@ fn interpolate(model: &Model, boundary: &Boundary, control: &Control, h: f64) ->
     for (value, given) in end.iter_mut().zip(&boundary.goal.coordinates) {
         *value = given.unwrap_or(*value);
     }
+    let motion = &model.action.motion;
+    let charts = end[motion.unknowns()..].iter_mut();
+    charts
+        .zip(&boundary.goal.charts)
+        .for_each(|(value, chart)| *value = *chart);
     let smooth = |s: f64| s * s * (3.0 - 2.0 * s);
     let ends = joints_of(model, start).zip(joints_of(model, &end));
     let z = (0..=intervals).map(|k| {
@@ -96,7 +103,8 @@ fn interpolate(model: &Model, boundary: &Boundary, control: &Control, h: f64) ->
                 for i in 0..n {
                     z[i] += s * (end[i] - start[i]);
                 }
-                z[n..].fill(0.0);
+                z[n..motion.unknowns()].fill(0.0);
+                motion.mean_of_charts(&[(1.0 - s, start), (s, &end)], &mut z);
                 z
             }
         }
@@ -124,24 +132,41 @@ fn with_potentials(model: &Model, mut voltages: Vec<f64>) -> Vec<f64> {
     voltages
 }
 
-/// Joint coordinates of a state, where the joints form a tree.
+/// Joint coordinates of a state, where they tell all of it.
 fn joints_of(model: &Model, z: &[f64]) -> Option<Vec<f64>> {
-    Model::choose(&model.system, Some(Coordinates::Reduced)).ok()?;
+    let tells_all = Graph::new(&model.system).has_one_coordinate_a_joint(&model.system);
+    tells_all.then_some(())?;
     let mut instant = model.action.motion.instant();
     instant.z.copy_from_slice(z);
     model.action.motion.place(&mut instant);
     Some(model.joints(&instant, &vec![0.0; model.gauges.len()]))
 }
 
+/// Poses on the way from one list to another, at a part of it.
+fn between(from: &[Pose], to: &[Pose], part: f64) -> Vec<Pose> {
+    let pose = |(a, b): (&Pose, &Pose)| {
+        let [p, q] = [a, b].map(|pose| Rotation3::from_matrix_unchecked(pose.directors));
+        let turn = Rotation3::from_scaled_axis((p.inverse() * q).scaled_axis() * part);
+        Pose {
+            centre: a.centre + (b.centre - a.centre) * part,
+            directors: (p * turn).into_inner(),
+        }
+    };
+    from.iter().zip(to).map(pose).collect()
+}
+
 /// An earlier solution: as it is on the same grid, carried over from another one, stretched in time where its duration is
-/// not allowed; from other coordinates only the joints.
+/// not allowed; from other coordinates the joints and what the poses tell beside them.
 fn from_solution(
     model: &Model,
     boundary: &Boundary,
     control: &Control,
     solved: &Solved,
 ) -> Initial {
-    let solved = &*evened(solved);
+    let motion = &model.action.motion;
+    let has_same_coordinates = solved.coordinates == model.coordinates
+        && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
+    let solved = &*evened(solved, has_same_coordinates.then_some(motion));
     let intervals = control.intervals;
     let before = solved.times[solved.intervals()];
     let duration = control.duration.nearest(before);
@@ -149,19 +174,19 @@ fn from_solution(
     let is_stretched = (duration - before).abs() > SAME_DURATION * duration;
     let stretch = if is_stretched { duration / before } else { 1.0 };
     let grids = Grids::new(solved.intervals(), intervals, stretch);
-    let same_coordinates = solved.coordinates == model.coordinates
-        && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
-    let n = model.coordinate_count();
     let along_joints = |k: usize| {
         let s = k as f64 / intervals as f64 * solved.intervals() as f64;
         let i = (s.floor() as usize).min(solved.intervals() - 1);
         let f = s - i as f64;
         let (a, b) = (&solved.joints[i], &solved.joints[i + 1]);
         let joints: Vec<f64> = a.iter().zip(b).map(|(a, b)| a + f * (b - a)).collect();
-        model.coordinates_at(&joints)
+        match solved.poses.get(i..=i + 1) {
+            Some([from, to]) => model.coordinates_of_poses(&between(from, to, f), &joints),
+            _ => model.coordinates_at(&joints),
+        }
     };
-    let z = match same_coordinates {
-        true => resample::coordinates(solved, grids, n, model.multiplier_time),
+    let z = match has_same_coordinates {
+        true => resample::coordinates(solved, grids, motion, model.multiplier_time),
         false => (0..=intervals).map(along_joints).collect(),
     };
     let has_potentials = solved
@@ -184,7 +209,7 @@ fn from_solution(
     Initial {
         history,
         h,
-        costates: same_coordinates
+        costates: has_same_coordinates
             .then(|| resample::costates(model, boundary, control, solved, grids))
             .flatten(),
         stretched: is_stretched.then_some([before, duration]),

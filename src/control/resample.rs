@@ -10,6 +10,7 @@ use crate::control::solution::{Costates, Solved};
 use crate::control::transcription::Layout;
 use crate::control::unknowns::{Row, Variable};
 use crate::model::Model;
+use crate::reduction::Motion;
 
 /// Instants of the old grid that a curve is led through.
 const THROUGH: usize = 4;
@@ -98,7 +99,12 @@ fn slope(rows: &[Vec<f64>], i: usize, s: usize) -> f64 {
 }
 
 /// Coordinates and impulses of constraints at the new instants, the impulses in units of `unit` ms times a force.
-pub(super) fn coordinates(solved: &Solved, grids: Grids, count: usize, unit: f64) -> Vec<Vec<f64>> {
+pub(super) fn coordinates(
+    solved: &Solved,
+    grids: Grids,
+    motion: &Motion,
+    unit: f64,
+) -> Vec<Vec<f64>> {
     let impulse = grids.ratio() * solved.multiplier_time / unit;
     let at = |k: usize| {
         let mut z = vec![0.0; solved.z[0].len()];
@@ -107,9 +113,12 @@ pub(super) fn coordinates(solved: &Solved, grids: Grids, count: usize, unit: f64
                 *value += weight * old;
             }
         }
-        for multiplier in &mut z[count..] {
+        for multiplier in &mut z[motion.coordinates..motion.unknowns()] {
             *multiplier *= impulse;
         }
+        let weights = grids.weights(k);
+        let parts = weights.iter().map(|&(j, weight)| (weight, &*solved.z[j]));
+        motion.mean_of_charts(&parts.collect::<Vec<_>>(), &mut z);
         z
     };
     (0..=grids.to).map(at).collect()

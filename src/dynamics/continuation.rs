@@ -279,12 +279,8 @@ pub(super) fn crossings(
             }
         }
         here = next;
-        let placed = path
-            .statics
-            .model
-            .action
-            .motion
-            .placed(&here.state[..path.statics.model.action.motion.unknowns()]);
+        let z = path.statics.configuration(&here.state);
+        let placed = path.statics.model.action.motion.placed(&z);
         let is_short = shortest(path.statics.model, &placed).is_some_and(|(_, s)| s < SHORTEST);
         if is_short || !(-0.5..=2.0).contains(&here.fraction) {
             break;
@@ -320,9 +316,8 @@ pub fn continuation(
     // At zero voltage nothing depends on the fraction to first order: the path starts a little further.
     let beginning: Vec<f64> = voltages.iter().map(|v| v * FIRST).collect();
     let first = crate::dynamics::stable_equilibrium(model, start, &beginning)?;
-    let mut state = first.z.clone();
-    state.extend_from_slice(&first.scalars[voltages.len()..]);
     let mut statics = Statics::new(model);
+    let state = statics.state(&first.z, &first.scalars[voltages.len()..]);
     let ramp = Ramp {
         load: Load::Voltages,
         voltages,

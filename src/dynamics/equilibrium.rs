@@ -77,7 +77,7 @@ impl Equilibrium {
     pub fn of_state(model: &Model, z: &[f64], scalars: &[f64]) -> Self {
         let mut statics = Statics::new(model);
         let (voltages, potentials) = scalars.split_at(model.voltages.len());
-        let state = [z, potentials].concat();
+        let state = statics.state(z, potentials);
         Self::new(&mut statics, &state, voltages, Route::Loads)
     }
 
@@ -88,6 +88,7 @@ impl Equilibrium {
         voltages: &[f64],
         route: Route,
     ) -> Self {
+        let state = &statics.recentred(state);
         let point = Self::on_path(statics, state, voltages, route);
         Self {
             softest: softest(statics, state, voltages),
@@ -106,7 +107,7 @@ impl Equilibrium {
         statics.evaluate(state, voltages);
         let is_known = statics.factor().is_ok();
         Self {
-            z: state[..m].to_vec(),
+            z: statics.configuration(state),
             scalars: voltages.iter().chain(&state[m..]).copied().collect(),
             stiffness: stiffness(statics),
             unstable: is_known.then(|| statics.unstable()).flatten(),
@@ -161,8 +162,7 @@ pub(super) fn unloaded(
     start: &[f64],
     voltages: &[f64],
 ) -> Result<State, EquilibriumError> {
-    let mut first: State = start.to_vec();
-    first.resize(start.len() + statics.model.potentials, 0.0);
+    let mut first = statics.state(start, &vec![0.0; statics.model.potentials]);
     let none = vec![0.0; voltages.len()];
     if statics.has_weight() {
         statics.weight = 0.0;

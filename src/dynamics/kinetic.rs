@@ -52,7 +52,7 @@ impl<'m> Kinetic<'m> {
         self.values.fill(0.0);
         // The gradients of the constraints alone: neither forces nor multipliers bend them.
         let mut bare = instant.clone();
-        bare.z[momentum.len()..].fill(0.0);
+        bare.z[momentum.len()..action.motion.unknowns()].fill(0.0);
         bare.forces.fill(Vector::zeros());
         action.evaluate_instant(Level::Hessian, &mut bare, &[], &mut self.scratch);
         action.pull_back_instant(

@@ -133,10 +133,12 @@ impl Equations for Midpoint<'_> {
         for i in 0..n {
             self.next.z[i] = self.here.z[i] + h * (self.rates[i] + ratio * self.changes[i]);
         }
+        let m = self.model.action.motion.unknowns();
         let [multipliers, potentials] = &mut self.saved;
-        multipliers.copy_from_slice(&self.here.z[n..]);
+        multipliers.copy_from_slice(&self.here.z[n..m]);
         potentials.copy_from_slice(&self.scalars[self.model.voltages.len()..]);
-        self.next.z[n..].copy_from_slice(multipliers);
+        // Multipliers, and the charts: both ends of a step have the same.
+        self.next.z[n..].copy_from_slice(&self.here.z[n..]);
     }
 
     fn evaluate(&mut self, level: Level, h: f64, residual: &mut [f64]) {
@@ -172,7 +174,7 @@ impl Equations for Midpoint<'_> {
             action.evaluate_instant(level, next, &[], scratch);
             action.pull_back_instant(level, next, 1, scratch, values);
             residual[n..m].copy_from_slice(&scratch.instant.plain.rows);
-            here.z[n..].copy_from_slice(&next.z[n..]);
+            here.z[n..m].copy_from_slice(&next.z[n..m]);
             action.evaluate_instant(level, here, &[], scratch);
             action.pull_back_instant(level, here, 0, scratch, values);
         }
@@ -186,8 +188,8 @@ impl Equations for Midpoint<'_> {
     }
 
     fn update(&mut self, update: &[f64]) {
-        let m = self.next.z.len();
-        for (z, update) in self.next.z.iter_mut().zip(update) {
+        let m = self.model.action.motion.unknowns();
+        for (z, update) in self.next.z[..m].iter_mut().zip(update) {
             *z -= update;
         }
         let driven = self.model.voltages.len();
@@ -197,9 +199,9 @@ impl Equations for Midpoint<'_> {
     }
 
     fn restore(&mut self) {
-        let n = self.model.action.motion.coordinates;
+        let motion = &self.model.action.motion;
         let [multipliers, potentials] = &self.saved;
-        self.here.z[n..].copy_from_slice(multipliers);
+        self.here.z[motion.coordinates..motion.unknowns()].copy_from_slice(multipliers);
         self.scalars[self.model.voltages.len()..].copy_from_slice(potentials);
     }
 
@@ -287,8 +289,12 @@ impl Equations for Midpoint<'_> {
         }
         self.is_first = false;
         self.lengths = [h, self.lengths[0]];
-        let n = motion.coordinates;
-        here.z[n..].copy_from_slice(&next.z[n..]);
+        let (n, m) = (motion.coordinates, motion.unknowns());
+        here.z[n..m].copy_from_slice(&next.z[n..m]);
+        if motion.recentre(next) {
+            self.momentum.fill(0.0);
+            motion.pull_back(&next.columns, forces, &mut self.momentum);
+        }
         std::mem::swap(&mut self.here, &mut self.next);
         self.time += h;
         true
@@ -316,6 +322,7 @@ impl Equations for Midpoint<'_> {
 
     fn multipliers(&self) -> &[f64] {
         // Those of the step stay in the list of both of its ends.
-        &self.here.z[self.model.action.motion.coordinates..]
+        let motion = &self.model.action.motion;
+        &self.here.z[motion.coordinates..motion.unknowns()]
     }
 }

@@ -353,7 +353,7 @@ impl<'m> Observer<'m> {
         model
             .action
             .evaluate_instant(Level::Gradient, &mut a, &[], &mut self.scratch);
-        let mut rows = vec![0.0; a.z.len()];
+        let mut rows = vec![0.0; model.action.motion.unknowns()];
         model.action.rows(&mut a, &self.scratch, &mut rows);
         rows[..n].iter().map(|row| -row).collect()
     }

@@ -15,7 +15,7 @@ impl Statics<'_> {
         let m = action.motion.unknowns();
         self.scalars[..voltages.len()].copy_from_slice(voltages);
         self.scalars[voltages.len()..].copy_from_slice(&state[m..]);
-        self.a.z.copy_from_slice(&state[..m]);
+        self.a.z[..m].copy_from_slice(&state[..m]);
         action.motion.place(&mut self.a);
         let interval = Interval::given(&self.scalars, 1.0);
         let frame = interval.frame([&self.a, &self.a]);
@@ -57,7 +57,7 @@ impl Statics<'_> {
             let a = &mut self.a;
             a.z[..n].copy_from_slice(&state[..n]);
             // The gradients of the constraints alone: no multiplier bends them.
-            a.z[n..].fill(0.0);
+            a.z[n..m].fill(0.0);
             action.motion.place(a);
             a.forces.fill(Vector::zeros());
             self.values.fill(0.0);

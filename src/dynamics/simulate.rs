@@ -1,9 +1,12 @@
 //! Simulation: step after step, recorded.
 
 use crate::dynamics::history::{History, Reading};
+use crate::dynamics::observe::vector_momenta;
 use crate::dynamics::solving::{Integrator, Solving};
 use crate::dynamics::stepper::{Equations, Steps};
 use crate::dynamics::{StepError, Stepper};
+use crate::kinematics::{Carrier, MaterialVector};
+use crate::math::Vector;
 use crate::model::Model;
 use std::ops::ControlFlow;
 
@@ -41,6 +44,33 @@ impl Start {
             z,
             momentum,
             rates: Some(rates.to_vec()),
+        }
+    }
+
+    /// With a velocity of the centre of mass (mm/ms) and an angular velocity (rad/ms), both in the ground frame, of each body that is solved for;
+    /// nodes rest. What the coordinates do not let move counts as an impulse on its supports.
+    pub fn with_velocities(model: &Model, z: Vec<f64>, velocities: &[[Vector; 2]]) -> Self {
+        let motion = &model.action.motion;
+        let instant = motion.placed(&z);
+        let poses = model.condensed_poses(&instant);
+        let rate = |vector: &MaterialVector| {
+            let terms = vector.terms.iter().map(|term| match term.carrier {
+                Carrier::Body(b) => {
+                    let [velocity, spin] = velocities[b];
+                    velocity * term.centre + spin.cross(&(poses[b].directors * term.directors))
+                }
+                _ => Vector::zeros(),
+            });
+            terms.sum()
+        };
+        let rates: Vec<Vector> = model.vectors.iter().map(rate).collect();
+        let momenta = vector_momenta(model, &instant.x, &rates);
+        let mut momentum = vec![0.0; model.coordinate_count()];
+        motion.pull_back(&instant.columns, &momenta, &mut momentum);
+        Self {
+            z,
+            momentum,
+            rates: None,
         }
     }
 }

@@ -3,8 +3,8 @@
 
 use crate::dynamics::statics::Statics;
 use crate::math::random::Random;
-use crate::model::system::{Fidelity, JointKind};
-use crate::model::{Coordinates, Model};
+use crate::model::system::Fidelity;
+use crate::model::{Coordinates, Freedom, Model, Screw};
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Up to so many coordinates the stiffness is looked at eigenvalue by eigenvalue.
@@ -126,7 +126,7 @@ fn named(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64], direction: 
     });
     let direction: Vec<f64> = direction.iter().map(|d| d * s / v).collect();
     Mode {
-        moves: moves(statics.model, state, &direction),
+        moves: moves(statics.model, &statics.configuration(state), &direction),
         softening: softening(statics, state, voltages, &direction),
         direction,
     }
@@ -164,26 +164,28 @@ fn softening(
 }
 
 /// What moves along a direction, in words.
-fn moves(model: &Model, state: &[f64], direction: &[f64]) -> String {
+fn moves(model: &Model, z: &[f64], direction: &[f64]) -> String {
     let motion = &model.action.motion;
-    let mut instant = motion.placed(&state[..motion.unknowns()]);
+    let mut instant = motion.placed(z);
     instant.l[..direction.len()].copy_from_slice(direction);
     motion.along(&mut instant);
     let mut words = Vec::new();
     let bodies = &direction[..motion.of_bodies];
     let mut list: Vec<(String, f64)> = match model.coordinates {
         Coordinates::Reduced => {
-            let joints = model.gauges.iter().zip(&model.system.joints);
-            let moved = joints.filter_map(|(gauge, joint)| {
-                let scale = match joint.kind {
-                    JointKind::Prismatic { .. } => model.length(),
-                    _ => 1.0,
+            let mut moved: Vec<(String, f64)> = Vec::new();
+            for (c, rate) in bodies.iter().enumerate() {
+                let Freedom { of, screw, .. } = model.freedom(c);
+                let size = match screw {
+                    Screw::Slide(_) => rate.abs() / model.length(),
+                    Screw::Turn(_) => rate.abs(),
                 };
-                gauge
-                    .coordinate
-                    .map(|c| (joint.name.clone(), bodies[c].abs() / scale))
-            });
-            moved.collect()
+                match moved.last_mut().filter(|(name, _)| name == of) {
+                    Some((_, largest)) => *largest = largest.max(size),
+                    None => moved.push((of.to_owned(), size)),
+                }
+            }
+            moved
         }
         Coordinates::Redundant => {
             let rates = bodies.chunks(12);

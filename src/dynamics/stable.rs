@@ -51,9 +51,7 @@ pub fn stable_equilibrium(
                 fraction: last.loss().map_or(0.0, |l| l.fraction),
                 kind: last.loss().and_then(|l| l.kind),
             };
-            let m = model.action.motion.unknowns();
-            let mut state = last.z.clone();
-            state.resize(m + model.potentials, 0.0);
+            let state = statics.state(&last.z, &vec![0.0; model.potentials]);
             let found = downhill(&mut statics, &[state], voltages)?;
             let found = found.ok_or(error)?;
             let route = Route::Minimum(loss);
@@ -98,8 +96,7 @@ fn under_weight(
         return under(statics, begun?, ramp);
     }
     // Nothing but weights holds the system, or its reference is far from rest.
-    let mut first = start.to_vec();
-    first.resize(start.len() + statics.model.potentials, 0.0);
+    let first = statics.state(start, &vec![0.0; statics.model.potentials]);
     let from = match &begun {
         Ok(state) => vec![state.clone(), first],
         Err(_) => vec![first],
@@ -129,8 +126,7 @@ fn without_stiffness(
     if model.coordinates == Coordinates::Redundant {
         return None;
     }
-    let mut aside = start.to_vec();
-    aside.resize(start.len() + model.potentials, 0.0);
+    let mut aside = statics.state(start, &vec![0.0; model.potentials]);
     let turns = aside[..model.action.motion.of_bodies].iter_mut();
     turns.for_each(|value| *value += PUSH);
     statics.weight = 1.0;
@@ -143,12 +139,9 @@ fn without_stiffness(
         }
     }
     let all = largest.iter().copied().fold(0.0, f64::max);
-    let joints = model.gauges.iter().zip(&model.system.joints);
-    let slack = joints.filter(|(gauge, _)| {
-        let held = |c: usize| largest[c] > ROUND_OFF * all;
-        gauge.coordinate.is_some_and(|c| !held(c))
-    });
-    let names: Vec<String> = slack.map(|(_, joint)| joint.name.clone()).collect();
+    let slack = (0..model.action.motion.of_bodies).filter(|&c| largest[c] <= ROUND_OFF * all);
+    let mut names: Vec<String> = slack.map(|c| model.freedom(c).of.to_owned()).collect();
+    names.dedup();
     (!names.is_empty()).then_some(EquilibriumError::NoStiffness(names))
 }
 

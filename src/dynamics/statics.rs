@@ -117,6 +117,32 @@ impl<'m> Statics<'m> {
         }
     }
 
+    /// The state at a configuration, with potentials; all states are meant with the charts of the configuration taken last.
+    pub(super) fn state(&mut self, z: &[f64], potentials: &[f64]) -> State {
+        let (unknowns, charts) = z.split_at(self.model.action.motion.unknowns());
+        for instant in [&mut self.a, &mut self.b] {
+            instant.z[unknowns.len()..].copy_from_slice(charts);
+        }
+        [unknowns, potentials].concat()
+    }
+
+    /// Coordinates, multipliers and charts of a state.
+    pub(super) fn configuration(&self, state: &[f64]) -> Vec<f64> {
+        let m = self.model.action.motion.unknowns();
+        [&state[..m], &self.a.z[m..]].concat()
+    }
+
+    /// The state with charts where its bodies are.
+    pub(super) fn recentred(&mut self, state: &[f64]) -> State {
+        let motion = &self.model.action.motion;
+        let (m, z) = (motion.unknowns(), self.configuration(state));
+        let mut instant = motion.placed(&z);
+        match motion.recentre(&mut instant) {
+            true => self.state(&instant.z, &state[m..]),
+            false => state.to_vec(),
+        }
+    }
+
     /// Rows and second derivatives at a state under voltages.
     pub(super) fn evaluate(&mut self, state: &[f64], voltages: &[f64]) {
         let action = &self.model.action;
@@ -137,7 +163,7 @@ impl<'m> Statics<'m> {
         scalars[driven..].copy_from_slice(&state[m..]);
         values.fill(0.0);
         for instant in [&mut *a, &mut *b] {
-            instant.z.copy_from_slice(&state[..m]);
+            instant.z[..m].copy_from_slice(&state[..m]);
             action.motion.place(instant);
             instant.forces.fill(Vector::zeros());
         }
@@ -278,10 +304,9 @@ impl<'m> Statics<'m> {
                 return Ok(Outcome::Failed);
             }
             if let Err(singular) = self.factor() {
-                let unknowns = self.model.action.motion.unknowns();
                 return Err(EquilibriumError::Singular {
                     name: self.model.unknown_name(singular.column),
-                    redundant: self.model.redundant_constraints(&state[..unknowns]),
+                    redundant: self.model.redundant_constraints(&self.configuration(state)),
                 });
             }
             let mut update = std::mem::take(&mut self.residual);

@@ -130,6 +130,29 @@ impl Condensed {
         }
     }
 
+    /// Poses of the condensed bodies from those of the bodies of the scene; `reference` where none tells.
+    pub fn condense(&self, poses: &[Pose], reference: &[Pose]) -> Vec<Pose> {
+        let mut condensed = reference.to_vec();
+        for (place, pose) in self.places.iter().zip(poses) {
+            match *place {
+                Place::Ground => {}
+                Place::Body(b) => condensed[b] = *pose,
+                Place::Welded {
+                    to,
+                    centre,
+                    directors,
+                } => {
+                    let directors = pose.directors * directors.transpose();
+                    condensed[to] = Pose {
+                        centre: pose.centre - directors * centre,
+                        directors,
+                    };
+                }
+            }
+        }
+        condensed
+    }
+
     /// Values by joint of the condensed system from values by joint of the scene.
     pub fn by_joint(&self, values: &[f64]) -> Vec<f64> {
         self.joints.iter().map(|&j| values[j]).collect()

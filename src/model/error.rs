@@ -5,13 +5,13 @@ use thiserror::Error;
 /// A system does not allow what is asked of it.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ModelError {
-    /// Reduced coordinates need a tree of known joints.
+    /// Reduced coordinates need a tree.
     #[error(
-        "reduced coordinates need joints that form a tree of revolute, prismatic and fixed joints, but {reason}; choose \"coordinates\": \"redundant\""
+        "reduced coordinates need joints that form a tree, but joint \"{joint}\" closes a loop; choose \"coordinates\": \"redundant\""
     )]
     NoTree {
-        /// What stands in the way.
-        reason: String,
+        /// The joint that closes a loop.
+        joint: String,
     },
     /// An element has no volume, or is turned inside out.
     #[error("element {element} of block \"{solid}\" is inverted or degenerate")]

@@ -76,24 +76,21 @@ impl Graph {
 
     /// Why reduced coordinates do not exist, if they do not.
     pub fn obstacle(&self, system: &System) -> Option<ModelError> {
-        let spherical = self
-            .tree
-            .iter()
-            .find(|(j, _)| system.joints[*j].kind == JointKind::Spherical);
-        let reason = if let Some(&j) = self.loops.first() {
-            format!("joint \"{}\" closes a loop", system.joints[j].name)
-        } else if let Some(&body) = self.free.first() {
-            format!(
-                "no joint connects body \"{}\" to the ground",
-                system.bodies[body].name
-            )
-        } else {
-            format!(
-                "joint \"{}\" is spherical",
-                system.joints[spherical?.0].name
-            )
-        };
-        Some(ModelError::NoTree { reason })
+        let &joint = self.loops.first()?;
+        let joint = system.joints[joint].name.clone();
+        Some(ModelError::NoTree { joint })
+    }
+
+    /// Whether the joints form a tree from the ground and have one coordinate each, or none.
+    pub fn has_one_coordinate_a_joint(&self, system: &System) -> bool {
+        let mut joints = system.joints.iter();
+        let is_tree = self.loops.is_empty() && self.free.is_empty();
+        is_tree && joints.all(|joint| joint.kind.freedoms() <= 1)
+    }
+
+    /// First bodies of parts that no joint connects to the ground: their coordinates follow those of the joints.
+    pub(super) fn free(&self) -> &[usize] {
+        &self.free
     }
 
     /// The spanning tree as kinematics; free bodies are children of the ground by floating joints.

@@ -33,6 +33,7 @@ pub use floating::Floating;
 pub use graph::Graph;
 pub use plan::{LeftOut, Present};
 pub use joints::{JointGauge, Screw};
+pub use named::Freedom;
 pub use quantity::{FieldPlace, Quantity, Region, joint_unit};
 pub use question::{Question, Stirred};
 pub use still::Still;
@@ -52,7 +53,7 @@ use system::{Attachment, Muscle, Source};
 /// Coordinates in which a problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coordinates {
-    /// Independent joint coordinates; joints form a tree.
+    /// Independent joint coordinates; joints form a tree, and what no joint connects to the ground floats.
     Reduced,
     /// Directors with multipliers; any graph of bodies and joints.
     Redundant,
@@ -124,7 +125,7 @@ impl Model {
     /// Builds the model of a system for intervals of about `h0` ms, in which `quantities` can be measured, any voltage may act
     /// and anything may be set in motion.
     ///
-    /// Without a choice the coordinates are reduced where the joints form a tree that the reduction knows.
+    /// Without a choice the coordinates are reduced where the joints form a tree.
     ///
     /// # Errors
     /// Reduced coordinates were asked for and do not exist.
@@ -285,7 +286,7 @@ impl Model {
         system.joints.iter().enumerate().map(gauge).collect()
     }
 
-    /// The coordinates of a system: those asked for, or reduced where the joints form a tree that the reduction knows.
+    /// The coordinates of a system: those asked for, or reduced where the joints form a tree.
     ///
     /// # Errors
     /// Reduced coordinates were asked for and do not exist.
@@ -318,11 +319,12 @@ impl Model {
         self.action.motion.coordinates
     }
 
-    /// Coordinates of an instant at given joint coordinates (rad or mm, by joint; zero where a joint has none).
+    /// Coordinates of an instant at given joint coordinates (rad or mm, by joint; zero where a joint has none): other joints and
+    /// free bodies stay at their reference.
     pub fn coordinates_at(&self, joints: &[f64]) -> Vec<f64> {
         match self.coordinates {
             Coordinates::Reduced => {
-                let mut z = vec![0.0; self.action.motion.unknowns()];
+                let mut z = self.action.motion.instant().z;
                 for (gauge, &value) in self.gauges.iter().zip(joints) {
                     if let Some(c) = gauge.coordinate {
                         z[c] = value;
@@ -335,6 +337,28 @@ impl Model {
                 let joints = self.condensed.by_joint(joints);
                 let system = &self.condensed.system;
                 self.coordinates_of(&self.graph.poses(system, &self.reference, &joints))
+            }
+        }
+    }
+
+    /// Coordinates of an instant at given poses of the bodies of the scene and joint coordinates (by joint), as these are known
+    /// without whole turns; nodes at their reference places.
+    pub fn coordinates_of_poses(&self, poses: &[Pose], joints: &[f64]) -> Vec<f64> {
+        let z = self.coordinates_at(joints);
+        if self
+            .graph
+            .has_one_coordinate_a_joint(&self.condensed.system)
+        {
+            return z;
+        }
+        let poses = self.condensed.condense(poses, &self.reference);
+        let motion = &self.action.motion;
+        match &motion.tree {
+            None => self.coordinates_of(&poses),
+            Some(_) => {
+                let mut instant = motion.placed(&z);
+                motion.follow(&poses, &mut instant);
+                instant.z
             }
         }
     }

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 /// A question to a system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Question {
-    /// Coordinates; without a choice reduced where the joints form a tree that the reduction knows.
+    /// Coordinates; without a choice reduced where the joints form a tree.
     pub coordinates: Option<Coordinates>,
     /// Length of the intervals in ms, about; it scales multipliers.
     pub interval: f64,

@@ -120,6 +120,7 @@ fn distances(
             };
             let mut there = model.action.motion.instant();
             there.z[..goal.len()].copy_from_slice(&goal);
+            there.z[model.action.motion.unknowns()..].copy_from_slice(&boundary.goal.charts);
             model.action.motion.place(&mut there);
             let markers = 0..model.markers.len();
             let places = markers.map(|m| of_marker(m, &there.x[model.markers[m]]));

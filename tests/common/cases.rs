@@ -281,6 +281,31 @@ pub fn branched() -> System {
     }
 }
 
+/// A trunk whose first joint is a ball in a socket, held by four muscles.
+pub fn ball() -> System {
+    let mut system = trunk(3);
+    system.joints[0].kind = JointKind::Spherical;
+    for (name, x, z) in [("front", 3.0, 15.0), ("back", -3.0, -15.0)] {
+        let mut muscle = system.muscles[0].clone();
+        muscle.name = name.into();
+        (muscle.from.at.x, muscle.from.at.z) = (0.5 * x, z);
+        (muscle.to.at.x, muscle.to.at.z) = (x, z);
+        system.muscles.push(muscle);
+    }
+    system
+}
+
+/// A trunk without its joint to the ground, whose last joint is a ball: a free robot.
+pub fn satellite() -> System {
+    let mut system = trunk(3);
+    system.name = "satellite".into();
+    system.joints.remove(0);
+    system.muscles.drain(..2);
+    system.joints[1].kind = JointKind::Spherical;
+    system.bodies[0].inertia = [2e4, 3e4, 5e4];
+    system
+}
+
 /// The three muscles of the branched tree that take a voltage, at 900 V each; the fourth is passive.
 pub const BRANCHED_VOLTAGES: [f64; 4] = [900.0, 900.0, 900.0, 0.0];
 
@@ -549,6 +574,15 @@ pub fn cases() -> Vec<Case> {
             c.duration = free;
             c.objective = every_objective;
             c.goal = joints(&[(1, 2.0)]);
+        }),
+        case("ball in a socket", ball(), &|c| {
+            c.start = joints(&[(1, 0.2)]);
+            c.goal = joints(&[(1, 0.3), (2, -0.2)]);
+        }),
+        case("satellite, free time", satellite(), &|c| {
+            c.start = joints(&[(0, 0.1)]);
+            c.duration = free;
+            c.objective = every_objective;
         }),
         case("branched tree to a marker", branched(), &|c| {
             c.goal = State::Markers {

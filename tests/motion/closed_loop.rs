@@ -343,7 +343,7 @@ fn a_conical_pendulum_circles_at_its_speed() {
     let [x, y]: [Vec<f64>; 2] = [0, 1].map(|axis| {
         let place = |n: usize| {
             let h = time / n as f64;
-            let model = Model::new(scene.clone(), None, h, &[]).unwrap();
+            let model = Model::new(scene.clone(), Some(Coordinates::Redundant), h, &[]).unwrap();
             let rates = spin(
                 &model.reference()[0],
                 Vector3::z().cross(&centre) * omega,

@@ -31,8 +31,8 @@ fn a_free_body_keeps_its_momenta_while_it_tumbles() {
         directors,
     );
     let h = 0.05;
-    let model = Model::new(bare(vec![free], Vec::new(), None), None, h, &[]).unwrap();
-    assert_eq!(model.coordinates, Coordinates::Redundant);
+    let scene = bare(vec![free], Vec::new(), None);
+    let model = Model::new(scene, Some(Coordinates::Redundant), h, &[]).unwrap();
     // Nearly about the axis of the middle moment of inertia: the body turns over again and again.
     let omega = directors * Vector3::new(0.02, 3.0, 0.01);
     let velocity = Vector3::new(0.4, 0.1, -0.3);
@@ -117,7 +117,7 @@ fn bodies_that_pull_at_each_other_keep_their_momenta() {
         scene.muscles.push(muscle.clone());
     }
     let h = 2.0;
-    let model = Model::new(scene, None, h, &[]).unwrap();
+    let model = Model::new(scene, Some(Coordinates::Redundant), h, &[]).unwrap();
     let [a, b] = [model.reference()[0], model.reference()[1]];
     let mut rates = spin(&a, at(0.05, 0.0, 0.1), at(0.0, 0.01, 0.02));
     rates.extend(spin(&b, at(-0.03, 0.1, 0.0), at(0.01, 0.0, -0.01)));
@@ -151,7 +151,7 @@ fn a_top_keeps_its_momentum_about_the_vertical() {
     let top = body("top", 0.7, [5e-4, 5e-4, 4e-4], axis * 0.075, directors);
     let tip = joint("tip", JointKind::Spherical, None, 0, Vector3::zeros());
     let scene = bare(vec![top], vec![tip], Some(Vector3::new(0.0, 0.0, -9.81)));
-    let model = Model::new(scene, None, h, &[]).unwrap();
+    let model = Model::new(scene, Some(Coordinates::Redundant), h, &[]).unwrap();
     let omega = axis * 120.0 + Vector3::new(1.0, 2.0, 3.0);
     let rates = spin(&model.reference()[0], omega.cross(&(axis * 0.075)), omega);
     let start = Start::with_rates(&model, at_reference(&model), &rates);

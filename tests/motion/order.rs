@@ -24,13 +24,8 @@ fn ends(
         let h = time / n as f64;
         let model = Model::new(scene.clone(), Some(coordinates), h, &[]).unwrap();
         let z = at_reference(&model);
-        let start = match coordinates {
-            Coordinates::Reduced => Start::at_rest(&model, z),
-            Coordinates::Redundant => {
-                let pose = model.reference()[0];
-                Start::with_rates(&model, z, &spin(&pose, omega.cross(&pose.centre), omega))
-            }
-        };
+        let velocity = omega.cross(&model.reference()[0].centre);
+        let start = Start::with_velocities(&model, z, &[[velocity, omega]]);
         let history = motion(&model, &start, h, n, &[]);
         let last = crate::common::placed(&model, &history.z[n]);
         model.poses(&last)[0].centre
@@ -138,7 +133,13 @@ fn a_top_precesses_steadily() {
     ];
     let mut errors = Vec::new();
     for (n, expected) in table {
-        let end = ends(&scene, Coordinates::Redundant, cone.omega(), 0.2, &[n])[0];
+        let [end, reduced] = [Coordinates::Redundant, Coordinates::Reduced]
+            .map(|coordinates| ends(&scene, coordinates, cone.omega(), 0.2, &[n])[0]);
+        assert!(
+            (end - reduced).amax() < 1e-12,
+            "{:e}",
+            (end - reduced).amax()
+        );
         let error = (end - exact).norm() / cone.length;
         let digit = 10_f64.powf(f64::log10(expected).floor() - 6.0);
         println!("top {n}: {error:.6e} against {expected:.6e}");
@@ -157,7 +158,7 @@ fn a_top_precesses_steadily() {
     }
 
     let h = 1e-3;
-    let model = Model::new(scene, None, h, &[]).unwrap();
+    let model = Model::new(scene, Some(Coordinates::Redundant), h, &[]).unwrap();
     let pose = model.reference()[0];
     let rates = spin(&pose, cone.omega().cross(&pose.centre), cone.omega());
     let start = Start::with_rates(&model, at_reference(&model), &rates);
@@ -195,13 +196,12 @@ fn the_heavy_top_follows_its_exact_motion() {
     let omega = Vector3::new(0.0, 150.0, -4.61538);
     for (time, expected) in exact {
         let n = f64::round(time / 2e-3) as usize;
-        let places = ends(
-            &scene,
-            Coordinates::Redundant,
-            omega,
-            time,
-            &[n, 2 * n, 4 * n, 8 * n],
-        );
+        let steps = [n, 2 * n, 4 * n, 8 * n];
+        let [places, reduced] = [Coordinates::Redundant, Coordinates::Reduced]
+            .map(|coordinates| ends(&scene, coordinates, omega, time, &steps));
+        for (a, b) in places.iter().zip(&reduced) {
+            assert!((a - b).amax() < 1e-10, "{:e}", (a - b).amax());
+        }
         let errors: Vec<f64> = places.iter().map(|x| (x - expected).norm()).collect();
         let error = (limit(&places) - expected).amax();
         println!(

@@ -21,7 +21,7 @@ fn run(
     let model = Model::new(system.clone(), Some(coordinates), h, &[]).unwrap();
     let z = model.coordinates_at(joints);
     let rates = match coordinates {
-        Coordinates::Reduced => model.coordinates_at(rates),
+        Coordinates::Reduced => model.coordinates_at(rates)[..model.coordinate_count()].to_vec(),
         Coordinates::Redundant => model.redundant_rates(joints, rates),
     };
     let start = match system.solids.is_empty() {

@@ -148,7 +148,14 @@ impl<'m> Transcription<'m> {
             .collect();
         let kilovolts: Vec<f64> = row[..driven].iter().map(|v| v / KILOVOLT).collect();
         let mut instants = vec![motion.instant(); intervals + 1];
+        for (instant, z) in instants.iter_mut().zip(&initial.history.z) {
+            instant.z[unknown_count..].copy_from_slice(&z[unknown_count..]);
+        }
         instants[0].z.copy_from_slice(&boundary.start.z);
+        let charts = instants[intervals].z[unknown_count..].iter_mut();
+        charts
+            .zip(&boundary.goal.charts)
+            .for_each(|(value, chart)| *value = *chart);
         for (value, goal) in instants[intervals].z.iter_mut().zip(goal) {
             *value = goal.unwrap_or(*value);
         }

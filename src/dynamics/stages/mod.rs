@@ -117,7 +117,7 @@ impl<'m> Steps<Stages<'m>> {
         let (places, entries) = Places::new(model, &rows, samples.len());
         let combined = action.intervals.output(Level::Hessian).plain;
         let n = motion.coordinates;
-        let multipliers = vec![start.z[n..].to_vec(); degree];
+        let multipliers = vec![start.z[n..motion.unknowns()].to_vec(); degree];
         let mut effects = action.intervals.effects.iter();
         let equations = Stages {
             model,
@@ -261,8 +261,11 @@ impl Equations for Stages<'_> {
     fn guess(&mut self, h: f64) {
         let times: Vec<f64> = self.trail.iter().map(|(time, _)| *time).collect();
         let points = self.rule.points();
-        for (point, at) in self.points.iter_mut().zip(points).skip(1) {
-            point.z[..].fill(0.0);
+        let m = self.model.action.motion.unknowns();
+        let (start, others) = self.points.split_at_mut(1);
+        for (point, at) in others.iter_mut().zip(points.into_iter().skip(1)) {
+            point.z[..m].fill(0.0);
+            point.z[m..].copy_from_slice(&start[0].z[m..]);
             let weights = lagrange(&times, self.time + at * h);
             for ((_, u), weight) in self.trail.iter().zip(weights) {
                 for (z, u) in point.z.iter_mut().zip(u) {
@@ -294,7 +297,7 @@ impl Equations for Stages<'_> {
         self.add_carried(h);
         for (i, multipliers) in self.multipliers.iter().enumerate() {
             let at = self.rule.row(i + 1);
-            self.points[at].z[n..].copy_from_slice(multipliers);
+            self.points[at].z[n..m].copy_from_slice(multipliers);
         }
         for at in 0..=last {
             let instant = &mut self.points[at];
@@ -417,13 +420,16 @@ impl Equations for Stages<'_> {
             }
         };
         let motion = &model.action.motion;
+        self.remember(h);
+        if motion.recentre(&mut self.points[last]) {
+            self.follow_charts();
+        }
         self.momentum.fill(0.0);
         motion.pull_back(&self.points[last].columns, &momenta, &mut self.momentum);
-        self.remember(h);
         if let Rule::Galerkin(_) = self.rule {
-            let n = motion.coordinates;
+            let (n, m) = (motion.coordinates, motion.unknowns());
             let multipliers = &self.multipliers[last - 1];
-            self.points[last].z[n..].copy_from_slice(multipliers);
+            self.points[last].z[n..m].copy_from_slice(multipliers);
         }
         self.points.swap(0, last);
         self.time += h;
@@ -478,6 +484,18 @@ impl Stages<'_> {
         let times: Vec<f64> = self.trail.iter().rev().map(|(time, _)| *time).collect();
         let ends = now.iter().zip(before);
         ends.map(|(y, x)| (y - x) / (times[0] - times[1])).collect()
+    }
+
+    /// Counts the turns that are kept for the next guess from the charts at the end of a step, to first order.
+    fn follow_charts(&mut self) {
+        let Some((_, end)) = self.trail.last().cloned() else {
+            return;
+        };
+        for turn in self.model.action.motion.charted().into_iter().flatten() {
+            for (_, u) in &mut self.trail {
+                u[turn] -= end[turn];
+            }
+        }
     }
 
     /// Keeps the coordinates of the points for the next guess: those of the last step, three at least.

@@ -16,6 +16,7 @@
 //! angle. Before such turns stands a chart: a rotation that belongs to the configuration as data, a unit quaternion, so that
 //! the turns stay small. [`Tree::recentre`] puts the turns into the chart; nothing moves.
 
+mod charts;
 mod forces;
 mod motion;
 
@@ -281,16 +282,6 @@ impl Tree {
     /// Number of charts.
     pub fn charts(&self) -> usize {
         self.charts.len()
-    }
-
-    /// Coordinates of the three turns behind each chart.
-    pub fn charted(&self) -> Vec<[usize; 3]> {
-        let turn = |j: usize| self.links[j].coordinate.expect("a turn has a coordinate");
-        let turns = self
-            .charts
-            .iter()
-            .map(|&j| [turn(j), turn(j + 1), turn(j + 2)]);
-        turns.collect()
     }
 
     /// Columns of each vector: the structure of P.

@@ -3,8 +3,9 @@
 use crate::kinematics::Pose;
 use crate::math::Vector;
 use crate::reduction::instant::{Instant, TreeState};
+use crate::reduction::tree::charts::rotation;
 use crate::reduction::tree::{CHART, Column, LinkKind, Tree};
-use nalgebra::{Quaternion, Rotation3, Unit, UnitQuaternion};
+use nalgebra::{Rotation3, Unit};
 
 impl Tree {
     /// Poses of all frames at joint coordinates u before charts, from root to leaves.
@@ -122,26 +123,5 @@ impl Column {
         columns[self.place] = value.x;
         columns[self.place + self.stride] = value.y;
         columns[self.place + 2 * self.stride] = value.z;
-    }
-}
-
-/// The rotation of a chart.
-fn rotation(chart: &[f64]) -> UnitQuaternion<f64> {
-    UnitQuaternion::new_unchecked(Quaternion::new(chart[0], chart[1], chart[2], chart[3]))
-}
-
-impl Tree {
-    /// Puts the turns behind each chart into the chart: the configuration stays, these coordinates become zero.
-    pub fn recentre(&self, u: &mut [f64], charts: &mut [f64]) {
-        for (&first, chart) in self.charts.iter().zip(charts.chunks_exact_mut(CHART)) {
-            let mut turned = rotation(chart);
-            for link in &self.links[first..first + 3] {
-                let value = link.coordinate.map_or(0.0, |c| std::mem::take(&mut u[c]));
-                turned *= UnitQuaternion::from_axis_angle(&Unit::new_unchecked(link.axis), value);
-            }
-            turned.renormalize();
-            let turned = turned.quaternion();
-            chart.copy_from_slice(&[turned.w, turned.i, turned.j, turned.k]);
-        }
     }
 }
