@@ -151,10 +151,8 @@ impl Graph {
             })
             .collect();
         let motion = Motion::articulated(self.tree(system, reference, &vectors), &vectors, &[], 0);
-        let mut instant = motion.instant();
-        instant.z.copy_from_slice(&self.coordinates(system, joints));
+        let mut instant = motion.placed(&self.coordinates(system, joints));
         instant.l.copy_from_slice(&self.coordinates(system, rates));
-        motion.place(&mut instant);
         motion.along(&mut instant);
         instant.w.iter().flat_map(|w| [w.x, w.y, w.z]).collect()
     }

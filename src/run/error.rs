@@ -112,10 +112,11 @@ impl RunError {
                         reason,
                     };
                 }
-                let floats = matches!(
-                    source,
-                    EquilibriumError::Singular { redundant, .. } if redundant.is_empty()
-                );
+                let floats = match source {
+                    EquilibriumError::Singular { redundant, .. } => redundant.is_empty(),
+                    EquilibriumError::NoStiffness(_) => true,
+                    _ => false,
+                };
                 let hint = match *place == "start" && floats {
                     true => FLOATS,
                     false => "",

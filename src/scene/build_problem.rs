@@ -14,7 +14,7 @@ use crate::model::system::{Fidelity, Muscle, Source, System};
 use crate::scene::build_limits::limit;
 use crate::scene::build_state::{ELECTRIC_KEYS, driven, goal_state, start_state, voltages};
 use crate::scene::error::SceneError;
-use crate::scene::graph::{has_free_part, tree_freedoms};
+use crate::scene::graph::tree_freedoms;
 use crate::scene::scope::Scope;
 use crate::scene::solution::{of_solution, of_table};
 use crate::scene::spec_integrator::integrator;
@@ -343,10 +343,6 @@ fn coordinates(
         Some(CoordinatesSpec::Redundant) => Ok(Some(Coordinates::Redundant)),
         Some(CoordinatesSpec::Reduced) if tree_freedoms(bodies, &system.joints).is_none() => {
             let found = "\"reduced\", though the joints close a loop";
-            Err(place.wrong(found, "\"redundant\""))
-        }
-        Some(CoordinatesSpec::Reduced) if has_free_part(bodies, &system.joints) => {
-            let found = "\"reduced\", though a body is free of the ground";
             Err(place.wrong(found, "\"redundant\""))
         }
         Some(CoordinatesSpec::Reduced) => Ok(Some(Coordinates::Reduced)),

@@ -234,6 +234,10 @@ fn joint(spec: &JointSpec, bodies: &[String], scope: &Scope<'_>) -> Result<Joint
             "spherical",
             spec.spherical.as_ref().map(|_| JointKey::Spherical),
         ),
+        (
+            "floating",
+            spec.floating.as_ref().map(|_| JointKey::Floating),
+        ),
         ("fixed", spec.fixed.as_ref().map(|_| JointKey::Fixed)),
     ])?;
     let axis = |key: &str, spec: &Option<AxisSpec>| {
@@ -254,6 +258,7 @@ fn joint(spec: &JointSpec, bodies: &[String], scope: &Scope<'_>) -> Result<Joint
             (JointKind::Prismatic { axis }, Some(Damping::kind()))
         }
         JointKey::Spherical => (JointKind::Spherical, None),
+        JointKey::Floating => (JointKind::Floating, None),
         JointKey::Fixed => (JointKind::Fixed, None),
     };
     let damping = match (&spec.damping, damping_kind) {
@@ -297,6 +302,7 @@ enum JointKey {
     Revolute,
     Prismatic,
     Spherical,
+    Floating,
     Fixed,
 }
 

@@ -90,6 +90,7 @@ impl Link {
             revolute: Some(AxisSpec { axis }),
             prismatic: None,
             spherical: None,
+            floating: None,
             fixed: None,
             parent: self.parent(),
             child: self.segment(),

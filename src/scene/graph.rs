@@ -46,12 +46,6 @@ pub(crate) fn tree_freedoms(bodies: usize, joints: &[Joint]) -> Option<usize> {
     is_tree.then(|| coordinates.sum::<usize>() + 6 * free_parts)
 }
 
-/// Whether some part of the system is not connected to the ground.
-pub(crate) fn has_free_part(bodies: usize, joints: &[Joint]) -> bool {
-    let parts = parts(bodies, joints);
-    parts.iter().any(|part| *part != parts[bodies])
-}
-
 /// The part of each body, and of the ground in the last entry, as the smallest number in it.
 fn parts(bodies: usize, joints: &[Joint]) -> Vec<usize> {
     let mut parts: Vec<usize> = (0..=bodies).collect();

@@ -153,7 +153,7 @@ pub struct SphereSpec {
     pub radius: Quantity<Length>,
 }
 
-/// A joint: exactly one of `revolute`, `prismatic`, `spherical`, `fixed`.
+/// A joint: exactly one of `revolute`, `prismatic`, `spherical`, `floating`, `fixed`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointSpec {
@@ -168,6 +168,9 @@ pub struct JointSpec {
     /// Rotation about a point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spherical: Option<Nothing>,
+    /// Any motion: the child is as free as without the joint, and its orientation in the first body is told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub floating: Option<Nothing>,
     /// No motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fixed: Option<Nothing>,

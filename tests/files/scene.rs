@@ -550,6 +550,12 @@ fn a_free_body_says_so() {
     let (folder, _) = folder(scene, "{}");
     let path = folder.path().join("scene.json");
     assert_eq!(read_scene(&path).expect("a free body").bodies.len(), 1);
+    let floating = r#", "joints": [ { "name": "base", "floating": {}, "parent": "ground", "child": "stone", "at": [0, 0, 0] } ] }"#;
+    let joined = scene.replace(", \"free\": true", "");
+    fs::write(&path, format!("{}{floating}", &joined[..joined.len() - 2]))
+        .expect("a written scene");
+    let system = read_scene(&path).expect("a body that floats");
+    assert_eq!(system.joints[0].kind, JointKind::Floating);
     fs::write(&path, scene.replace(", \"free\": true", "")).expect("a written scene");
     let error = read_scene(&path).expect_err("a floating body");
     assert_eq!(error.path(), "bodies[0]");
