@@ -13,3 +13,4 @@ mod order;
 mod reductions;
 mod reference;
 mod resolution;
+mod screws;

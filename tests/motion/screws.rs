@@ -1,10 +1,8 @@
 //! Spherical joints and free bodies in reduced coordinates: three turns behind a chart.
 
-mod common;
-
-use common::cases::{ball, control, joints, satellite};
-use common::random::Random;
-use common::{
+use crate::common::cases::{ball, control, joints, satellite};
+use crate::common::random::Random;
+use crate::common::{
     at_reference, bare, body, column, columns, distance, joint, motion, placed, richardson, trunk,
 };
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
