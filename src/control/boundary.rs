@@ -1,5 +1,6 @@
 //! Start and goal: which coordinates they give, which equations they add, and the voltages at rest.
 
+use crate::control::conditions::{Boundary, Goal};
 use crate::control::ends;
 use crate::control::error::BoundaryError;
 use crate::control::limits::Limits;
@@ -7,32 +8,6 @@ use crate::control::problem::{Control, Rest, State};
 use crate::dynamics::{Equilibrium, Start, muscle_without_length, stable_equilibrium};
 use crate::functional::Level;
 use crate::model::{Condensed, Coordinates, Graph, Model, Quantity, Question, System};
-
-/// A control problem's model with its start and goal.
-#[derive(Debug)]
-pub struct Boundary {
-    /// Where the motion starts.
-    pub start: Start,
-    /// Where it ends.
-    pub goal: Goal,
-    /// Voltages at rest before the start and after the goal (V, one per muscle), where known.
-    pub rest: [Option<Vec<f64>>; 2],
-    /// Limits and goal equations.
-    pub limits: Limits,
-}
-
-/// The final state: at rest, with these coordinates given.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Goal {
-    /// Given coordinates; `None` where the optimisation decides.
-    pub coordinates: Vec<Option<f64>>,
-    /// Charts of the final configuration, where its coordinates are given; none otherwise, and where there are none.
-    pub charts: Vec<f64>,
-    /// Whether the nodes of elastic blocks rest too.
-    pub nodes_rest: bool,
-    /// The equilibrium that it is, where it is one under voltages that are named.
-    pub rest: Option<Equilibrium>,
-}
 
 impl Boundary {
     /// Builds the model of a control problem and resolves its start and goal.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-use crate::control::boundary::Boundary;
+use crate::control::conditions::Boundary;
 use crate::control::error::BoundaryError;
 use crate::control::limits::{Bounded, Place};
 use crate::control::problem::{Control, Limit, State};

@@ -1,6 +1,6 @@
 //! Where the solver starts: interpolated between start and goal, simulated, or an earlier solution.
 
-use crate::control::boundary::Boundary;
+use crate::control::conditions::Boundary;
 use crate::control::evened::evened;
 use crate::control::problem::{Control, Guess};
 use crate::control::resample::{self, Grids};

@@ -2,6 +2,7 @@
 
 mod boundary;
 mod calls;
+mod conditions;
 mod ends;
 mod error;
 mod evened;
@@ -14,7 +15,8 @@ mod solution;
 mod transcription;
 mod unknowns;
 
-pub use boundary::{Boundary, Goal, resolve_start};
+pub use boundary::resolve_start;
+pub use conditions::{Boundary, Goal};
 pub use error::BoundaryError;
 pub use guess::{Initial, guess};
 pub use limits::{Bounded, Limits, Place};

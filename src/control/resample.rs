@@ -4,7 +4,7 @@
 //! momentum balances and of Gauss's laws. What is summed over a step goes with its length: impulses of constraints, costates
 //! of path limits and of bounds. A finer grid has more and smaller ones.
 
-use crate::control::boundary::Boundary;
+use crate::control::conditions::Boundary;
 use crate::control::problem::Control;
 use crate::control::solution::{Costates, Solved};
 use crate::control::transcription::Layout;

@@ -1,14 +1,14 @@
 //! The material law of an elastomer, passive or dielectric, and the energy of a hexahedron of it.
 
-use super::local::{Electric, Local, Output, Pair};
+use super::law::{Field, Volume};
+use super::local::{Local, Output, Pair};
 use super::number::{Dual, Lanes, Task, dispatch};
 use super::shape::Shape;
 use super::variations::{State, Variations};
 use crate::math::Vector;
 use pulp::Simd;
-use std::fmt::Debug;
 
-/// A compressible neo-Hookean elastomer, with the electric part of its energy where it is [`Dielectric`].
+/// A compressible neo-Hookean elastomer, with the electric part of its energy where it is [`Dielectric`](crate::element::Dielectric).
 ///
 /// Per reference volume, with F = Σ x_i ⊗ G_i, E = −Σ φ_i G_i, J = det F,
 ///
@@ -25,83 +25,8 @@ pub struct Elastomer<F> {
     pub lame_lambda: f64,
     /// Where λ/2 ln²J is evaluated.
     pub volume: Volume,
-    /// The electric part: [`Passive`] or [`Dielectric`].
+    /// The electric part: [`Passive`](crate::element::Passive) or [`Dielectric`](crate::element::Dielectric).
     pub field: F,
-}
-
-/// Where the volumetric energy λ/2 ln²J of a hexahedron is evaluated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Volume {
-    /// At each Gauss point: the plain trilinear hexahedron. Stiff in volume as ν → ½.
-    Pointwise,
-    /// V λ/2 ln²J̄ of the mean dilatation J̄ = (1/V) Σ w J, V the reference volume: Q1P0, an energy as well.
-    Mean,
-}
-
-/// An elastomer without electric field.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Passive;
-
-/// Constants of the electric energy c₁ |E|² + c₂ |F E|² − ½ ε |cof(F) E|²/J, in N/V².
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dielectric {
-    /// c₁.
-    pub c1: f64,
-    /// c₂.
-    pub c2: f64,
-    /// Permittivity ε of the last term: vacuum's, or the whole of an ideal dielectric.
-    pub permittivity: f64,
-}
-
-mod sealed {
-    pub trait Sealed {}
-    impl Sealed for super::Passive {}
-    impl Sealed for super::Dielectric {}
-}
-
-/// The electric part of a law: none of it ([`Passive`]), or [`Dielectric`].
-pub trait Field: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
-    /// Electric potentials of the nodes in V: `()` or `[f64; 8]`.
-    type Potentials: Copy + Debug + Default + PartialEq + Send + Sync;
-    /// Derivatives by potentials: `()` or [`Electric`].
-    type Local: Clone + Debug + Default + Send + Sync;
-
-    /// The constants and potentials, where there are any.
-    #[doc(hidden)]
-    fn constants(&self, potentials: &Self::Potentials) -> Option<(Dielectric, [f64; 8])>;
-
-    /// The derivatives by potentials, where there are any.
-    fn electric(local: &mut Self::Local) -> Option<&mut Electric>;
-}
-
-impl Field for Passive {
-    type Potentials = ();
-    type Local = ();
-
-    #[inline(always)]
-    fn constants(&self, (): &()) -> Option<(Dielectric, [f64; 8])> {
-        None
-    }
-
-    #[inline(always)]
-    fn electric((): &mut ()) -> Option<&mut Electric> {
-        None
-    }
-}
-
-impl Field for Dielectric {
-    type Potentials = [f64; 8];
-    type Local = Electric;
-
-    #[inline(always)]
-    fn constants(&self, potentials: &[f64; 8]) -> Option<(Dielectric, [f64; 8])> {
-        Some((*self, *potentials))
-    }
-
-    #[inline(always)]
-    fn electric(local: &mut Electric) -> Option<&mut Electric> {
-        Some(local)
-    }
 }
 
 impl<F: Field> Elastomer<F> {

@@ -1,6 +1,7 @@
 //! What is shown of a hexahedron: means over its reference volume of deformation, fields and stress.
 
-use super::elastomer::{Elastomer, Field, Volume};
+use super::elastomer::Elastomer;
+use super::law::{Field, Volume};
 use super::shape::Shape;
 use super::viscosity::Viscosity;
 use crate::math::{Matrix, Vector};

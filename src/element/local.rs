@@ -1,6 +1,6 @@
 //! Energy of one hexahedron with its first and second derivatives by the arguments of its nodes.
 
-use super::elastomer::Field;
+use super::law::Field;
 use super::number::Dual;
 use crate::math::{Matrix, Vector};
 
@@ -19,17 +19,6 @@ pub struct Local<F: Field> {
     pub electric: F::Local,
 }
 
-/// Derivatives of the energy of one hexahedron by the potentials of its nodes.
-#[derive(Clone, Debug)]
-pub struct Electric {
-    /// ∂W/∂φ_i in mJ/V.
-    pub charges: [f64; 8],
-    /// ∂²W/∂x_i∂φ_j in N/V, `coupling[i][j]`: all 64 vectors differ.
-    pub coupling: [[Vector; 8]; 8],
-    /// ∂²W/∂φ_i∂φ_j in mJ/V²; both triangles are filled.
-    pub permittivity: [[f64; 8]; 8],
-}
-
 impl<F: Field> Default for Local<F> {
     fn default() -> Self {
         Self {
@@ -37,16 +26,6 @@ impl<F: Field> Default for Local<F> {
             forces: [Vector::zeros(); 8],
             stiffness: [[Matrix::zeros(); 8]; 8],
             electric: F::Local::default(),
-        }
-    }
-}
-
-impl Default for Electric {
-    fn default() -> Self {
-        Self {
-            charges: [0.0; 8],
-            coupling: [[Vector::zeros(); 8]; 8],
-            permittivity: [[0.0; 8]; 8],
         }
     }
 }

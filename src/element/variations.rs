@@ -23,8 +23,8 @@
 use super::algebra::{
     Nine, Three, apply, apply_plain, cross, dot, dot_plain, scale, sums, transpose,
 };
-use super::elastomer::{Dielectric, Volume};
 use super::kinematics::{Kinematics, load, minus_gradient_of};
+use super::law::{Dielectric, Volume};
 use super::local::Output;
 use super::number::{Points, Real};
 use super::shape::Shape;

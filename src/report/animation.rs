@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::model::system::Attachment;
 use crate::report::Run;
-use crate::report::page::escape;
+use crate::report::markup::escape;
 use crate::report::plotly::{Figure, Frame, Trace, layout, rgb};
 use crate::report::pose::{ANGLES, lumped};
 use crate::report::skins::{Skin, shown};

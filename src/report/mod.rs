@@ -8,11 +8,13 @@ pub mod colour_bar;
 pub mod joints;
 pub mod legend;
 pub mod lines;
+pub mod markup;
 pub mod origin;
 pub mod page;
 pub mod paraview;
 pub mod plotly;
 pub mod pose;
+mod run;
 pub mod skin;
 pub mod skins;
 pub mod solids;
@@ -23,38 +25,11 @@ pub mod tip_path;
 pub mod view;
 pub mod voltages;
 
+pub use run::Run;
+
 use std::path::{Path, PathBuf};
 
-use crate::dynamics::trajectory::{Observations, Trajectory};
-use crate::model::system::System;
 use crate::report::atomic::WriteError;
-use crate::report::origin::Origin;
-use crate::report::skins::Skins;
-
-/// What there is to show of a run.
-#[derive(Clone, Copy, Debug)]
-pub struct Run<'a> {
-    /// The system that moved.
-    pub system: &'a System,
-    /// Its motion and voltages.
-    pub trajectory: &'a Trajectory,
-    /// Surfaces of its elastic blocks.
-    pub skins: &'a Skins,
-    /// Name of the motion in legends, such as `optimal voltages`.
-    pub name: &'a str,
-    /// What was observed at the instants, see [`Trajectory::observe`]; energies are columns whose name contains `energy`, in N mm.
-    pub observations: &'a Observations,
-    /// Another motion of the same system and its name, such as `constant voltages`.
-    pub comparison: Option<(&'a str, &'a Trajectory)>,
-    /// Voltages in V, one per muscle, that hold the last instant, where they are known; they colour the configuration.
-    pub held: Option<&'a [f64]>,
-    /// Where the results come from.
-    pub origin: &'a Origin,
-    /// Title of the page.
-    pub title: &'a str,
-    /// Rows of the page's table.
-    pub summary: &'a [(String, String)],
-}
 
 /// Writes tables, figures and page into a folder, which is made where it is missing; the files written, in order.
 ///

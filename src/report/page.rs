@@ -1,5 +1,6 @@
 //! `report.html`: one page that needs nothing else, with the motion in space to turn and to play.
 
+use crate::report::markup::escape;
 use serde_json::json;
 
 use crate::report::lines::Series;
@@ -53,22 +54,6 @@ pub fn html(run: &Run<'_>) -> String {
         sheet(),
         library()
     )
-}
-
-/// Text as HTML: what could be read as markup becomes an entity.
-pub fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            _ => escaped.push(c),
-        }
-    }
-    escaped
 }
 
 fn section(heading: &str, id: &str, height: usize, figure: &Figure) -> String {

@@ -11,7 +11,7 @@ use crate::model::{Model, System};
 use crate::run::accuracy::{Attempt, Refined, Wanted, refine};
 use crate::run::error::RunError;
 use crate::run::estimate::Sample;
-use crate::run::forward::{Simulated, grid, integrate};
+use crate::run::integrate::{Simulated, grid, integrate};
 use crate::run::motion;
 use crate::run::optimise::{Allowed, Iterate, Optimum, optimise};
 

@@ -9,11 +9,12 @@ use crate::run::blocks::Blocks;
 use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::extent;
+use crate::run::folder::make_folder;
 use crate::run::memory;
 use crate::run::optimise::{Counted, Prepared, prepare, resolve};
 use crate::run::request::{Request, Told};
-use crate::run::solve::make_folder;
 use crate::run::spy;
+use crate::run::words::key;
 use crate::scene::read_problem;
 use crate::sparse::Symmetry;
 
@@ -44,15 +45,6 @@ pub fn inspect(request: &Request) -> Result<Told, RunError> {
         result,
         notes: Vec::new(),
     })
-}
-
-/// Key of a task in its file.
-pub(super) fn key(task: &Task) -> &'static str {
-    match task {
-        Task::Control(_) => "control",
-        Task::Simulate(_) => "simulate",
-        Task::Equilibrium(..) => "equilibrium",
-    }
 }
 
 /// Time in s that goes into measuring each effect.

@@ -2,8 +2,6 @@
 
 use std::time::Instant;
 
-use serde::Serialize;
-
 use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
@@ -20,34 +18,14 @@ use crate::run::domain;
 use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::fields;
+use crate::run::folder::make_folder;
+use crate::run::followed::Followed;
 use crate::run::progress::phase;
 use crate::run::request::{Request, Told};
-use crate::run::rest::{at_rest, refused};
-use crate::run::solve::{counted, make_folder};
+use crate::run::rest_observed::at_rest;
+use crate::run::rest_refused::refused;
 use crate::run::summary::{MEASURED, Seconds, Summary};
-
-/// What `summary.json` says of a path.
-#[derive(Debug, Serialize)]
-pub(super) struct Followed {
-    /// Number of equilibria.
-    points: usize,
-    /// Largest fraction of the voltages among them.
-    largest_fraction: f64,
-    /// Where stability is lost.
-    lost: Vec<Loss>,
-}
-
-/// A loss of stability.
-#[derive(Debug, Serialize)]
-struct Loss {
-    /// Exact fraction of the voltages.
-    fraction: f64,
-    /// `pull_in` or `buckling`.
-    kind: &'static str,
-    /// The same in words.
-    #[serde(skip)]
-    words: &'static str,
-}
+use crate::run::words::counted;
 
 /// Follows the path for `points` equilibria and writes `path.csv`, `path.svg`, the fields, and figure and page of the last
 /// equilibrium before stability is lost, or of the last one.
@@ -93,7 +71,7 @@ pub(super) fn follow(
     let shown = shown.unwrap_or(stops.len() - 1);
     let still = still(&history, shown + 1);
     let motion = Trajectory::from_history(&model, &still);
-    let rows = path.rows(&stops[shown]);
+    let rows = path.rows(stops[shown].fraction);
     let run = Run {
         system: &model.system,
         trajectory: &motion,
@@ -147,39 +125,6 @@ pub(super) fn follow(
     };
     summary.write(&folder)?;
     Ok(told)
-}
-
-impl Followed {
-    fn new(found: &Continuation) -> Self {
-        let loss = |&(_, fraction, kind): &(usize, f64, Instability)| Loss {
-            fraction,
-            kind: kind.key(),
-            words: kind.words(),
-        };
-        Self {
-            points: found.points.len(),
-            largest_fraction: found.fractions.iter().copied().fold(0.0, f64::max),
-            lost: found.lost.iter().map(loss).collect(),
-        }
-    }
-
-    /// Rows of the page.
-    fn rows(&self, shown: &Stop<'_>) -> Vec<(String, String)> {
-        let mut rows = vec![
-            ("equilibria".to_owned(), self.points.to_string()),
-            (
-                "largest fraction of the voltages".to_owned(),
-                format!("{:.6} %", 100.0 * self.largest_fraction),
-            ),
-        ];
-        rows.extend(self.lost.iter().map(|loss| {
-            let place = format!("{:.6} % of the voltages", 100.0 * loss.fraction);
-            (loss.words.to_owned(), place)
-        }));
-        let place = format!("the equilibrium at {:.6} %", 100.0 * shown.fraction);
-        rows.push(("configuration".to_owned(), place));
-        rows
-    }
 }
 
 /// An equilibrium of the path.

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::control::problem::{AtRest, Task};
-use crate::dynamics::trajectory::{Observations, Trajectory};
+use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
     EquilibriumError, History, Loss, observations, out_of_domain, stable_equilibrium,
 };
@@ -16,14 +16,16 @@ use crate::run::domain;
 use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::fields;
-use crate::run::inspect::key;
+use crate::run::folder::make_folder;
 use crate::run::memory;
 use crate::run::path;
 use crate::run::progress::{Progress, phase};
 use crate::run::request::{Request, Told};
+use crate::run::rest_observed::at_rest;
+use crate::run::rest_refused::refused;
 use crate::run::rest_words::{describe, lost, rows, status, text};
-use crate::run::solve::make_folder;
 use crate::run::summary::{MEASURED, Seconds, Summary};
+use crate::run::words::key;
 use crate::scene::{driven_voltages, read_problem, read_system};
 
 /// The equilibrium that a problem asks for; under voltages such as `muscle2=1.7kV` that of a scene, or of the scene of any
@@ -159,39 +161,4 @@ pub(super) fn at(
     summary.rest = Some(rest);
     summary.write(&folder)?;
     Ok(told)
-}
-
-/// What is observed of a state of rest: neither time nor rates nor what follows from them.
-pub(super) fn at_rest(mut observed: Observations) -> Observations {
-    let moves = |name: &str| {
-        let of_motion = ["linear_momentum", "angular_momentum", "kinetic_energy"];
-        let others = ["time", "dissipated_energy"];
-        others.contains(&name) || of_motion.iter().any(|word| name.starts_with(word))
-    };
-    observed.columns.retain(|column| !moves(&column.name));
-    observed
-}
-
-/// Why there is no equilibrium at all: a floating block is wrong input, anything else a result without files.
-pub(super) fn refused(
-    request: &Request,
-    error: &EquilibriumError,
-    result: &str,
-) -> Result<Told, RunError> {
-    match error {
-        EquilibriumError::Floating { .. } => {
-            return Err(RunError::Problem {
-                file: request.input.clone(),
-                place: "equilibrium".to_owned(),
-                reason: error.to_string(),
-            });
-        }
-        EquilibriumError::Stopped(status) => return Err(RunError::Stopped(*status)),
-        _ => {}
-    }
-    Ok(Told {
-        is_solved: false,
-        result: result.to_owned(),
-        notes: vec![error.to_string()],
-    })
 }

@@ -1,6 +1,7 @@
 //! A control problem from file to folder: solved, re-simulated, and all that is told of it.
 
-use std::fs;
+use crate::run::folder::make_folder;
+use crate::run::words::counted;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
@@ -11,7 +12,7 @@ use crate::dynamics::{observations, out_of_domain};
 use crate::ipopt::{Status, interrupt};
 use crate::math::significant;
 use crate::model::{Model, System};
-use crate::report::atomic::{self, WriteError};
+use crate::report::atomic::WriteError;
 use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::run::accuracy::{Accuracy, Refined};
@@ -219,16 +220,6 @@ fn find(
     })
 }
 
-/// Makes the folder of the results, or clears it of what killed runs left half written.
-pub(crate) fn make_folder(folder: &Path) -> Result<(), WriteError> {
-    fs::create_dir_all(folder).map_err(|cause| WriteError {
-        path: folder.to_owned(),
-        cause,
-    })?;
-    atomic::tidy(folder);
-    Ok(())
-}
-
 fn write_files(
     request: &Request,
     folder: &Path,
@@ -351,11 +342,6 @@ fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> Told {
         ),
         notes,
     }
-}
-
-/// A number with its noun.
-pub(super) fn counted(count: usize, noun: &str) -> String {
-    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
 /// A guess of another length.

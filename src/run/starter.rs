@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::report::atomic;
 use crate::run::error::RunError;
-use crate::run::solve::make_folder;
+use crate::run::folder::make_folder;
 use crate::scene;
 
 /// Writes `scene.json` and `problem.json` of a trunk into a folder; files that exist are left alone.

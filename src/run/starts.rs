@@ -18,12 +18,12 @@ use crate::ipopt::interrupt;
 use crate::report::atomic::{self, WriteError};
 use crate::report::table::aligned;
 use crate::run::error::RunError;
-use crate::run::inspect::key;
+use crate::run::folder::make_folder;
 use crate::run::memory;
 use crate::run::optimise::resolve;
 use crate::run::progress::Progress;
 use crate::run::request::{Request, Told};
-use crate::run::solve::make_folder;
+use crate::run::words::key;
 use crate::scene::{lay_out, read_problem};
 
 /// Most starting points of one command; the seed of a start is that of the command times this number and its own.

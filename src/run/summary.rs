@@ -12,7 +12,7 @@ use crate::run::blocks::Blocks;
 use crate::run::comparison::Comparison;
 use crate::run::domain::Outside;
 use crate::run::effects::Plan;
-use crate::run::path::Followed;
+use crate::run::followed::Followed;
 use crate::run::request::Request;
 use crate::run::resimulate::Resimulation;
 use crate::run::rest_words::Rest;

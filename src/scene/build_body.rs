@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::model::system::{Body, Shape};
-use crate::scene::build_scene::vector;
 use crate::scene::error::SceneError;
+use crate::scene::point::vector;
 use crate::scene::scope::Scope;
 use crate::scene::spec_scene::BodySpec;
 

@@ -3,9 +3,10 @@
 use crate::control::problem::{Limit, Side};
 use crate::model::Region;
 use crate::model::system::System;
-use crate::scene::build_scene::{names, vector};
 use crate::scene::build_state::{ELECTRIC_KEYS, joint_value, joint_with_coordinate};
 use crate::scene::error::SceneError;
+use crate::scene::names::names;
+use crate::scene::point::vector;
 use crate::scene::quantity::{Angle, Length};
 use crate::scene::scope::Scope;
 use crate::scene::spec_limits::{

@@ -5,8 +5,9 @@ use nalgebra::Vector3;
 use crate::mesh::Mesh;
 use crate::model::system::{Attachment, Marker, Solid};
 use crate::scene::build_place::place;
-use crate::scene::build_scene::{attachment, names, vector};
 use crate::scene::error::SceneError;
+use crate::scene::names::{attachment, names};
+use crate::scene::point::vector;
 use crate::scene::scope::Scope;
 use crate::scene::spec_scene::MarkerSpec;
 

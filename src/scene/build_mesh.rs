@@ -6,8 +6,8 @@ use crate::mesh::error::MeshError;
 use crate::mesh::grid::Grid;
 use crate::mesh::{Mesh, gmsh};
 use crate::scene::build_muscle::{MOST_ELEMENTS, check_elements};
-use crate::scene::build_scene::vector;
 use crate::scene::error::SceneError;
+use crate::scene::point::vector;
 use crate::scene::scope::Scope;
 use crate::scene::spec_solids::{DivisionSpec, GridSpec, LayerSpec, SolidSpec};
 

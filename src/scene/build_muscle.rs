@@ -1,11 +1,12 @@
 //! From a muscle as written to its span, section and model.
 
 use crate::model::system::{Discretisation, ElementKind, Fidelity, Material, Muscle};
-use crate::scene::build_scene::{attachment, find_compressible, find_material};
 use crate::scene::error::SceneError;
+use crate::scene::names::{attachment, find_compressible, find_material};
+use crate::scene::point::PointSpec;
 use crate::scene::quantity::{Length, Quantity};
 use crate::scene::scope::Scope;
-use crate::scene::spec_scene::{MuscleModel, MuscleSpec, PointSpec};
+use crate::scene::spec_scene::{MuscleModel, MuscleSpec};
 use crate::scene::spec_solids::ElementSpec;
 
 /// Spans shorter than this in mm have no direction.

@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 
 use crate::mesh::Mesh;
-use crate::scene::build_scene::vector;
 use crate::scene::error::SceneError;
+use crate::scene::point::vector;
 use crate::scene::scope::{Scope, list};
 use crate::scene::spec_limits::CornersSpec;
 use crate::scene::spec_solids::PlaneSpec;

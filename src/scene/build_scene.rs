@@ -1,10 +1,9 @@
 //! From a scene as written to the system it means: names resolved and everything checked.
 
-use nalgebra::Vector3;
 use std::cell::Cell;
 
 use crate::model::components::Components;
-use crate::model::system::{Attachment, Joint, JointKind, Material, System};
+use crate::model::system::{Joint, JointKind, Material, System};
 use crate::scene::build_body::{body, unit_axis};
 use crate::scene::build_electrodes::number_sources;
 use crate::scene::build_marker::marker;
@@ -15,9 +14,11 @@ use crate::scene::components::{spring, tendon};
 use crate::scene::error::SceneError;
 use crate::scene::expand::expanded;
 use crate::scene::graph::check_connected;
-use crate::scene::quantity::{Damping, Measure, Quantity, RotationalDamping};
+use crate::scene::names::{find_body, find_material, names};
+use crate::scene::point::vector;
+use crate::scene::quantity::{Damping, RotationalDamping};
 use crate::scene::scope::Scope;
-use crate::scene::spec_scene::{AxisSpec, ChainSpec, JointSpec, Point, SceneSpec};
+use crate::scene::spec_scene::{AxisSpec, ChainSpec, JointSpec, SceneSpec};
 
 /// Longest chain that the shorthand writes out.
 const LONGEST_CHAIN: usize = 1000;
@@ -158,16 +159,6 @@ impl<'a> Entries<'a> {
     }
 }
 
-/// Names of the entries of a list.
-pub(crate) fn names<T>(specs: &[T], name: impl Fn(&T) -> &String) -> Vec<String> {
-    specs.iter().map(|spec| name(spec).clone()).collect()
-}
-
-/// A vector of quantities in the units inside.
-pub(crate) fn vector<M: Measure>(entries: &[Quantity<M>; 3]) -> Vector3<f64> {
-    Vector3::from(entries.each_ref().map(Quantity::value))
-}
-
 /// What a chain needs to be written out.
 fn check_chain(
     chain: &ChainSpec,
@@ -304,63 +295,4 @@ enum JointKey {
     Spherical,
     Floating,
     Fixed,
-}
-
-/// The material of a name that stands at `scope`.
-pub(crate) fn find_material(
-    name: &str,
-    materials: &[(String, Material)],
-    scope: &Scope<'_>,
-) -> Result<Material, SceneError> {
-    let names: Vec<String> = materials.iter().map(|(name, _)| name.clone()).collect();
-    let found = scope.find(name, &names, "the name of a material");
-    found.map(|index| materials[index].1)
-}
-
-/// The material of finite elements, whose name stands at `scope`: it says how it resists changes of volume.
-pub(crate) fn find_compressible(
-    name: &str,
-    materials: &[(String, Material)],
-    scope: &Scope<'_>,
-) -> Result<Material, SceneError> {
-    let material = find_material(name, materials, scope)?;
-    if material.lame_lambda.is_some() {
-        return Ok(material);
-    }
-    let found = format!("{name:?}, which has neither \"lame_lambda\" nor \"poisson_ratio\"");
-    Err(scope.wrong(
-        found,
-        "a material with one of them, as finite elements need it",
-    ))
-}
-
-/// A point of a body that is written under `body` and `at`.
-pub(crate) fn attachment(
-    body: &str,
-    at: &Point,
-    bodies: &[String],
-    scope: &Scope<'_>,
-) -> Result<Attachment, SceneError> {
-    let body = find_body(body, bodies, &scope.key("body"))?;
-    let at = vector(at);
-    Ok(Attachment { body, at })
-}
-
-/// Index of a body; `None` is the ground.
-pub(crate) fn find_body(
-    name: &str,
-    bodies: &[String],
-    scope: &Scope<'_>,
-) -> Result<Option<usize>, SceneError> {
-    if name == "ground" {
-        return Ok(None);
-    }
-    if let Some(index) = bodies.iter().position(|body| body == name) {
-        return Ok(Some(index));
-    }
-    let or_ground = bodies.iter().map(String::as_str).chain(["ground"]);
-    let expected = "the name of a body or \"ground\"";
-    Err(scope
-        .document
-        .wrong_name(&scope.place, name, expected, or_ground))
 }

@@ -9,9 +9,10 @@ use crate::scene::build_electrodes::electrodes;
 use crate::scene::build_mesh::{Meshed, meshed};
 use crate::scene::build_muscle::element_kind;
 use crate::scene::build_place::{extent, face, nodes, place};
-use crate::scene::build_scene::{find_body, find_compressible, vector};
 use crate::scene::build_state::ELECTRIC_KEYS;
 use crate::scene::error::SceneError;
+use crate::scene::names::{find_body, find_compressible};
+use crate::scene::point::vector;
 use crate::scene::scope::{Scope, list};
 use crate::scene::spec_solids::{AxisName, FixedSpec, SolidSpec, VelocitySpec};
 

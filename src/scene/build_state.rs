@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 
 use crate::control::problem::State;
 use crate::model::system::{JointKind, Source, System};
-use crate::scene::build_scene::{names, vector};
 use crate::scene::error::SceneError;
+use crate::scene::names::names;
+use crate::scene::point::Point;
+use crate::scene::point::vector;
 use crate::scene::quantity::{Angle, AngularVelocity, Kind, Length, Measure, Quantity, Velocity};
 use crate::scene::scope::Scope;
 use crate::scene::spec_problem::{GoalSpec, StartSpec, VoltageMap};
-use crate::scene::spec_scene::Point;
 
 /// What a name of a voltage may be, for messages.
 pub(crate) const A_SOURCE: &str = "the name of a muscle or of a driven electrode (block.electrode)";

@@ -1,12 +1,12 @@
 //! The chain shorthand, written out as bodies, joints, muscles and a marker.
 
+use crate::scene::point::{Point, PointSpec};
 use nalgebra::Vector3;
 
 use crate::scene::build_body::direction;
 use crate::scene::quantity::Quantity;
 use crate::scene::spec_scene::{
-    AxisSpec, BodySpec, ChainSpec, CylinderSpec, JointSpec, MarkerSpec, MuscleSpec, Point,
-    PointSpec, SceneSpec,
+    AxisSpec, BodySpec, ChainSpec, CylinderSpec, JointSpec, MarkerSpec, MuscleSpec, SceneSpec,
 };
 
 /// The same scene without shorthand; what the chain stands for comes after what is written.

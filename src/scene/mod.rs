@@ -5,6 +5,7 @@
 //! - `components`: kinds of parts of which each has one file for both.
 //! - `spec_study`: the serde types of a study of variants of a problem.
 //! - `document`, `locate`, `wording`, `error`, `set`: text, places in it, mistakes, overrides.
+//! - `point`, `names`: points as written, and what names mean.
 //! - `build_*`, `graph`, `scope`, `solution`: from what is written to [`System`] and [`Task`].
 
 mod build_body;
@@ -27,6 +28,8 @@ mod expand;
 mod graph;
 mod layout;
 mod locate;
+mod names;
+pub mod point;
 pub mod quantity;
 mod scope;
 mod set;

@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::scene::point::Point;
 use crate::scene::quantity::{ElectricField, JointCoordinate, Length, Quantity};
-use crate::scene::spec_scene::Point;
 
 /// A path limit: exactly one of the four.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]

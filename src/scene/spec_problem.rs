@@ -10,10 +10,11 @@ use std::marker::PhantomData;
 use crate::control::problem::{Hold, Rest};
 use crate::dynamics::Newton;
 use crate::scene::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::scene::point::Point;
 use crate::scene::quantity::{JointCoordinate, JointRate, Quantity, Time, Voltage};
 use crate::scene::spec_integrator::IntegratorSpec;
 use crate::scene::spec_limits::LimitSpec;
-use crate::scene::spec_scene::{Point, SceneSpec};
+use crate::scene::spec_scene::SceneSpec;
 use crate::sparse::Backend;
 
 /// What is asked of a scene: exactly one of `simulate`, `equilibrium`, `control`.

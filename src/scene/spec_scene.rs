@@ -1,5 +1,6 @@
 //! A scene as it is written: the serde types of the scene file.
 
+use crate::scene::point::{Point, PointSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -10,9 +11,6 @@ use crate::scene::quantity::{
     Stress, Viscosity,
 };
 use crate::scene::spec_solids::{ElementSpec, SolidSpec};
-
-/// A point or a vector of lengths.
-pub type Point = [Quantity<Length>; 3];
 
 /// What exists. Positions and axes are given in the reference configuration, in the ground frame; what is not written does not exist.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
@@ -244,16 +242,6 @@ pub enum MuscleModel {
     Lumped,
     /// Finite elements, glued to both bodies with its end faces.
     FiniteElements,
-}
-
-/// A material point of a body.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PointSpec {
-    /// Name of the body, or `ground`.
-    pub body: String,
-    /// Place, SI unit m.
-    pub at: Point,
 }
 
 /// A named material point of a body or of a block: exactly one of `body` and `solid`.

@@ -9,9 +9,9 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use crate::scene::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::scene::point::Point;
 use crate::scene::quantity::{AngularVelocity, Length, Quantity, Rate, Velocity, Voltage};
 use crate::scene::spec_limits::CornersSpec;
-use crate::scene::spec_scene::Point;
 
 /// An elastic block of hexahedra: a `box` or a `mesh`, of one `material` or of `materials` by region.
 ///

@@ -10,7 +10,7 @@ use crate::sparse::dense::Dense;
 use crate::sparse::faer::{FaerLdlt, FaerLu};
 use crate::sparse::mumps::Mumps;
 use crate::sparse::pattern::Pattern;
-use crate::sparse::{Factorisation, Singular};
+use crate::sparse::{Factorisation, Singular, Symmetry};
 
 /// Up to this size a dense factorisation is faster.
 const DENSE: usize = 48;
@@ -25,15 +25,6 @@ const POOR: f64 = 1e-13;
 /// Scaling of rows and columns at once ends when their largest entries are between this and its inverse, or after so many
 /// rounds.
 const BALANCED: (f64, usize) = (4.0, 12);
-
-/// Whether a matrix equals its transpose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Symmetry {
-    /// A = Aᵀ; the method may be one for quasi-definite or indefinite matrices.
-    Symmetric,
-    /// Nothing is known.
-    Unsymmetric,
-}
 
 /// Who factorises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

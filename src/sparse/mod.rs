@@ -8,6 +8,8 @@ mod factorisation;
 mod faer;
 pub(crate) mod mumps;
 mod pattern;
+mod symmetry;
 
-pub use direct::{Backend, Direct, Symmetry};
+pub use direct::{Backend, Direct};
 pub use factorisation::{Factorisation, Singular};
+pub use symmetry::Symmetry;

@@ -1,6 +1,6 @@
 //! What accuracy costs in time: variants of one problem, timed and measured against what ever finer ones converge to.
 //!
-//! - `read`: the study file and all its problems; `measure`: what is measured of them.
+//! - `request`: the command; `read`: the study file and all its problems; `measure`: what is measured of them.
 //! - `outcome`, `schedule`: one run, and all of them in rounds.
 //! - `limit`, `compare`: observed orders and Richardson's limits; errors of all points.
 //! - `price`, `conclusion`, `words`: what accuracies cost; what it all says in words.
@@ -16,47 +16,25 @@ mod page;
 pub mod price;
 pub mod read;
 mod record;
+mod request;
 pub mod schedule;
 mod table;
 mod words;
 
-use std::path::{Path, PathBuf};
+pub use request::StudyRequest;
+
+use std::path::Path;
 use std::time::Instant;
 
 use crate::ipopt;
 use crate::report::atomic;
 use crate::report::origin::Origin;
-use crate::run::{RunError, Shown, Told, make_folder};
+use crate::run::{RunError, Told, make_folder};
 use crate::study::compare::{Judged, judge, moved_marker};
 use crate::study::conclusion::conclusion;
 use crate::study::measure::Asked;
 use crate::study::read::{Study, read_study};
 use crate::study::schedule::{Results, bar, look, time};
-
-/// A command on a study file.
-#[derive(Clone, Debug)]
-pub struct StudyRequest {
-    /// The command as typed.
-    pub command: String,
-    /// The study file as typed.
-    pub input: PathBuf,
-    /// Folder for the results; `results/studies/<name of the study>` where not given.
-    pub output: Option<PathBuf>,
-    /// Timed runs of each point, in place of those of the file.
-    pub runs: Option<usize>,
-    /// Whether progress is shown.
-    pub progress: Shown,
-}
-
-impl StudyRequest {
-    /// Folder for the results.
-    pub fn folder(&self) -> PathBuf {
-        self.output.clone().unwrap_or_else(|| {
-            let stem = self.input.file_stem().unwrap_or_default();
-            PathBuf::from("results/studies").join(stem)
-        })
-    }
-}
 
 /// Runs a study and writes its folder; one that Ctrl-C ends early is kept as far as it went.
 ///

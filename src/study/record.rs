@@ -1,5 +1,6 @@
 //! `study.json`: every point with its input, its seconds and its errors, and what these are measured against; SI units.
 
+use crate::study::request::StudyRequest;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -9,7 +10,6 @@ use crate::ipopt;
 use crate::report::atomic::{self, WriteError};
 use crate::report::origin::Origin;
 use crate::scene::lay_out;
-use crate::study::StudyRequest;
 use crate::study::compare::{Judged, common};
 use crate::study::limit::{How, Limit};
 use crate::study::measure::{Asked, Measure};

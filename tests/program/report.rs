@@ -9,7 +9,7 @@ use proboscis::report::axes::{Axis, Extent};
 use proboscis::report::lines::{LinePlot, Mark, Series};
 use proboscis::report::origin::Origin;
 use proboscis::report::skins::Skins;
-use proboscis::report::{Run, atomic, page, pose, style, table, tip_path, voltages, write_run};
+use proboscis::report::{Run, atomic, markup, pose, style, table, tip_path, voltages, write_run};
 
 fn origin() -> Origin {
     Origin {
@@ -327,7 +327,7 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
     assert!(html.contains("<td>a &lt; b</td>") && html.contains("A &lt;title&gt;"));
     assert!(!html.contains("<b>muscle") && !html.contains("alert(1)</script>"));
     assert!(!html.contains("<script src="), "the page needs no network");
-    assert_eq!(page::escape("\"'"), "&quot;&#39;");
+    assert_eq!(markup::escape("\"'"), "&quot;&#39;");
 }
 
 #[test]

@@ -3,6 +3,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod circles;
 mod condensed;
 mod floors;
+mod sources;
 mod trace;

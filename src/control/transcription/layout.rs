@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::control::boundary::Boundary;
+use crate::control::conditions::Boundary;
 use crate::control::limits::Place;
 use crate::control::problem::{Control, Duration};
 use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};

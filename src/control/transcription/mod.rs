@@ -10,6 +10,7 @@
 
 mod layout;
 mod limit_rows;
+mod placed;
 mod point;
 mod program;
 mod scaling;
@@ -18,10 +19,10 @@ mod structure;
 mod sweep;
 
 use crate::control::BoundaryError;
-use crate::control::boundary::Boundary;
+use crate::control::conditions::Boundary;
 use crate::control::guess::Initial;
 use crate::control::limits::{Bounded, Place};
-use crate::control::objective::Cost;
+use crate::control::objective::{Cost, objective_scale};
 use crate::control::problem::{Control, Duration};
 use crate::control::unknowns::{Row, Unknowns, Variable};
 use crate::functional::{Horizon, Part};
@@ -31,7 +32,7 @@ use crate::reduction::Instant;
 pub(super) use layout::Layout;
 use limit_rows::LimitRow;
 pub(super) use limit_rows::Site;
-use scaling::objective_scale;
+use placed::Placed;
 use stretch::Bench;
 
 /// V in a kV, the unit of voltages in objectives.
@@ -48,17 +49,6 @@ struct Kept {
     place: usize,
     scale: f64,
 }
-/// What is known of the instants at the present point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Placed {
-    /// Coordinates only.
-    Nothing,
-    /// Vectors.
-    Vectors,
-    /// Vectors and columns of P.
-    Columns,
-}
-
 /// A control problem as a nonlinear program.
 #[derive(Debug)]
 pub struct Transcription<'m> {

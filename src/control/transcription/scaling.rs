@@ -1,20 +1,11 @@
 //! Scales of rows and variables, and bounds.
 
-use crate::control::problem::{Control, Duration, Limit, Objective, nearest_thousand};
+use crate::control::problem::{Control, Duration, Limit};
 use crate::control::transcription::Transcription;
 use crate::control::unknowns::{Row, Variable};
 use crate::dynamics::History;
 use crate::model::Coordinates;
 use crate::nlp::{Bounds, Nlp};
-
-/// Factor of the objective: the power of a thousand that brings it near 1 where one voltage (kV) is its unit all the time (s).
-pub(super) fn objective_scale(weights: &Objective, kilovolt: f64, duration: f64) -> f64 {
-    let square = kilovolt * kilovolt;
-    let size = weights.effort * square * duration
-        + weights.rate * square / duration
-        + weights.duration * duration;
-    1.0 / nearest_thousand(size)
-}
 
 impl Transcription<'_> {
     /// Scales rows and multipliers by the largest entries of the Jacobian at the guess, kind by kind.

@@ -4,8 +4,8 @@
 //! carried blocks are added when both are done. Where stretches meet depends on the number of intervals only, so results
 //! are the same for any number of threads.
 
-use crate::control::transcription::Placed;
 use crate::control::transcription::limit_rows::{LimitRow, Site, fill_weights};
+use crate::control::transcription::placed::Placed;
 use crate::functional::{Horizon, Level, Sides};
 use crate::ipopt::interrupt::Limit;
 use crate::math::Vector;

@@ -1,8 +1,9 @@
 //! One sweep over the horizon: forces, and second derivatives into the values.
 
 use crate::control::transcription::limit_rows::{LimitRow, Site};
+use crate::control::transcription::placed::Placed;
 use crate::control::transcription::stretch::{Shared, Stretch, instant_of, join, needed};
-use crate::control::transcription::{KILOVOLT, MILLISECOND, Placed, Transcription};
+use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
 use crate::functional::{Frame, Horizon, Level, Measure, Sides};
 use crate::ipopt::interrupt;
 use crate::math::Vector;

@@ -1,6 +1,6 @@
 //! From the contents of a file to a mesh: used nodes, regions of physical volumes, sets of the other physical groups.
 
-use super::{Contents, Element, Group, UNGROUPED};
+use super::contents::{Contents, Element, Group, UNGROUPED};
 use crate::mesh::Mesh;
 use crate::mesh::error::{ElementName, MeshError};
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,6 +1,5 @@
 //! The lines of a file with their numbers, and the words of a line.
 
-use super::quoted;
 use crate::mesh::error::MeshError;
 use nalgebra::Vector3;
 use std::iter::Enumerate;
@@ -150,5 +149,13 @@ impl<'a> Words<'a> {
             None => Ok(()),
             Some(_) => Err(self.line.error(quoted(self.line.text), self.shape)),
         }
+    }
+}
+
+/// Text of a file in a message, cut where it is long.
+pub(super) fn quoted(text: &str) -> String {
+    match text.char_indices().nth(60) {
+        Some((end, _)) => format!("{:?} …", &text[..end]),
+        None => format!("{text:?}"),
     }
 }

@@ -1,6 +1,6 @@
 //! Meshes from Gmsh: `.msh` files of format 2.2 and 4.1 in ASCII.
 //!
-//! - **Reading** turns the lines of either format into the same `Contents`: nodes, elements and groups by their
+//! - **Reading** turns the lines of either format into the same contents: nodes, elements and groups by their
 //!   numbers in the file.
 //! - **Assembling** turns these into a [`Mesh`]: physical volumes become regions, physical surfaces, curves and points
 //!   become sets of nodes.
@@ -8,6 +8,7 @@
 //! Nodes and elements are in the order of their numbers in the file, so that both formats of one mesh read equal.
 
 mod assemble;
+mod contents;
 mod kind;
 mod lines;
 mod version2;
@@ -15,13 +16,11 @@ mod version4;
 
 use super::Mesh;
 use super::error::MeshError;
-use lines::{Line, Lines};
-use nalgebra::Vector3;
+pub use contents::UNGROUPED;
+use contents::{Contents, Group};
+use lines::{Line, Lines, quoted};
 use std::collections::BTreeMap;
 use std::path::Path;
-
-/// Name of the region of hexahedra that belong to no physical volume.
-pub const UNGROUPED: &str = "ungrouped";
 
 const FORMATS: &str = "a mesh in format 2.2 or 4.1";
 const SECTION: &str = "a section such as $Nodes";
@@ -67,32 +66,6 @@ enum Format {
     Two,
     /// 4.1: blocks of elements belong to entities, which carry groups.
     Four,
-}
-
-/// Number of a physical group by the dimension of its elements; zero is no group.
-type Group = (usize, u64);
-
-/// An element of a kind that is of use.
-struct Element {
-    number: u64,
-    /// Number of its line in the file.
-    line: usize,
-    /// 0 point, 1 line, 2 quadrangle, 3 hexahedron.
-    dimension: usize,
-    /// Numbers of its nodes in the file.
-    nodes: Vec<u64>,
-    /// Numbers of the physical groups it belongs to.
-    groups: Vec<u64>,
-}
-
-/// A file as read, by the numbers in it.
-#[derive(Default)]
-struct Contents {
-    names: BTreeMap<Group, String>,
-    nodes: BTreeMap<u64, Vector3<f64>>,
-    elements: Vec<Element>,
-    /// Line of `$Elements`.
-    line: usize,
 }
 
 fn format(lines: &mut Lines<'_>) -> Result<Format, MeshError> {
@@ -203,28 +176,4 @@ fn physical_names(lines: &mut Lines<'_>) -> Result<BTreeMap<Group, String>, Mesh
     }
     lines.end("$EndPhysicalNames")?;
     Ok(names)
-}
-
-/// Puts a node in, unless there is one of its number.
-fn insert(
-    nodes: &mut BTreeMap<u64, Vector3<f64>>,
-    line: &Line<'_>,
-    number: u64,
-    place: Vector3<f64>,
-) -> Result<(), MeshError> {
-    match nodes.insert(number, place) {
-        None => Ok(()),
-        Some(_) => Err(line.error(
-            format!("a second node {number}"),
-            "a number of its own for each node",
-        )),
-    }
-}
-
-/// Text of a file in a message, cut where it is long.
-fn quoted(text: &str) -> String {
-    match text.char_indices().nth(60) {
-        Some((end, _)) => format!("{:?} …", &text[..end]),
-        None => format!("{text:?}"),
-    }
 }

@@ -1,7 +1,8 @@
 //! Nodes and elements of format 2: one list of each, elements carry the number of their physical group.
 
+use super::contents::{Element, insert};
+use super::kind;
 use super::lines::Lines;
-use super::{Element, insert, kind};
 use crate::mesh::error::MeshError;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;

@@ -1,7 +1,8 @@
 //! Entities, nodes and elements of format 4.1: blocks belong to entities, which carry the numbers of physical groups.
 
+use super::contents::{Element, insert};
+use super::kind;
 use super::lines::{Line, Lines};
-use super::{Element, insert, kind};
 use crate::mesh::error::MeshError;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;

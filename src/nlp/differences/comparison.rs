@@ -1,8 +1,10 @@
 //! One sparse matrix beside its differences.
 
-use super::TOLERANCE;
 use super::report::{Matrix, Place, WrongEntry};
 use crate::nlp::{Entries, Nlp};
+
+/// Relative error above which an entry is taken for wrong.
+pub const TOLERANCE: f64 = 1e-5;
 
 /// Part of the row's size below which an entry is not measured by its own size.
 const FLOOR: f64 = 1e-3;

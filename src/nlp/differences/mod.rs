@@ -28,10 +28,8 @@ mod report;
 use crate::nlp::{Entries, Nlp};
 
 use comparison::Comparison;
+pub use comparison::TOLERANCE;
 pub use report::{Matrix, Place, Report, WrongEntry};
-
-/// Relative error above which an entry is taken for wrong.
-pub const TOLERANCE: f64 = 1e-5;
 
 /// The first step of a difference over the second one.
 const SHORTER: f64 = 8.0;

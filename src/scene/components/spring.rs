@@ -1,11 +1,11 @@
 //! Springs and dampers.
 
 use crate::model::components::Spring;
-use crate::scene::build_scene::attachment;
 use crate::scene::error::SceneError;
+use crate::scene::names::attachment;
+use crate::scene::point::PointSpec;
 use crate::scene::quantity::{Damping, Length, Measure, Quantity, Stiffness};
 use crate::scene::scope::Scope;
-use crate::scene::spec_scene::PointSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

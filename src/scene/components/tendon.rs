@@ -1,11 +1,11 @@
 //! Tendons.
 
 use crate::model::components::Tendon;
-use crate::scene::build_scene::attachment;
 use crate::scene::error::SceneError;
+use crate::scene::names::attachment;
+use crate::scene::point::PointSpec;
 use crate::scene::quantity::{Length, Quantity, Stiffness};
 use crate::scene::scope::Scope;
-use crate::scene::spec_scene::PointSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,19 +1,18 @@
-//! The C interface of MUMPS: bindings, one instance per matrix, and the number of BLAS threads.
+//! The C interface of MUMPS: bindings, and one instance per matrix.
 //!
 //! Words of the manual: an instance goes through jobs (initialisation −1, analysis 1, factorisation 2, solution 3, end −2);
 //! `ICNTL` and `CNTL` are its controls, `INFOG` its answers; all three are counted from one.
 
 #![expect(unsafe_code, reason = "C interface of MUMPS")]
 
-use std::ffi::{c_int, c_void};
+use std::ffi::c_int;
 use std::fmt;
-use std::mem::{self, MaybeUninit};
+use std::mem::MaybeUninit;
 use std::ptr;
 use std::slice;
-use std::sync::Once;
 
 use crate::sparse::Symmetry;
-use crate::sparse::mumps::exclusive;
+use crate::sparse::mumps::lock::exclusive;
 
 /// What `bindgen` makes of `dmumps_c.h`.
 #[allow(
@@ -144,24 +143,4 @@ impl fmt::Debug for Instance {
             .field("nnz", &self.data.nnz)
             .finish_non_exhaustive()
     }
-}
-
-/// Makes OpenBLAS, if it is loaded, work in one thread: two are slower on these systems and change the results.
-///
-/// OpenBLAS reads its environment variables while it is loaded, before `main`, so that setting them here would come too late.
-pub(super) fn use_one_blas_thread() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        // SAFETY: the name ends in NUL; `dlsym` looks it up among the libraries already loaded and returns null if there is none.
-        let symbol =
-            unsafe { libc::dlsym(libc::RTLD_DEFAULT, c"openblas_set_num_threads".as_ptr()) };
-        if !symbol.is_null() {
-            // SAFETY: OpenBLAS declares `void openblas_set_num_threads(int)`, and the lock keeps its other users of this
-            // crate out.
-            let set_num_threads =
-                unsafe { mem::transmute::<*mut c_void, unsafe extern "C" fn(c_int)>(symbol) };
-            // SAFETY: as above.
-            unsafe { set_num_threads(1) };
-        }
-    });
 }

@@ -1,18 +1,17 @@
 //! MUMPS: LDLᵀ of symmetric and LU of unsymmetric matrices, by fronts, with pivots.
 //!
 //! MUMPS keeps state for the whole process, and Ipopt calls it too: two threads in it at once end in a segmentation fault.
-//! So [`exclusive`] is held during each call here and during a whole solve of Ipopt.
+//! So [`exclusive()`] is held during each call here and during a whole solve of Ipopt.
 
+mod blas;
 mod ffi;
-
-use std::fmt;
-
-use parking_lot::{ReentrantMutex, ReentrantMutexGuard};
+mod lock;
 
 use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Singular, Symmetry};
 
 use ffi::{Instance, Job};
+pub(crate) use lock::{Exclusive, exclusive};
 
 /// Ordering of the elimination, ICNTL(7), as measured by `benches/factorisation.rs`: SCOTCH.
 const ORDERING: i32 = 3;
@@ -24,29 +23,6 @@ const SPACE: [i32; 2] = [30, 4000];
 const TOO_LITTLE_SPACE: [i32; 6] = [-8, -9, -14, -15, -17, -20];
 /// The answer to a singular matrix.
 const SINGULAR: i32 = -10;
-
-static LOCK: ReentrantMutex<()> = ReentrantMutex::new(());
-
-/// While it exists, no other thread calls MUMPS or Ipopt.
-pub(crate) struct Exclusive {
-    _guard: ReentrantMutexGuard<'static, ()>,
-}
-
-impl fmt::Debug for Exclusive {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Exclusive")
-    }
-}
-
-/// Waits until no other thread is in MUMPS or Ipopt.
-///
-/// One thread may ask twice: what Ipopt calls back may use MUMPS, since Ipopt itself is not in MUMPS then. But such a callback
-/// must not wait for another thread that does.
-pub(crate) fn exclusive() -> Exclusive {
-    let guard = LOCK.lock();
-    ffi::use_one_blas_thread();
-    Exclusive { _guard: guard }
-}
 
 /// A factorisation by MUMPS.
 #[derive(Debug)]

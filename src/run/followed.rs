@@ -1,0 +1,61 @@
+//! What `summary.json` says of a path of equilibria.
+
+use serde::Serialize;
+
+use crate::dynamics::{Continuation, Instability};
+
+/// What `summary.json` says of a path.
+#[derive(Debug, Serialize)]
+pub(super) struct Followed {
+    /// Number of equilibria.
+    points: usize,
+    /// Largest fraction of the voltages among them.
+    largest_fraction: f64,
+    /// Where stability is lost.
+    pub(super) lost: Vec<Loss>,
+}
+
+/// A loss of stability.
+#[derive(Debug, Serialize)]
+pub(super) struct Loss {
+    /// Exact fraction of the voltages.
+    pub(super) fraction: f64,
+    /// `pull_in` or `buckling`.
+    kind: &'static str,
+    /// The same in words.
+    #[serde(skip)]
+    pub(super) words: &'static str,
+}
+
+impl Followed {
+    pub(super) fn new(found: &Continuation) -> Self {
+        let loss = |&(_, fraction, kind): &(usize, f64, Instability)| Loss {
+            fraction,
+            kind: kind.key(),
+            words: kind.words(),
+        };
+        Self {
+            points: found.points.len(),
+            largest_fraction: found.fractions.iter().copied().fold(0.0, f64::max),
+            lost: found.lost.iter().map(loss).collect(),
+        }
+    }
+
+    /// Rows of the page; `shown` is the fraction of the voltages of the equilibrium that is drawn.
+    pub(super) fn rows(&self, shown: f64) -> Vec<(String, String)> {
+        let mut rows = vec![
+            ("equilibria".to_owned(), self.points.to_string()),
+            (
+                "largest fraction of the voltages".to_owned(),
+                format!("{:.6} %", 100.0 * self.largest_fraction),
+            ),
+        ];
+        rows.extend(self.lost.iter().map(|loss| {
+            let place = format!("{:.6} % of the voltages", 100.0 * loss.fraction);
+            (loss.words.to_owned(), place)
+        }));
+        let place = format!("the equilibrium at {:.6} %", 100.0 * shown);
+        rows.push(("configuration".to_owned(), place));
+        rows
+    }
+}
