@@ -53,6 +53,7 @@ impl Variant {
         let start = State::JointAngles {
             angles: BTreeMap::new(),
             rates: BTreeMap::new(),
+            velocities: Default::default(),
         };
         let start = resolve_start(&model, &start, "start").expect("the reference configuration");
         Self {
@@ -136,6 +137,7 @@ fn simulation(voltages: &[f64], coordinates: Coordinates) -> Simulation {
         start: State::JointAngles {
             angles: BTreeMap::new(),
             rates: BTreeMap::new(),
+            velocities: Default::default(),
         },
         voltages: Voltages::Constant(voltages.to_vec()),
         coordinates: Some(coordinates),

@@ -168,7 +168,11 @@ pub fn resolve_start(
 ) -> Result<Start, BoundaryError> {
     match state {
         State::RestAtVoltages(voltages) => Ok(at_rest(model, rest_at(model, voltages, place)?.z)),
-        State::JointAngles { angles, rates } => {
+        State::JointAngles {
+            angles,
+            rates,
+            velocities,
+        } => {
             let value = |map: &std::collections::BTreeMap<usize, f64>, j: usize| {
                 map.get(&j).copied().unwrap_or(0.0)
             };
@@ -180,12 +184,11 @@ pub fn resolve_start(
             let z = model.coordinates_at(&joints(angles));
             check_constraints(model, &z, place)?;
             check_muscles(model, &z, place)?;
-            let n = model.coordinate_count();
-            // Rates of redundant coordinates are those of the poses a short time away, linear in the joint rates.
-            let rates = match model.coordinates {
-                Coordinates::Reduced => model.coordinates_at(&joints(rates))[..n].to_vec(),
-                Coordinates::Redundant => model.redundant_rates(&joints(angles), &joints(rates)),
-            };
+            let rates = model.rates_at(&joints(angles), &joints(rates), velocities);
+            let rates = rates.map_err(|body| BoundaryError::Follows {
+                place,
+                body: model.system.bodies[body].name.clone(),
+            })?;
             let rates = with_nodes(model, rates);
             Ok(Start::with_rates(model, z, &rates))
         }

@@ -89,7 +89,13 @@ impl<'a> Spoken<'a> {
     /// A start away from the reference configuration, or in motion. Sources that hold a state of rest are not silent, and
     /// move what they move.
     fn of_start(&mut self, state: &State) {
-        if let State::JointAngles { angles, rates } = state {
+        if let State::JointAngles {
+            angles,
+            rates,
+            velocities,
+        } = state
+        {
+            self.stirred.bodies.extend(velocities.keys());
             let all = angles.iter().chain(rates);
             let moved = all.filter(|(_, value)| **value != 0.0);
             moved.for_each(|(&joint, _)| self.of_joint(joint));

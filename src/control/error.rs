@@ -30,6 +30,14 @@ pub enum BoundaryError {
         /// Its value.
         value: f64,
     },
+    /// A body cannot be given a velocity.
+    #[error("{place}: the motion of body \"{body}\" follows from its joints")]
+    Follows {
+        /// `start`.
+        place: &'static str,
+        /// The body.
+        body: String,
+    },
     /// The ends of a muscle meet in a given configuration.
     #[error("{place}: the ends of muscle \"{muscle}\" meet there, where it has no energy")]
     NoLength {

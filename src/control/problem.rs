@@ -42,6 +42,9 @@ pub enum State {
         angles: BTreeMap<usize, f64>,
         /// Rates in rad/ms or mm/ms; only at a start, zero where not named.
         rates: BTreeMap<usize, f64>,
+        /// Velocity of the centre of mass in mm/ms and angular velocity in rad/ms by body, both in the ground frame; only at a start,
+        /// of the first body of a free part and of those on a spherical or floating joint. Others follow from their joints.
+        velocities: BTreeMap<usize, [Vector3<f64>; 2]>,
     },
     /// Positions of markers in mm, by marker index, at rest; only as a goal.
     Markers {

@@ -5,7 +5,7 @@ use crate::math::{Matrix, Vector};
 use crate::model::ModelError;
 use crate::model::joints::Screw;
 use crate::model::system::{JointKind, System};
-use crate::reduction::{Link, LinkKind, Motion, Tree};
+use crate::reduction::{Instant, Link, LinkKind, Motion, Tree};
 
 /// Joints in an order from the ground outwards, those that close loops, and bodies that nothing holds.
 #[derive(Clone, Debug)]
@@ -88,6 +88,24 @@ impl Graph {
         is_tree && joints.all(|joint| joint.kind.freedoms() <= 1)
     }
 
+    /// Bodies of a tree that may start with any velocity: those that float, and those that turn about a point of another.
+    pub fn movable(&self, system: &System) -> (Vec<usize>, Vec<usize>) {
+        let (mut floating, mut turning) = (self.free.clone(), Vec::new());
+        for &(j, direction) in &self.tree {
+            let joint = &system.joints[j];
+            let child = match direction {
+                Direction::Forward => Some(joint.child),
+                Direction::Backward => joint.parent,
+            };
+            match joint.kind {
+                JointKind::Floating => floating.extend(child),
+                JointKind::Spherical => turning.extend(child),
+                _ => {}
+            }
+        }
+        (floating, turning)
+    }
+
     /// First bodies of parts that no joint connects to the ground: their coordinates follow those of the joints.
     pub(super) fn free(&self) -> &[usize] {
         &self.free
@@ -117,7 +135,7 @@ impl Graph {
             };
             links.add(joint.kind, ends, joint.at, sign, joints[j]);
         }
-        Tree::new(links.list, vectors)
+        Tree::new(links.list, system.bodies.len(), vectors)
     }
 
     /// Poses at joint coordinates (by joint), along the spanning tree.
@@ -127,14 +145,14 @@ impl Graph {
         motion.poses(&instant, system.bodies.len())
     }
 
-    /// Rates of the vectors φ, d₁, d₂, d₃ of all bodies at joint coordinates with given rates (by joint).
-    pub fn rates(
+    /// The tree at joint coordinates with given rates (by joint), and the vectors φ, d₁, d₂, d₃ of all bodies on it.
+    pub fn moving(
         &self,
         system: &System,
         reference: &[Pose],
         joints: &[f64],
         rates: &[f64],
-    ) -> Vec<f64> {
+    ) -> (Motion, Instant) {
         let term = |body: usize, i: usize| Term {
             carrier: Carrier::Body(body),
             centre: if i == 0 { 1.0 } else { 0.0 },
@@ -154,7 +172,7 @@ impl Graph {
         let mut instant = motion.placed(&self.coordinates(system, joints));
         instant.l.copy_from_slice(&self.coordinates(system, rates));
         motion.along(&mut instant);
-        instant.w.iter().flat_map(|w| [w.x, w.y, w.z]).collect()
+        (motion, instant)
     }
 
     /// Index of the first coordinate of each joint of the tree; joints that close loops have none.

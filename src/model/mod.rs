@@ -21,6 +21,7 @@ mod quantity;
 mod question;
 mod reach;
 mod redundancy;
+mod states;
 mod still;
 pub mod system;
 mod terms;
@@ -302,13 +303,6 @@ impl Model {
         }
     }
 
-    /// Rates of director coordinates at joint coordinates with given rates.
-    pub fn redundant_rates(&self, joints: &[f64], rates: &[f64]) -> Vec<f64> {
-        let [joints, rates] = [joints, rates].map(|values| self.condensed.by_joint(values));
-        self.graph
-            .rates(&self.condensed.system, &self.reference, &joints, &rates)
-    }
-
     /// Poses of the condensed bodies in the reference configuration.
     pub fn reference(&self) -> &[Pose] {
         &self.reference
@@ -337,28 +331,6 @@ impl Model {
                 let joints = self.condensed.by_joint(joints);
                 let system = &self.condensed.system;
                 self.coordinates_of(&self.graph.poses(system, &self.reference, &joints))
-            }
-        }
-    }
-
-    /// Coordinates of an instant at given poses of the bodies of the scene and joint coordinates (by joint), as these are known
-    /// without whole turns; nodes at their reference places.
-    pub fn coordinates_of_poses(&self, poses: &[Pose], joints: &[f64]) -> Vec<f64> {
-        let z = self.coordinates_at(joints);
-        if self
-            .graph
-            .has_one_coordinate_a_joint(&self.condensed.system)
-        {
-            return z;
-        }
-        let poses = self.condensed.condense(poses, &self.reference);
-        let motion = &self.action.motion;
-        match &motion.tree {
-            None => self.coordinates_of(&poses),
-            Some(_) => {
-                let mut instant = motion.placed(&z);
-                motion.follow(&poses, &mut instant);
-                instant.z
             }
         }
     }

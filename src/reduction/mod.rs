@@ -14,6 +14,7 @@
 //! where P′_l is the derivative of P along l. Over an interval P = diag(P_k, P_{k+1}), so the two-point structure in
 //! time survives, and the rows are the rows P(q_k)ᵀ(…) = 0 of DMOCC.
 
+mod charts;
 mod instant;
 mod motion;
 mod pattern;

@@ -151,50 +151,8 @@ impl Motion {
     }
 
     /// Number of charts, whose quaternions follow the unknowns in the list of an instant.
-    fn charts(&self) -> usize {
+    pub(super) fn charts(&self) -> usize {
         self.tree.as_ref().map_or(0, Tree::charts)
-    }
-
-    /// Coordinates that turn behind a chart.
-    pub fn charted(&self) -> Vec<[usize; 3]> {
-        self.tree.as_ref().map_or_else(Vec::new, Tree::charted)
-    }
-
-    /// Moves the charts of a placed instant to where its bodies are: nothing moves, and the coordinates that turn behind a
-    /// chart become zero. Returns whether there are charts.
-    pub fn recentre(&self, instant: &mut Instant) -> bool {
-        let Some(tree) = self.tree.as_ref().filter(|tree| tree.charts() > 0) else {
-            return false;
-        };
-        let (unknowns, charts) = instant.z.split_at_mut(self.unknowns());
-        tree.recentre(unknowns, charts);
-        self.place(instant);
-        true
-    }
-
-    /// Lets the joints with a chart follow given poses of the bodies: their charts and slides, the turns behind them zero.
-    pub fn follow(&self, poses: &[Pose], instant: &mut Instant) {
-        let unknowns = self.unknowns();
-        if let Some(tree) = &self.tree {
-            let (u, charts) = instant.z.split_at_mut(unknowns);
-            tree.follow(poses, u, charts);
-        }
-        self.place(instant);
-    }
-
-    /// Puts the charts of a list of coordinates, multipliers and charts at the mean of others, by weights whose sum is one; the
-    /// coordinates that turn behind them become zero, others stay.
-    pub fn mean_of_charts(&self, parts: &[(f64, &[f64])], z: &mut [f64]) {
-        let Some(tree) = self.tree.as_ref().filter(|tree| tree.charts() > 0) else {
-            return;
-        };
-        let split = parts.iter().map(|&(weight, z)| {
-            let (unknowns, charts) = z.split_at(self.unknowns());
-            (weight, [unknowns, charts])
-        });
-        let parts: Vec<_> = split.collect();
-        let (unknowns, charts) = z.split_at_mut(self.unknowns());
-        tree.mean(&parts, unknowns, charts);
     }
 
     /// An instant placed at coordinates, and multipliers and charts where they are given.

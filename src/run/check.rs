@@ -154,6 +154,7 @@ fn as_control(task: Task, system: &System) -> Control {
     let at_reference = || State::JointAngles {
         angles: BTreeMap::new(),
         rates: BTreeMap::new(),
+        velocities: Default::default(),
     };
     let without_goal = |start, step, voltages, coordinates: Option<Coordinates>| Control {
         duration: Duration::Given(step * INTERVALS as f64),

@@ -12,7 +12,7 @@ const NO_WAY: f64 = 1e-3;
 /// How far an instant is from another, or how long a way is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Distance {
-    /// Greatest distance of a joint angle in rad.
+    /// Greatest distance of a joint angle, or of the orientation of a body that joint angles do not tell, in rad.
     pub angle: f64,
     /// Greatest distance of a joint displacement, of the centre of a body or of a node in m.
     pub length: f64,
@@ -115,7 +115,8 @@ fn metres(model: &Model) -> f64 {
     model.length() / 1e3
 }
 
-/// Calls `visit` with number, kind and distance (rad or m) of each joint, body and coordinate of a node.
+/// Calls `visit` with number, kind and distance (rad or m) of each joint, body and coordinate of a node; of a body also the angle
+/// between its orientations, where joint coordinates do not tell all.
 fn each(
     model: &Model,
     motion: &Solved,
@@ -133,8 +134,14 @@ fn each(
             _ => next(Kind::Angle, (a - b).abs()),
         }
     }
+    let turns_freely = model.turns_freely();
     for (a, b) in motion.poses[k].iter().zip(&other.poses[l]) {
         next(Kind::Length, (a.centre - b.centre).norm() / 1e3);
+        if turns_freely {
+            // ‖A − B‖ = 2√2 sin(θ/2), exact where both are nearly the same.
+            let half = (a.directors - b.directors).norm() / 8.0_f64.sqrt();
+            next(Kind::Angle, 2.0 * half.min(1.0).asin());
+        }
     }
     let nodes = model.action.motion.of_bodies..model.coordinate_count();
     for (a, b) in motion.z[k][nodes.clone()].iter().zip(&other.z[l][nodes]) {

@@ -123,7 +123,9 @@ impl RunError {
                 };
                 (*place, reason + hint)
             }
-            BoundaryError::Inconsistent { place, .. } | BoundaryError::NoLength { place, .. } => {
+            BoundaryError::Inconsistent { place, .. }
+            | BoundaryError::NoLength { place, .. }
+            | BoundaryError::Follows { place, .. } => {
                 let text = error.to_string();
                 let reason = text.strip_prefix(&format!("{place}: ")).unwrap_or(&text);
                 (*place, reason.to_owned())

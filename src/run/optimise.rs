@@ -7,8 +7,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::control::problem::{Control, Duration, Guess};
-use crate::control::{Boundary, Solved, Transcription, guess};
-use crate::dynamics::reversed_muscle;
+use crate::control::{Boundary, Initial, Solved, Transcription, guess};
+use crate::dynamics::{History, reversed_muscle};
 use crate::ipopt::{self, Iteration, OptionValue, Options, Solution, Start, Status, interrupt};
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
@@ -33,6 +33,10 @@ const RESAMPLED: Start = Start::Primal { mu_init: 1e-2 };
 /// An earlier solution that violates the equations of another grid or duration by less lies on the right bounds: smooth voltages
 /// violate them by 1e-6 to 1e-4, those that jump at other instants by 4e-4 to 4e-2.
 const FITS: f64 = 2e-4;
+
+/// A rotation that ends farther from its chart, in rad, is solved again with a chart where it ended; how often at most.
+const FAR: f64 = std::f64::consts::FRAC_PI_3;
+const CHARTS: usize = 4;
 
 /// What a solve may take, in place of what its problem says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -196,12 +200,28 @@ pub fn optimise(
         let options = Options {
             max_iterations: options.max_iterations.min(ITERATIONS),
             max_seconds: allowed.seconds.map(left),
-            ..options
+            ..options.clone()
         };
         let point = program.start(&initial);
         let second = solve(&mut program, &point, &options)?;
         restarted = second.status.is_solved().then_some(solution.status);
         solution = one_of_both(solution, second);
+    }
+    for _ in 0..CHARTS {
+        let far = recentred(&model, &program.decode(&solution.x));
+        let Some(initial) = far.filter(|_| interrupt::stop().is_none()) else {
+            break;
+        };
+        phase("again, from where the first solution turned to");
+        program = Transcription::of_any(&model, &boundary, control, &initial);
+        let left = |limit: f64| (limit - began.elapsed().as_secs_f64()).max(0.0);
+        let options = Options {
+            max_seconds: allowed.seconds.map(left),
+            start: Start::PRIMAL,
+            ..options.clone()
+        };
+        let point = program.start(&initial);
+        solution = solve(&mut program, &point, &options)?;
     }
     drop(watch);
     let history = program.decode(&solution.x);
@@ -251,6 +271,28 @@ pub fn optimise(
         tested,
         restarted,
         active,
+    })
+}
+
+/// The motion with charts where its bodies are, where it ends far from those that it has.
+fn recentred(model: &Model, history: &History) -> Option<Initial> {
+    let motion = &model.action.motion;
+    let is_far = |z: &Vec<f64>| motion.way_from_charts(z) > FAR;
+    history.z.iter().any(is_far).then(|| {
+        let z = history.z.iter().map(|z| {
+            let mut instant = motion.placed(z);
+            motion.recentre(&mut instant);
+            instant.z
+        });
+        Initial {
+            history: History {
+                z: z.collect(),
+                ..history.clone()
+            },
+            h: history.times[1],
+            costates: None,
+            stretched: None,
+        }
     })
 }
 

@@ -2,7 +2,8 @@
 //!
 //! People read `time` (s), `configuration` (m, rad), `voltages` and, where a goal has any, the voltages that `hold` it (V);
 //! `state` holds coordinates and multipliers of the
-//! instants as the program has them (g, mm, ms, N), and `costates` the multipliers of the optimisation, unscaled. A file made
+//! instants as the program has them (g, mm, ms, N), in reduced coordinates then a quaternion (w, x, y, z) for each spherical or floating joint,
+//! behind which its three turns count, and `costates` the multipliers of the optimisation, unscaled. A file made
 //! by hand needs `time`, `voltages` and the coordinates of the joints, in `joints` or in `configuration.joints`.
 
 use std::collections::BTreeMap;
@@ -260,6 +261,17 @@ fn parse(path: &Path, model: &Model) -> Result<Solved, Reason> {
         Some(state) => {
             same_length("state.times_ms", state.times_ms.len(), instants, "instants")?;
             same_length("state.z", state.z.len(), instants, "instants")?;
+            let motion = &model.action.motion;
+            let is_wrong = |z: &Vec<f64>| !motion.has_unit_charts(z);
+            if let (true, Some(k)) = (
+                coordinates == model.coordinates,
+                state.z.iter().position(is_wrong),
+            ) {
+                return Err(Reason::NoSolution {
+                    place: format!("state.z[{k}]"),
+                    found: "a rotation whose quaternion does not have length one".to_owned(),
+                });
+            }
             (state.times_ms, state.multiplier_time_ms, state.z)
         }
         None => {

@@ -88,6 +88,7 @@ fn simulation(
         None => State::JointAngles {
             angles: BTreeMap::new(),
             rates: BTreeMap::new(),
+            velocities: Default::default(),
         },
     };
     let place = scope.key("voltages");

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
 use crate::control::problem::State;
+use crate::model::Graph;
 use crate::model::system::{JointKind, Source, System};
 use crate::scene::error::SceneError;
 use crate::scene::names::names;
@@ -11,7 +12,7 @@ use crate::scene::point::Point;
 use crate::scene::point::vector;
 use crate::scene::quantity::{Angle, AngularVelocity, Kind, Length, Measure, Quantity, Velocity};
 use crate::scene::scope::Scope;
-use crate::scene::spec_problem::{GoalSpec, StartSpec, VoltageMap};
+use crate::scene::spec_problem::{BodyVelocitySpec, GoalSpec, StartSpec, VoltageMap};
 
 /// What a name of a voltage may be, for messages.
 pub(crate) const A_SOURCE: &str = "the name of a muscle or of a driven electrode (block.electrode)";
@@ -54,7 +55,8 @@ pub(crate) fn start_state(
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<State, SceneError> {
-    let moving = spec.joint_angles.is_some() || spec.joint_rates.is_some();
+    let moving =
+        spec.joint_angles.is_some() || spec.joint_rates.is_some() || spec.body_velocities.is_some();
     let rest = spec.rest_at_voltages.as_ref().map(Some);
     match scope.exactly_one([
         ("rest_at_voltages", rest),
@@ -73,9 +75,52 @@ pub(crate) fn start_state(
             )?;
             let kinds = [AngularVelocity::kind(), Velocity::kind()];
             let rates = by_joint(&spec.joint_rates, &kinds, system, &scope.key("joint_rates"))?;
-            Ok(State::JointAngles { angles, rates })
+            let place = scope.key("body_velocities");
+            Ok(State::JointAngles {
+                angles,
+                rates,
+                velocities: velocities(&spec.body_velocities, system, &place)?,
+            })
         }
     }
+}
+
+/// Velocities at the start of bodies that joints leave free to have them.
+fn velocities(
+    map: &Option<BTreeMap<String, BodyVelocitySpec>>,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BTreeMap<usize, [Vector3<f64>; 2]>, SceneError> {
+    let bodies = names(&system.bodies, |body| &body.name);
+    let (floating, turning) = Graph::new(system).movable(system);
+    let mut velocities = BTreeMap::new();
+    for (name, spec) in map.iter().flatten() {
+        let place = scope.key(name);
+        let body = place.find(name, &bodies, "the name of a body")?;
+        if !floating.contains(&body) && !turning.contains(&body) {
+            let found = format!("{name:?}, whose motion follows from its joints");
+            let free = floating
+                .iter()
+                .chain(&turning)
+                .map(|&b| format!("{:?}", bodies[b]));
+            let free: Vec<String> = free.collect();
+            let expected = match free.is_empty() {
+                true => "\"joint_rates\", as no body is free".to_owned(),
+                false => format!("one of {}, and \"joint_rates\" of others", free.join(", ")),
+            };
+            return Err(place.wrong(found, expected));
+        }
+        if spec.linear.is_some() && !floating.contains(&body) {
+            let found = format!("a linear velocity of {name:?}, which a spherical joint holds");
+            return Err(place
+                .key("linear")
+                .wrong(found, "its angular velocity alone"));
+        }
+        let linear = spec.linear.as_ref().map_or_else(Vector3::zeros, vector);
+        let angular = spec.angular.as_ref().map_or_else(Vector3::zeros, vector);
+        velocities.insert(body, [linear, angular]);
+    }
+    Ok(velocities)
 }
 
 /// A state at the end.
@@ -119,8 +164,11 @@ pub(crate) fn goal_state(
     if angles.is_empty() {
         return Err(scope.wrong("no joint", "the coordinate of a joint or more"));
     }
-    let rates = BTreeMap::new();
-    Ok(State::JointAngles { angles, rates })
+    Ok(State::JointAngles {
+        angles,
+        rates: BTreeMap::new(),
+        velocities: BTreeMap::new(),
+    })
 }
 
 fn marker_goals(

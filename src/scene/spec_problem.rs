@@ -11,7 +11,9 @@ use crate::control::problem::{Hold, Rest};
 use crate::dynamics::Newton;
 use crate::scene::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::scene::point::Point;
-use crate::scene::quantity::{JointCoordinate, JointRate, Quantity, Time, Voltage};
+use crate::scene::quantity::{
+    AngularVelocity, JointCoordinate, JointRate, Quantity, Time, Velocity, Voltage,
+};
 use crate::scene::spec_integrator::IntegratorSpec;
 use crate::scene::spec_limits::LimitSpec;
 use crate::scene::spec_scene::SceneSpec;
@@ -241,6 +243,22 @@ pub struct StartSpec {
     /// Rates of joint coordinates by joint, SI unit rad/s or m/s; 0 where not named.
     #[serde(default)]
     pub joint_rates: Option<BTreeMap<String, Quantity<JointRate>>>,
+    /// Velocities by body, of bodies that are free or hang on a spherical or floating joint; with what the joints before them do where not
+    /// named.
+    #[serde(default)]
+    pub body_velocities: Option<BTreeMap<String, BodyVelocitySpec>>,
+}
+
+/// The velocity of a body at the start, in the ground frame.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BodyVelocitySpec {
+    /// Velocity of the centre of mass, SI unit m/s; 0 where not written. On a spherical joint it follows from `angular`.
+    #[serde(default)]
+    pub linear: Option<[Quantity<Velocity>; 3]>,
+    /// Angular velocity, SI unit rad/s; 0 where not written.
+    #[serde(default)]
+    pub angular: Option<[Quantity<AngularVelocity>; 3]>,
 }
 
 /// A state at the end, at rest: exactly one of the three.

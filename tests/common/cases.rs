@@ -73,6 +73,7 @@ pub fn joints(list: &[(usize, f64)]) -> State {
     State::JointAngles {
         angles: list.iter().copied().collect(),
         rates: BTreeMap::new(),
+        velocities: Default::default(),
     }
 }
 

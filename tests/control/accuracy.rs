@@ -46,6 +46,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
     let rest_at = |angle: f64| State::JointAngles {
         angles: BTreeMap::from([(0, angle)]),
         rates: BTreeMap::new(),
+        velocities: Default::default(),
     };
     let problem = Control {
         duration: Duration::Given(TIME),
@@ -277,6 +278,7 @@ fn swing(step: f64) -> Simulation {
         start: State::JointAngles {
             angles: BTreeMap::new(),
             rates: BTreeMap::new(),
+            velocities: Default::default(),
         },
         voltages: Voltages::Constant(Vec::new()),
         coordinates: None,

@@ -45,6 +45,7 @@ fn optimum(
     let rest_at = |angle: f64| State::JointAngles {
         angles: BTreeMap::from([(0, angle)]),
         rates: BTreeMap::new(),
+        velocities: Default::default(),
     };
     let problem = Control {
         duration: Duration::Given(time),

@@ -368,7 +368,7 @@ fn simulation_and_solution_are_checked() {
             solution: Some(folder.path().join("solution.json")),
         }
     );
-    let State::JointAngles { angles, rates } = simulation.start else {
+    let State::JointAngles { angles, rates, .. } = simulation.start else {
         panic!("joint angles")
     };
     assert!(angles.is_empty());

@@ -5,14 +5,18 @@ use crate::common::random::Random;
 use crate::common::{
     at_reference, bare, body, column, columns, distance, joint, motion, placed, richardson, trunk,
 };
-use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use proboscis::control::problem::Duration;
 use proboscis::control::{Boundary, Transcription, guess};
 use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::dynamics::{History, Integrator, Solving, Start, observations, simulate_by};
 use proboscis::model::system::{JointKind, System};
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::differences;
+use proboscis::run::{Allowed, Iterate, optimise};
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
+use std::path::Path;
 
 const BOTH: [Coordinates; 2] = [Coordinates::Reduced, Coordinates::Redundant];
 
@@ -148,6 +152,136 @@ fn both(
     let [a, b] = [0, 1].map(|i| Trajectory::from_history(&runs[i].0, &runs[i].1));
     let apart = distance(&a, &b, runs[0].0.length());
     (runs, apart)
+}
+
+#[test]
+fn velocities_of_bodies_are_rates_of_coordinates() {
+    let mut system = satellite();
+    // A ball between segments, one before the other in the list of bodies, and a hinge in between.
+    system.gravity = None;
+    let (linear, angular) = (
+        Vector3::new(0.02, -0.01, 0.03),
+        Vector3::new(0.4, -0.2, 0.1),
+    );
+    let other = Vector3::new(-0.3, 0.1, 0.5);
+    let velocities = BTreeMap::from([(0, [linear, angular]), (2, [Vector3::zeros(), other])]);
+    for coordinates in BOTH {
+        let model = Model::new(system.clone(), Some(coordinates), 1.0, &[]).unwrap();
+        let none = vec![0.0; 2];
+        let rates = model.rates_at(&none, &none, &velocities).unwrap();
+        let z = at_reference(&model);
+        let by_rates = Start::with_rates(&model, z.clone(), &rates);
+        // The second segment moves like the first; the third turns about the ball between both.
+        let centre = |b: usize| system.bodies[b].centre;
+        let moved = |at: &Vector3<f64>| linear + angular.cross(&(at - centre(0)));
+        let ball = system.joints[1].at;
+        let twists = [
+            [linear, angular],
+            [moved(&centre(1)), angular],
+            [moved(&ball) + other.cross(&(centre(2) - ball)), other],
+        ];
+        let by_twists = Start::with_velocities(&model, z, &twists);
+        let size = by_twists
+            .momentum
+            .iter()
+            .fold(0.0_f64, |m, p| m.max(p.abs()));
+        for (a, b) in by_rates.momentum.iter().zip(&by_twists.momentum) {
+            assert!((a - b).abs() < 1e-12 * size, "{a} {b} of {size}");
+        }
+        assert!(size > 1.0);
+        // The second segment hangs on a hinge.
+        let wrong = BTreeMap::from([(1, [linear, angular])]);
+        assert_eq!(model.rates_at(&none, &none, &wrong), Err(1));
+    }
+}
+
+#[test]
+fn charts_are_exchanged_and_the_configuration_stays() {
+    for system in [ball(), satellite()] {
+        let model = Model::new(system, None, 1.0, &[]).unwrap();
+        let motion = &model.action.motion;
+        let mut random = Random(3);
+        let (z, other) = (anywhere(&model, &mut random), anywhere(&model, &mut random));
+        let mut taken = z.clone();
+        motion.take_charts(&other, &mut taken);
+        let mut wrong = taken.clone();
+        wrong[model.coordinate_count()] += 0.1;
+        assert!(motion.has_unit_charts(&taken) && !motion.has_unit_charts(&wrong));
+        assert_eq!(
+            taken[model.coordinate_count()..],
+            other[model.coordinate_count()..]
+        );
+        assert!(motion.way_from_charts(&taken) > 1.0);
+        let (a, b) = (placed(&model, &z), placed(&model, &taken));
+        for (a, b) in a.x.iter().zip(&b.x) {
+            assert!((a - b).amax() < 1e-12 * 300.0);
+        }
+        // Half way between two configurations the rotation has half of the angle.
+        let mut mean = z.clone();
+        motion.mean_of_charts(&[(0.5, &z), (0.5, &other)], &mut mean);
+        let [from, half, to] = [&z, &mean, &other].map(|z| {
+            let body = model.system.bodies.len() - 1;
+            let joint = model.poses(&placed(&model, z));
+            let parent = joint[body.saturating_sub(1)].directors;
+            (joint[0].directors, parent.tr_mul(&joint[body].directors))
+        });
+        for [a, b, c] in [[from.0, half.0, to.0]] {
+            let angle = |a: &Matrix3<f64>, b: &Matrix3<f64>| {
+                Rotation3::from_matrix_unchecked(a.tr_mul(b)).angle()
+            };
+            let whole = angle(&a, &c);
+            assert!((angle(&a, &b) - 0.5 * whole).abs() < 1e-9 && whole > 0.5);
+            assert!((angle(&b, &c) - 0.5 * whole).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn a_satellite_turns_by_bending_its_trunk_in_both_coordinates() {
+    let mut system = trunk(3);
+    system.joints.remove(0);
+    system.muscles.drain(..2);
+    let intervals = 8;
+    let mut problem = control(&system, intervals);
+    problem.duration = Duration::Given(200.0);
+    problem.start = joints(&[]);
+    problem.goal = joints(&[(0, 0.3), (1, -0.2)]);
+    problem.solver.tolerance = 1e-9;
+    let optima = BOTH.map(|coordinates| {
+        problem.coordinates = Some(coordinates);
+        let nothing = &mut |_: &Iterate<'_>| ControlFlow::Continue(());
+        let file = Path::new("p.json");
+        let found = optimise(file, &system, &problem, None, Allowed::default(), nothing);
+        let found = found.unwrap();
+        assert!(found.solution.status.is_solved(), "{}", found.word());
+        let ends = [0, intervals].map(|k| found.motion.poses[k][0].directors);
+        let turned = Rotation3::from_matrix_unchecked(ends[0].tr_mul(&ends[1])).angle();
+        assert!(turned > 0.05, "{turned}");
+        // A solution starts a solve in either coordinates.
+        for other in BOTH {
+            problem.coordinates = Some(other);
+            let (model, boundary) = Boundary::resolve(&system, &problem, 25.0).unwrap();
+            let initial = guess(&model, &boundary, &problem, 25.0, Some(&found.motion));
+            let track = Trajectory::from_history(&model, &initial.history);
+            for (a, b) in track
+                .poses
+                .iter()
+                .flatten()
+                .zip(found.motion.poses.iter().flatten())
+            {
+                assert!((a.centre - b.centre).amax() < 1e-9);
+                assert!((a.directors - b.directors).amax() < 1e-10);
+            }
+        }
+        (found.solution.objective, found.motion)
+    });
+    let [(a, reduced), (b, redundant)] = &optima;
+    println!("objectives {a} {b}");
+    assert!((a - b).abs() < 1e-7 * a.abs() && a.abs() > 1e-3);
+    let (last, other) = (&reduced.poses[intervals], &redundant.poses[intervals]);
+    for (a, b) in last.iter().zip(other) {
+        assert!((a.directors - b.directors).amax() < 1e-5);
+    }
 }
 
 #[test]

@@ -373,6 +373,7 @@ fn what_nothing_moves_is_not_solved_for() {
             t.start = State::JointAngles {
                 angles: Default::default(),
                 rates: [(4, 1e-3)].into(),
+                velocities: Default::default(),
             };
         };
         assert_eq!(count(&rates), 5);

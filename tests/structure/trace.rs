@@ -238,6 +238,7 @@ fn a_limit_has_rows_where_something_is_open() {
     let given = |joints: &[usize]| State::JointAngles {
         angles: joints.iter().map(|&j| (j, 0.01)).collect(),
         rates: std::collections::BTreeMap::new(),
+        velocities: Default::default(),
     };
     base.goal = given(&[0, 1]);
     let stretch = |muscle: usize| Limit::Stretch {

@@ -6,6 +6,7 @@ use crate::control::transcription::{KILOVOLT, Placed, Transcription};
 use crate::control::unknowns::Variable;
 use crate::dynamics::History;
 use crate::ipopt;
+use crate::reduction::Instant;
 
 /// Tells the motion of a point: what is given with what the variables are.
 #[derive(Clone, Debug)]
@@ -41,8 +42,15 @@ impl Decoder {
 impl Transcription<'_> {
     /// The variables of a motion with interval length h (ms).
     pub fn encode(&self, history: &History, h: f64) -> Vec<f64> {
+        let motion = &self.model.action.motion;
+        let here = |(z, instant): (&Vec<f64>, &Instant)| {
+            let mut z = z.clone();
+            motion.take_charts(&instant.z, &mut z);
+            z
+        };
+        let z: Vec<_> = history.z.iter().zip(&self.instants).map(here).collect();
         let value = |variable: &Variable| match *variable {
-            Variable::Unknown { k, i } => history.z[k][i],
+            Variable::Unknown { k, i } => z[k][i],
             Variable::Scalar { k, s } => history.scalars[k][s],
             Variable::Horizon => h,
         };

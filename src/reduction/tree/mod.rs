@@ -120,6 +120,8 @@ pub(super) const LANES: usize = 4;
 #[derive(Clone, Debug)]
 pub struct Tree {
     links: Vec<Link>,
+    /// Number of bodies: the first frames.
+    bodies: usize,
     /// Link that carries each frame.
     carrier: Vec<usize>,
     /// The first of the three turns behind each chart.
@@ -138,8 +140,8 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// The tree of `links` and the vectors on it; each frame is the child of exactly one link.
-    pub fn new(links: Vec<Link>, vectors: &[MaterialVector]) -> Self {
+    /// The tree of `links` over `bodies` bodies and the frames between them, each the child of exactly one link, and the vectors on it.
+    pub fn new(links: Vec<Link>, bodies: usize, vectors: &[MaterialVector]) -> Self {
         let mut carrier = vec![usize::MAX; links.len()];
         for (j, link) in links.iter().enumerate() {
             carrier[link.child] = j;
@@ -157,6 +159,7 @@ impl Tree {
                 .filter(|&j| links[j].chart.is_some())
                 .collect(),
             links,
+            bodies,
             carrier,
             before,
             constants: Vec::new(),
@@ -277,6 +280,11 @@ impl Tree {
             .iter()
             .filter(|link| link.coordinate.is_some())
             .count()
+    }
+
+    /// The link that carries a body.
+    pub fn carrier(&self, body: usize) -> usize {
+        self.carrier[body]
     }
 
     /// Number of charts.

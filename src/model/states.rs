@@ -1,0 +1,93 @@
+//! Coordinates and rates of states that are given by joints, poses and velocities of bodies.
+
+use crate::kinematics::Pose;
+use crate::math::Vector;
+use crate::model::{Coordinates, Model};
+use crate::reduction::Instant;
+use std::collections::BTreeMap;
+
+impl Model {
+    /// Rates of director coordinates at joint coordinates with given rates.
+    pub fn redundant_rates(&self, joints: &[f64], rates: &[f64]) -> Vec<f64> {
+        let moving = self.moving(joints, rates, &BTreeMap::new());
+        let instant = moving.expect("no body is named");
+        instant.w.iter().flat_map(|w| [w.x, w.y, w.z]).collect()
+    }
+
+    /// Rates of the coordinates of the bodies at joint coordinates (by joint) with given rates, and velocities of the centre and
+    /// of rotation of some bodies of the scene, both in the ground frame.
+    ///
+    /// # Errors
+    /// The first of these bodies that is neither free nor on a spherical or floating joint: its motion follows from its joints.
+    pub fn rates_at(
+        &self,
+        joints: &[f64],
+        rates: &[f64],
+        velocities: &BTreeMap<usize, [Vector; 2]>,
+    ) -> Result<Vec<f64>, usize> {
+        let instant = self.moving(joints, rates, velocities)?;
+        Ok(match self.coordinates {
+            Coordinates::Reduced => instant.l[..self.action.motion.of_bodies].to_vec(),
+            Coordinates::Redundant => instant.w.iter().flat_map(|w| [w.x, w.y, w.z]).collect(),
+        })
+    }
+
+    /// Whether some body turns in ways that joint coordinates in files do not tell: it is free, or on a spherical joint.
+    pub fn turns_freely(&self) -> bool {
+        let mut joints = self.condensed.system.joints.iter();
+        !self.graph.free().is_empty() || joints.any(|joint| joint.kind.freedoms() > 1)
+    }
+
+    /// The tree in motion, with the vectors φ, d₁, d₂, d₃ of all bodies.
+    fn moving(
+        &self,
+        joints: &[f64],
+        rates: &[f64],
+        velocities: &BTreeMap<usize, [Vector; 2]>,
+    ) -> Result<Instant, usize> {
+        let [joints, rates] = [joints, rates].map(|values| self.condensed.by_joint(values));
+        let (motion, mut instant) =
+            self.graph
+                .moving(&self.condensed.system, &self.reference, &joints, &rates);
+        // A body before those that it carries.
+        let mut named: Vec<_> = velocities.iter().collect();
+        named.sort_by_key(|&(&body, _)| {
+            self.condensed
+                .carrier(Some(body))
+                .map(|b| motion.place_in_tree(b))
+        });
+        for (&body, &[velocity, spin]) in named {
+            let poses = motion.poses(&instant, self.reference.len());
+            let all = self.condensed.poses(&poses, &self.system.bodies);
+            let kept = self.condensed.carrier(Some(body)).ok_or(body)?;
+            let arm = poses[kept].centre - all[body].centre;
+            let velocity = velocity + spin.cross(&arm);
+            if !motion.set_in_motion(kept, [velocity, spin], &mut instant) {
+                return Err(body);
+            }
+        }
+        Ok(instant)
+    }
+
+    /// Coordinates of an instant at given poses of the bodies of the scene and joint coordinates (by joint), as these are known
+    /// without whole turns; nodes at their reference places.
+    pub fn coordinates_of_poses(&self, poses: &[Pose], joints: &[f64]) -> Vec<f64> {
+        let z = self.coordinates_at(joints);
+        if self
+            .graph
+            .has_one_coordinate_a_joint(&self.condensed.system)
+        {
+            return z;
+        }
+        let poses = self.condensed.condense(poses, &self.reference);
+        let motion = &self.action.motion;
+        match &motion.tree {
+            None => self.coordinates_of(&poses),
+            Some(_) => {
+                let mut instant = motion.placed(&z);
+                motion.follow(&poses, &mut instant);
+                instant.z
+            }
+        }
+    }
+}
