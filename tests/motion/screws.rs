@@ -247,11 +247,14 @@ fn a_satellite_turns_by_bending_its_trunk_in_both_coordinates() {
     problem.start = joints(&[]);
     problem.goal = joints(&[(0, 0.3), (1, -0.2)]);
     problem.solver.tolerance = 1e-9;
+    // The second solve starts from the solution of the first, which is of other coordinates.
+    let mut earlier = None;
     let optima = BOTH.map(|coordinates| {
         problem.coordinates = Some(coordinates);
         let nothing = &mut |_: &Iterate<'_>| ControlFlow::Continue(());
         let file = Path::new("p.json");
-        let found = optimise(file, &system, &problem, None, Allowed::default(), nothing);
+        let before = earlier.as_ref();
+        let found = optimise(file, &system, &problem, before, Allowed::default(), nothing);
         let found = found.unwrap();
         assert!(found.solution.status.is_solved(), "{}", found.word());
         let ends = [0, intervals].map(|k| found.motion.poses[k][0].directors);
@@ -273,6 +276,7 @@ fn a_satellite_turns_by_bending_its_trunk_in_both_coordinates() {
                 assert!((a.directors - b.directors).amax() < 1e-10);
             }
         }
+        earlier = Some(found.motion.clone());
         (found.solution.objective, found.motion)
     });
     let [(a, reduced), (b, redundant)] = &optima;
