@@ -1,10 +1,13 @@
 //! The material law of an elastomer, passive or dielectric, and the energy of a hexahedron of it.
 
+use super::dispatch::{Task, dispatch};
+use super::dual::Dual;
+use super::lanes::Lanes;
 use super::law::{Field, Volume};
 use super::local::{Local, Output, Pair};
-use super::number::{Dual, Lanes, Task, dispatch};
 use super::shape::Shape;
-use super::variations::{State, Variations};
+use super::state::State;
+use super::variations::Variations;
 use crate::math::Vector;
 use pulp::Simd;
 

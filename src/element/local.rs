@@ -1,7 +1,7 @@
 //! Energy of one hexahedron with its first and second derivatives by the arguments of its nodes.
 
+use super::dual::Dual;
 use super::law::Field;
-use super::number::Dual;
 use crate::math::{Matrix, Vector};
 
 /// Energy W of one hexahedron with its derivatives: forces, stiffness, and their electric counterparts.

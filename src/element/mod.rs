@@ -18,16 +18,22 @@
 )]
 
 mod algebra;
+mod charged;
+mod dispatch;
+mod dual;
 mod elastomer;
 mod field_point;
 mod fields;
 mod kinematics;
+mod lanes;
 mod law;
 mod local;
 mod number;
 mod shape;
+mod state;
 mod variations;
 mod viscosity;
+mod viscous_local;
 
 pub use elastomer::Elastomer;
 pub use field_point::{FieldPoint, SpatialField};
@@ -35,4 +41,5 @@ pub use fields::Fields;
 pub use law::{Dielectric, Electric, Field, Passive, Volume};
 pub use local::Local;
 pub use shape::{Inverted, Shape};
-pub use viscosity::{Viscosity, ViscousContraction, ViscousLocal};
+pub use viscosity::Viscosity;
+pub use viscous_local::{ViscousContraction, ViscousLocal};

@@ -20,43 +20,13 @@
 //! A block is its symmetric part plus its skew part, α g_j⊗g_i + β g_i⊗g_j + d⊗e − e⊗d having the axial vector
 //! (β − α)/2 g_i × g_j + d × e.
 
-use super::algebra::{
-    Nine, Three, apply, apply_plain, cross, dot, dot_plain, scale, sums, transpose,
-};
+use super::algebra::{Nine, apply, apply_plain, cross, dot, dot_plain, scale, sums, transpose};
+use super::charged::Charged;
 use super::kinematics::{Kinematics, load, minus_gradient_of};
-use super::law::{Dielectric, Volume};
+use super::law::Volume;
 use super::local::Output;
 use super::number::{Points, Real};
-use super::shape::Shape;
-
-/// A law and the state at which it is evaluated.
-pub(super) struct State<'a, N: Points> {
-    pub(super) token: N::Token,
-    pub(super) shear_modulus: f64,
-    pub(super) lame_lambda: f64,
-    pub(super) volume: Volume,
-    pub(super) shape: &'a Shape,
-    pub(super) x: &'a [[N::Uniform; 3]; 8],
-    /// Absent at compile time for a passive law.
-    pub(super) electric: Option<(&'a Dielectric, &'a [N::Uniform; 8])>,
-}
-
-/// The electric field at the Gauss points.
-#[derive(Clone, Copy)]
-struct ElectricField<N> {
-    /// E.
-    reference: Three<N>,
-    /// e = F⁻ᵀE.
-    spatial: Three<N>,
-    /// ω = F⁻¹e.
-    pulled: Three<N>,
-    /// FE.
-    pushed: Three<N>,
-    /// κ = εJ.
-    kappa: N,
-    /// κ/2 e·e.
-    pressure: N,
-}
+use super::state::{ElectricField, State};
 
 /// Quantities at the Gauss points that energy, gradient and tangent share.
 #[expect(non_snake_case, reason = "notation of the law")]
@@ -250,7 +220,7 @@ impl<N: Points> Variations<N> {
         let mut charged = Charged::zero(token);
         let electric = match (&self.electric, state.electric) {
             (Some(field), Some((constants, _))) => {
-                charged.fill(self, state, field, constants, &g);
+                charged.fill((self.w, &self.F), state, field, constants, &g);
                 Some(&charged)
             }
             _ => None,
@@ -339,82 +309,6 @@ impl<N: Points> Variations<N> {
                 }
                 out.stiffness(i, j, block);
             }
-        }
-    }
-}
-
-/// Electric quantities of the nodes at the Gauss points.
-struct Charged<N: Points> {
-    /// 2 w c₁.
-    c1: N::Plain,
-    /// 2 w c₂.
-    c2: N::Plain,
-    /// w κ.
-    kappa: N,
-    e: Three<N>,
-    /// 2 w c₂ FE.
-    c2_pushed: Three<N>,
-    /// E·G_i.
-    along: [N; 8],
-    /// 2 w c₂ E·G_i.
-    c2_along: [N; 8],
-    /// e·g_i.
-    s: [N; 8],
-    /// w κ g_i.
-    flux: [[N; 3]; 8],
-    /// w κ g_i × e.
-    turned: [[N; 3]; 8],
-    /// F G_i.
-    pushed: [[N; 3]; 8],
-}
-
-#[expect(non_snake_case, reason = "notation of the law")]
-impl<N: Points> Charged<N> {
-    #[inline(always)]
-    fn zero(token: N::Token) -> Self {
-        let zero = N::constant(token, 0.0);
-        Self {
-            c1: N::Plain::constant(token, 0.0),
-            c2: N::Plain::constant(token, 0.0),
-            kappa: zero,
-            e: [zero; 3],
-            c2_pushed: [zero; 3],
-            along: [zero; 8],
-            c2_along: [zero; 8],
-            s: [zero; 8],
-            flux: [[zero; 3]; 8],
-            turned: [[zero; 3]; 8],
-            pushed: [[zero; 3]; 8],
-        }
-    }
-
-    /// In place: a copy of this much would be felt.
-    #[inline(always)]
-    fn fill(
-        &mut self,
-        point: &Variations<N>,
-        state: &State<'_, N>,
-        field: &ElectricField<N>,
-        constants: &Dielectric,
-        g: &[[N; 3]; 8],
-    ) {
-        let token = state.token;
-        let w = N::Plain::load(token, state.shape.weights());
-        self.c1 = w.scaled(2.0 * constants.c1);
-        self.c2 = w.scaled(2.0 * constants.c2);
-        self.kappa = field.kappa.times(point.w);
-        self.e = field.spatial;
-        for a in 0..3 {
-            self.c2_pushed[a] = field.pushed[a].times(self.c2);
-        }
-        for (i, gradient) in state.shape.gradients().iter().enumerate() {
-            let G = load::<N>(token, gradient);
-            self.along[i] = dot_plain(field.reference, G);
-            self.c2_along[i] = self.along[i].times(self.c2);
-            self.s[i] = dot(field.spatial, g[i]);
-            self.flux[i] = scale(g[i], self.kappa);
-            self.turned[i] = cross(self.flux[i], field.spatial);
-            self.pushed[i] = apply_plain(&point.F, G);
         }
     }
 }

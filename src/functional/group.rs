@@ -9,9 +9,8 @@
 //! ```
 
 use crate::energy::Energy;
-use crate::functional::{
-    Couplings, Effect, Frame, Horizon, Kind, Level, Measure, Output, Part, Stencil, VectorArg,
-};
+use crate::functional::slots::{NONE, Slots};
+use crate::functional::{Couplings, Frame, Horizon, Level, Output, Part, Stencil, VectorArg};
 use crate::math::{Jet, Matrix, Vector};
 use nalgebra::SVector;
 use std::fmt;
@@ -29,42 +28,17 @@ pub struct Element<E, const NV: usize, const NS: usize> {
 
 /// Elements sharing one formula of `M = 3 NV + NS` arguments.
 pub struct Group<E, const M: usize, const NV: usize, const NS: usize> {
-    name: String,
-    scale: f64,
-    site: Site,
-    elements: Vec<Element<E, NV, NS>>,
+    pub(super) name: String,
+    pub(super) scale: f64,
+    pub(super) site: Site,
+    pub(super) elements: Vec<Element<E, NV, NS>>,
 }
 
 /// Where a group lives in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Site {
+pub(super) enum Site {
     Intervals,
     Instants,
-}
-
-/// No slot.
-const NONE: u32 = u32::MAX;
-
-/// The slots of one element: pairs of vectors, then of vectors and scalars, then of scalars.
-#[derive(Clone, Copy)]
-struct Slots<'a, const NV: usize, const NS: usize>(&'a [u32]);
-
-impl<const NV: usize, const NS: usize> Slots<'_, NV, NS> {
-    const COUNT: usize = NV * NV + NV * NS + NS * NS;
-
-    fn vectors(self, i: usize, j: usize) -> Option<usize> {
-        let slot = self.0[NV * i + j];
-        (slot != NONE).then_some(slot as usize)
-    }
-
-    fn mixed(self, i: usize, s: usize) -> usize {
-        self.0[NV * NV + NS * i + s] as usize
-    }
-
-    fn scalars(self, s: usize, t: usize) -> Option<usize> {
-        let slot = self.0[NV * NV + NV * NS + NS * s + t];
-        (slot != NONE).then_some(slot as usize)
-    }
 }
 
 impl<E, const M: usize, const NV: usize, const NS: usize> fmt::Debug for Group<E, M, NV, NS> {
@@ -94,7 +68,7 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
         }
     }
 
-    fn couple_element(
+    pub(super) fn couple_element(
         &self,
         element: &Element<E, NV, NS>,
         couplings: &mut Couplings,
@@ -129,7 +103,7 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
     }
 
     /// The elements with their slots.
-    fn with_slots<'a>(
+    pub(super) fn with_slots<'a>(
         &'a self,
         slots: &'a [u32],
     ) -> impl Iterator<Item = (&'a Element<E, NV, NS>, Slots<'a, NV, NS>)> {
@@ -151,7 +125,7 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
 
     /// Arguments at the frame and their rates along its direction; a virtual displacement takes the rate as value.
     #[inline]
-    fn arguments(
+    pub(super) fn arguments(
         element: &Element<E, NV, NS>,
         frame: &Frame<'_>,
         level: Level,
@@ -190,7 +164,7 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
 
     /// Adds `c · gradient` of the arguments that pass `keep` to the forces and rows.
     #[inline]
-    fn add_gradient(
+    pub(super) fn add_gradient(
         element: &Element<E, NV, NS>,
         g: &SVector<f64, M>,
         c: f64,
@@ -217,7 +191,7 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
 
     /// Adds `c · hessian` between the vector arguments that pass `keep`, and with and between scalars.
     #[inline]
-    fn add_hessian(
+    pub(super) fn add_hessian(
         (element, slots): (&Element<E, NV, NS>, Slots<'_, NV, NS>),
         hessian: &nalgebra::SMatrix<f64, M, M>,
         c: f64,
@@ -274,7 +248,7 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
         rates
     }
 
-    fn evaluate_element<const ORDER: usize>(
+    pub(super) fn evaluate_element<const ORDER: usize>(
         &self,
         (element, slots): (&Element<E, NV, NS>, Slots<'_, NV, NS>),
         level: Level,
@@ -368,151 +342,6 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
             Self::add_gradient(element, &border, self.scale, h, |_| true, forces, rows);
             part.horizon +=
                 self.scale * (v.dot(&(jet.hessian_w * v)) + 2.0 * vw.dot(&(jet.hessian * v))) / h;
-        }
-    }
-}
-
-impl<E, const M: usize, const NV: usize, const NS: usize> Effect for Group<E, M, NV, NS>
-where
-    E: Energy<M>,
-{
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn elements(&self) -> usize {
-        self.elements.len()
-    }
-
-    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
-        for element in &self.elements {
-            self.couple_element(element, couplings, slots);
-        }
-    }
-
-    fn kind(&self) -> Kind {
-        match (self.site, E::VIRTUAL) {
-            (Site::Instants, _) => Kind::Constraint,
-            (Site::Intervals, 0) if self.scale > 0.0 => Kind::Kinetic,
-            (Site::Intervals, 0) => Kind::Potential,
-            (Site::Intervals, _) => Kind::VirtualWork,
-        }
-    }
-
-    fn energy(&self, frame: &Frame<'_>) -> f64 {
-        let energy = |element: &Element<E, NV, NS>| {
-            let (mut p, w) = Self::arguments(element, frame, Level::Gradient);
-            for (i, arg) in element.vectors.iter().enumerate().take(E::VIRTUAL) {
-                let step = frame.vectors[1][arg.vector] - frame.vectors[0][arg.vector];
-                p.fixed_rows_mut::<3>(3 * i).copy_from(&step);
-            }
-            element.energy.jet::<1>(&p, &w).value
-        };
-        self.elements.iter().map(energy).sum()
-    }
-
-    fn momentum(&self, x: &[Vector], v: &[Vector], out: &mut [Vector]) {
-        if self.kind() != Kind::Kinetic {
-            return;
-        }
-        for element in &self.elements {
-            let mut p = SVector::<f64, M>::zeros();
-            for (i, arg) in element.vectors.iter().enumerate() {
-                let value = if arg.stencil == Stencil::Rate {
-                    v[arg.vector]
-                } else {
-                    x[arg.vector]
-                };
-                p.fixed_rows_mut::<3>(3 * i).copy_from(&value);
-            }
-            let gradient = element.energy.jet::<1>(&p, &SVector::zeros()).gradient;
-            for (i, arg) in element
-                .vectors
-                .iter()
-                .enumerate()
-                .filter(|(_, arg)| arg.stencil == Stencil::Rate)
-            {
-                out[arg.vector] += gradient.fixed_rows::<3>(3 * i) * self.scale;
-            }
-        }
-    }
-
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output) {
-        for pair in self.with_slots(slots) {
-            match (level, E::VIRTUAL) {
-                (Level::Gradient, _) => self.evaluate_element::<1>(pair, level, frame, out),
-                (Level::Third, 0) => self.evaluate_element::<3>(pair, level, frame, out),
-                _ => self.evaluate_element::<2>(pair, level, frame, out),
-            }
-        }
-    }
-}
-
-impl<E, const M: usize, const NV: usize, const NS: usize> Measure for Group<E, M, NV, NS>
-where
-    E: Energy<M>,
-{
-    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
-        Effect::couple(self, couplings, slots);
-    }
-
-    fn vectors(&self) -> Vec<usize> {
-        self.elements
-            .iter()
-            .flat_map(|e| e.vectors.iter().map(|v| v.vector))
-            .collect()
-    }
-
-    fn scalars(&self) -> Vec<usize> {
-        self.elements.iter().flat_map(|e| e.scalars).collect()
-    }
-
-    fn reads(&self, side: usize) -> bool {
-        let mut args = self.elements.iter().flat_map(|e| &e.vectors);
-        args.any(|arg| arg.stencil.reads(side))
-    }
-
-    fn value(&self, frame: &Frame<'_>) -> f64 {
-        let value = |element: &Element<E, NV, NS>| {
-            let (p, w) = Self::arguments(element, frame, Level::Gradient);
-            element.energy.jet::<1>(&p, &w).value
-        };
-        self.scale * self.elements.iter().map(value).sum::<f64>()
-    }
-
-    fn gradient(&self, frame: &Frame<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]) {
-        for element in &self.elements {
-            let (p, w) = Self::arguments(element, frame, Level::Gradient);
-            let jet = element.energy.jet::<1>(&p, &w);
-            Self::add_gradient(
-                element,
-                &jet.gradient,
-                self.scale,
-                frame.h,
-                |_| true,
-                forces,
-                rows,
-            );
-        }
-    }
-
-    fn add_weighted(&self, weight: f64, frame: &Frame<'_>, slots: &[u32], part: &mut Part) {
-        for (element, slots) in self.with_slots(slots) {
-            let (p, w) = Self::arguments(element, frame, Level::Gradient);
-            let jet = element.energy.jet::<2>(&p, &w);
-            let c = self.scale * weight;
-            Self::add_gradient(
-                element,
-                &jet.gradient,
-                c,
-                frame.h,
-                |_| true,
-                &mut part.forces,
-                &mut part.rows,
-            );
-            if E::DEGREE >= 2 {
-                Self::add_hessian((element, slots), &jet.hessian, c, frame, |_, _| true, part);
-            }
         }
     }
 }

@@ -1,12 +1,12 @@
 //! A study file read and checked: every point is a problem with its overrides, read before the first one runs.
 
+use crate::study::changes::Changes;
+use crate::study::sizes::sizes;
 use std::path::{Path, PathBuf};
 
-use serde_json::Value;
-
 use crate::control::problem::{Duration, Task};
-use crate::scene::spec_study::{ChangesSpec, MethodSpec, ReferenceSpec, RefineSpec, StudySpec};
-use crate::scene::{Document, Loaded, Place, SceneError, Scope, read_problem};
+use crate::scene::spec_study::{MethodSpec, ReferenceSpec, RefineSpec, StudySpec};
+use crate::scene::{Document, Loaded, SceneError, Scope, read_problem};
 use crate::study::measure::{self, Asked, Measure};
 
 /// Fewest timed runs of a point.
@@ -163,156 +163,6 @@ fn points(
     };
     let each = labels.into_iter().zip(sizes).enumerate();
     each.map(|(k, of)| point(k, of)).collect()
-}
-
-/// Overrides with the places in the study that they are from.
-#[derive(Default)]
-struct Changes<'a> {
-    words: Vec<String>,
-    from: Vec<(Place, Scope<'a>)>,
-}
-
-impl<'a> Changes<'a> {
-    fn extend(&mut self, set: &ChangesSpec, scope: &Scope<'a>) -> Result<(), SceneError> {
-        let mut each = set.iter();
-        each.try_for_each(|(key, value)| self.push(key, value, scope.key(key)))
-    }
-
-    fn push(&mut self, key: &str, value: &Value, scope: Scope<'a>) -> Result<(), SceneError> {
-        let Some(place) = Place::parse(key) else {
-            let expected = "a place in the problem, such as control.intervals";
-            return Err(scope.wrong(format!("the key {key:?}"), expected));
-        };
-        self.words.push(format!("{key}={}", word(value)));
-        self.from.push((place, scope));
-        Ok(())
-    }
-
-    /// A mistake of an override, told at its place in the study; any other stays where it is.
-    fn at_fault(&self, error: SceneError, file: &Path) -> SceneError {
-        if !error.is_overridden() {
-            return error;
-        }
-        let Some(wrong) = Place::parse(error.path()) else {
-            return error;
-        };
-        let in_scene = Place::parse(&format!("scene.{}", error.path())).unwrap_or_default();
-        let touches = |place: &Place| {
-            [&wrong, &in_scene]
-                .iter()
-                .any(|wrong| wrong.is_within(place) || place.is_within(wrong))
-        };
-        let Some((_, scope)) = self.from.iter().rev().find(|(place, _)| touches(place)) else {
-            return error;
-        };
-        let found = format!(
-            "{} for {} of {}",
-            error.found(),
-            error.path(),
-            file.display()
-        );
-        let nearest = error.nearest();
-        let hint = nearest.map_or_else(String::new, |name| format!("; did you mean {name:?}?"));
-        scope.wrong(found, format!("{}{hint}", error.expected()))
-    }
-}
-
-/// A value as it is typed after `path=`: a text without quotes, where that reads back as the same text.
-fn word(value: &Value) -> String {
-    match value {
-        Value::String(text)
-            if serde_json::from_str::<Value>(text).is_err() && text.trim() == text =>
-        {
-            text.clone()
-        }
-        value => value.to_string(),
-    }
-}
-
-/// What the points of a refinement are called, and lengths that fall towards zero.
-fn sizes(refine: &RefineSpec, scope: &Scope<'_>) -> Result<(Vec<String>, Vec<f64>), SceneError> {
-    let set = scope.key("set");
-    let Some((first, values)) = refine.set.iter().next() else {
-        return Err(set.wrong("no override", "1 override or more"));
-    };
-    if values.is_empty() {
-        return Err(set.key(first).wrong("an empty list", "1 value or more"));
-    }
-    for (key, others) in &refine.set {
-        if others.len() != values.len() {
-            let found = format!("{} values", others.len());
-            let expected = format!("{}, as many as of {first:?}", values.len());
-            return Err(set.key(key).wrong(found, expected));
-        }
-    }
-    let (labels, numbers, place) = match (&refine.sizes, refine.set.len()) {
-        (Some(sizes), _) => {
-            let place = scope.key("sizes");
-            if sizes.len() != values.len() {
-                let found = format!("{} sizes", sizes.len());
-                return Err(place.wrong(found, format!("{}, one per point", values.len())));
-            }
-            let labels = sizes.iter().map(|&size| label(size)).collect();
-            (labels, sizes.clone(), place)
-        }
-        (None, 1) => {
-            let place = set.key(first);
-            let read = of_one_unit(values);
-            let Some((labels, numbers)) = read else {
-                let found = format!("values of {first:?} that are neither numbers nor of one unit");
-                let expected = "\"sizes\", which tell how fine each point is";
-                return Err(scope.wrong(found, expected));
-            };
-            (labels, numbers, place)
-        }
-        (None, _) => {
-            let expected = "\"sizes\", which tell how fine each point is";
-            return Err(scope.wrong("several overrides that are refined together", expected));
-        }
-    };
-    if let Some(k) = numbers.iter().position(|size| *size <= 0.0) {
-        return Err(place
-            .index(k)
-            .wrong(numbers[k].to_string(), "a positive size"));
-    }
-    let grows = numbers.windows(2).all(|pair| pair[0] < pair[1]);
-    let falls = numbers.windows(2).all(|pair| pair[0] > pair[1]);
-    match (grows, falls) {
-        (true, _) => Ok((labels, numbers.iter().map(|n| n.recip()).collect())),
-        (_, true) => Ok((labels, numbers)),
-        _ => Err(place.wrong(
-            labels.join(", "),
-            "sizes that only grow, or only fall: the coarsest point first",
-        )),
-    }
-}
-
-/// A number as it is called: `0.001`, `1e-4`.
-fn label(number: f64) -> String {
-    match number.abs() {
-        x if x != 0.0 && !(1e-3..1e6).contains(&x) => format!("{number:e}"),
-        _ => number.to_string(),
-    }
-}
-
-/// Values as they are written, and as numbers, where these are of one unit.
-fn of_one_unit(values: &[Value]) -> Option<(Vec<String>, Vec<f64>)> {
-    let split = |value: &Value| -> Option<(String, f64, String)> {
-        let text = match value {
-            Value::Number(number) => label(number.as_f64()?),
-            Value::String(text) => text.clone(),
-            _ => return None,
-        };
-        let ends = (1..=text.len()).rev().filter(|&k| text.is_char_boundary(k));
-        let mut heads = ends.filter_map(|k| Some((k, text[..k].trim().parse::<f64>().ok()?)));
-        let (end, number) = heads.next()?;
-        let unit = text[end..].trim().to_owned();
-        Some((text, number, unit))
-    };
-    let parts = values.iter().map(split).collect::<Option<Vec<_>>>()?;
-    let same = parts.iter().all(|(_, _, unit)| *unit == parts[0].2);
-    let pair = |(text, number, _)| (text, number);
-    same.then(|| parts.into_iter().map(pair).unzip())
 }
 
 fn own(methods: &[Method], scope: &Scope<'_>) -> Result<Reference, SceneError> {

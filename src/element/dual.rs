@@ -1,0 +1,183 @@
+//! Numbers with their derivative along a direction.
+
+use super::number::{Points, Real};
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// A number `value` + ε `rate` with its derivative along a direction, ε² = 0.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Dual<T> {
+    pub(super) value: T,
+    pub(super) rate: T,
+}
+
+impl<T: Real> Add for Dual<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        Self {
+            value: self.value + b.value,
+            rate: self.rate + b.rate,
+        }
+    }
+}
+
+impl<T: Real> Sub for Dual<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        Self {
+            value: self.value - b.value,
+            rate: self.rate - b.rate,
+        }
+    }
+}
+
+impl<T: Real> Mul for Dual<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, b: Self) -> Self {
+        Self {
+            value: self.value * b.value,
+            rate: (self.value * b.rate).plus_product(self.rate, b.value),
+        }
+    }
+}
+
+impl<T: Real> Neg for Dual<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self {
+            value: -self.value,
+            rate: -self.rate,
+        }
+    }
+}
+
+impl<T: Real> Real for Dual<T> {
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        Self {
+            value: self.value.plus_product(a.value, b.value),
+            rate: self
+                .rate
+                .plus_product(a.value, b.rate)
+                .plus_product(a.rate, b.value),
+        }
+    }
+
+    #[inline(always)]
+    fn minus_product(self, a: Self, b: Self) -> Self {
+        Self {
+            value: self.value.minus_product(a.value, b.value),
+            rate: self
+                .rate
+                .minus_product(a.value, b.rate)
+                .minus_product(a.rate, b.value),
+        }
+    }
+
+    #[inline(always)]
+    fn scaled(self, c: f64) -> Self {
+        Self {
+            value: self.value.scaled(c),
+            rate: self.rate.scaled(c),
+        }
+    }
+
+    #[inline(always)]
+    fn shifted(self, c: f64) -> Self {
+        Self {
+            value: self.value.shifted(c),
+            rate: self.rate,
+        }
+    }
+
+    #[inline(always)]
+    fn recip(self) -> Self {
+        let value = self.value.recip();
+        Self {
+            value,
+            rate: -(self.rate * value * value),
+        }
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        Self {
+            value: self.value.ln(),
+            rate: self.rate * self.value.recip(),
+        }
+    }
+}
+
+impl<P: Points<Plain = P>> Points for Dual<P> {
+    type Token = P::Token;
+    type Plain = P;
+    type Uniform = Dual<P::Uniform>;
+
+    #[inline(always)]
+    fn splat(token: Self::Token, value: Self::Uniform) -> Self {
+        Self {
+            value: P::splat(token, value.value),
+            rate: P::splat(token, value.rate),
+        }
+    }
+
+    #[inline(always)]
+    fn constant(token: Self::Token, value: f64) -> Self {
+        Self {
+            value: P::constant(token, value),
+            rate: P::constant(token, 0.0),
+        }
+    }
+
+    #[inline(always)]
+    fn load(token: Self::Token, values: &[f64; 8]) -> P {
+        P::load(token, values)
+    }
+
+    #[inline(always)]
+    fn plus_plain(self, b: P) -> Self {
+        Self {
+            value: self.value + b,
+            rate: self.rate,
+        }
+    }
+
+    #[inline(always)]
+    fn times(self, b: P) -> Self {
+        Self {
+            value: self.value * b,
+            rate: self.rate * b,
+        }
+    }
+
+    #[inline(always)]
+    fn plus_times(self, a: Self, b: P) -> Self {
+        Self {
+            value: self.value.plus_product(a.value, b),
+            rate: self.rate.plus_product(a.rate, b),
+        }
+    }
+
+    #[inline(always)]
+    fn positive(self) -> Self {
+        Self {
+            value: self.value.positive(),
+            rate: self.rate,
+        }
+    }
+
+    #[inline(always)]
+    fn sum(self) -> Self::Uniform {
+        Dual {
+            value: self.value.sum(),
+            rate: self.rate.sum(),
+        }
+    }
+}

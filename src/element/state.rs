@@ -1,0 +1,35 @@
+//! A law and its state at the Gauss points, as the variations of the energy read them.
+
+use super::algebra::Three;
+use super::law::{Dielectric, Volume};
+use super::number::Points;
+use super::shape::Shape;
+
+/// A law and the state at which it is evaluated.
+pub(super) struct State<'a, N: Points> {
+    pub(super) token: N::Token,
+    pub(super) shear_modulus: f64,
+    pub(super) lame_lambda: f64,
+    pub(super) volume: Volume,
+    pub(super) shape: &'a Shape,
+    pub(super) x: &'a [[N::Uniform; 3]; 8],
+    /// Absent at compile time for a passive law.
+    pub(super) electric: Option<(&'a Dielectric, &'a [N::Uniform; 8])>,
+}
+
+/// The electric field at the Gauss points.
+#[derive(Clone, Copy)]
+pub(super) struct ElectricField<N> {
+    /// E.
+    pub(super) reference: Three<N>,
+    /// e = F⁻ᵀE.
+    pub(super) spatial: Three<N>,
+    /// ω = F⁻¹e.
+    pub(super) pulled: Three<N>,
+    /// FE.
+    pub(super) pushed: Three<N>,
+    /// κ = εJ.
+    pub(super) kappa: N,
+    /// κ/2 e·e.
+    pub(super) pressure: N,
+}

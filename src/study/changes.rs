@@ -1,0 +1,79 @@
+//! Overrides of a study, with the places that they are from.
+
+use crate::scene::spec_study::ChangesSpec;
+use crate::scene::{Place, SceneError, Scope};
+use serde_json::Value;
+use std::path::Path;
+
+/// Overrides with the places in the study that they are from.
+#[derive(Default)]
+pub(super) struct Changes<'a> {
+    pub(super) words: Vec<String>,
+    pub(super) from: Vec<(Place, Scope<'a>)>,
+}
+
+impl<'a> Changes<'a> {
+    pub(super) fn extend(
+        &mut self,
+        set: &ChangesSpec,
+        scope: &Scope<'a>,
+    ) -> Result<(), SceneError> {
+        let mut each = set.iter();
+        each.try_for_each(|(key, value)| self.push(key, value, scope.key(key)))
+    }
+
+    pub(super) fn push(
+        &mut self,
+        key: &str,
+        value: &Value,
+        scope: Scope<'a>,
+    ) -> Result<(), SceneError> {
+        let Some(place) = Place::parse(key) else {
+            let expected = "a place in the problem, such as control.intervals";
+            return Err(scope.wrong(format!("the key {key:?}"), expected));
+        };
+        self.words.push(format!("{key}={}", word(value)));
+        self.from.push((place, scope));
+        Ok(())
+    }
+
+    /// A mistake of an override, told at its place in the study; any other stays where it is.
+    pub(super) fn at_fault(&self, error: SceneError, file: &Path) -> SceneError {
+        if !error.is_overridden() {
+            return error;
+        }
+        let Some(wrong) = Place::parse(error.path()) else {
+            return error;
+        };
+        let in_scene = Place::parse(&format!("scene.{}", error.path())).unwrap_or_default();
+        let touches = |place: &Place| {
+            [&wrong, &in_scene]
+                .iter()
+                .any(|wrong| wrong.is_within(place) || place.is_within(wrong))
+        };
+        let Some((_, scope)) = self.from.iter().rev().find(|(place, _)| touches(place)) else {
+            return error;
+        };
+        let found = format!(
+            "{} for {} of {}",
+            error.found(),
+            error.path(),
+            file.display()
+        );
+        let nearest = error.nearest();
+        let hint = nearest.map_or_else(String::new, |name| format!("; did you mean {name:?}?"));
+        scope.wrong(found, format!("{}{hint}", error.expected()))
+    }
+}
+
+/// A value as it is typed after `path=`: a text without quotes, where that reads back as the same text.
+pub(super) fn word(value: &Value) -> String {
+    match value {
+        Value::String(text)
+            if serde_json::from_str::<Value>(text).is_err() && text.trim() == text =>
+        {
+            text.clone()
+        }
+        value => value.to_string(),
+    }
+}
