@@ -1,9 +1,9 @@
 //! `report.html`: one page that needs nothing else, with the motion in space to turn and to play.
 
-use crate::report::markup::escape;
 use serde_json::json;
 
 use crate::report::lines::Series;
+use crate::report::markup::escape;
 use crate::report::plotly::{Figure, Trace, layout, library, rgb};
 use crate::report::style::{self, Dash};
 use crate::report::{Run, animation, joints, voltages};

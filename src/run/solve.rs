@@ -1,7 +1,5 @@
 //! A control problem from file to folder: solved, re-simulated, and all that is told of it.
 
-use crate::run::folder::make_folder;
-use crate::run::words::counted;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
@@ -22,6 +20,7 @@ use crate::run::domain;
 use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::fields;
+use crate::run::folder::make_folder;
 use crate::run::grids::optimise_to;
 use crate::run::holding;
 use crate::run::infeasible::explain;
@@ -35,6 +34,7 @@ use crate::run::solution_file;
 use crate::run::summary::{Evaluations, MEASURED, PerInterval, Program, Seconds, Summary};
 use crate::run::unfinished::Unfinished;
 use crate::run::violations::Violation;
+use crate::run::words::counted;
 
 /// Length of the motion under constant voltages that is drawn beside the optimal one, in durations.
 const COMPARED: usize = 3;

@@ -8,11 +8,11 @@ use crate::model::Graph;
 use crate::model::system::{JointKind, Source, System};
 use crate::scene::error::SceneError;
 use crate::scene::names::names;
-use crate::scene::point::Point;
-use crate::scene::point::vector;
+use crate::scene::point::{Point, vector};
 use crate::scene::quantity::{Angle, AngularVelocity, Kind, Length, Measure, Quantity, Velocity};
 use crate::scene::scope::Scope;
-use crate::scene::spec_problem::{BodyVelocitySpec, GoalSpec, StartSpec, VoltageMap};
+use crate::scene::spec_states::{BodyVelocitySpec, GoalSpec, StartSpec};
+use crate::scene::spec_voltages::VoltageMap;
 
 /// What a name of a voltage may be, for messages.
 pub(crate) const A_SOURCE: &str = "the name of a muscle or of a driven electrode (block.electrode)";

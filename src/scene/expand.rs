@@ -1,9 +1,9 @@
 //! The chain shorthand, written out as bodies, joints, muscles and a marker.
 
-use crate::scene::point::{Point, PointSpec};
 use nalgebra::Vector3;
 
 use crate::scene::build_body::direction;
+use crate::scene::point::{Point, PointSpec};
 use crate::scene::quantity::Quantity;
 use crate::scene::spec_scene::{
     AxisSpec, BodySpec, ChainSpec, CylinderSpec, JointSpec, MarkerSpec, MuscleSpec, SceneSpec,

@@ -1,7 +1,7 @@
 //! Scene and problem files: what is written, read with units, checked, and turned into what it means.
 //!
 //! - `quantity`, `unit`: numbers with units, converted once to g, mm, ms, N, MPa, V.
-//! - `spec_scene`, `spec_solids`, `spec_problem`, `spec_integrator`, `spec_limits`, `either`: the serde types of the two files; `expand`: the chain shorthand.
+//! - `spec_scene`, `spec_solids`, `spec_problem`, `spec_simulate`, `spec_control`, `spec_states`, `spec_voltages`, `spec_coordinates`, `spec_integrator`, `spec_limits`, `either`: the serde types of the two files; `expand`: the chain shorthand.
 //! - `components`: kinds of parts of which each has one file for both.
 //! - `spec_study`: the serde types of a study of variants of a problem.
 //! - `document`, `locate`, `wording`, `error`, `set`: text, places in it, mistakes, overrides.
@@ -9,7 +9,10 @@
 //! - `build_*`, `graph`, `scope`, `solution`: from what is written to [`System`] and [`Task`].
 
 mod build_body;
+mod build_choice;
+mod build_control;
 mod build_electrodes;
+mod build_guess;
 mod build_limits;
 mod build_marker;
 mod build_material;
@@ -18,8 +21,10 @@ mod build_muscle;
 mod build_place;
 mod build_problem;
 mod build_scene;
+mod build_simulation;
 mod build_solid;
 mod build_state;
+mod build_voltages;
 pub mod components;
 mod document;
 mod either;
@@ -34,12 +39,17 @@ pub mod quantity;
 mod scope;
 mod set;
 mod solution;
+pub mod spec_control;
+pub mod spec_coordinates;
 pub mod spec_integrator;
 pub mod spec_limits;
 pub mod spec_problem;
 pub mod spec_scene;
+pub mod spec_simulate;
 pub mod spec_solids;
+pub mod spec_states;
 pub mod spec_study;
+pub mod spec_voltages;
 mod start;
 mod typed;
 mod unit;

@@ -10,7 +10,7 @@ use crate::scene::build_state::{driven, voltages};
 use crate::scene::document::Document;
 use crate::scene::error::SceneError;
 use crate::scene::scope::Scope;
-use crate::scene::spec_problem::TableSpec;
+use crate::scene::spec_voltages::TableSpec;
 
 /// What is read of a solution.
 #[derive(Debug, Deserialize)]

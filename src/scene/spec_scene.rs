@@ -1,11 +1,11 @@
 //! A scene as it is written: the serde types of the scene file.
 
-use crate::scene::point::{Point, PointSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 use crate::scene::components::{SpringSpec, TendonSpec};
+use crate::scene::point::{Point, PointSpec};
 use crate::scene::quantity::{
     Acceleration, Density, JointDamping, Length, Mass, MomentOfInertia, Permittivity, Quantity,
     Stress, Viscosity,

@@ -1,13 +1,13 @@
 //! A study file read and checked: every point is a problem with its overrides, read before the first one runs.
 
-use crate::study::changes::Changes;
-use crate::study::sizes::sizes;
 use std::path::{Path, PathBuf};
 
 use crate::control::problem::{Duration, Task};
 use crate::scene::spec_study::{MethodSpec, ReferenceSpec, RefineSpec, StudySpec};
 use crate::scene::{Document, Loaded, SceneError, Scope, read_problem};
+use crate::study::changes::Changes;
 use crate::study::measure::{self, Asked, Measure};
+use crate::study::sizes::sizes;
 
 /// Fewest timed runs of a point.
 const RUNS: usize = 5;

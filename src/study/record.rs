@@ -1,10 +1,8 @@
 //! `study.json`: every point with its input, its seconds and its errors, and what these are measured against; SI units.
 
-use crate::study::request::StudyRequest;
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
-
-use serde::Serialize;
 
 use crate::ipopt;
 use crate::report::atomic::{self, WriteError};
@@ -15,6 +13,7 @@ use crate::study::limit::{How, Limit};
 use crate::study::measure::{Asked, Measure};
 use crate::study::outcome::FINER;
 use crate::study::read::{Method, Point, Study};
+use crate::study::request::StudyRequest;
 use crate::study::schedule::{Done, Results};
 
 /// The file.
