@@ -13,28 +13,28 @@ use proboscis::nlp::Nlp;
 use std::ops::ControlFlow;
 
 /// What is known of a solved problem.
-struct Optimum {
-    model: Model,
-    boundary: Boundary,
-    history: History,
-    h: f64,
-    solution: Solution,
-    costates: Costates,
-    variables: Vec<Variable>,
-    rows: Vec<Row>,
+pub(crate) struct Optimum {
+    pub(crate) model: Model,
+    pub(crate) boundary: Boundary,
+    pub(crate) history: History,
+    pub(crate) h: f64,
+    pub(crate) solution: Solution,
+    pub(crate) costates: Costates,
+    pub(crate) variables: Vec<Variable>,
+    pub(crate) rows: Vec<Row>,
     /// Largest entries of the four conditions: stationarity, rows, complementarity, sign of multipliers.
-    conditions: [f64; 4],
+    pub(crate) conditions: [f64; 4],
     /// Largest multipliers of rows and of bounds.
-    multipliers: [f64; 2],
+    pub(crate) multipliers: [f64; 2],
 }
 
-fn guessed_step(control: &Control) -> f64 {
+pub(crate) fn guessed_step(control: &Control) -> f64 {
     let (Duration::Given(t) | Duration::Free { guess: t, .. }) = control.duration;
     t / control.intervals as f64
 }
 
 /// Solves a problem, from a motion where one is given.
-fn solve(
+pub(crate) fn solve(
     system: &System,
     control: &Control,
     from: Option<(&History, f64, Option<&Costates>)>,
@@ -129,7 +129,7 @@ fn karush_kuhn_tucker(
 }
 
 /// The reference problem of a name.
-fn problem(name: &str) -> (System, Control) {
+pub(crate) fn problem(name: &str) -> (System, Control) {
     let (segments, intervals, duration) = match name {
         "pair" | "pair_time" => (1, 20, 200.0),
         "trunk6_n80" => (6, 80, 600.0),
@@ -175,7 +175,7 @@ fn reference_motion(name: &str) -> (History, f64) {
     (history, 1e3 * file["control"]["h"].as_f64().unwrap())
 }
 
-fn cold(system: &System, control: &Control) -> Optimum {
+pub(crate) fn cold(system: &System, control: &Control) -> Optimum {
     let optimum = solve(system, control, None, Start::Cold);
     assert!(
         optimum.solution.status.is_solved(),
@@ -384,83 +384,4 @@ fn warm_starts_are_short() {
         again.solution.iterations.len() - 1
     );
     assert!(again.solution.status.is_solved() && again.solution.iterations.len() <= 9);
-}
-
-#[test]
-fn a_free_final_time_is_the_best_of_a_scan() {
-    // Effort and duration together: over fixed times the least effort plus the price of time has its minimum where the
-    // free time is.
-    let system = trunk(1);
-    let mut control = rest_to_rest(1, 20, 60.0);
-    control.objective = Objective {
-        effort: 1.0,
-        rate: 0.0,
-        duration: 1.5,
-    };
-    let fixed = |t: f64| {
-        let control = Control {
-            duration: Duration::Given(t),
-            ..control.clone()
-        };
-        cold(&system, &control).solution.objective
-    };
-    let mut free = control.clone();
-    free.duration = Duration::Free {
-        min: 12.0,
-        max: 300.0,
-        guess: 60.0,
-    };
-    let best = cold(&system, &free);
-    let (t, value) = (
-        best.history.times[control.intervals],
-        best.solution.objective,
-    );
-    println!("free time {t} ms, {value}");
-    assert!(t > 13.0 && t < 290.0);
-    let at = fixed(t);
-    assert!(
-        (at - value).abs() < 1e-7 * value,
-        "{at} at the same time against {value}"
-    );
-    for factor in [0.8, 0.9, 0.97, 1.03, 1.1, 1.4] {
-        let other = fixed(factor * t);
-        println!("{factor}: {other}");
-        assert!(
-            other > value * (1.0 + 1e-5),
-            "{other} at {factor} times the best time, {value} there"
-        );
-    }
-}
-
-#[test]
-fn the_shortest_time_is_where_feasible_times_begin() {
-    let (system, control) = problem("pair_time");
-    let shortest = cold(&system, &control);
-    let t = shortest.history.times[control.intervals];
-    let mut fixed = control.clone();
-    fixed.objective = Objective {
-        effort: 1.0,
-        ..Objective::default()
-    };
-    for (factor, feasible) in [(0.9, false), (0.999, false), (1.001, true), (1.1, true)] {
-        fixed.duration = Duration::Given(factor * t);
-        let h = guessed_step(&fixed);
-        let from = shortest.history.clone();
-        let found = solve(
-            &system,
-            &fixed,
-            Some((&from, h, None)),
-            Start::Primal { mu_init: 1e-3 },
-        );
-        println!(
-            "{factor}: {:?}, rows {:e}",
-            found.solution.status, found.conditions[1]
-        );
-        assert_eq!(
-            found.solution.status.is_solved(),
-            feasible,
-            "{factor}: {:?}",
-            found.solution.status
-        );
-    }
 }

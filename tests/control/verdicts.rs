@@ -1,13 +1,10 @@
 //! What an optimum is worth: guesses that change nothing that is asked, violations that are numbers, voltages that hold.
 
-use proboscis::control::problem::{Control, Duration, Guess, Task};
-use proboscis::control::{Boundary, Initial, Solved, guess};
+use proboscis::control::problem::{Control, Task};
 use proboscis::math::random::Random;
-use proboscis::model::{Coordinates, System};
+use proboscis::model::System;
 use proboscis::nlp::Bounds;
-use proboscis::run::{
-    Allowed, Cause, Request, Shown, Told, integrate, optimise, run, solution_file, solved,
-};
+use proboscis::run::{Allowed, Cause, Request, Shown, Told, integrate, optimise, run, solved};
 use proboscis::scene::read_problem;
 use serde_json::Value;
 use std::fs;
@@ -16,12 +13,12 @@ use std::path::{Path, PathBuf};
 use tempfile::tempdir;
 
 /// A kept problem.
-fn kept(name: &str) -> PathBuf {
+pub(crate) fn kept(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/{name}.json"))
 }
 
 /// Runs a problem with changes into a folder.
-fn told(input: &Path, set: &[&str], output: &Path) -> Told {
+pub(crate) fn told(input: &Path, set: &[&str], output: &Path) -> Told {
     let request = Request {
         input: input.to_owned(),
         set: set.iter().map(|&change| change.to_owned()).collect(),
@@ -32,7 +29,7 @@ fn told(input: &Path, set: &[&str], output: &Path) -> Told {
 }
 
 /// A command without a problem.
-fn request() -> Request {
+pub(crate) fn request() -> Request {
     Request {
         command: "proboscis solve".to_owned(),
         input: PathBuf::new(),
@@ -45,159 +42,17 @@ fn request() -> Request {
     }
 }
 
-fn read(path: &Path) -> Value {
+pub(crate) fn read(path: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
 /// System and control problem of a kept file.
-fn control(name: &str, set: &[String]) -> (System, Control) {
+pub(crate) fn control(name: &str, set: &[String]) -> (System, Control) {
     let loaded = read_problem(&kept(name), set).unwrap();
     let Task::Control(control) = loaded.task else {
         panic!("a control problem")
     };
     (loaded.system, *control)
-}
-
-/// The optimum of a control problem.
-fn optimum(system: &System, control: &Control) -> Solved {
-    let found = optimise(
-        Path::new("problem"),
-        system,
-        control,
-        None,
-        Allowed::default(),
-        &mut |_| ControlFlow::Continue(()),
-    );
-    let found = found.unwrap();
-    assert!(found.solution.status.is_solved());
-    found.motion
-}
-
-/// The guess that an earlier motion gives.
-fn start(system: &System, control: &Control, earlier: &Solved) -> (Initial, Vec<Vec<f64>>) {
-    let h = control.duration.first() / control.intervals as f64;
-    let (model, boundary) = Boundary::resolve(system, control, h).unwrap();
-    let initial = guess(&model, &boundary, control, h, Some(earlier));
-    let joints = solved(&model, &initial.history, None).joints;
-    (initial, joints)
-}
-
-/// Value at a part s of a motion in time, on the lines between its instants.
-fn between(rows: &[Vec<f64>], s: f64, j: usize) -> f64 {
-    let place = s * (rows.len() - 1) as f64;
-    let k = (place as usize).min(rows.len() - 2);
-    rows[k][j] + (place - k as f64) * (rows[k + 1][j] - rows[k][j])
-}
-
-#[test]
-fn a_guess_changes_nothing_that_is_asked() {
-    // Optima of 200 ms, of a free time and of 90 ms in other coordinates, and a simulation of 500 ms.
-    let (system, given) = control("pair", &[]);
-    let free = Duration::Free {
-        min: 60.0,
-        max: 300.0,
-        guess: 70.0,
-    };
-    let redundant = Some(Coordinates::Redundant);
-    let changed = |duration, coordinates, intervals| Control {
-        duration,
-        coordinates,
-        intervals,
-        objective: proboscis::control::problem::Objective {
-            effort: 1.0,
-            rate: 0.0,
-            duration: 0.0,
-        },
-        guess: Guess::Interpolate,
-        ..given.clone()
-    };
-    let loaded = read_problem(
-        &kept("pair_constant"),
-        &["simulate.duration=0.5".to_owned()],
-    );
-    let loaded = loaded.unwrap();
-    let Task::Simulate(task) = loaded.task else {
-        panic!("a simulation")
-    };
-    let simulated = integrate(Path::new("problem"), &loaded.system, &task, |_, _| {
-        ControlFlow::Continue(())
-    });
-    let simulated = simulated.unwrap();
-    let earlier = [
-        optimum(&system, &given),
-        optimum(&system, &changed(free, None, 20)),
-        optimum(&system, &changed(Duration::Given(90.0), redundant, 15)),
-        solved(&simulated.model, &simulated.history, None),
-    ];
-    let lengths = earlier.each_ref().map(|e| e.times[e.intervals()]);
-    assert!(
-        lengths[1] > 60.5 && (lengths[1] - 70.0).abs() > 1.0 && (lengths[3] - 500.0).abs() < 1e-9,
-        "{lengths:?}"
-    );
-    for (before, length) in earlier.iter().zip(lengths) {
-        for (duration, expected) in [
-            (Duration::Given(400.0), 400.0),
-            (Duration::Given(200.0), 200.0),
-            (free, length.clamp(60.0, 300.0)),
-        ] {
-            for coordinates in [None, redundant] {
-                for intervals in [20, 13] {
-                    let asked = changed(duration, coordinates, intervals);
-                    let (initial, joints) = start(&system, &asked, before);
-                    let end = initial.history.times[intervals];
-                    let place = format!("{length} ms, {duration:?}, {coordinates:?}, {intervals}");
-                    assert!(
-                        (initial.h * intervals as f64 - expected).abs() < 1e-9,
-                        "{place}"
-                    );
-                    assert!((end - expected).abs() < 1e-9, "{place}");
-                    let is_other = (expected - length).abs() > 1e-6 * expected;
-                    assert_eq!(initial.stretched.is_some(), is_other, "{place}");
-                    // The same way, faster or slower.
-                    let at = |k: usize| between(&before.joints, k as f64 / intervals as f64, 0);
-                    let apart = (0..=intervals).map(|k| (joints[k][0] - at(k)).abs());
-                    let way = before.joints.iter().map(|row| row[0].abs());
-                    let [apart, way] = [apart.fold(0.0, f64::max), way.fold(0.0, f64::max)];
-                    assert!(way > 0.05 && apart < 0.1 * way, "{place}: {apart} of {way}");
-                }
-            }
-        }
-    }
-}
-
-#[test]
-fn a_duration_that_is_given_stays_and_the_stretched_guess_is_told() {
-    let folder = tempdir().unwrap();
-    let [first, second] = ["p", "q"].map(|name| folder.path().join(name));
-    let pair = kept("pair");
-    assert!(told(&pair, &[], &first).is_solved);
-    let solution = first.join("solution.json");
-    let from = format!(
-        "control.guess={{\"solution\":{:?}}}",
-        solution.display().to_string()
-    );
-    let answer = told(&pair, &["control.duration=0.4 s", &from], &second);
-    assert!(answer.is_solved, "{answer:?}");
-    let line = "the guess lasts 0.2 s; it was stretched in time to 0.4 s";
-    assert!(answer.notes.iter().any(|note| note == line), "{answer:?}");
-    let summary = read(&second.join("summary.json"));
-    assert_eq!(summary["duration"], 0.4);
-    assert!(summary["notes"].as_array().unwrap().contains(&line.into()));
-    assert!(summary["iterations"].as_u64().unwrap() > 3, "{summary}");
-    let time = &read(&second.join("solution.json"))["time"];
-    assert_eq!(time.as_array().unwrap().last().unwrap(), 0.4);
-    // One of the same length is taken as it is, in silence.
-    let again = told(&pair, &[&from], &second);
-    assert!(
-        again.notes.iter().all(|note| !note.contains("stretched")),
-        "{again:?}"
-    );
-    assert!(
-        read(&second.join("summary.json"))["iterations"]
-            .as_u64()
-            .unwrap()
-            <= 2
-    );
 }
 
 #[test]
@@ -214,70 +69,8 @@ fn what_has_no_value_violates_its_bounds_without_limit() {
     }
 }
 
-#[test]
-fn a_solution_holds_its_goal_after_its_end() {
-    let folder = tempdir().unwrap();
-    let place = |name: &str| folder.path().join(name);
-    assert!(told(&kept("pair"), &[], &place("p")).is_solved);
-    let path = place("p").join("solution.json");
-    let mut solution = read(&path);
-    assert_eq!(solution["hold"]["muscle2"], 1700.0);
-    assert_eq!(solution["hold"]["muscle1"], 0.0);
-    let last = solution["voltages"]["muscle2"]
-        .as_array()
-        .unwrap()
-        .last()
-        .unwrap();
-    let last = last.as_f64().unwrap();
-    assert!((last - 1700.0).abs() > 50.0, "{last}");
-
-    let after = |name: &str, solution: &Path| {
-        let voltages = format!(
-            "simulate.voltages={{\"solution\":{:?}}}",
-            solution.display().to_string()
-        );
-        let set = ["simulate.duration=1 s", "simulate.step=10 ms", &voltages];
-        let answer = told(&kept("pair_constant"), &set, &place(name));
-        assert!(answer.is_solved, "{answer:?}");
-        let motion = read(&place(name).join("solution.json"));
-        let joint = motion["configuration"]["joints"]["joint1"]
-            .as_array()
-            .unwrap();
-        let joint: Vec<f64> = joint.iter().map(|v| v.as_f64().unwrap()).collect();
-        let goal = joint[20];
-        let drift = joint[20..].iter().map(|v| (v - goal).abs());
-        (goal, drift.fold(0.0, f64::max), answer.notes.join("\n"))
-    };
-    let (goal, drift, notes) = after("held", &path);
-    assert!(goal.abs() > 0.05 && drift < 1e-6, "{goal} {drift}");
-    assert!(
-        notes.contains("after 0.2 s the voltages that hold the goal of"),
-        "{notes}"
-    );
-
-    // Files of before have no such entry.
-    solution.as_object_mut().unwrap().remove("hold");
-    let old = place("old.json");
-    fs::write(&old, solution.to_string()).unwrap();
-    let (_, drift, notes) = after("left", &old);
-    assert!(drift > 1e-3, "{drift}");
-    assert!(
-        notes.contains("after 0.2 s the voltages of the last interval are held"),
-        "{notes}"
-    );
-    let set = [format!(
-        "control.guess={{\"solution\":{:?}}}",
-        old.display().to_string()
-    )];
-    let (system, asked) = control("pair", &set);
-    let (model, _) = Boundary::resolve(&system, &asked, 10.0).unwrap();
-    assert_eq!(solution_file::read(&old, &model).unwrap().hold, None);
-    let held = solution_file::read(&path, &model).unwrap().hold.unwrap();
-    assert_eq!(held.iter().copied().fold(0.0, f64::max), 1700.0);
-}
-
 /// A problem of trust: one that misled its user.
-fn trust(name: &str) -> PathBuf {
+pub(crate) fn trust(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/trust/{name}.json"))
 }
 
@@ -451,98 +244,4 @@ fn what_is_called_solved_is_reproduced_with_finer_steps() {
     }
     println!("{solved} solved, {refined} of them on finer grids, {refused} refused");
     assert!(solved >= 7 && refined >= 1, "{solved} {refined} {refused}");
-}
-
-#[test]
-fn an_end_that_cannot_be_kept_is_told_or_refused() {
-    let folder = tempdir().unwrap();
-    let refused = |name: &str| {
-        let request = Request {
-            input: trust(name),
-            set: vec!["control.hold=\"required\"".to_owned()],
-            output: Some(folder.path().join("none")),
-            ..request()
-        };
-        let error = run(&request).unwrap_err();
-        assert_eq!(error.exit_status(), 2);
-        assert!(!folder.path().join("none").exists());
-        error.to_string()
-    };
-    let beyond = refused("07_hold_beyond_bounds");
-    let line = "control.goal.hold.muscle1: a hold of 4000 V is beyond the bounds 0 V to 3000 V";
-    assert!(beyond.ends_with(line), "{beyond}");
-    // Without the word it is solved, with one line; a hold that leads into pull-in ends early.
-    let answer = told(&trust("07_hold_beyond_bounds"), &[], folder.path());
-    assert!(answer.is_solved, "{answer:?}");
-    let lines = answer
-        .notes
-        .iter()
-        .filter(|note| note.starts_with("the goal cannot be kept: "));
-    let lines: Vec<_> = lines.collect();
-    assert!(
-        lines.len() == 1
-            && lines[0].contains("beyond the bounds")
-            && lines[0].contains("ends early")
-    );
-    // Of an unstable and a stable equilibrium under the same voltages the goal is the one that stays.
-    let answer = told(
-        &trust("08_unstable_ends_solved"),
-        &["control.hold=\"required\""],
-        folder.path(),
-    );
-    assert!(answer.is_solved, "{answer:?}");
-    let drift = &read(&folder.path().join("summary.json"))["resimulation"]["drift"]["angle"];
-    assert!(drift.as_f64().unwrap() < 1e-3, "{drift}");
-
-    // Voltages that hold a stable goal are no matter; a goal without any cannot be promised.
-    let pair = kept("pair");
-    let required = "control.hold=\"required\"";
-    let stays = told(&pair, &[required], folder.path());
-    assert!(
-        stays.is_solved && stays.notes.iter().all(|note| !note.contains("kept")),
-        "{stays:?}"
-    );
-    let nothing = Request {
-        input: pair.clone(),
-        set: vec![
-            required.to_owned(),
-            "control.goal={\"joint_angles\":{\"joint1\":0.1}}".to_owned(),
-        ],
-        ..request()
-    };
-    let error = run(&nothing).unwrap_err();
-    assert!(
-        error.to_string().contains("names no voltages that hold it"),
-        "{error}"
-    );
-    assert_eq!(error.exit_status(), 2);
-
-    // A hold that is within its bounds and leads elsewhere is seen after the solve.
-    let zero = "control.goal.hold={\"muscle1\":0}";
-    let leaves = told(
-        &trust("07_hold_beyond_bounds"),
-        &[zero, required],
-        folder.path(),
-    );
-    assert!(
-        !leaves.is_solved && leaves.result.contains("not held"),
-        "{leaves:?}"
-    );
-    assert_eq!(
-        read(&folder.path().join("summary.json"))["status"],
-        "not_held"
-    );
-    // Nothing that is written goes by in silence.
-    let ignored = Request {
-        input: pair,
-        set: vec![
-            "control.goal={\"joint_angles\":{\"joint1\":0.1},\"hold\":{\"muscle1\":1}}".to_owned(),
-        ],
-        ..request()
-    };
-    let error = run(&ignored).unwrap_err().to_string();
-    assert!(
-        error.contains("control.goal.hold: ") && error.contains("\"markers\" only"),
-        "{error}"
-    );
 }

@@ -4,7 +4,12 @@
 mod common;
 
 mod action;
+mod arithmetic;
 mod differences;
 mod formulas;
 mod hexahedron;
+mod hexahedron_states;
+mod hexahedron_viscosity;
 mod horizon;
+mod naive_formulas;
+mod naive_hexahedron;

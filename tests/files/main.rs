@@ -1,4 +1,10 @@
 //! Scene and problem files, as written and as mistaken.
 
+mod arbitrary;
+mod extremes;
 mod fuzz_reader;
+mod meaning;
+mod quantities;
 mod scene;
+mod solids;
+mod tasks;

@@ -6,11 +6,13 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod arms;
 mod blocks;
 mod goals;
 mod horizons;
 mod joints;
 mod loops;
+mod muscle_ends;
 mod muscles;
 mod page;
 mod program;

@@ -4,6 +4,7 @@
 mod common;
 
 mod closed_loop;
+mod component_files;
 mod components;
 mod conserve;
 mod dissipation;
@@ -14,3 +15,6 @@ mod reductions;
 mod reference;
 mod resolution;
 mod screws;
+mod single_joints;
+mod tolerance;
+mod tree;

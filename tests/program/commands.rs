@@ -1,8 +1,7 @@
 //! The program as its users meet it: files in, one line and files out, an exit status.
 
+use crate::refusals::refused_run;
 use assert_cmd::Command;
-use proboscis::model::system::Fidelity;
-use proboscis::scene::read_problem;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,7 +9,7 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// A folder with a copy of the kept problems.
-fn workshop() -> TempDir {
+pub(crate) fn workshop() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let problems = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems");
     fs::create_dir_all(folder.path().join("problems/scenes")).unwrap();
@@ -33,142 +32,19 @@ fn proboscis(folder: &Path) -> Command {
 }
 
 /// Exit status, standard output and standard error of a run in a folder.
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+pub(crate) fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     let output = proboscis(folder).args(arguments).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     let status = output.status.code().unwrap();
     (status, text(output.stdout), text(output.stderr))
 }
 
-fn read(path: PathBuf) -> Value {
+pub(crate) fn read(path: PathBuf) -> Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
-fn summary(folder: &Path, results: &str) -> Value {
+pub(crate) fn summary(folder: &Path, results: &str) -> Value {
     read(folder.join(results).join("summary.json"))
-}
-
-/// `solve problems/pair.json` with overrides is refused with these words, and nothing is written.
-///
-/// The scene is written out, so that overrides can reach its bodies, joints and muscles.
-fn refused(overrides: &[&str], words: &[&str]) {
-    let folder = workshop();
-    let scene = "problems/scenes/pair.json";
-    let (_, expanded, _) = run(folder.path(), &["expand", scene]);
-    fs::write(folder.path().join(scene), expanded).unwrap();
-    let mut arguments = vec!["solve", "problems/pair.json"];
-    for change in overrides {
-        arguments.extend(["--set", change]);
-    }
-    refused_run(folder.path(), &arguments, words);
-}
-
-fn refused_run(folder: &Path, arguments: &[&str], words: &[&str]) {
-    let (status, out, err) = run(folder, arguments);
-    assert_eq!(status, 2, "{arguments:?}: {out}{err}");
-    assert_eq!(out, "", "{arguments:?}");
-    let first = err.lines().next().unwrap();
-    for word in words {
-        assert!(first.contains(word), "{arguments:?}: no {word:?} in {err}");
-    }
-    assert!(!err.contains("panicked"), "{err}");
-    assert!(!folder.join("results").exists(), "{arguments:?}");
-}
-
-#[test]
-fn wrong_files_are_refused() {
-    let folder = workshop();
-    let path = folder.path();
-    fs::write(path.join("broken.json"), "{ \"scene\": ").unwrap();
-    refused_run(path, &["solve", "broken.json"], &["broken.json", "JSON"]);
-    refused_run(
-        path,
-        &["solve", "nowhere.json"],
-        &["nowhere.json", "no readable file"],
-    );
-    fs::write(path.join("infinite.json"), "{ \"scene\": 1e999 }").unwrap();
-    refused_run(path, &["solve", "infinite.json"], &["scene", "not finite"]);
-    let problem = fs::read_to_string(path.join("problems/pair.json")).unwrap();
-    fs::write(
-        path.join("problems/nan.json"),
-        problem.replace("\"0.2 s\"", "NaN"),
-    )
-    .unwrap();
-    refused_run(path, &["solve", "problems/nan.json"], &["nan.json", "JSON"]);
-}
-
-#[test]
-fn wrong_words_are_refused_with_a_suggestion() {
-    refused(
-        &["control.intervls=3"],
-        &["intervls", "did you mean \"intervals\""],
-    );
-    refused(
-        &["control.goal={\"rest_at_voltages\":{\"muscl2\":\"1 kV\"}}"],
-        &[
-            "control.goal.rest_at_voltages.muscl2",
-            "did you mean \"muscle2\"",
-        ],
-    );
-    refused(
-        &["scene.muscles[0].from.body=segmnt1"],
-        &["muscles[0].from.body", "did you mean \"segment1\""],
-    );
-    refused(&["nonsense"], &["command line", "path=value"]);
-}
-
-#[test]
-fn an_option_that_ipopt_does_not_know_is_refused() {
-    let folder = workshop();
-    let option = "control.solver.ipopt={\"mu_strategi\":\"adaptive\"}";
-    let arguments = ["solve", "problems/pair.json", "--set", option];
-    // Ipopt says a line of its own on standard output.
-    let (status, _, err) = run(folder.path(), &arguments);
-    assert_eq!(status, 2);
-    assert!(
-        err.contains("problems/pair.json: control.solver.ipopt"),
-        "{err}"
-    );
-    assert!(err.contains("did you mean mu_strategy?"), "{err}");
-    assert!(!folder.path().join("results").exists());
-}
-
-#[test]
-fn wrong_quantities_are_refused() {
-    refused(
-        &["control.duration=0.2 mm"],
-        &["control.duration", "a length", "a time"],
-    );
-    refused(
-        &["scene.bodies[0].mass=-30 g"],
-        &["bodies[0].mass", "positive"],
-    );
-    refused(
-        &["control.intervals=0"],
-        &["control.intervals", "1 interval or more"],
-    );
-    refused(&["control.duration=0 s"], &["control.duration", "positive"]);
-    refused(
-        &["control.voltage_bounds=[\"3 kV\",\"0 V\"]"],
-        &["control.voltage_bounds[1]", "lower bound"],
-    );
-}
-
-#[test]
-fn scenes_that_do_not_hold_together_are_refused() {
-    refused(&["scene.joints=[]"], &["segment1", "joint"]);
-    refused(
-        &["scene.muscles[0].to={\"body\":\"segment1\",\"at\":[\"15 mm\",\"-20 mm\",\"0 mm\"]}"],
-        &["muscles[0]"],
-    );
-    refused(
-        &["scene.muscles[1].name=muscle1"],
-        &["muscles[1].name", "a second time"],
-    );
-    refused(
-        &["control.goal={\"markers\":{\"tip\":[0,0.05,0]}}"],
-        &["control.goal", "3 final conditions", "1 degrees of freedom"],
-    );
 }
 
 #[test]
@@ -193,45 +69,6 @@ fn a_goal_beyond_pull_in_has_no_answer() {
         }
         assert!(!folder.path().join("results").exists());
     }
-}
-
-#[test]
-fn wrong_solutions_are_refused() {
-    let folder = workshop();
-    let path = folder.path();
-    let guess = "control.guess={\"solution\":\"earlier.json\"}";
-    let refused_solution = |text: String, words: &[&str]| {
-        fs::write(path.join("earlier.json"), text).unwrap();
-        refused_run(
-            path,
-            &["solve", "problems/pair.json", "--set", guess],
-            words,
-        );
-    };
-    let voltages = json!({ "muscle1": [0.0], "muscle2": [0.0] });
-    refused_solution("{".into(), &["earlier.json", "no JSON"]);
-    refused_solution(
-        "{\"scene\": \"x\"}".into(),
-        &["earlier.json", "missing field `time`"],
-    );
-    refused_solution(
-        json!({ "time": [0, 1], "joints": { "hip": [0, 0] }, "voltages": voltages }).to_string(),
-        &["another scene", "no joint \"hip\""],
-    );
-    refused_solution(
-        json!({ "time": [0, 1], "joints": { "joint1": [0, 0] }, "voltages": { "muscle1": [0] } })
-            .to_string(),
-        &["another scene", "muscle2"],
-    );
-    refused_solution(
-        json!({ "time": [0, 1], "joints": { "joint1": [0, null] }, "voltages": voltages })
-            .to_string(),
-        &["joints.joint1[1]", "null"],
-    );
-    refused_solution(
-        json!({ "time": [0, 1], "joints": { "joint1": [0] }, "voltages": voltages }).to_string(),
-        &["joint1 has 1 values for 2 instants"],
-    );
 }
 
 #[test]
@@ -341,103 +178,6 @@ fn a_solved_problem_leaves_what_is_promised() {
     }
     let controls = fs::read_to_string(folder.path().join("results/pair/controls.csv")).unwrap();
     assert_eq!(controls.lines().count(), 2 + 20);
-}
-
-/// Solves a problem, starts again from its solution, and returns both summaries.
-fn warm(problem: &str, second: &[&str]) -> (Value, Value) {
-    let folder = workshop();
-    let path = format!("problems/{problem}.json");
-    let (status, ..) = run(folder.path(), &["solve", &path, "-o", "first"]);
-    assert_eq!(status, 0);
-    let guess = "control.guess={\"solution\":\"first/solution.json\"}";
-    let mut arguments = vec!["solve", &path, "-o", "second", "--set", guess];
-    arguments.extend(second);
-    let (status, out, err) = run(folder.path(), &arguments);
-    assert_eq!(status, 0, "{out}{err}");
-    let of = |name| summary(folder.path(), name);
-    (of("first"), of("second"))
-}
-
-fn iterations(summary: &Value) -> u64 {
-    summary["iterations"].as_u64().unwrap()
-}
-
-fn assert_same_objective(a: &Value, b: &Value) {
-    let [a, b] = [a, b].map(|s| s["objective"].as_f64().unwrap());
-    assert!((a - b).abs() < 1e-7 * a.abs(), "{a} against {b}");
-}
-
-#[test]
-fn a_solution_starts_the_same_problem_at_its_end() {
-    for problem in ["pair", "pair_time", "elephant_trunk_effort"] {
-        let (cold, warm) = warm(problem, &[]);
-        assert!(iterations(&cold) > 8, "{cold}");
-        assert!(iterations(&warm) <= 8, "{warm}");
-        assert_same_objective(&cold, &warm);
-    }
-}
-
-#[test]
-fn a_solution_starts_a_finer_grid() {
-    let (coarse, fine) = warm("pair", &["--set", "control.intervals=40"]);
-    assert_eq!(fine["intervals"], 40);
-    let ratio = fine["objective"].as_f64().unwrap() / coarse["objective"].as_f64().unwrap();
-    // The optimum of a grid is that of the continuous problem up to terms that fall with the interval length.
-    assert!((ratio - 1.0).abs() < 0.2, "{ratio}");
-}
-
-#[test]
-fn a_reduced_solution_starts_redundant_coordinates() {
-    let (reduced, redundant) = warm("pair", &["--set", "control.coordinates=redundant"]);
-    assert_eq!(redundant["coordinates"], "redundant");
-    assert_same_objective(&reduced, &redundant);
-}
-
-/// A solution by hand: nodes and voltages of a reference solution without costates.
-fn by_hand(reference: &str) -> Value {
-    let name = format!("tests/reference/{reference}.json");
-    let file = read(Path::new(env!("CARGO_MANIFEST_DIR")).join(name));
-    let control = &file["control"];
-    let h = control["h"].as_f64().unwrap();
-    let rows = |key: &str| -> Vec<Vec<f64>> {
-        serde_json::from_value(control[key].clone()).expect("rows of numbers")
-    };
-    let columns = |name: &str, rows: Vec<Vec<f64>>, factor: f64| -> Value {
-        let column = |i: usize| rows.iter().map(|row| factor * row[i]).collect::<Vec<_>>();
-        (0..rows[0].len())
-            .map(|i| (format!("{name}{}", i + 1), json!(column(i))))
-            .collect::<serde_json::Map<_, _>>()
-            .into()
-    };
-    let angles = rows("theta_rad");
-    json!({
-        "time": (0..angles.len()).map(|k| k as f64 * h).collect::<Vec<_>>(),
-        "joints": columns("joint", angles, 1.0),
-        "voltages": columns("muscle", rows("voltage_kV"), 1e3),
-    })
-}
-
-#[test]
-fn reference_solutions_written_by_hand_start_a_solve() {
-    for (problem, reference) in [
-        ("pair", "pair"),
-        ("pair_time", "pair_time"),
-        ("elephant_trunk_effort", "trunk6"),
-    ] {
-        let folder = workshop();
-        fs::write(
-            folder.path().join("hand.json"),
-            by_hand(reference).to_string(),
-        )
-        .unwrap();
-        let path = format!("problems/{problem}.json");
-        let guess = "control.guess={\"solution\":\"hand.json\"}";
-        let arguments = ["solve", &path, "-o", "warm", "--set", guess];
-        let (status, out, err) = run(folder.path(), &arguments);
-        assert_eq!(status, 0, "{out}{err}");
-        let warm = summary(folder.path(), "warm");
-        assert!(iterations(&warm) <= 15, "{problem}: {warm}");
-    }
 }
 
 #[test]
@@ -576,59 +316,6 @@ fn a_block_that_floats_is_refused() {
         &[&arguments[..], &["-o", "results"]].concat(),
         &[file, "block is not held", "costs nothing"],
     );
-}
-
-/// Whether a kept problem has finite elements, whose derivatives are too many for differences.
-fn has_elements(name: &str) -> bool {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems");
-    let system = read_problem(&path.join(name), &[]).unwrap().system;
-    let muscles = system.muscles.iter();
-    let mut fidelities = muscles.map(|muscle| muscle.fidelity);
-    !system.solids.is_empty() || fidelities.any(|fidelity| fidelity != Fidelity::Lumped)
-}
-
-#[test]
-fn every_kept_problem_has_right_derivatives() {
-    let folder = workshop();
-    for entry in fs::read_dir(folder.path().join("problems")).unwrap() {
-        let path = entry.unwrap().path();
-        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
-        if path.is_dir() || name.contains("schema") || has_elements(&name) {
-            continue;
-        }
-        let (status, out, err) = run(folder.path(), &["check", path.to_str().unwrap()]);
-        assert_eq!(status, 0, "{name}: {out}{err}");
-        let (status, out, err) = run(folder.path(), &["inspect", path.to_str().unwrap()]);
-        assert!(
-            status == 0 && out.contains("muscle electroelasticity"),
-            "{name}: {out}{err}"
-        );
-    }
-}
-
-#[test]
-fn a_new_trunk_can_be_solved_and_is_not_overwritten() {
-    let folder = workshop();
-    let arguments = ["new", "trunk", "--segments", "2", "mine"];
-    let (status, out, err) = run(folder.path(), &arguments);
-    assert_eq!(status, 0, "{err}");
-    assert_eq!(out.lines().count(), 2);
-    let (status, _, err) = run(folder.path(), &arguments);
-    assert!(status == 2 && err.contains("exists already"), "{err}");
-    let (status, ..) = run(folder.path(), &["solve", "mine/problem.json"]);
-    assert_eq!(status, 0);
-    let (status, out, _) = run(folder.path(), &["expand", "mine/scene.json"]);
-    assert!(status == 0 && out.contains("\"segment2\"") && !out.contains("\"chain\""));
-}
-
-#[test]
-fn kept_schemas_are_those_of_the_program() {
-    let folder = workshop();
-    for file in ["scene", "problem"] {
-        let (_, out, _) = run(folder.path(), &["schema", file]);
-        let kept = read(folder.path().join(format!("problems/{file}.schema.json")));
-        assert_eq!(serde_json::from_str::<Value>(&out).unwrap(), kept);
-    }
 }
 
 #[test]

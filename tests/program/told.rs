@@ -12,17 +12,17 @@ use proboscis::scene::read_problem;
 use serde_json::Value;
 use std::fs;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-fn problem(name: &str) -> String {
+pub(crate) fn problem(name: &str) -> String {
     format!("{}/problems/{name}.json", env!("CARGO_MANIFEST_DIR"))
 }
 
 /// Exit status, standard output and standard error of the program.
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+pub(crate) fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     let program = env!("CARGO_BIN_EXE_proboscis");
     let output = Command::new(program)
         .current_dir(folder)
@@ -34,7 +34,7 @@ fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     (status, text(output.stdout), text(output.stderr))
 }
 
-fn json(path: &Path) -> Value {
+pub(crate) fn json(path: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
@@ -363,70 +363,4 @@ fn a_block_that_the_memory_cannot_hold_is_refused_with_its_numbers() {
         assert!(err.contains(told), "{err}");
         assert!(fs::read_dir(folder.path()).unwrap().next().is_none());
     }
-}
-
-/// Runs the program until it has written `unfinished.json` and kills it; the folder of its results.
-fn killed(folder: &Path, arguments: &[&str]) -> PathBuf {
-    let results = folder.join("results");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_proboscis"))
-        .args(arguments)
-        .arg("-o")
-        .arg(&results)
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    let began = Instant::now();
-    while !results.join("unfinished.json").exists() {
-        let ended = child.try_wait().unwrap();
-        assert!(ended.is_none(), "too short a run: {ended:?}");
-        assert!(began.elapsed() < Duration::from_secs(120), "nothing kept");
-        thread::sleep(Duration::from_millis(20));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
-    assert!(!results.join("solution.json").exists());
-    results
-}
-
-#[test]
-fn a_solve_that_is_killed_leaves_an_iterate_to_go_on_from() {
-    let folder = tempfile::tempdir().unwrap();
-    let problem = problem("elephant_trunk_effort");
-    let fine = ["--set", "control.intervals=4000"];
-    let results = killed(folder.path(), &[&["solve", &problem][..], &fine].concat());
-    let kept = json(&results.join("unfinished.json"));
-    assert_eq!(kept["time"].as_array().unwrap().len(), 4001);
-    // It is a guess like any solution, and goes when a run has written its results.
-    let guess = format!(
-        "control.guess={{\"solution\":{:?}}}",
-        results.join("unfinished.json")
-    );
-    let out = results.to_str().unwrap();
-    let (status, said, errors) = run(
-        folder.path(),
-        &["solve", &problem, "--set", &guess, "-o", out],
-    );
-    assert_eq!(status, 0, "{said}{errors}");
-    assert!(results.join("solution.json").exists());
-    assert!(!results.join("unfinished.json").exists());
-}
-
-#[test]
-fn a_simulation_that_is_killed_leaves_its_steps() {
-    let folder = tempfile::tempdir().unwrap();
-    let problem = problem("fe_trunk");
-    let long = ["--set", "simulate.duration=100 s"];
-    let results = killed(
-        folder.path(),
-        &[&["simulate", &problem][..], &long].concat(),
-    );
-    let kept = json(&results.join("unfinished.json"));
-    let steps = kept["time"].as_array().unwrap().len();
-    assert!(steps > 2, "{steps} instants");
-    let voltages = kept["voltages"].as_object().unwrap();
-    assert!(
-        voltages
-            .values()
-            .all(|v| v.as_array().unwrap().len() == steps - 1)
-    );
 }

@@ -4,9 +4,11 @@
 mod common;
 
 mod dynamics;
+mod gmsh;
 mod invariants;
 mod mesh;
 mod physics;
 mod refusals;
+mod slender;
 mod statics;
 mod structure;

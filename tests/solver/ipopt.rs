@@ -1,28 +1,25 @@
 //! Ipopt solves small programs with known solutions, and survives what evaluations and callers do to it.
 
-use std::fs;
 use std::ops::ControlFlow;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::process::Command;
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::common::programs::{
-    HS071_OPTIMUM, HS071_START, Program, bounds, hs071, one_variable, rosenbrock,
+    HS071_OPTIMUM, HS071_START, bounds, hs071, one_variable, rosenbrock,
 };
 use proboscis::ipopt::{
     Costates, IpoptError, Iteration, OptionValue, Options, Point, Solution, Start, Status, solve,
 };
 use proboscis::nlp::{Bounds, Nlp};
 
-fn from(x: &[f64]) -> Point {
+pub(crate) fn from(x: &[f64]) -> Point {
     Point {
         x: x.to_vec(),
         costates: None,
     }
 }
 
-fn with(extra: &[(&str, OptionValue)]) -> Options {
+pub(crate) fn with(extra: &[(&str, OptionValue)]) -> Options {
     let extra = extra
         .iter()
         .map(|(name, value)| ((*name).to_owned(), value.clone()))
@@ -37,7 +34,7 @@ fn go_on(_: &Iteration, _: &[f64]) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-fn run(nlp: &mut dyn Nlp, x: &[f64], options: &Options) -> Solution {
+pub(crate) fn run(nlp: &mut dyn Nlp, x: &[f64], options: &Options) -> Solution {
     solve(nlp, &from(x), options, &mut go_on).expect("Ipopt can be called")
 }
 
@@ -259,104 +256,6 @@ fn a_start_outside_the_domain_is_a_status() {
     assert!(solution.failed_evaluations > 0);
 }
 
-/// hs071 whose named function panics at its `k`-th call.
-fn panicking(function: &'static str, k: usize) -> Program {
-    let mut calls = 0;
-    let mut call = move || {
-        calls += 1;
-        assert!(calls < k, "{function} fails");
-    };
-    let mut program = hs071();
-    let Program {
-        mut f,
-        mut grad,
-        mut g,
-        mut jac,
-        mut hess,
-        ..
-    } = hs071();
-    match function {
-        "f" => {
-            program.f = Box::new(move |x| {
-                call();
-                f(x)
-            });
-        }
-        "grad" => {
-            program.grad = Box::new(move |x, to| {
-                call();
-                grad(x, to);
-            });
-        }
-        "g" => {
-            program.g = Box::new(move |x, to| {
-                call();
-                g(x, to);
-            });
-        }
-        "jac" => {
-            program.jac = Box::new(move |x, to| {
-                call();
-                jac(x, to);
-            });
-        }
-        "hess" => {
-            program.hess = Box::new(move |x, sigma, y, to| {
-                call();
-                hess(x, sigma, y, to);
-            });
-        }
-        _ => unreachable!("{function}"),
-    }
-    program
-}
-
-fn message(panic: &(dyn std::any::Any + Send)) -> &str {
-    panic
-        .downcast_ref::<String>()
-        .expect("a panic with a message")
-}
-
-#[test]
-fn a_panic_in_any_function_comes_through_and_harms_nothing() {
-    for function in ["f", "grad", "g", "jac", "hess"] {
-        for k in 1..=4 {
-            let mut program = panicking(function, k);
-            let outcome = catch_unwind(AssertUnwindSafe(|| {
-                run(&mut program, &HS071_START, &Options::default())
-            }));
-            let panic = outcome.expect_err("the panic comes through");
-            assert_eq!(message(&*panic), format!("{function} fails"));
-            let solution = run(&mut hs071(), &HS071_START, &Options::default());
-            assert_eq!(solution.status, Status::Solved);
-        }
-    }
-}
-
-#[test]
-fn a_panic_of_the_observer_comes_through() {
-    let mut observer = |iteration: &Iteration, _: &[f64]| {
-        assert!(iteration.iteration < 3, "enough at {}", iteration.iteration);
-        ControlFlow::Continue(())
-    };
-    let outcome = catch_unwind(AssertUnwindSafe(|| {
-        solve(
-            &mut hs071(),
-            &from(&HS071_START),
-            &Options::default(),
-            &mut observer,
-        )
-    }));
-    assert_eq!(
-        message(&*outcome.expect_err("the panic comes through")),
-        "enough at 3"
-    );
-    assert_eq!(
-        run(&mut hs071(), &HS071_START, &Options::default()).status,
-        Status::Solved
-    );
-}
-
 #[test]
 fn unknown_options_are_errors_with_a_suggestion() {
     let options = with(&[("max_itre", OptionValue::Integer(5))]);
@@ -411,127 +310,6 @@ fn programs_without_variables_are_errors() {
             entries: 0
         }
     );
-}
-
-#[test]
-fn the_observer_can_stop_and_the_iterate_is_returned() {
-    let mut observer = |iteration: &Iteration, _: &[f64]| match iteration.iteration {
-        4 => ControlFlow::Break(()),
-        _ => ControlFlow::Continue(()),
-    };
-    let stopped = solve(
-        &mut hs071(),
-        &from(&HS071_START),
-        &Options::default(),
-        &mut observer,
-    )
-    .expect("can be called");
-    assert_eq!(
-        (stopped.status, stopped.iterations.len()),
-        (Status::Interrupted, 5)
-    );
-    // The point belongs to the iteration told last; the slack of the inequality adds to the infeasibility told.
-    let last = stopped.iterations[4];
-    let violation = (25.0 - stopped.constraints[0])
-        .max(0.0)
-        .max((stopped.constraints[1] - 40.0).abs());
-    assert!((stopped.objective - last.objective).abs() < 1e-6 * last.objective);
-    let told = last.primal_infeasibility;
-    assert!(
-        violation > 0.0 && violation < told + 1e-6,
-        "{violation} {told}"
-    );
-}
-
-#[test]
-fn a_stop_within_the_restoration_phase_returns_its_iterate() {
-    // x² + 1 = y with y ≤ 0: restoration creeps towards x = 0.
-    let mut program = Program {
-        variables: bounds(&[(-100.0, 100.0), (-1.0, 0.0)]),
-        constraints: bounds(&[(0.0, 0.0)]),
-        jacobian_places: vec![(0, 0), (0, 1)],
-        hessian_places: vec![(0, 0)],
-        f: Box::new(|x| x[0]),
-        grad: Box::new(|_, grad| grad.copy_from_slice(&[1.0, 0.0])),
-        g: Box::new(|x, g| g[0] = x[0] * x[0] + 1.0 - x[1]),
-        jac: Box::new(|x, values| values.copy_from_slice(&[2.0 * x[0], -1.0])),
-        hess: Box::new(|_, _, y, values| values[0] = 2.0 * y[0]),
-    };
-    let mut restored = 0;
-    let mut observer = |iteration: &Iteration, _: &[f64]| {
-        restored += usize::from(iteration.restoration);
-        if restored == 3 {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    };
-    let solution = solve(
-        &mut program,
-        &from(&[5.0, 0.0]),
-        &Options::default(),
-        &mut observer,
-    )
-    .expect("can be called");
-    assert_eq!(solution.status, Status::Interrupted);
-    let last = solution.iterations.last().expect("some iterations");
-    assert!(last.restoration);
-    assert!(
-        (solution.constraints[0].abs() - last.primal_infeasibility).abs() < 1e-6,
-        "{solution:?}"
-    );
-}
-
-#[test]
-fn the_better_of_the_last_two_points_is_returned() {
-    // Along the tangent of the circle x² + y² = 1 from (1, 0), the first step leads away from it to where the Jacobian
-    // turns out not to exist.
-    let mut jacobians = 0;
-    let mut program = Program {
-        variables: bounds(&[(f64::NEG_INFINITY, f64::INFINITY); 2]),
-        constraints: bounds(&[(1.0, 1.0)]),
-        jacobian_places: vec![(0, 0), (0, 1)],
-        hessian_places: vec![(0, 0), (1, 1)],
-        f: Box::new(|x| x[0] + x[1]),
-        grad: Box::new(|_, grad| grad.fill(1.0)),
-        g: Box::new(|x, g| g[0] = x[0] * x[0] + x[1] * x[1]),
-        jac: Box::new(move |x, values| {
-            jacobians += 1;
-            let exists = jacobians == 1;
-            values.copy_from_slice(&if exists {
-                [2.0 * x[0], 2.0 * x[1]]
-            } else {
-                [f64::NAN; 2]
-            });
-        }),
-        hess: Box::new(|_, _, y, values| values.fill(2.0 * y[0])),
-    };
-    let solution = run(&mut program, &[1.0, 0.0], &Options::default());
-    assert_eq!(solution.status, Status::InvalidNumber);
-    assert_eq!(
-        (solution.x, solution.constraints),
-        (vec![1.0, 0.0], vec![1.0])
-    );
-}
-
-#[test]
-fn wall_time_is_limited() {
-    let mut slow = rosenbrock();
-    let mut objective = rosenbrock().f;
-    slow.f = Box::new(move |x| {
-        thread::sleep(Duration::from_millis(20));
-        objective(x)
-    });
-    let options = Options {
-        max_seconds: Some(0.1),
-        ..Options::default()
-    };
-    let began = Instant::now();
-    let solution = run(&mut slow, &[-1.2, 1.0], &options);
-    assert_eq!(solution.status, Status::TimeLimit);
-    // The limit is looked at once per iteration, and an iteration tries a few points of 20 ms each.
-    assert!(began.elapsed() < Duration::from_secs(5));
-    assert!(solution.seconds.objective > 0.5 * solution.seconds.total);
 }
 
 #[test]
@@ -605,75 +383,7 @@ fn a_centred_start_lies_on_the_path_of_the_barrier() {
 }
 
 #[test]
-fn threads_take_turns() {
-    thread::scope(|scope| {
-        let solves: Vec<_> = (0..4)
-            .map(|_| {
-                scope.spawn(|| {
-                    (0..10)
-                        .map(|_| run(&mut hs071(), &HS071_START, &Options::default()))
-                        .collect::<Vec<_>>()
-                })
-            })
-            .collect();
-        for solution in solves
-            .into_iter()
-            .flat_map(|solve| solve.join().expect("no panic"))
-        {
-            assert!((solution.objective - HS071_OPTIMUM).abs() < 1e-7);
-        }
-    });
-}
-
-#[test]
 #[should_panic(expected = "one value per variable in the starting point")]
 fn a_short_starting_point_is_the_callers_mistake() {
     run(&mut hs071(), &[1.0], &Options::default());
-}
-
-/// Run in a process of its own by the next test.
-#[test]
-#[ignore = "part of another test"]
-fn solves_and_fails() {
-    assert_eq!(
-        run(&mut hs071(), &HS071_START, &Options::default()).status,
-        Status::Solved
-    );
-    let options = Options {
-        max_iterations: 3,
-        ..Options::default()
-    };
-    assert_eq!(
-        run(&mut hs071(), &HS071_START, &options).status,
-        Status::IterationLimit
-    );
-}
-
-#[test]
-fn ipopt_is_silent_and_reads_no_file_of_the_working_directory() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    fs::write(
-        folder.path().join("ipopt.opt"),
-        "max_iter 1\nprint_level 5\n",
-    )
-    .expect("can be written");
-    let output = Command::new(std::env::current_exe().expect("the path of this test"))
-        .args([
-            "--ignored",
-            "--exact",
-            "--nocapture",
-            "--test-threads=1",
-            "ipopt::solves_and_fails",
-        ])
-        .current_dir(folder.path())
-        .output()
-        .expect("it can be run again");
-    let printed = String::from_utf8(output.stdout).expect("text");
-    assert!(output.status.success(), "{printed}");
-    let lines: Vec<_> = printed.lines().filter(|line| !line.is_empty()).collect();
-    assert_eq!(
-        lines.len(),
-        3,
-        "only the lines of the test harness: {printed}"
-    );
 }

@@ -6,4 +6,6 @@ mod common;
 mod checker;
 mod faults;
 mod ipopt;
+mod ipopt_stops;
+mod matrices;
 mod sparse;

@@ -1,5 +1,6 @@
 //! Direct solvers: every method gives what a dense one gives, names what is not determined, and shares MUMPS with Ipopt.
 
+use crate::matrices::{Matrix, Random, distance};
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -7,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{fs, thread};
 
 use crate::common::programs::{HS071_OPTIMUM, HS071_START, hs071};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use proboscis::ipopt::{self, Options, Point};
 use proboscis::sparse::{Backend, Direct, Symmetry};
 
@@ -17,120 +18,6 @@ const BACKENDS: [Backend; 3] = [Backend::Dense, Backend::Faer, Backend::Mumps];
 const SYMMETRIES: [Symmetry; 2] = [Symmetric, Unsymmetric];
 /// Sizes around the border between dense and sparse methods.
 const SIZES: [usize; 4] = [1, 7, 60, 200];
-
-/// Numbers that look random: SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Between −1 and 1.
-    fn number(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / 2.0_f64.powi(52) - 1.0
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        (self.bits() % end as u64) as usize
-    }
-}
-
-/// A matrix by its entries.
-#[derive(Clone)]
-struct Matrix {
-    size: usize,
-    symmetry: Symmetry,
-    entries: Vec<(usize, usize)>,
-    values: Vec<f64>,
-}
-
-impl Matrix {
-    /// About four entries per row beside the diagonal. Symmetric ones are indefinite, some with a zero on the diagonal.
-    fn random(size: usize, symmetry: Symmetry, random: &mut Random) -> Self {
-        let mut matrix = Self {
-            size,
-            symmetry,
-            entries: Vec::new(),
-            values: Vec::new(),
-        };
-        for row in 0..size {
-            let diagonal = if row % 5 == 3 {
-                0.0
-            } else {
-                2.0 * random.number()
-            };
-            matrix.push(row, row, diagonal);
-            // A band keeps the matrix regular where the diagonal is zero.
-            matrix.both(row, (row + 1) % size, 1.0 + 0.2 * random.number());
-            matrix.both(row, random.below(size), 0.5 * random.number());
-        }
-        matrix
-    }
-
-    /// Positive in the first two of three unknowns, negative in the third.
-    fn quasi_definite(size: usize, random: &mut Random) -> Self {
-        let mut matrix = Self::random(size, Symmetric, random);
-        let positive = |i: usize| i % 3 != 2;
-        let kept = |&(row, col): &(usize, usize)| row != col;
-        let mut of_row = vec![0.1; size];
-        for (entry, value) in matrix.entries.iter().zip(&matrix.values) {
-            if kept(entry) && positive(entry.0) == positive(entry.1) {
-                of_row[entry.0] += value.abs();
-            }
-        }
-        for (entry, value) in matrix.entries.iter().zip(&mut matrix.values) {
-            *value = if kept(entry) { *value } else { 0.0 };
-        }
-        for (row, value) in of_row.into_iter().enumerate() {
-            matrix.push(row, row, if positive(row) { value } else { -value });
-        }
-        matrix
-    }
-
-    fn push(&mut self, row: usize, col: usize, value: f64) {
-        self.entries.push((row, col));
-        self.values.push(value);
-    }
-
-    /// Adds an entry and, in a symmetric matrix, the one across the diagonal.
-    fn both(&mut self, row: usize, col: usize, value: f64) {
-        self.push(row, col, value);
-        if self.symmetry == Symmetric {
-            self.push(col, row, value);
-        }
-    }
-
-    fn dense(&self) -> DMatrix<f64> {
-        let mut dense = DMatrix::zeros(self.size, self.size);
-        for (&(row, col), value) in self.entries.iter().zip(&self.values) {
-            dense[(row, col)] += value;
-        }
-        dense
-    }
-
-    fn map(mut self, change: impl Fn(usize, usize, f64) -> f64) -> Self {
-        for (&(row, col), value) in self.entries.iter().zip(&mut self.values) {
-            *value = change(row, col, *value);
-        }
-        self
-    }
-
-    fn direct(&self, backend: Backend) -> Direct {
-        Direct::with(self.size, &self.entries, self.symmetry, Some(backend))
-    }
-}
-
-/// Greatest difference relative to the greatest number.
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    let norm = |v: &mut dyn Iterator<Item = f64>| v.fold(0.0_f64, |m, x| m.max(x.abs()));
-    let size = norm(&mut b.iter().copied());
-    assert!(size > 1e-3, "something to compare");
-    norm(&mut a.iter().zip(b).map(|(a, b)| a - b)) / size
-}
 
 /// Solves with `direct` and compares with a dense LU, up to what the condition leaves.
 fn check(direct: &mut Direct, matrix: &Matrix, random: &mut Random) {

@@ -3,25 +3,26 @@
 
 use crate::common::cases::{GRAVITY, blocks, branched, cases, control, hold, joints};
 use crate::common::solid::{DRIVEN, block, electrode, held};
-use crate::common::{at_reference, bare, body, joint, motion, placed, trunk};
-use nalgebra::{Matrix3, Vector3};
+use crate::common::{at_reference, motion, placed, trunk};
+use crate::welded::cuboid;
+use nalgebra::Vector3;
 use proboscis::control::problem::{AtRest, Simulation, State, Voltages};
 use proboscis::control::{Boundary, resolve_start};
 use proboscis::dynamics::{History, Solving, Start, equilibrium, simulate};
 use proboscis::functional::{Effect, Kind};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::plan::TERMS;
-use proboscis::model::system::{Body, JointKind, Potential, System};
-use proboscis::model::{Coordinates, Model, Place, Question};
+use proboscis::model::system::{Potential, System};
+use proboscis::model::{Coordinates, Model, Question};
 use proboscis::run::Plan;
 use proboscis::sparse::Symmetry;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
-const BOTH: [Coordinates; 2] = [Coordinates::Reduced, Coordinates::Redundant];
+pub(crate) const BOTH: [Coordinates; 2] = [Coordinates::Reduced, Coordinates::Redundant];
 
 /// A simulation of 100 ms in steps of 5 ms from the reference configuration under constant voltages.
-fn under(voltages: Vec<f64>, coordinates: Coordinates) -> Simulation {
+pub(crate) fn under(voltages: Vec<f64>, coordinates: Coordinates) -> Simulation {
     Simulation {
         duration: 100.0,
         step: 5.0,
@@ -34,7 +35,7 @@ fn under(voltages: Vec<f64>, coordinates: Coordinates) -> Simulation {
 }
 
 /// The model of a simulation and its motion.
-fn moved(system: &System, task: &Simulation) -> (Model, History) {
+pub(crate) fn moved(system: &System, task: &Simulation) -> (Model, History) {
     let question = task.question(system, task.step);
     let model = Model::answering(system.clone(), question).unwrap();
     let start = resolve_start(&model, &task.start, "start").unwrap();
@@ -55,7 +56,7 @@ fn moved(system: &System, task: &Simulation) -> (Model, History) {
     (model, history)
 }
 
-fn names(model: &Model) -> BTreeSet<String> {
+pub(crate) fn names(model: &Model) -> BTreeSet<String> {
     let sums = [&model.action.intervals, &model.action.instants];
     let effects = sums.into_iter().flat_map(|sum| &sum.effects);
     effects
@@ -167,139 +168,6 @@ fn at_rest_there_is_neither_inertia_nor_friction() {
                 .take(still.coordinate_count())
             {
                 assert!((a - b).abs() < 1e-9 * (1.0 + a.abs()), "{a} {b}");
-            }
-        }
-    }
-}
-
-/// A box of edges along the axes.
-fn cuboid(name: &str, mass: f64, size: [f64; 3], centre: Vector3<f64>) -> Body {
-    let [a, b, c] = size.map(|edge| edge * edge * mass / 12.0);
-    body(
-        name,
-        mass,
-        [b + c, c + a, a + b],
-        centre,
-        Matrix3::identity(),
-    )
-}
-
-#[test]
-fn two_welded_halves_move_like_the_whole() {
-    let whole = [10.0, 40.0, 20.0];
-    let half = [10.0, 20.0, 20.0];
-    let at = |y: f64| Vector3::new(0.0, y, 3.0);
-    let axis = Vector3::new(0.6, 0.0, 0.8);
-    let root = |child| {
-        joint(
-            "root",
-            JointKind::Revolute { axis },
-            None,
-            child,
-            Vector3::zeros(),
-        )
-    };
-    let one = bare(
-        vec![cuboid("all", 60.0, whole, at(20.0))],
-        vec![root(0)],
-        Some(GRAVITY),
-    );
-    let halves = vec![
-        cuboid("far", 30.0, half, at(30.0)),
-        cuboid("near", 30.0, half, at(10.0)),
-    ];
-    let weld = joint("weld", JointKind::Fixed, Some(1), 0, at(20.0));
-    let two = bare(halves, vec![weld, root(1)], Some(GRAVITY));
-    for coordinates in BOTH {
-        let mut task = under(Vec::new(), coordinates);
-        task.start = joints(&[(0, 0.9)]);
-        let (model, expected) = moved(&one, &task);
-        task.start = joints(&[(1, 0.9)]);
-        let (welded, found) = moved(&two, &task);
-        // One body: 12 coordinates, 6 constraints of its own and 5 of the joint.
-        if coordinates == Coordinates::Redundant {
-            assert_eq!(
-                (welded.coordinate_count(), welded.multiplier_names.len()),
-                (12, 11)
-            );
-        }
-        assert_eq!(welded.coordinate_count(), model.coordinate_count());
-        let place = |model: &Model, z: &[f64]| model.poses(&placed(model, z));
-        let (mut way, mut worst) = (0.0_f64, 0.0_f64);
-        for (a, b) in expected.z.iter().zip(&found.z) {
-            let (all, parts) = (place(&model, a)[0], place(&welded, b));
-            let middle = (parts[0].centre + parts[1].centre) * 0.5;
-            worst = worst.max((all.centre - middle).norm());
-            for part in &parts {
-                worst = worst.max((part.directors - all.directors).norm());
-            }
-            let between = parts[0].centre - parts[1].centre;
-            worst = worst.max((between - all.directors * Vector3::new(0.0, 20.0, 0.0)).norm());
-            way = way.max((all.centre - place(&model, &expected.z[0])[0].centre).norm());
-        }
-        assert!(way > 1.0 && worst < 1e-9, "{way} {worst}");
-    }
-}
-
-#[test]
-fn welded_and_fixed_bodies_have_no_unknown() {
-    // The cap of the branched tree sits on its slider: three bodies, two revolute joints and a slider of 5 constraints each.
-    let redundant = Question {
-        coordinates: Some(Coordinates::Redundant),
-        ..Question::of_motion(1.0)
-    };
-    let model = Model::answering(branched(), redundant.clone()).unwrap();
-    assert_eq!(model.coordinate_count(), 3 * 12);
-    assert_eq!(model.multiplier_names.len(), 3 * 6 + 3 * 5);
-    assert!(matches!(
-        model.condensed.places[3],
-        Place::Welded { to: 1, .. }
-    ));
-    let there = names(&model);
-    assert!(there.contains("joint points") && there.contains("rigid bodies"));
-
-    // A body that is fixed to the ground is ground, whichever way its joint and the next one are written.
-    for flipped in [false, true] {
-        let mut fixed = trunk(3);
-        fixed.joints[0].kind = JointKind::Fixed;
-        // Muscles between two points of the ground do nothing.
-        fixed.muscles.drain(..2);
-        if flipped {
-            let joint = &mut fixed.joints[1];
-            (joint.parent, joint.child) = (Some(1), 0);
-        }
-        let mut expected = trunk(3);
-        expected.muscles.drain(..2);
-        expected.bodies.remove(0);
-        expected.joints.remove(0);
-        let ground = |b: Option<usize>| b.and_then(|b| b.checked_sub(1));
-        for joint in &mut expected.joints {
-            (joint.parent, joint.child) = (ground(joint.parent), joint.child - 1);
-        }
-        for muscle in &mut expected.muscles {
-            (muscle.from.body, muscle.to.body) = (ground(muscle.from.body), ground(muscle.to.body));
-        }
-        expected.markers[0].point.body = Some(1);
-        for coordinates in BOTH {
-            let task = under(vec![0.0, 900.0, 800.0, 0.0], coordinates);
-            let ((model, found), (other, by_hand)) =
-                (moved(&fixed, &task), moved(&expected, &task));
-            assert_eq!(model.coordinate_count(), other.coordinate_count());
-            assert_eq!(model.multiplier_names.len(), other.multiplier_names.len());
-            assert_eq!(model.condensed.places[0], Place::Ground);
-            if !flipped {
-                assert_eq!(found.z, by_hand.z);
-            } else {
-                // The joint goes the other way round.
-                let tips = [(&model, &found), (&other, &by_hand)].map(|(model, history)| {
-                    let z = &history.z[20];
-                    placed(model, z).x[model.markers[0]]
-                });
-                assert!((tips[0] - Vector3::new(0.0, 150.0, 0.0)).norm() > 0.1);
-                let mirrored = model.joints(&placed(&model, &found.z[20]), &[0.0; 3]);
-                let straight = other.joints(&placed(&other, &by_hand.z[20]), &[0.0; 2]);
-                assert!((tips[0] - tips[1]).norm() < 1e-8);
-                assert!((mirrored[1] + straight[0]).abs() < 1e-10 && straight[0].abs() > 1e-4);
             }
         }
     }

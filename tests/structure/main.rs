@@ -3,8 +3,11 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod absent;
 mod circles;
 mod condensed;
 mod floors;
+mod lengths;
 mod sources;
 mod trace;
+mod welded;

@@ -1,0 +1,204 @@
+//! Every formula written anew over dual numbers, without thought of speed.
+
+use num_dual::{Dual, DualNum};
+use proboscis::energy::{
+    Angle, AngularDamper, Coincidence, CoordinateDamper, DielectricCell, ElasticCell, Energy,
+    Gravity, LinearDamper, LinearSpring, Orthogonality, OutsideBox, Place, Projection,
+    SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
+};
+
+/// The naive formula of an energy.
+pub(crate) trait Formula<const M: usize>: Energy<M> {
+    /// How many of its arguments are vectors.
+    const VECTORS: usize = M / 3;
+
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; M]) -> D;
+}
+
+pub(crate) fn three<D: Copy>(p: &[D], at: usize) -> [D; 3] {
+    [p[at], p[at + 1], p[at + 2]]
+}
+
+pub(crate) fn squared_length<D: DualNum<f64> + Copy>(a: [D; 3]) -> D {
+    a[0].powi(2) + a[1].powi(2) + a[2].powi(2)
+}
+
+/// a·b = (|a + b|² − |a − b|²)/4.
+pub(crate) fn polarised<D: DualNum<f64> + Copy>(a: [D; 3], b: [D; 3]) -> D {
+    let sum = [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+    let difference = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    (squared_length(sum) - squared_length(difference)) * 0.25
+}
+
+/// Λ = |r|/L₀.
+fn stretch<D: DualNum<f64> + Copy>(r: [D; 3], length: f64) -> D {
+    squared_length(r).sqrt() / length
+}
+
+/// The derivative along `rate`, as a number.
+pub(crate) fn along<D: DualNum<f64> + Copy, const K: usize>(
+    p: [D; K],
+    rate: [D; K],
+    f: impl Fn([Dual<D, f64>; K]) -> Dual<D, f64>,
+) -> D {
+    f(std::array::from_fn(|i| Dual::new(p[i], rate[i]))).eps
+}
+
+impl Formula<3> for ElasticCell {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 3]) -> D {
+        let s = stretch(*p, self.length);
+        (s.powi(2) + s.recip() * 2.0 - 3.0) * (0.5 * self.shear_modulus * self.volume)
+    }
+}
+
+impl Formula<4> for DielectricCell {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 4]) -> D {
+        let s = stretch(three(p, 0), self.elastic.length);
+        // The energy density at F = diag(Λ^(−1/2), Λ^(−1/2), Λ), E = (0, 0, V/t): C:(E⊗E) = Λ²E², C⁻¹:(E⊗E) = E²/Λ².
+        let field = p[3] / self.layer;
+        let density = (s.powi(2) + s.recip() * 2.0 - 3.0) * (0.5 * self.elastic.shear_modulus)
+            + field.powi(2) * self.c1
+            + (s * field).powi(2) * self.c2
+            - (field / s).powi(2) * (0.5 * self.permittivity);
+        density * self.elastic.volume
+    }
+}
+
+impl Formula<6> for SectionInertia {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
+        let (r, v) = (three(p, 0), three(p, 3));
+        let s = stretch(r, self.length);
+        let rate = along(r, v, |r| stretch(r, self.length));
+        // ½ ρV₀ (X̂² + Ŷ²)/48 Λ̇²/Λ³, where the moment holds the same over 192.
+        rate.powi(2) / s.powi(3) * (0.5 * 4.0 * self.moment)
+    }
+}
+
+impl Formula<9> for ViscousCell {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 9]) -> D {
+        let (delta, r, v) = (three(p, 0), three(p, 3), three(p, 6));
+        // −1.5 η V₀ Λ̇ δΛ/Λ²; no length at rest is left in it.
+        let of = |direction| along(r, direction, |r| stretch(r, 0.7));
+        -of(v) * of(delta) / stretch(r, 0.7).powi(2) * self.coefficient
+    }
+}
+
+impl Formula<3> for LinearSpring {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 3]) -> D {
+        (squared_length(*p).sqrt() - self.length).powi(2) * (0.5 * self.stiffness)
+    }
+}
+
+impl Formula<9> for SpanDamper {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 9]) -> D {
+        let (delta, r, v) = (three(p, 0), three(p, 3), three(p, 6));
+        let of = |direction| along(r, direction, |r| squared_length(r).sqrt());
+        -of(v) * of(delta) * self.coefficient
+    }
+}
+
+/// The angle of the vector c in the plane (a, b), by half of it: tan(θ/2) = s/(r + c), r² = s² + c²; for c < 0 by half of π − θ.
+fn half_angle<D: DualNum<f64> + Copy>(p: [D; 9]) -> D {
+    let cosine = polarised(three(&p, 0), three(&p, 6));
+    let sine = polarised(three(&p, 3), three(&p, 6));
+    let radius = (sine.powi(2) + cosine.powi(2)).sqrt();
+    if cosine.re() > 0.0 {
+        (sine / (radius + cosine)).atan() * 2.0
+    } else {
+        (sine / (radius - cosine)).atan() * -2.0 + std::f64::consts::PI * sine.re().signum()
+    }
+}
+
+impl Formula<9> for Angle {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 9]) -> D {
+        let angle = half_angle(*p);
+        let turns = ((self.near - angle.re()) / std::f64::consts::TAU).round();
+        angle + turns * std::f64::consts::TAU
+    }
+}
+
+impl Formula<27> for AngularDamper {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 27]) -> D {
+        let part = |at: usize| -> [D; 9] { std::array::from_fn(|i| p[at + i]) };
+        let of = |direction| along(part(9), direction, half_angle);
+        -of(part(18)) * of(part(0)) * self.coefficient
+    }
+}
+
+impl Formula<6> for CoordinateDamper {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
+        -polarised(three(p, 3), three(p, 0)) * self.coefficient
+    }
+}
+
+impl Formula<18> for LinearDamper {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 18]) -> D {
+        let part = |at: usize| -> [D; 6] { std::array::from_fn(|i| p[at + i]) };
+        let of = |direction| {
+            along(part(6), direction, |q| {
+                polarised(three(&q, 0), three(&q, 3))
+            })
+        };
+        -of(part(12)) * of(part(0)) * self.coefficient
+    }
+}
+
+impl Formula<3> for Gravity {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 3]) -> D {
+        -polarised(
+            *p,
+            [self.weight.x, self.weight.y, self.weight.z].map(D::from),
+        )
+    }
+}
+
+impl Formula<7> for Orthogonality {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 7]) -> D {
+        (polarised(three(p, 0), three(p, 3)) - self.product) * p[6] * self.factor
+    }
+}
+
+impl Formula<6> for Coincidence {
+    const VECTORS: usize = 1;
+
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
+        polarised(three(p, 3), three(p, 0))
+    }
+}
+
+impl Formula<6> for Projection {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
+        polarised(three(p, 0), three(p, 3))
+    }
+}
+
+impl Formula<3> for Place {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 3]) -> D {
+        let normal = [self.normal.x, self.normal.y, self.normal.z].map(D::from);
+        polarised(*p, normal) - self.origin.dot(&self.normal)
+    }
+}
+
+impl Formula<3> for SquaredDistance {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 3]) -> D {
+        let d = std::array::from_fn(|i| p[i] - self.centre[i]);
+        (squared_length(d).sqrt() / self.scale).powi(2)
+    }
+}
+
+impl Formula<3> for OutsideBox {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 3]) -> D {
+        let power = |i: usize| {
+            let square = ((p[i] - self.centre[i]) / self.half[i]).powi(2);
+            let fourth = square * square;
+            fourth * fourth * fourth * fourth
+        };
+        power(0) + power(1) + power(2)
+    }
+}
+
+impl Formula<4> for SquaredField {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 4]) -> D {
+        (p[3] / (stretch(three(p, 0), self.length) * self.voltage)).powi(2)
+    }
+}

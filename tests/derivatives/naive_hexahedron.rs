@@ -1,0 +1,161 @@
+//! A hexahedron by textbook formulas with loops over dual numbers.
+
+#![expect(
+    clippy::needless_range_loop,
+    reason = "nodes and components are the indices of the formulas"
+)]
+
+use crate::common::random::Random;
+#[allow(unreachable_pub, reason = "other tests use it through a module")]
+use num_dual::DualNum;
+use proboscis::element::{Dielectric, Volume};
+use proboscis::math::{Matrix, Vector};
+
+/// Signs of the nodes of the parent cube in the order of VTK.
+pub(crate) const SIGNS: [[f64; 3]; 8] = [
+    [-1.0, -1.0, -1.0],
+    [1.0, -1.0, -1.0],
+    [1.0, 1.0, -1.0],
+    [-1.0, 1.0, -1.0],
+    [-1.0, -1.0, 1.0],
+    [1.0, -1.0, 1.0],
+    [1.0, 1.0, 1.0],
+    [-1.0, 1.0, 1.0],
+];
+
+pub(crate) fn cube() -> [Vector; 8] {
+    SIGNS.map(|s| Vector::from(s).map(|c| 0.5 * (c + 1.0)))
+}
+
+fn distorted(random: &mut Random, nodes: &[Vector; 8], amount: f64) -> [Vector; 8] {
+    nodes.map(|x| x + random.vector() * amount)
+}
+
+/// A distorted hexahedron and a state of it.
+pub(crate) fn state(random: &mut Random) -> ([Vector; 8], [Vector; 8], [f64; 8]) {
+    let edges = Vector::from_fn(|_, _| random.between(0.8, 1.3));
+    let nodes = distorted(random, &cube().map(|x| x.component_mul(&edges)), 0.12);
+    let map = Matrix::identity() + Matrix::from_fn(|_, _| 0.15 * random.unit());
+    let x = distorted(random, &nodes.map(|x| map * x), 0.1);
+    (nodes, x, std::array::from_fn(|_| random.unit()))
+}
+
+// The naive element.
+
+pub(crate) type M<D> = [[D; 3]; 3];
+
+pub(crate) fn determinant<D: DualNum<f64> + Copy>(m: M<D>) -> D {
+    m[0][0] * m[1][1] * m[2][2] + m[0][1] * m[1][2] * m[2][0] + m[0][2] * m[1][0] * m[2][1]
+        - m[0][2] * m[1][1] * m[2][0]
+        - m[0][1] * m[1][0] * m[2][2]
+        - m[0][0] * m[1][2] * m[2][1]
+}
+
+pub(crate) fn inverse<D: DualNum<f64> + Copy>(m: M<D>) -> M<D> {
+    let det = determinant(m);
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            // The minor without row j and column i, in cyclic order.
+            let (a, b) = ((j + 1) % 3, (j + 2) % 3);
+            let (c, d) = ((i + 1) % 3, (i + 2) % 3);
+            (m[a][c] * m[b][d] - m[a][d] * m[b][c]) / det
+        })
+    })
+}
+
+pub(crate) fn product<D: DualNum<f64> + Copy>(a: M<D>, b: M<D>) -> M<D> {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| (0..3).fold(D::zero(), |sum, k| sum + a[i][k] * b[k][j]))
+    })
+}
+
+pub(crate) fn transposed<D: Copy>(a: M<D>) -> M<D> {
+    std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
+}
+
+/// a : b.
+pub(crate) fn contracted<D: DualNum<f64> + Copy>(a: M<D>, b: M<D>) -> D {
+    (0..9).fold(D::zero(), |sum, k| sum + a[k / 3][k % 3] * b[k / 3][k % 3])
+}
+
+/// Weight and gradients at each Gauss point, in any order.
+pub(crate) fn gauss(nodes: &[Vector; 8]) -> Vec<(f64, [[f64; 3]; 8])> {
+    let mut points = Vec::new();
+    for xi in [-1.0, 1.0] {
+        for eta in [-1.0, 1.0] {
+            for zeta in [-1.0, 1.0] {
+                let at = [xi, eta, zeta].map(|s: f64| s / 3.0_f64.sqrt());
+                let slopes: [[f64; 3]; 8] = SIGNS.map(|s| {
+                    let [a, b, c] = [0, 1, 2].map(|m| (1.0 + s[m] * at[m]) / 2.0);
+                    [s[0] / 2.0 * b * c, s[1] / 2.0 * a * c, s[2] / 2.0 * a * b]
+                });
+                let mut jacobian = [[0.0; 3]; 3];
+                for i in 0..8 {
+                    for a in 0..3 {
+                        for m in 0..3 {
+                            jacobian[a][m] += nodes[i][a] * slopes[i][m];
+                        }
+                    }
+                }
+                let inverse = inverse(jacobian);
+                let gradients = slopes.map(|slope| {
+                    std::array::from_fn(|a| (0..3).map(|m| slope[m] * inverse[m][a]).sum())
+                });
+                points.push((determinant(jacobian), gradients));
+            }
+        }
+    }
+    points
+}
+
+/// F = Σ x_i ⊗ G_i of the first 24 numbers.
+pub(crate) fn deformation<D: DualNum<f64> + Copy>(p: &[D], gradients: &[[f64; 3]; 8]) -> M<D> {
+    std::array::from_fn(|a| {
+        std::array::from_fn(|m| {
+            (0..8).fold(D::zero(), |sum, i| sum + p[3 * i + a] * gradients[i][m])
+        })
+    })
+}
+
+/// The energy of physics.md 2.1 through C and C⁻¹, arguments: 24 coordinates, then 8 potentials.
+pub(crate) struct Naive {
+    pub(crate) mu: f64,
+    pub(crate) lambda: f64,
+    pub(crate) electric: Option<Dielectric>,
+    pub(crate) volume: Volume,
+    pub(crate) points: Vec<(f64, [[f64; 3]; 8])>,
+}
+
+impl Naive {
+    pub(crate) fn energy<D: DualNum<f64> + Copy>(&self, p: &[D]) -> D {
+        let mut energy = D::zero();
+        let mut volume = 0.0;
+        let mut deformed = D::zero();
+        for (w, gradients) in &self.points {
+            let f = deformation(p, gradients);
+            let c = product(transposed(f), f);
+            let j = determinant(f);
+            volume += w;
+            deformed += j * *w;
+            let mut density =
+                (c[0][0] + c[1][1] + c[2][2] - 3.0) * (0.5 * self.mu) - j.ln() * self.mu;
+            if self.volume == Volume::Pointwise {
+                density += j.ln().powi(2) * (0.5 * self.lambda);
+            }
+            if let Some(k) = self.electric {
+                let e: [D; 3] = std::array::from_fn(|m| {
+                    (0..8).fold(D::zero(), |sum, i| sum - p[24 + i] * gradients[i][m])
+                });
+                let square: M<D> = std::array::from_fn(|a| std::array::from_fn(|b| e[a] * e[b]));
+                density += (square[0][0] + square[1][1] + square[2][2]) * k.c1
+                    + contracted(c, square) * k.c2
+                    - j * contracted(inverse(c), square) * (0.5 * k.permittivity);
+            }
+            energy += density * *w;
+        }
+        if self.volume == Volume::Mean {
+            energy += (deformed / volume).ln().powi(2) * (0.5 * self.lambda * volume);
+        }
+        energy
+    }
+}

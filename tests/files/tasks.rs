@@ -1,0 +1,153 @@
+//! What a problem asks: methods, tables, solutions, given voltages.
+
+use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
+use proboscis::control::problem::{Afterwards, State, Task, Voltages};
+use proboscis::dynamics::Integrator;
+use proboscis::scene::read_problem;
+use std::fs;
+
+#[test]
+fn the_method_of_a_simulation_is_read_and_checked() {
+    const SIMULATE: &str = r#"{ "scene": "scene.json", "simulate": { "duration": "1 s", "step": "10 ms", "integrator": "midpoint" } }"#;
+    #[rustfmt::skip]
+    let cases: &[Case] = &[
+        ("\"midpoint\"", "\"midpont\"", "simulate.integrator", "\"midpont\"", "\"midpoint\"", "midpont"),
+        ("\"midpoint\"", "{ \"galerkin\": 0 }", "simulate.integrator.galerkin", "0", "a degree from 1 to 8", "0"),
+        ("\"midpoint\"", "{ \"galerkin\": 9 }", "simulate.integrator.galerkin", "9", "a degree from 1 to 8", "9"),
+        ("\"midpoint\"", "{ \"generalised_alpha\": 1.5 }", "simulate.integrator.generalised_alpha", "1.5", "from 0 to 1", "1.5"),
+        ("\"midpoint\"", "{}", "simulate.integrator", "none of them", "exactly one of", "{}"),
+        ("\"midpoint\"", "{ \"runge_kutta\": 4 }", "simulate.integrator.runge_kutta", "the key \"runge_kutta\"", "\"galerkin\"", "runge_kutta"),
+    ];
+    check(cases, SIMULATE, |problem| mistake(SCENE, problem, &[]));
+    let method = |text: &str| {
+        let (_folder, path) = folder(SCENE, &SIMULATE.replace("\"midpoint\"", text));
+        let Task::Simulate(task) = read_problem(&path, &[]).expect("a problem").task else {
+            panic!("a simulation")
+        };
+        task.solving.integrator
+    };
+    let alpha = |spectral_radius| Integrator::GeneralisedAlpha { spectral_radius };
+    for (text, expected) in [
+        ("\"midpoint\"", Integrator::Midpoint),
+        ("\"implicit_euler\"", Integrator::ImplicitEuler),
+        ("\"generalised_alpha\"", alpha(0.8)),
+        ("{ \"generalised_alpha\": 0.5 }", alpha(0.5)),
+        ("{ \"galerkin\": 3 }", Integrator::Galerkin { degree: 3 }),
+    ] {
+        assert_eq!(method(text), expected, "{text}");
+    }
+}
+
+#[test]
+fn simulation_and_solution_are_checked() {
+    let simulate = r#"{ "scene": "scene.json", "simulate": { "duration": "1 s", "step": "2 s" } }"#;
+    let error = mistake(SCENE, simulate, &[]);
+    assert_eq!(error.path(), "simulate.step");
+    assert!(
+        error.expected().contains("no longer than the duration"),
+        "{error}"
+    );
+
+    let (folder, path) = folder(
+        SCENE,
+        r#"{ "scene": "scene.json", "simulate": { "duration": "1 s", "step": "10 ms", "voltages": { "solution": "solution.json" }, "start": { "joint_rates": { "joint1": "2 rad/s", "joint2": "3 m/s" } } } }"#,
+    );
+    fs::write(
+        folder.path().join("solution.json"),
+        r#"{ "time": [0, 0.5, 1], "voltages": { "muscle1": [100, 200] }, "status": "solved" }"#,
+    )
+    .expect("a solution");
+    let Task::Simulate(simulation) = read_problem(&path, &[]).expect("a simulation").task else {
+        panic!("a simulation")
+    };
+    let rows = vec![vec![100.0, 0.0], vec![200.0, 0.0], vec![200.0, 0.0]];
+    assert_eq!(
+        simulation.voltages,
+        Voltages::Sampled {
+            ends: vec![500.0, 1000.0],
+            rows,
+            afterwards: Afterwards::OfLastInterval,
+            solution: Some(folder.path().join("solution.json")),
+        }
+    );
+    let State::JointAngles { angles, rates, .. } = simulation.start else {
+        panic!("joint angles")
+    };
+    assert!(angles.is_empty());
+    assert_eq!((rates[&0], rates[&1]), (0.002, 3.0));
+}
+
+/// The voltages of a simulation with a table in place of them.
+fn with_table(table: &str) -> Result<Voltages, String> {
+    let problem = r#"{ "scene": "scene.json", "simulate": { "duration": "1 s", "step": "10 ms", "voltages": TABLE } }"#;
+    let (_folder, path) = folder(SCENE, &problem.replace("TABLE", table));
+    match read_problem(&path, &[]) {
+        Ok(loaded) => match loaded.task {
+            Task::Simulate(simulation) => Ok(simulation.voltages),
+            _ => panic!("a simulation"),
+        },
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+#[test]
+fn voltages_may_be_a_table() {
+    let table = r#"{ "time": [0, "500 ms", 1], "voltages": { "muscle1": [100, "0.2 kV"] }, "hold": { "muscle1": 50 } }"#;
+    let voltages = with_table(table).unwrap();
+    let rows = vec![vec![100.0, 0.0], vec![200.0, 0.0], vec![50.0, 0.0]];
+    assert_eq!(
+        voltages,
+        Voltages::Sampled {
+            ends: vec![500.0, 1000.0],
+            rows,
+            afterwards: Afterwards::Held,
+            solution: None,
+        }
+    );
+    let at = |time| voltages.at(time)[0];
+    assert_eq!([at(499.0), at(501.0), at(1500.0)], [100.0, 200.0, 50.0]);
+    for (wrong, told) in [
+        (r#"{ "time": [0, 1] }"#, "a table without \"voltages\""),
+        (r#"{ "voltages": {} }"#, "a table without \"time\""),
+        (
+            r#"{ "muscle1": 1, "time": [0, 1], "voltages": {} }"#,
+            "a table beside voltages by name",
+        ),
+        (
+            r#"{ "time": [0.1, 1], "voltages": {} }"#,
+            "found 0.1 s, expected 0",
+        ),
+        (
+            r#"{ "time": [0, 1, 1], "voltages": {} }"#,
+            "increasing times",
+        ),
+        (r#"{ "time": [0], "voltages": {} }"#, "2 instants or more"),
+        (
+            r#"{ "time": [0, 1], "voltages": { "muscle1": [1, 2] } }"#,
+            "found 2 voltages, expected 1",
+        ),
+        (
+            r#"{ "time": [0, 1], "voltages": { "muscle7": [1] } }"#,
+            "muscle7",
+        ),
+    ] {
+        let message = with_table(wrong).unwrap_err();
+        assert!(message.contains(told), "{wrong}: {message}");
+    }
+}
+
+#[test]
+fn voltages_of_a_control_problem_may_be_given() {
+    let second = "\"muscle2\", \"material\": \"silicone\"";
+    let scene = SCENE.replace("\"muscle2\", \"material\": \"rubber\"", second);
+    let given = "\"intervals\": 20, \"voltages\": { \"muscle2\": \"4 kV\" },";
+    let problem = PROBLEM.replace("\"intervals\": 20,", given);
+    // What is given is not bound, at rest neither.
+    let rest = "{ \"muscle1\": \"1.7 kV\", \"muscle2\": \"4 kV\" }";
+    let problem = problem.replace("{ \"muscle1\": \"1.7 kV\" }", rest);
+    let (_folder, path) = folder(&scene, &problem);
+    let Task::Control(control) = read_problem(&path, &[]).expect("a problem").task else {
+        panic!("a control problem")
+    };
+    assert_eq!(control.given, [(1, 4000.0)].into());
+}

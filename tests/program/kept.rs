@@ -1,0 +1,61 @@
+//! Problems and schemas that are kept beside the program.
+
+use crate::commands::{read, run, workshop};
+use proboscis::model::system::Fidelity;
+use proboscis::scene::read_problem;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+/// Whether a kept problem has finite elements, whose derivatives are too many for differences.
+fn has_elements(name: &str) -> bool {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems");
+    let system = read_problem(&path.join(name), &[]).unwrap().system;
+    let muscles = system.muscles.iter();
+    let mut fidelities = muscles.map(|muscle| muscle.fidelity);
+    !system.solids.is_empty() || fidelities.any(|fidelity| fidelity != Fidelity::Lumped)
+}
+
+#[test]
+fn every_kept_problem_has_right_derivatives() {
+    let folder = workshop();
+    for entry in fs::read_dir(folder.path().join("problems")).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        if path.is_dir() || name.contains("schema") || has_elements(&name) {
+            continue;
+        }
+        let (status, out, err) = run(folder.path(), &["check", path.to_str().unwrap()]);
+        assert_eq!(status, 0, "{name}: {out}{err}");
+        let (status, out, err) = run(folder.path(), &["inspect", path.to_str().unwrap()]);
+        assert!(
+            status == 0 && out.contains("muscle electroelasticity"),
+            "{name}: {out}{err}"
+        );
+    }
+}
+
+#[test]
+fn a_new_trunk_can_be_solved_and_is_not_overwritten() {
+    let folder = workshop();
+    let arguments = ["new", "trunk", "--segments", "2", "mine"];
+    let (status, out, err) = run(folder.path(), &arguments);
+    assert_eq!(status, 0, "{err}");
+    assert_eq!(out.lines().count(), 2);
+    let (status, _, err) = run(folder.path(), &arguments);
+    assert!(status == 2 && err.contains("exists already"), "{err}");
+    let (status, ..) = run(folder.path(), &["solve", "mine/problem.json"]);
+    assert_eq!(status, 0);
+    let (status, out, _) = run(folder.path(), &["expand", "mine/scene.json"]);
+    assert!(status == 0 && out.contains("\"segment2\"") && !out.contains("\"chain\""));
+}
+
+#[test]
+fn kept_schemas_are_those_of_the_program() {
+    let folder = workshop();
+    for file in ["scene", "problem"] {
+        let (_, out, _) = run(folder.path(), &["schema", file]);
+        let kept = read(folder.path().join(format!("problems/{file}.schema.json")));
+        assert_eq!(serde_json::from_str::<Value>(&out).unwrap(), kept);
+    }
+}
