@@ -15,7 +15,7 @@ pub struct Local<F: Field> {
     pub forces: [Vector; 8],
     /// ∂²W/∂x_i∂x_j in N/mm, rows belong to i; both triangles are filled.
     pub stiffness: [[Matrix; 8]; 8],
-    /// Derivatives by potentials: [`Electric`], or nothing.
+    /// Derivatives by potentials: [`Electric`](crate::element::Electric), or nothing.
     pub electric: F::Local,
 }
 
