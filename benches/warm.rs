@@ -166,7 +166,7 @@ fn of_simulations(count: usize) -> (String, String) {
         let voltages = goal["rest_at_voltages"].clone();
         let guess = json!({ "simulate": { "voltages": voltages } });
         let goal = format!("control.goal={goal}");
-        let cold = solve("elephant_trunk_effort", &[goal.clone()]);
+        let cold = solve("elephant_trunk_effort", std::slice::from_ref(&goal));
         let guess = format!("control.guess={guess}");
         let simulated = solve("elephant_trunk_effort", &[goal, guess]);
         words.push(compared(&simulated, &cold));

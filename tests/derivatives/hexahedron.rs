@@ -7,7 +7,6 @@
 
 use crate::common::random::Random;
 use crate::naive_hexahedron::{Naive, SIGNS, cube, gauss, state};
-#[allow(unreachable_pub, reason = "other tests use it through a module")]
 use num_dual::{Dual, Dual64, HyperDual};
 use proboscis::element::{Dielectric, Elastomer, Field, Local, Passive, Shape, Viscosity, Volume};
 use proboscis::math::{Matrix, Vector};

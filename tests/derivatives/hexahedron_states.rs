@@ -1,14 +1,8 @@
 //! Hexahedra in states that are known: fields, a patch, a free block.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "nodes and components are the indices of the formulas"
-)]
-
 use crate::common::random::Random;
 use crate::hexahedron::{DIELECTRIC, close, forces, largest, law, list};
 use crate::naive_hexahedron::{Naive, cube, gauss};
-#[allow(unreachable_pub, reason = "other tests use it through a module")]
 use num_dual::Dual64;
 use proboscis::element::{Dielectric, Elastomer, Local, Shape, Viscosity, Volume};
 use proboscis::math::{Matrix, Vector};

@@ -1,16 +1,10 @@
 //! Viscous forces of the hexahedron against a naive oracle.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "nodes and components are the indices of the formulas"
-)]
-
 use crate::common::random::Random;
 use crate::hexahedron::{STATES, close, largest, list, oracle};
 use crate::naive_hexahedron::{
     M, contracted, deformation, determinant, gauss, inverse, product, state, transposed,
 };
-#[allow(unreachable_pub, reason = "other tests use it through a module")]
 use num_dual::{Dual64, DualNum};
 use proboscis::element::{Shape, Viscosity, ViscousContraction, ViscousLocal};
 use proboscis::math::{Matrix, Vector};

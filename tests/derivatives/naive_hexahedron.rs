@@ -1,12 +1,6 @@
 //! A hexahedron by textbook formulas with loops over dual numbers.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "nodes and components are the indices of the formulas"
-)]
-
 use crate::common::random::Random;
-#[allow(unreachable_pub, reason = "other tests use it through a module")]
 use num_dual::DualNum;
 use proboscis::element::{Dielectric, Volume};
 use proboscis::math::{Matrix, Vector};

@@ -225,14 +225,13 @@ fn charts_are_exchanged_and_the_configuration_stays() {
             let parent = joint[body.saturating_sub(1)].directors;
             (joint[0].directors, parent.tr_mul(&joint[body].directors))
         });
-        for [a, b, c] in [[from.0, half.0, to.0]] {
-            let angle = |a: &Matrix3<f64>, b: &Matrix3<f64>| {
-                Rotation3::from_matrix_unchecked(a.tr_mul(b)).angle()
-            };
-            let whole = angle(&a, &c);
-            assert!((angle(&a, &b) - 0.5 * whole).abs() < 1e-9 && whole > 0.5);
-            assert!((angle(&b, &c) - 0.5 * whole).abs() < 1e-9);
-        }
+        let [a, b, c] = [from.0, half.0, to.0];
+        let angle = |a: &Matrix3<f64>, b: &Matrix3<f64>| {
+            Rotation3::from_matrix_unchecked(a.tr_mul(b)).angle()
+        };
+        let whole = angle(&a, &c);
+        assert!((angle(&a, &b) - 0.5 * whole).abs() < 1e-9 && whole > 0.5);
+        assert!((angle(&b, &c) - 0.5 * whole).abs() < 1e-9);
     }
 }
 
