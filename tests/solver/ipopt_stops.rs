@@ -282,7 +282,7 @@ fn ipopt_is_silent_and_reads_no_file_of_the_working_directory() {
             "--exact",
             "--nocapture",
             "--test-threads=1",
-            "ipopt::solves_and_fails",
+            "ipopt_stops::solves_and_fails",
         ])
         .current_dir(folder.path())
         .output()
