@@ -1,6 +1,7 @@
 //! A spring and a damper between two points.
 
 use crate::energy::Energy;
+use crate::energy::viscosity::of_invariants;
 use crate::math::Jet;
 use nalgebra::SVector;
 
@@ -53,15 +54,8 @@ impl Energy<9> for SpanDamper {
 
     #[inline]
     fn jet<const ORDER: usize>(&self, p: &SVector<f64, 9>, w: &SVector<f64, 9>) -> Jet<9, ORDER> {
-        let inner = [
-            Jet::dot(3, 6, p, w),
-            Jet::dot(3, 0, p, w),
-            Jet::dot(3, 3, p, w),
-        ];
-        let values = SVector::from(inner.map(|j| j.value));
-        let rates = SVector::from(inner.map(|j| j.value_w));
-        let argument = |i| Jet::<3, ORDER>::argument(i, &values, &rates);
-        let outer = argument(0) * argument(1) * argument(2).recip() * -self.coefficient;
-        Jet::compose(&outer, &inner)
+        of_invariants(p, w, |[alpha, beta, gamma]| {
+            alpha * beta * gamma.recip() * -self.coefficient
+        })
     }
 }

@@ -13,24 +13,21 @@ pub struct ViscousCell {
     pub coefficient: f64,
 }
 
-impl ViscousCell {
-    /// `−(3/2) η V₀ α β/γ²` of the invariants α = r̄·ṙ, β = r̄·δr, γ = |r̄|².
-    fn of_invariants<const ORDER: usize>(
-        &self,
-        p: &SVector<f64, 9>,
-        w: &SVector<f64, 9>,
-    ) -> Jet<9, ORDER> {
-        let inner = [
-            Jet::dot(3, 6, p, w),
-            Jet::dot(3, 0, p, w),
-            Jet::dot(3, 3, p, w),
-        ];
-        let values = SVector::from(inner.map(|j| j.value));
-        let rates = SVector::from(inner.map(|j| j.value_w));
-        let argument = |i| Jet::<3, ORDER>::argument(i, &values, &rates);
-        let outer = argument(0) * argument(1) * argument(2).squared().recip() * -self.coefficient;
-        Jet::compose(&outer, &inner)
-    }
+/// A function of the invariants α = r̄·ṙ, β = r̄·δr, γ = |r̄|² of the arguments δr, r̄, ṙ.
+pub(super) fn of_invariants<const ORDER: usize>(
+    p: &SVector<f64, 9>,
+    w: &SVector<f64, 9>,
+    outer: impl FnOnce([Jet<3, ORDER>; 3]) -> Jet<3, ORDER>,
+) -> Jet<9, ORDER> {
+    let inner = [
+        Jet::dot(3, 6, p, w),
+        Jet::dot(3, 0, p, w),
+        Jet::dot(3, 3, p, w),
+    ];
+    let values = SVector::from(inner.map(|j| j.value));
+    let rates = SVector::from(inner.map(|j| j.value_w));
+    let arguments = std::array::from_fn(|i| Jet::argument(i, &values, &rates));
+    Jet::compose(&outer(arguments), &inner)
 }
 
 /// To second order, all that a virtual work is asked for in a sum, the jet is written out: W = k α β/γ² is linear in α
@@ -41,7 +38,9 @@ impl Energy<9> for ViscousCell {
     #[inline]
     fn jet<const ORDER: usize>(&self, p: &SVector<f64, 9>, w: &SVector<f64, 9>) -> Jet<9, ORDER> {
         if ORDER >= 3 {
-            return self.of_invariants(p, w);
+            return of_invariants(p, w, |[alpha, beta, gamma]| {
+                alpha * beta * gamma.squared().recip() * -self.coefficient
+            });
         }
         let part = |i: usize| Vector::new(p[i], p[i + 1], p[i + 2]);
         let (d, r, v) = (part(0), part(3), part(6));

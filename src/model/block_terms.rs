@@ -52,7 +52,7 @@ impl Continua {
             return terms.without(INERTIA, "a state of rest has no inertia");
         }
         for mass in self.masses() {
-            terms.add_mass_of_many(INERTIA, mass);
+            terms.push(INERTIA, mass);
         }
         match moving().any(|c| is_heavy(&c)) {
             true => {
@@ -77,7 +77,7 @@ impl Continua {
                         nodes,
                         terminals: (),
                     };
-                    terms.add_hexahedron(ELASTICITY, "elements without a field of", name, element);
+                    terms.collect(ELASTICITY, "elements without a field of", name, element);
                     let why = match c.material(e).electric {
                         None => "no elastic block that moves names electric constants there",
                         Some(_) => {
@@ -93,12 +93,7 @@ impl Continua {
                         nodes,
                         terminals: c.terminals(e),
                     };
-                    terms.add_hexahedron(
-                        ELECTROELASTICITY,
-                        "elements in a field of",
-                        name,
-                        element,
-                    );
+                    terms.collect(ELECTROELASTICITY, "elements in a field of", name, element);
                     terms.without(ELASTICITY, "a field reaches every element");
                 }
             }
@@ -121,7 +116,7 @@ impl Continua {
                 law: Viscosity { viscosity },
                 nodes: c.nodes(e),
             };
-            terms.add_viscous(VISCOSITY, &c.solid.name, element);
+            terms.collect(VISCOSITY, "viscosity of", &c.solid.name, element);
         }
     }
 

@@ -41,7 +41,7 @@ struct Collected {
 }
 
 /// What elements of one type are together.
-trait Member: Sized + 'static {
+pub(super) trait Member: Sized + 'static {
     fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect>;
 }
 
@@ -72,29 +72,19 @@ impl Member for Path {
     }
 }
 
-/// A kinetic energy with the number of arguments of its formula.
-struct Kinetic<E, const M: usize, const NV: usize, const NS: usize>(Element<E, NV, NS>);
+/// An element with the number of arguments of its formula, and whether that is a kinetic energy.
+struct Of<E, const M: usize, const NV: usize, const NS: usize, const KINETIC: bool>(
+    Element<E, NV, NS>,
+);
 
-impl<E, const M: usize, const NV: usize, const NS: usize> Member for Kinetic<E, M, NV, NS>
+impl<E, const M: usize, const NV: usize, const NS: usize, const KINETIC: bool> Member
+    for Of<E, M, NV, NS, KINETIC>
 where
     E: Energy<M> + 'static,
 {
     fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect> {
-        let elements = list.into_iter().map(|Self(element)| element).collect();
-        Box::new(Group::intervals(name, 1.0, elements))
-    }
-}
-
-/// A potential energy or virtual work with the number of arguments of its formula.
-struct Of<E, const M: usize, const NV: usize, const NS: usize>(Element<E, NV, NS>);
-
-impl<E, const M: usize, const NV: usize, const NS: usize> Member for Of<E, M, NV, NS>
-where
-    E: Energy<M> + 'static,
-{
-    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect> {
-        // The action has the kinetic energy less the potential one.
-        let scale = if E::VIRTUAL == 0 { -1.0 } else { 1.0 };
+        // The action has the kinetic energy less the potential one; a virtual work is added.
+        let scale = if KINETIC || E::VIRTUAL > 0 { 1.0 } else { -1.0 };
         let elements = list.into_iter().map(|Self(element)| element).collect();
         Box::new(Group::intervals(name, scale, elements))
     }
@@ -169,7 +159,7 @@ impl<'a> Terms<'a> {
     ) where
         E: Energy<M> + 'static,
     {
-        self.collect(term, why, of, Of::<E, M, NV, NS>(element));
+        self.collect(term, why, of, Of::<_, _, _, _, false>(element));
     }
 
     /// Adds a kinetic energy of vectors and rates of the intervals.
@@ -182,17 +172,7 @@ impl<'a> Terms<'a> {
     ) where
         E: Energy<M> + 'static,
     {
-        self.collect(term, why, of, Kinetic::<E, M, NV, NS>(element));
-    }
-
-    /// Adds a constant mass.
-    pub(super) fn add_mass(&mut self, term: &'static str, why: &'static str, of: &str, mass: Mass) {
-        self.collect(term, why, of, mass);
-    }
-
-    /// Adds a constant mass of parts that are [noted](Self::note) by themselves.
-    pub(super) fn add_mass_of_many(&mut self, term: &'static str, mass: Mass) {
-        self.push(term, mass);
+        self.collect(term, why, of, Of::<_, _, _, _, true>(element));
     }
 
     /// Notes that a part of the scene calls for a term.
@@ -220,40 +200,32 @@ impl<'a> Terms<'a> {
         }
     }
 
-    /// Adds a hexahedron with or without a field.
-    pub(super) fn add_hexahedron<F: Wired + 'static>(
-        &mut self,
-        term: &'static str,
-        why: &'static str,
-        of: &str,
-        element: Hexahedron<F>,
-    ) where
-        Hexahedra<F>: Effect,
-    {
-        self.collect(term, why, of, element);
-    }
-
-    /// Adds a viscous hexahedron.
-    pub(super) fn add_viscous(&mut self, term: &'static str, of: &str, element: ViscousHexahedron) {
-        self.collect(term, "viscosity of", of, element);
-    }
-
     /// Adds the energy of the length of a path.
     pub fn add_path(&mut self, term: &'static str, why: &'static str, of: &str, path: Path) {
         self.collect(term, why, of, path);
     }
 
-    /// Says why a term is left out.
+    /// Says why a term is left out, should it be; the first reason counts.
     pub fn without(&mut self, term: &'static str, why: &'static str) {
-        self.left_out.push(LeftOut { term, why });
+        if self.left_out.iter().all(|known| known.term != term) {
+            self.left_out.push(LeftOut { term, why });
+        }
     }
 
-    fn collect<T: Member>(&mut self, term: &'static str, why: &'static str, of: &str, element: T) {
+    /// Adds an element to those of its type under the same name.
+    pub(super) fn collect<T: Member>(
+        &mut self,
+        term: &'static str,
+        why: &'static str,
+        of: &str,
+        element: T,
+    ) {
         self.note(term, why, of);
         self.push(term, element);
     }
 
-    fn push<T: Member>(&mut self, term: &'static str, element: T) {
+    /// Adds an element whose parts of the scene are [noted](Self::note) by themselves.
+    pub(super) fn push<T: Member>(&mut self, term: &'static str, element: T) {
         let mut same = self.collected.iter_mut().filter(|c| c.term == term);
         if let Some(list) = same.find_map(|c| c.list.downcast_mut::<Vec<T>>()) {
             list.push(element);

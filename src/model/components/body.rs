@@ -19,7 +19,7 @@ pub(in crate::model) fn build(bodies: &[Body], reference: &[Pose], terms: &mut T
         terms.weigh(&centre, body.mass);
         if terms.is_of_motion() {
             let centre = terms.vector(centre);
-            terms.add_mass(
+            terms.collect(
                 INERTIA,
                 "mass of",
                 &body.name,
@@ -31,7 +31,7 @@ pub(in crate::model) fn build(bodies: &[Body], reference: &[Pose], terms: &mut T
                 let axis: Vector = body.directors.column(i).into();
                 let director = MaterialVector::direction(Some(b), &axis, reference);
                 let mass = Mass::point(terms.vector(director), 0.5 * euler);
-                terms.add_mass(INERTIA, "mass of", &body.name, mass);
+                terms.collect(INERTIA, "mass of", &body.name, mass);
             }
         } else {
             terms.without(INERTIA, "a state of rest has no inertia");

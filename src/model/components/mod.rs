@@ -27,10 +27,10 @@ impl Components {
     /// Their terms.
     pub(super) fn build(&self, terms: &mut Terms<'_>) {
         self.iter().for_each(|component| component.build(terms));
-        for term in ["spring elasticity", "spring damping"] {
+        for term in [spring::ELASTICITY, spring::DAMPING] {
             terms.without(term, "no spring");
         }
-        terms.without("tendon elasticity", "no tendon");
+        terms.without(tendon::ELASTICITY, "no tendon");
     }
 
     /// All of them, kind by kind.

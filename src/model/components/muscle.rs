@@ -56,8 +56,8 @@ fn inertia(muscle: &Muscle, span: usize, terms: &mut Terms<'_>) {
         return;
     }
     let middle = terms.vector(middle);
-    terms.add_mass(INERTIA, "density of", name, Mass::point(middle, mass));
-    terms.add_mass(INERTIA, "density of", name, Mass::point(span, mass / 12.0));
+    terms.collect(INERTIA, "density of", name, Mass::point(middle, mass));
+    terms.collect(INERTIA, "density of", name, Mass::point(span, mass / 12.0));
     if !muscle.section_inertia {
         return terms.without(SECTION, "no muscle with a density names section_inertia");
     }

@@ -24,8 +24,8 @@ pub struct Spring {
     pub rest_length: f64,
 }
 
-const ELASTICITY: &str = "spring elasticity";
-const DAMPING: &str = "spring damping";
+pub(super) const ELASTICITY: &str = "spring elasticity";
+pub(super) const DAMPING: &str = "spring damping";
 
 impl Spring {
     fn length(&self) -> f64 {

@@ -20,7 +20,7 @@ pub struct Tendon {
     pub rest_length: f64,
 }
 
-const ELASTICITY: &str = "tendon elasticity";
+pub(super) const ELASTICITY: &str = "tendon elasticity";
 
 /// Sum of the distances of neighbours.
 fn path_length(places: impl Iterator<Item = Vector3<f64>> + Clone) -> f64 {
