@@ -1,44 +1,8 @@
 //! `--accuracy` and `--estimate-error` as their users meet them: grids told, files of the finest one that was solved, refusals.
 
-use assert_cmd::Command;
+use crate::runs::{read, run, workshop};
 use serde_json::Value;
 use std::fs;
-use std::path::{Path, PathBuf};
-use tempfile::TempDir;
-
-/// A folder with a copy of the kept problems.
-fn workshop() -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let problems = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems");
-    fs::create_dir_all(folder.path().join("problems/scenes")).unwrap();
-    for part in ["", "scenes"] {
-        for entry in fs::read_dir(problems.join(part)).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_file() {
-                let name = path.file_name().unwrap();
-                fs::copy(&path, folder.path().join("problems").join(part).join(name)).unwrap();
-            }
-        }
-    }
-    folder
-}
-
-/// Exit status, standard output and standard error of a run in a folder.
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::cargo_bin("proboscis").unwrap();
-    let output = command
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    let status = output.status.code().unwrap();
-    (status, text(output.stdout), text(output.stderr))
-}
-
-fn read(path: PathBuf) -> Value {
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
-}
 
 #[test]
 fn the_trunk_is_solved_to_a_thousandth_from_grid_to_grid() {

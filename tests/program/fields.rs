@@ -1,5 +1,6 @@
 //! Fields of elastic blocks as ParaView reads them, against the state, the electrodes and homogeneous solutions.
 
+use crate::runs::read;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use nalgebra::Vector3;
@@ -108,10 +109,6 @@ fn cube(folder: &Path, fixed: Value, task: &Value) -> Told {
     let path = folder.join("problem.json");
     fs::write(&path, problem.to_string()).unwrap();
     run(&request(path, &folder.join("out"), &[])).unwrap()
-}
-
-fn read(path: PathBuf) -> Value {
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
 fn assert_close(found: f64, expected: f64, scale: f64) {

@@ -1,6 +1,6 @@
 //! Problems and schemas that are kept beside the program.
 
-use crate::commands::{read, run, workshop};
+use crate::runs::{read, run, workshop};
 use proboscis::model::system::Fidelity;
 use proboscis::scene::read_problem;
 use serde_json::Value;

@@ -1,6 +1,6 @@
 //! What a program that is killed leaves.
 
-use crate::told::{json, problem, run};
+use crate::runs::{problem, read, run};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread;
@@ -35,7 +35,7 @@ fn a_solve_that_is_killed_leaves_an_iterate_to_go_on_from() {
     let problem = problem("elephant_trunk_effort");
     let fine = ["--set", "control.intervals=4000"];
     let results = killed(folder.path(), &[&["solve", &problem][..], &fine].concat());
-    let kept = json(&results.join("unfinished.json"));
+    let kept = read(results.join("unfinished.json"));
     assert_eq!(kept["time"].as_array().unwrap().len(), 4001);
     // It is a guess like any solution, and goes when a run has written its results.
     let guess = format!(
@@ -61,7 +61,7 @@ fn a_simulation_that_is_killed_leaves_its_steps() {
         folder.path(),
         &[&["simulate", &problem][..], &long].concat(),
     );
-    let kept = json(&results.join("unfinished.json"));
+    let kept = read(results.join("unfinished.json"));
     let steps = kept["time"].as_array().unwrap().len();
     assert!(steps > 2, "{steps} instants");
     let voltages = kept["voltages"].as_object().unwrap();

@@ -11,6 +11,7 @@ mod killed;
 mod paraview;
 mod refusals;
 mod report;
+mod runs;
 mod starts;
 mod study;
 mod study_conclusion;

@@ -1,6 +1,6 @@
 //! Wrong input: one message with place, found and expected, and nothing written.
 
-use crate::commands::{run, workshop};
+use crate::runs::{run, workshop};
 use serde_json::json;
 use std::fs;
 use std::path::Path;

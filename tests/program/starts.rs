@@ -1,30 +1,9 @@
 //! Several starting points, each in a process of its own.
 
-use assert_cmd::Command;
+use crate::runs::{problem, read, run};
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
 use tempfile::tempdir;
-
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::cargo_bin("proboscis").unwrap();
-    let output = command
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    let status = output.status.code().unwrap();
-    (status, text(output.stdout), text(output.stderr))
-}
-
-fn problem(name: &str) -> String {
-    format!("{}/problems/{name}.json", env!("CARGO_MANIFEST_DIR"))
-}
-
-fn read(path: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
-}
 
 #[test]
 fn the_best_of_several_starts_is_kept_and_can_be_solved_again_alone() {
@@ -47,7 +26,7 @@ fn the_best_of_several_starts_is_kept_and_can_be_solved_again_alone() {
     );
     assert_eq!(out.lines().count(), 2 + 4);
 
-    let summary = read(&path.join("out/summary.json"));
+    let summary = read(path.join("out/summary.json"));
     let starts = &summary["starts"];
     assert_eq!(
         (&starts["count"], &starts["solved"], &starts["best"]),
@@ -99,7 +78,7 @@ fn the_best_of_several_starts_is_kept_and_can_be_solved_again_alone() {
     let guess = "control.guess={\"random\":{\"seed\":7003}}";
     let (status, ..) = run(path, &["solve", &pair, "--set", guess, "-o", "alone"]);
     assert_eq!(status, 0);
-    let alone = read(&path.join("alone/summary.json"));
+    let alone = read(path.join("alone/summary.json"));
     assert_eq!(alone["iterations"], each[2]["iterations"]);
     assert_eq!(alone["objective"], each[2]["objective"]);
 
@@ -121,7 +100,7 @@ fn starts_that_all_fail_say_so_and_keep_the_closest() {
         out.starts_with("not solved: 0 of 3 starts solved, 0 distinct optima"),
         "{out}"
     );
-    let summary = read(&path.join("out/summary.json"));
+    let summary = read(path.join("out/summary.json"));
     assert_eq!(summary["status"], "iteration_limit");
     let starts = &summary["starts"];
     let infeasibility = |one: &Value| one["infeasibility"].as_f64().unwrap();
@@ -218,7 +197,7 @@ fn ctrl_c_ends_all_starts_and_keeps_the_best() {
     // As a terminal does: to the whole group.
     crate::common::signals::interrupt_group(&child);
     assert_eq!(child.wait().unwrap().code(), Some(1));
-    let summary = read(&path.join("out/summary.json"));
+    let summary = read(path.join("out/summary.json"));
     assert_eq!(summary["status"], "interrupted");
     let each = summary["starts"]["each"].as_array().unwrap();
     let ended = |word: &str| each.iter().filter(|one| one["status"] == word).count();

@@ -1,6 +1,6 @@
 //! What accuracy costs: studies of motions with a closed form, refused studies, points that fail, and their files.
 
-use assert_cmd::Command;
+use crate::runs::run;
 use proboscis::control::problem::Task;
 use proboscis::run::{integrate, trajectory};
 use proboscis::scene::read_problem;
@@ -65,19 +65,6 @@ pub(crate) fn steps() -> Value {
 
 pub(crate) fn write(folder: &Path, name: &str, value: &Value) {
     fs::write(folder.join(name), value.to_string()).unwrap();
-}
-
-/// Exit status, standard output and standard error of a run in a folder.
-pub(crate) fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::cargo_bin("proboscis").unwrap();
-    let output = command
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    let status = output.status.code().unwrap();
-    (status, text(output.stdout), text(output.stderr))
 }
 
 /// Runs a study in a folder and returns its `study.json`.

@@ -1,6 +1,7 @@
 //! Studies that are refused, and those that are kept.
 
-use crate::study::{run, steps, wheel, write};
+use crate::runs::run;
+use crate::study::{steps, wheel, write};
 use proboscis::study::read::read_study;
 use serde_json::{Value, json};
 use std::fs;

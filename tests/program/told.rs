@@ -1,6 +1,7 @@
 //! What the user is told: that a run was stopped, which derivatives are wrong, what a command does not know.
 
 use crate::common::programs::{HS071_START, Program, hs071, one_variable};
+use crate::runs::{problem, read, run};
 use proboscis::control::problem::Task;
 use proboscis::control::{Boundary, Transcription, guess};
 use proboscis::dynamics::{Start, simulate};
@@ -9,34 +10,11 @@ use proboscis::model::Model;
 use proboscis::nlp::Nlp;
 use proboscis::nlp::differences::{Along, TOLERANCE, check_along};
 use proboscis::scene::read_problem;
-use serde_json::Value;
 use std::fs;
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
-
-pub(crate) fn problem(name: &str) -> String {
-    format!("{}/problems/{name}.json", env!("CARGO_MANIFEST_DIR"))
-}
-
-/// Exit status, standard output and standard error of the program.
-pub(crate) fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let program = env!("CARGO_BIN_EXE_proboscis");
-    let output = Command::new(program)
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    let status = output.status.code().unwrap();
-    (status, text(output.stdout), text(output.stderr))
-}
-
-pub(crate) fn json(path: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
-}
 
 /// A column of few elements.
 const SMALL: [&str; 4] = [
@@ -174,7 +152,7 @@ fn ctrl_c_stops_a_motion_of_elements_within_a_step() {
     std::io::Read::read_to_string(child.stderr.as_mut().unwrap(), &mut told).unwrap();
     assert_eq!(status.code(), Some(1), "{told}");
     assert!(told.contains("stopping"), "{told}");
-    let summary = json(&folder.path().join("out/summary.json"));
+    let summary = read(folder.path().join("out/summary.json"));
     assert_eq!(summary["status"], "interrupted");
     assert!(folder.path().join("out/solution.json").exists());
 }

@@ -1,6 +1,7 @@
 //! Solves that start from an earlier solution.
 
-use crate::commands::{read, run, summary, workshop};
+use crate::commands::summary;
+use crate::runs::{read, run, workshop};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
