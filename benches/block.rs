@@ -5,11 +5,11 @@
 
 use nalgebra::Vector3;
 use proboscis::dynamics::{Newton, Solving, Start, Stepper};
-use proboscis::element::{Dielectric, Elastomer, Local, Passive, Shape, Volume};
+use proboscis::element::{Dielectric, Elastomer, Local, Passive, ElementGeometry, Volume};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
 use proboscis::model::system::{
-    Electric, Electrode, ElementKind, Material, Potential, Solid, Support, System,
+    ElectricConstants, Electrode, ElementKind, Material, Potential, Solid, Support, System,
     VACUUM_PERMITTIVITY,
 };
 use proboscis::sparse::Backend;
@@ -53,7 +53,7 @@ fn block(n: usize, viscosity: Option<f64>) -> System {
         density: Some(1e-3),
         shear_modulus: 0.1,
         lame_lambda: Some(0.4),
-        electric: Some(Electric {
+        electric: Some(ElectricConstants {
             c1: -2.0 * VACUUM_PERMITTIVITY,
             c2: VACUUM_PERMITTIVITY,
             permittivity: VACUUM_PERMITTIVITY,
@@ -143,7 +143,7 @@ fn element() -> String {
         [0.0, 1.0, 1.0],
     ]
     .map(Vector3::from);
-    let shape = Shape::new(&places).unwrap();
+    let shape = ElementGeometry::new(&places).unwrap();
     let x = places.map(|p| p + Vector3::new(0.03 * p.y * p.z, 0.02 * p.x, -0.05 * p.z));
     let potentials = places.map(|p| 2e4 * p.z);
     let mut rows = String::from(

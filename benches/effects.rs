@@ -6,15 +6,15 @@
 mod trunk;
 
 use nalgebra::Vector3;
-use proboscis::control::problem::{Simulation, State, Voltages};
+use proboscis::control::problem::{Simulation, BoundaryState, Voltages};
 use proboscis::control::resolve_start;
 use proboscis::dynamics::{Solving, Start, Stepper};
 use proboscis::energy::DielectricCell;
-use proboscis::functional::{Effect, Element, Group, Inertia, Mass, Stencil, Sum, VectorArg};
+use proboscis::functional::{Term, Element, Group, Inertia, Mass, Stencil, Functional, VectorArg};
 use proboscis::kinematics::MaterialVector;
 use proboscis::mesh::grid::Grid;
 use proboscis::model::system::{
-    Body, Discretisation, Electric, Electrode, ElementKind, Fidelity, JointKind, Material,
+    Body, Discretisation, ElectricConstants, Electrode, ElementKind, Fidelity, JointKind, Material,
     Potential, Solid, Support, System, VACUUM_PERMITTIVITY,
 };
 use proboscis::model::{Coordinates, Model};
@@ -50,7 +50,7 @@ struct Variant {
 
 impl Variant {
     fn new(name: &str, model: Model, voltages: &[f64], [step, steps]: [f64; 2]) -> Self {
-        let start = State::JointAngles {
+        let start = BoundaryState::JointAngles {
             angles: BTreeMap::new(),
             rates: BTreeMap::new(),
             velocities: Default::default(),
@@ -134,7 +134,7 @@ fn simulation(voltages: &[f64], coordinates: Coordinates) -> Simulation {
         duration: 600.0,
         step: trunk::STEP,
         tolerance: None,
-        start: State::JointAngles {
+        start: BoundaryState::JointAngles {
             angles: BTreeMap::new(),
             rates: BTreeMap::new(),
             velocities: Default::default(),
@@ -330,7 +330,7 @@ fn block(driven: bool, change: impl Fn(&mut Material)) -> System {
         density: Some(1e-3),
         shear_modulus: 0.1,
         lame_lambda: Some(0.4),
-        electric: Some(Electric {
+        electric: Some(ElectricConstants {
             c1: -2.0 * VACUUM_PERMITTIVITY,
             c2: VACUUM_PERMITTIVITY,
             permittivity: VACUUM_PERMITTIVITY,
@@ -452,13 +452,13 @@ fn by_hand(system: &System, volts: &[f64]) -> Variant {
             scalars: [m],
         });
     }
-    let effects: Vec<Box<dyn Effect>> = vec![
+    let effects: Vec<Box<dyn Term>> = vec![
         Box::new(Inertia::new("bodies", bodies)),
         Box::new(Inertia::new("rods", rods)),
         Box::new(Group::<_, 4, 1, 1>::intervals("muscles", -1.0, cells)),
     ];
-    let intervals = Sum::new(effects, Vec::new(), list.len(), model.voltages.len());
-    let instants = Sum::new(Vec::new(), Vec::new(), list.len(), 0);
+    let intervals = Functional::new(effects, Vec::new(), list.len(), model.voltages.len());
+    let instants = Functional::new(Vec::new(), Vec::new(), list.len(), 0);
     model.action = Reduced::new(model.action.motion.clone(), intervals, instants);
     variant
 }
@@ -587,7 +587,7 @@ fn conclusion(mut factors: Vec<(&str, f64)>, [by_hand, again]: [f64; 2]) -> Stri
 
 fn main() {
     let (system, control) = trunk::read(1, Coordinates::Reduced);
-    let State::RestAtVoltages(volts) = &control.goal else {
+    let BoundaryState::RestAtVoltages(volts) = &control.goal else {
         panic!("the goal of the trunk problem is a state of rest");
     };
     let (of_trunk, mut factors) = table(pairs_of_trunk(&system, volts));

@@ -2,7 +2,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use proboscis::element::{
-    Dielectric, Elastomer, Field, Local, Passive, Shape, Viscosity, ViscousContraction,
+    Dielectric, Elastomer, Field, Local, Passive, ElementGeometry, Viscosity, ViscousContraction,
     ViscousLocal, Volume,
 };
 use proboscis::math::Vector;
@@ -11,7 +11,7 @@ use std::time::Duration;
 
 /// A distorted hexahedron, a state, and a direction.
 struct State {
-    shape: Shape,
+    shape: ElementGeometry,
     x: [Vector; 8],
     v: [Vector; 8],
     phi: [f64; 8],
@@ -25,7 +25,7 @@ fn state() -> State {
     });
     let bent = |x: Vector, by: f64| x + Vector::new(x.y * x.z, x.x * x.x, x.x * x.y) * by;
     State {
-        shape: Shape::new(&nodes.map(|x| bent(x, 0.1))).expect("a hexahedron"),
+        shape: ElementGeometry::new(&nodes.map(|x| bent(x, 0.1))).expect("a hexahedron"),
         x: nodes.map(|x| bent(x, 0.2)),
         v: nodes.map(|x| bent(x, 0.3) * 0.1),
         phi: nodes.map(|x| 1e3 * x.z + 10.0 * x.x),

@@ -6,7 +6,7 @@
 
 mod trunk;
 
-use proboscis::ipopt::{self, OptionValue, Options, Solution};
+use proboscis::ipopt::{self, OptionValue, Options, SolverResult};
 use proboscis::model::Coordinates::{self, Reduced, Redundant};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -88,9 +88,9 @@ fn cost(coordinates: Coordinates, intervals: usize, runs: usize) -> Cost {
 
 fn solve(
     program: &mut proboscis::control::Transcription<'_>,
-    start: &ipopt::Point,
+    start: &ipopt::StartingPoint,
     extra: BTreeMap<String, OptionValue>,
-) -> Solution {
+) -> SolverResult {
     let options = Options {
         extra,
         ..Options::default()
@@ -101,7 +101,7 @@ fn solve(
     .expect("Ipopt can be called")
 }
 
-fn of_solution(solution: &Solution, intervals: usize) -> Cost {
+fn of_solution(solution: &SolverResult, intervals: usize) -> Cost {
     let (seconds, calls) = (&solution.seconds, &solution.evaluations);
     let per_interval = |seconds: f64, calls: usize| 1e6 * seconds / (calls * intervals) as f64;
     Cost {

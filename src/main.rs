@@ -6,8 +6,8 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use proboscis::ipopt::interrupt;
-use proboscis::run::accuracy::Wanted;
-use proboscis::run::{self, Request, RunError, Shown, Told};
+use proboscis::run::accuracy::AccuracyTarget;
+use proboscis::run::{self, CommandInput, RunError, ProgressDisplay, CommandOutput};
 use proboscis::scene::printable;
 use proboscis::study::{StudyRequest, study};
 use tracing_subscriber::EnvFilter;
@@ -173,13 +173,13 @@ struct InTime {
 }
 
 impl InTime {
-    fn request(self) -> Request {
+    fn request(self) -> CommandInput {
         let wanted = match (self.accuracy, self.estimate_error) {
-            (Some(error), _) => Some(Wanted::Below(error)),
-            (None, true) => Some(Wanted::Estimate),
+            (Some(error), _) => Some(AccuracyTarget::Below(error)),
+            (None, true) => Some(AccuracyTarget::Estimate),
             (None, false) => None,
         };
-        Request {
+        CommandInput {
             wanted,
             ..self.problem.request()
         }
@@ -187,8 +187,8 @@ impl InTime {
 }
 
 impl Input {
-    fn request(self) -> Request {
-        Request {
+    fn request(self) -> CommandInput {
+        CommandInput {
             command: typed(),
             input: self.problem,
             set: self.set,
@@ -196,14 +196,14 @@ impl Input {
             max_seconds: None,
             max_iterations: None,
             wanted: None,
-            progress: Shown::Never,
+            progress: ProgressDisplay::Never,
         }
     }
 }
 
 impl Problem {
-    fn request(self) -> Request {
-        Request {
+    fn request(self) -> CommandInput {
+        CommandInput {
             output: self.output,
             max_seconds: self.max_seconds,
             progress: shown(self.quiet),
@@ -220,10 +220,10 @@ fn typed() -> String {
     command.collect::<Vec<_>>().join(" ")
 }
 
-fn shown(quiet: bool) -> Shown {
+fn shown(quiet: bool) -> ProgressDisplay {
     match quiet {
-        true => Shown::Never,
-        false => Shown::OnTerminal,
+        true => ProgressDisplay::Never,
+        false => ProgressDisplay::OnTerminal,
     }
 }
 
@@ -266,8 +266,8 @@ fn main() -> ExitCode {
     }
 }
 
-fn answer(command: Command) -> Result<Told, RunError> {
-    let text = |result: String| Told {
+fn answer(command: Command) -> Result<CommandOutput, RunError> {
+    let text = |result: String| CommandOutput {
         is_solved: true,
         result,
         notes: Vec::new(),
@@ -280,7 +280,7 @@ fn answer(command: Command) -> Result<Told, RunError> {
             seed,
         } => {
             interrupt::install();
-            let request = Request {
+            let request = CommandInput {
                 max_iterations,
                 ..problem.request()
             };
@@ -297,13 +297,13 @@ fn answer(command: Command) -> Result<Told, RunError> {
             interrupt::install();
             run::equilibrium_of_file(&problem.request(), voltages.as_deref())
         }
-        Command::Inspect { input, output } => run::inspect(&Request {
+        Command::Inspect { input, output } => run::inspect(&CommandInput {
             output,
             ..input.request()
         }),
         Command::Check { input, max_seconds } => {
             interrupt::install();
-            run::check(&Request {
+            run::check(&CommandInput {
                 max_seconds,
                 ..input.request()
             })

@@ -6,7 +6,7 @@ mod common;
 use common::cases::{all_limits, branched, control, rest_to_rest};
 use common::trunk;
 use proboscis::control::problem::{Control, Duration, Objective};
-use proboscis::control::{Boundary, Transcription, guess};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
 use proboscis::nlp::Nlp;
@@ -46,7 +46,7 @@ static HEAP: Counting = Counting;
 fn allocations(system: &System, control: &Control) -> [usize; 5] {
     let (Duration::Given(t) | Duration::Free { guess: t, .. }) = control.duration;
     let h = t / control.intervals as f64;
-    let (model, boundary) = Boundary::resolve(system, control, h).unwrap();
+    let (model, boundary) = BoundaryConditions::resolve(system, control, h).unwrap();
     let initial = guess(&model, &boundary, control, h, None);
     let mut program = Transcription::new(&model, &boundary, control, &initial).unwrap();
     let mut x = program.start(&initial).x;

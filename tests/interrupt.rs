@@ -10,7 +10,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use common::programs::{HS071_START, hs071};
-use proboscis::ipopt::{Options, Point, Status, interrupt, solve};
+use proboscis::ipopt::{Options, StartingPoint, Status, interrupt, solve};
 
 /// Run in a process of its own by the next test: solves until interrupted, then waits for the second Ctrl-C.
 #[test]
@@ -21,7 +21,7 @@ fn solves_until_interrupted() {
     assert!(!interrupt::requested());
     println!("\nready");
     let began = Instant::now();
-    let start = Point {
+    let start = StartingPoint {
         x: HS071_START.to_vec(),
         costates: None,
     };

@@ -7,7 +7,7 @@ use common::solid::{DRIVEN, electrode, held};
 use common::trunk;
 use nalgebra::Vector3;
 use proboscis::control::problem::Control;
-use proboscis::control::{Boundary, Transcription, guess};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::dynamics::{Start, simulate};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
@@ -23,7 +23,7 @@ fn values() -> [Vec<f64>; 3] {
 }
 
 fn of_program(system: &System, control: &Control, h: f64) -> [Vec<f64>; 3] {
-    let (model, boundary) = Boundary::resolve(system, control, h).unwrap();
+    let (model, boundary) = BoundaryConditions::resolve(system, control, h).unwrap();
     let initial = guess(&model, &boundary, control, h, None);
     let mut program = Transcription::new(&model, &boundary, control, &initial).unwrap();
     let mut x = program.start(&initial).x;

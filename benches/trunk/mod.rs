@@ -1,10 +1,10 @@
 //! The elephant trunk of `problems/elephant_trunk_effort.json` on any grid, in both coordinates.
 #![allow(dead_code, reason = "each bench uses a part")]
 
-use proboscis::control::problem::{Control, Duration, State, Task};
-use proboscis::control::{Boundary, Transcription, guess};
+use proboscis::control::problem::{Control, Duration, BoundaryState, Task};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::dynamics::{Start, Stepper, StepperReport};
-use proboscis::ipopt::Point;
+use proboscis::ipopt::StartingPoint;
 use proboscis::model::system::System;
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::Nlp;
@@ -31,14 +31,14 @@ pub(crate) fn read(intervals: usize, coordinates: Coordinates) -> (System, Contr
 pub(crate) fn with_program<T>(
     intervals: usize,
     coordinates: Coordinates,
-    work: impl FnOnce(&mut Transcription<'_>, &Point) -> T,
+    work: impl FnOnce(&mut Transcription<'_>, &StartingPoint) -> T,
 ) -> T {
     let (system, control) = read(intervals, coordinates);
     let Duration::Given(duration) = control.duration else {
         panic!("the trunk problem has a given duration");
     };
     let h = duration / intervals as f64;
-    let (model, boundary) = Boundary::resolve(&system, &control, h).expect("states of rest exist");
+    let (model, boundary) = BoundaryConditions::resolve(&system, &control, h).expect("states of rest exist");
     let initial = guess(&model, &boundary, &control, h, None);
     let mut program = Transcription::new(&model, &boundary, &control, &initial)
         .expect("there are enough unknowns");
@@ -59,7 +59,7 @@ pub(crate) struct Callbacks<'a, 'm> {
 
 impl<'a, 'm> Callbacks<'a, 'm> {
     /// Points next to the start, costates of magnitude one.
-    pub(crate) fn new(program: &'a mut Transcription<'m>, start: &Point) -> Self {
+    pub(crate) fn new(program: &'a mut Transcription<'m>, start: &StartingPoint) -> Self {
         let moved = start.x.iter().map(|x| x + 1e-6).collect();
         let count = program.constraints().lower.len();
         Self {
@@ -110,7 +110,7 @@ pub(crate) fn at_rest(coordinates: Coordinates) -> (Model, Start, Vec<f64>) {
     let (system, control) = read(1, coordinates);
     let joints = vec![0.0; system.joints.len()];
     let model = Model::new(system, Some(coordinates), STEP, &[]).expect("the joints form a tree");
-    let State::RestAtVoltages(voltages) = &control.goal else {
+    let BoundaryState::RestAtVoltages(voltages) = &control.goal else {
         panic!("the goal of the trunk problem is a state of rest");
     };
     let start = Start::at_rest(&model, model.coordinates_at(&joints));

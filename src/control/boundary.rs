@@ -1,15 +1,15 @@
 //! Start and goal: which coordinates they give, which equations they add, and the voltages at rest.
 
-use crate::control::conditions::{Boundary, Goal};
+use crate::control::conditions::{BoundaryConditions, TerminalState};
 use crate::control::ends;
 use crate::control::error::BoundaryError;
 use crate::control::limits::Limits;
-use crate::control::problem::{Control, Rest, State};
+use crate::control::problem::{Control, Rest, BoundaryState};
 use crate::dynamics::{Equilibrium, Start, muscle_without_length, stable_equilibrium};
-use crate::functional::Level;
-use crate::model::{Condensed, Coordinates, Graph, Model, Quantity, Question, System};
+use crate::functional::Order;
+use crate::model::{Presolved, Coordinates, Graph, Model, Quantity, Analysis, System};
 
-impl Boundary {
+impl BoundaryConditions {
     /// Builds the model of a control problem and resolves its start and goal.
     ///
     /// # Errors
@@ -20,13 +20,13 @@ impl Boundary {
         h0: f64,
     ) -> Result<(Model, Self), BoundaryError> {
         let question = control.question(system, h0);
-        let remaining = Condensed::new(system, &question).system;
+        let remaining = Presolved::new(system, &question).system;
         let coordinates = Model::choose(&remaining, control.coordinates)?;
         let redundant = coordinates == Coordinates::Redundant;
         let mut limits = Limits::new(&control.limits, system, redundant);
         let all_joints = all_joints_given(system, &control.goal);
         match &control.goal {
-            State::Markers { places, rest, .. } => {
+            BoundaryState::Markers { places, rest, .. } => {
                 for (&marker, place) in places {
                     for axis in (0..3).filter(|&axis| !system.holds_marker(marker, axis)) {
                         let name = format!(
@@ -45,7 +45,7 @@ impl Boundary {
                     }
                 }
             }
-            State::JointAngles { angles, .. } if redundant && !all_joints => {
+            BoundaryState::JointAngles { angles, .. } if redundant && !all_joints => {
                 for (&joint, &near) in angles {
                     let name = format!("goal of {}", system.joints[joint].name);
                     limits.add_goal(Quantity::Joint { joint, near }, near, name);
@@ -53,7 +53,7 @@ impl Boundary {
             }
             _ => {}
         }
-        let question = Question {
+        let question = Analysis {
             coordinates: Some(coordinates),
             quantities: limits.quantities(),
             ..question
@@ -61,7 +61,7 @@ impl Boundary {
         let model = Model::answering(system.clone(), question)?;
         let mut scalars = [None, None];
         let start = match &control.start {
-            State::RestAtVoltages(voltages) => {
+            BoundaryState::RestAtVoltages(voltages) => {
                 let rest = rest_at(&model, voltages, "start")?;
                 scalars[0] = Some(rest.scalars);
                 at_rest(&model, rest.z)
@@ -73,21 +73,21 @@ impl Boundary {
         let mut charts = Vec::new();
         let mut at_goal = None;
         match &control.goal {
-            State::RestAtVoltages(voltages) => {
+            BoundaryState::RestAtVoltages(voltages) => {
                 let rest = rest_at(&model, voltages, "goal")?;
                 scalars[1] = Some(rest.scalars.clone());
                 given = rest.z[..n].iter().copied().map(Some).collect();
                 charts = rest.z[model.action.motion.unknowns()..].to_vec();
                 at_goal = Some(rest);
             }
-            State::JointAngles { angles, .. } if redundant && all_joints => {
+            BoundaryState::JointAngles { angles, .. } if redundant && all_joints => {
                 let joints: Vec<f64> = (0..system.joints.len())
                     .map(|j| angles.get(&j).copied().unwrap_or(0.0))
                     .collect();
                 let z = model.coordinates_at(&joints);
                 given = z[..n].iter().copied().map(Some).collect();
             }
-            State::JointAngles { angles, .. } if !redundant => {
+            BoundaryState::JointAngles { angles, .. } if !redundant => {
                 for (&joint, &value) in angles {
                     if let Some(c) = model.gauges[joint].coordinate {
                         given[c] = Some(value);
@@ -99,20 +99,20 @@ impl Boundary {
         if let Some(z) = given.iter().copied().collect::<Option<Vec<f64>>>() {
             check_muscles(&model, &z, "goal")?;
         }
-        let voltages = |state: &State| match state {
-            State::RestAtVoltages(v) => Some(v.clone()),
-            State::Markers { hold, .. } => hold.clone(),
+        let voltages = |state: &BoundaryState| match state {
+            BoundaryState::RestAtVoltages(v) => Some(v.clone()),
+            BoundaryState::Markers { hold, .. } => hold.clone(),
             _ => None,
         };
         let rest = [voltages(&control.start), voltages(&control.goal)];
         let boundary = Self {
             start,
-            goal: Goal {
+            goal: TerminalState {
                 coordinates: given,
                 charts,
                 nodes_rest: !matches!(
                     control.goal,
-                    State::Markers {
+                    BoundaryState::Markers {
                         rest: Rest::Markers,
                         ..
                     }
@@ -128,8 +128,8 @@ impl Boundary {
 }
 
 /// Whether a goal gives all coordinates of a tree, each the only one of its joint.
-fn all_joints_given(system: &System, goal: &State) -> bool {
-    let State::JointAngles { angles, .. } = goal else {
+fn all_joints_given(system: &System, goal: &BoundaryState) -> bool {
+    let BoundaryState::JointAngles { angles, .. } = goal else {
         return false;
     };
     let coordinates = system.joint_coordinates();
@@ -163,12 +163,12 @@ fn at_rest(model: &Model, z: Vec<f64>) -> Start {
 /// There is no equilibrium, or joint coordinates do not fit the loops of the scene.
 pub fn resolve_start(
     model: &Model,
-    state: &State,
+    state: &BoundaryState,
     place: &'static str,
 ) -> Result<Start, BoundaryError> {
     match state {
-        State::RestAtVoltages(voltages) => Ok(at_rest(model, rest_at(model, voltages, place)?.z)),
-        State::JointAngles {
+        BoundaryState::RestAtVoltages(voltages) => Ok(at_rest(model, rest_at(model, voltages, place)?.z)),
+        BoundaryState::JointAngles {
             angles,
             rates,
             velocities,
@@ -192,7 +192,7 @@ pub fn resolve_start(
             let rates = with_nodes(model, rates);
             Ok(Start::with_rates(model, z, &rates))
         }
-        State::Markers { .. } => unreachable!("marker positions are a goal"),
+        BoundaryState::Markers { .. } => unreachable!("marker positions are a goal"),
     }
 }
 
@@ -226,12 +226,12 @@ fn check_muscles(model: &Model, z: &[f64], place: &'static str) -> Result<(), Bo
 /// Checks the constraints that the coordinates leave open.
 fn check_constraints(model: &Model, z: &[f64], place: &'static str) -> Result<(), BoundaryError> {
     let mut instant = model.action.motion.instant();
-    let mut scratch = model.action.scratch(Level::Gradient);
+    let mut scratch = model.action.scratch(Order::Gradient);
     instant.z.copy_from_slice(z);
     model.action.motion.place(&mut instant);
     model
         .action
-        .evaluate_instant(Level::Gradient, &mut instant, &[], &mut scratch);
+        .evaluate_instant(Order::Gradient, &mut instant, &[], &mut scratch);
     let rows = &scratch.instant.plain.rows;
     let worst = (0..rows.len()).max_by(|&a, &b| rows[a].abs().total_cmp(&rows[b].abs()));
     let Some(worst) = worst else { return Ok(()) };

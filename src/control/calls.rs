@@ -5,22 +5,22 @@
 
 use std::collections::BTreeSet;
 
-use crate::control::problem::{AtRest, Control, Limit, Simulation, State};
+use crate::control::problem::{AtRest, Control, PathConstraint, Simulation, BoundaryState};
 use crate::model::system::{Attachment, System};
-use crate::model::{Question, Stirred};
+use crate::model::{Analysis, InitiallyMoving};
 
 impl Simulation {
     /// The question of a motion in steps of `step` ms.
-    pub fn question(&self, system: &System, step: f64) -> Question {
+    pub fn question(&self, system: &System, step: f64) -> Analysis {
         let drives = self.voltages.rows();
         let is_driven = |s: usize| drives.iter().any(|row| row[s] != 0.0);
         let mut spoken = Spoken::new(system);
         spoken.of_start(&self.start);
-        Question {
+        Analysis {
             coordinates: self.coordinates,
-            silent: silent(system, is_driven, [&self.start]),
+            zero_voltage: silent(system, is_driven, [&self.start]),
             stirred: Some(spoken.stirred),
-            ..Question::of_motion(step)
+            ..Analysis::of_motion(step)
         }
     }
 }
@@ -28,28 +28,28 @@ impl Simulation {
 impl AtRest {
     /// The question of a state of rest. Its stability is asked for too, that of unloaded parts included: nothing is taken to
     /// be still.
-    pub fn question(&self, system: &System) -> Question {
-        Question {
+    pub fn question(&self, system: &System) -> Analysis {
+        Analysis {
             coordinates: self.coordinates,
-            silent: silent(system, |s| self.voltages[s] != 0.0, []),
-            ..Question::of_rest()
+            zero_voltage: silent(system, |s| self.voltages[s] != 0.0, []),
+            ..Analysis::of_rest()
         }
     }
 }
 
 impl Control {
     /// The question of a horizon of intervals of about `interval` ms, without the quantities that are measured.
-    pub fn question(&self, system: &System, interval: f64) -> Question {
+    pub fn question(&self, system: &System, interval: f64) -> Analysis {
         let is_sought = |s: usize| self.given.get(&s).is_none_or(|&voltage| voltage != 0.0);
         let mut spoken = Spoken::new(system);
         spoken.of_start(&self.start);
         spoken.of_goal(&self.goal);
         self.limits.iter().for_each(|limit| spoken.of_limit(limit));
-        Question {
+        Analysis {
             coordinates: self.coordinates,
-            silent: silent(system, is_sought, [&self.start, &self.goal]),
+            zero_voltage: silent(system, is_sought, [&self.start, &self.goal]),
             stirred: Some(spoken.stirred),
-            ..Question::of_motion(interval)
+            ..Analysis::of_motion(interval)
         }
     }
 }
@@ -58,13 +58,13 @@ impl Control {
 fn silent<const N: usize>(
     system: &System,
     is_driven: impl Fn(usize) -> bool,
-    ends: [&State; N],
+    ends: [&BoundaryState; N],
 ) -> BTreeSet<usize> {
     let is_held = |s: usize| {
         ends.iter().any(|state| match state {
-            State::RestAtVoltages(voltages) => voltages[s] != 0.0,
-            State::Markers { hold, .. } => hold.as_ref().is_some_and(|v| v[s] != 0.0),
-            State::JointAngles { .. } => false,
+            BoundaryState::RestAtVoltages(voltages) => voltages[s] != 0.0,
+            BoundaryState::Markers { hold, .. } => hold.as_ref().is_some_and(|v| v[s] != 0.0),
+            BoundaryState::JointAngles { .. } => false,
         })
     };
     let sources = system.sources();
@@ -75,21 +75,21 @@ fn silent<const N: usize>(
 /// Bodies and blocks that are spoken of.
 struct Spoken<'a> {
     system: &'a System,
-    stirred: Stirred,
+    stirred: InitiallyMoving,
 }
 
 impl<'a> Spoken<'a> {
     fn new(system: &'a System) -> Self {
         Self {
             system,
-            stirred: Stirred::default(),
+            stirred: InitiallyMoving::default(),
         }
     }
 
     /// A start away from the reference configuration, or in motion. Sources that hold a state of rest are not silent, and
     /// move what they move.
-    fn of_start(&mut self, state: &State) {
-        if let State::JointAngles {
+    fn of_start(&mut self, state: &BoundaryState) {
+        if let BoundaryState::JointAngles {
             angles,
             rates,
             velocities,
@@ -102,25 +102,25 @@ impl<'a> Spoken<'a> {
         }
     }
 
-    fn of_goal(&mut self, state: &State) {
+    fn of_goal(&mut self, state: &BoundaryState) {
         match state {
-            State::RestAtVoltages(_) => {}
-            State::JointAngles { angles, .. } => angles.keys().for_each(|&j| self.of_joint(j)),
-            State::Markers { places, .. } => places.keys().for_each(|&m| self.of_marker(m)),
+            BoundaryState::RestAtVoltages(_) => {}
+            BoundaryState::JointAngles { angles, .. } => angles.keys().for_each(|&j| self.of_joint(j)),
+            BoundaryState::Markers { places, .. } => places.keys().for_each(|&m| self.of_marker(m)),
         }
     }
 
-    fn of_limit(&mut self, limit: &Limit) {
+    fn of_limit(&mut self, limit: &PathConstraint) {
         match *limit {
-            Limit::JointAngle { joint, .. } => self.of_joint(joint),
-            Limit::Stretch { muscle, .. } => {
+            PathConstraint::JointAngle { joint, .. } => self.of_joint(joint),
+            PathConstraint::Stretch { muscle, .. } => {
                 let muscle = &self.system.muscles[muscle];
                 self.of_point(&muscle.from);
                 self.of_point(&muscle.to);
             }
             // A field without voltage is none.
-            Limit::ElectricField { .. } | Limit::BlockField { .. } => {}
-            Limit::Marker { marker, .. } => self.of_marker(marker),
+            PathConstraint::ElectricField { .. } | PathConstraint::BlockField { .. } => {}
+            PathConstraint::Marker { marker, .. } => self.of_marker(marker),
         }
     }
 

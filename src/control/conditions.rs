@@ -5,11 +5,11 @@ use crate::dynamics::{Equilibrium, Start};
 
 /// A control problem's model with its start and goal.
 #[derive(Debug)]
-pub struct Boundary {
+pub struct BoundaryConditions {
     /// Where the motion starts.
     pub start: Start,
     /// Where it ends.
-    pub goal: Goal,
+    pub goal: TerminalState,
     /// Voltages at rest before the start and after the goal (V, one per muscle), where known.
     pub rest: [Option<Vec<f64>>; 2],
     /// Limits and goal equations.
@@ -18,7 +18,7 @@ pub struct Boundary {
 
 /// The final state: at rest, with these coordinates given.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Goal {
+pub struct TerminalState {
     /// Given coordinates; `None` where the optimisation decides.
     pub coordinates: Vec<Option<f64>>,
     /// Charts of the final configuration, where its coordinates are given; none otherwise, and where there are none.

@@ -4,22 +4,22 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-use crate::control::conditions::Boundary;
+use crate::control::conditions::BoundaryConditions;
 use crate::control::error::BoundaryError;
-use crate::control::limits::{Bounded, Place};
-use crate::control::problem::{Control, Limit, State};
+use crate::control::limits::{BoundedQuantity, When};
+use crate::control::problem::{Control, PathConstraint, BoundaryState};
 use crate::control::transcription::Site;
 use crate::energy::{Energy, OutsideBox, SquaredDistance};
-use crate::functional::Frame;
+use crate::functional::Sample;
 use crate::math::significant;
 use crate::model::{Coordinates, Model, Quantity, Region};
-use crate::reduction::Instant;
+use crate::reduction::Configuration;
 
 /// Refuses limits that contradict each other, and a start or goal of which it is known that it breaks a limit. `scalars` are voltages and potentials of states of
 /// rest at start and goal.
 pub(super) fn check(
     model: &Model,
-    boundary: &Boundary,
+    boundary: &BoundaryConditions,
     control: &Control,
     scalars: [Option<Vec<f64>>; 2],
 ) -> Result<(), BoundaryError> {
@@ -39,14 +39,14 @@ pub(super) fn check(
     for (place, coordinates, charts, scalars, state) in ends {
         let mut end = End::new(model, control, coordinates, charts, scalars);
         match state {
-            State::JointAngles { angles, .. } => end.angles = angles.clone(),
-            State::Markers { places, .. } => end.places = places.clone(),
-            State::RestAtVoltages(_) => {}
+            BoundaryState::JointAngles { angles, .. } => end.angles = angles.clone(),
+            BoundaryState::Markers { places, .. } => end.places = places.clone(),
+            BoundaryState::RestAtVoltages(_) => {}
         }
         let of_joints = control.limits.iter().find_map(|limit| end.joint(limit));
         let bounded = || {
             let list = boundary.limits.list.iter().zip(&model.measured);
-            let paths = list.filter(|(bounded, _)| bounded.place == Place::Everywhere);
+            let paths = list.filter(|(bounded, _)| bounded.when == When::Everywhere);
             let mut values = paths.map(|(b, m)| (b, end.value(b, *m)));
             values.find_map(|(b, value)| b.broken(value?, &model.system))
         };
@@ -60,7 +60,7 @@ pub(super) fn check(
 /// What is known of a start or goal.
 struct End<'a> {
     model: &'a Model,
-    instant: Instant,
+    instant: Configuration,
     /// Which coordinates are known.
     known: Vec<bool>,
     /// Voltages and potentials, where they are known.
@@ -108,8 +108,8 @@ impl<'a> End<'a> {
     }
 
     /// What a joint limit says of it.
-    fn joint(&self, limit: &Limit) -> Option<String> {
-        let Limit::JointAngle { joint, min, max } = *limit else {
+    fn joint(&self, limit: &PathConstraint) -> Option<String> {
+        let PathConstraint::JointAngle { joint, min, max } = *limit else {
             return None;
         };
         let joints = &self.model.system.joints;
@@ -130,7 +130,7 @@ impl<'a> End<'a> {
     }
 
     /// The value of a limited quantity.
-    fn value(&self, bounded: &Bounded, measure: Option<usize>) -> Option<f64> {
+    fn value(&self, bounded: &BoundedQuantity, measure: Option<usize>) -> Option<f64> {
         match bounded.quantity {
             Quantity::Joint { .. } => return None,
             Quantity::MarkerPlace { marker, axis } if self.places.contains_key(&marker) => {
@@ -151,39 +151,39 @@ impl<'a> End<'a> {
             && measure.scalars().iter().all(|&s| self.scalars[s].is_some());
         let scalars: Vec<f64> = self.scalars.iter().map(|s| s.unwrap_or(0.0)).collect();
         let x = &self.instant.x[..];
-        let frame = Frame::of_instant(x, &scalars);
+        let frame = Sample::of_instant(x, &scalars);
         is_known.then(|| measure.value(&frame))
     }
 }
 
 /// A joint limit as a bounded quantity, whatever the coordinates.
-fn of_joint(joint: usize, lower: f64, upper: f64, model: &Model) -> Bounded {
-    Bounded {
+fn of_joint(joint: usize, lower: f64, upper: f64, model: &Model) -> BoundedQuantity {
+    BoundedQuantity {
         quantity: Quantity::Joint { joint, near: 0.0 },
         lower,
         upper,
-        place: Place::Everywhere,
+        when: When::Everywhere,
         name: format!("joint {}", model.system.joints[joint].name),
     }
 }
 
 /// Two limits of one quantity that leave it no value.
-fn contradiction(model: &Model, boundary: &Boundary, control: &Control) -> Option<String> {
+fn contradiction(model: &Model, boundary: &BoundaryConditions, control: &Control) -> Option<String> {
     let joints = control.limits.iter().filter_map(|limit| match *limit {
-        Limit::JointAngle { joint, min, max } => Some(of_joint(joint, min, max, model)),
+        PathConstraint::JointAngle { joint, min, max } => Some(of_joint(joint, min, max, model)),
         _ => None,
     });
-    let is_path = |b: &&Bounded| {
-        b.place == Place::Everywhere && !matches!(b.quantity, Quantity::Joint { .. })
+    let is_path = |b: &&BoundedQuantity| {
+        b.when == When::Everywhere && !matches!(b.quantity, Quantity::Joint { .. })
     };
     let others = boundary.limits.list.iter().filter(is_path).cloned();
-    let all: Vec<Bounded> = joints.chain(others).collect();
+    let all: Vec<BoundedQuantity> = joints.chain(others).collect();
     let below = all.iter().filter(|bounded| bounded.lower.is_finite());
     let crossed =
-        |low: &&Bounded, high: &&Bounded| low.quantity == high.quantity && low.lower > high.upper;
+        |low: &&BoundedQuantity, high: &&BoundedQuantity| low.quantity == high.quantity && low.lower > high.upper;
     let mut pairs = below.flat_map(|low| all.iter().map(move |high| (low, high)));
     let (low, high) = pairs.find(|(low, high)| crossed(low, high))?;
-    let told = |bounded: &Bounded, bound: f64| {
+    let told = |bounded: &BoundedQuantity, bound: f64| {
         let (value, unit) = bounded.quantity.plain(bound, &model.system);
         format!("{} {unit}", significant(value, 5))
             .trim_end()

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use crate::control::solution::Solved;
-use crate::reduction::Motion;
+use crate::control::solution::Solution;
+use crate::reduction::CoordinateMap;
 
 /// Deviation of an instant, in mean steps, that is rounding.
 const ROUNDING: f64 = 1e-6;
@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-6;
 /// The motion as it is where its steps are equal, otherwise at as many equal ones: coordinates along lines, voltages and
 /// potentials of the step that the middle of an interval is in; costates belong to other rows and are left out. `motion` is
 /// what the coordinates mean, where they are those of the model.
-pub(super) fn evened<'s>(solved: &'s Solved, motion: Option<&Motion>) -> Cow<'s, Solved> {
+pub(super) fn evened<'s>(solved: &'s Solution, motion: Option<&CoordinateMap>) -> Cow<'s, Solution> {
     let intervals = solved.intervals();
     let end = solved.times[intervals];
     let time = |k: f64| end * k / intervals as f64;
@@ -57,7 +57,7 @@ pub(super) fn evened<'s>(solved: &'s Solved, motion: Option<&Motion>) -> Cow<'s,
         let i = step_at(at);
         i + usize::from(2.0 * at > solved.times[i] + solved.times[i + 1])
     };
-    Cow::Owned(Solved {
+    Cow::Owned(Solution {
         coordinates: solved.coordinates,
         multiplier_time: solved.multiplier_time,
         hold: solved.hold.clone(),

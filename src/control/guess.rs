@@ -1,11 +1,11 @@
 //! Where the solver starts: interpolated between start and goal, simulated, or an earlier solution.
 
-use crate::control::conditions::Boundary;
+use crate::control::conditions::BoundaryConditions;
 use crate::control::evened::evened;
 use crate::control::problem::{Control, Guess};
 use crate::control::resample::{self, Grids};
-use crate::control::solution::{Costates, Solved};
-use crate::dynamics::{History, simulate};
+use crate::control::solution::{Costates, Solution};
+use crate::dynamics::{DiscreteTrajectory, simulate};
 use crate::kinematics::Pose;
 use crate::model::{Coordinates, Graph, Model};
 use nalgebra::Rotation3;
@@ -16,9 +16,9 @@ const LIFT: f64 = 0.1;
 
 /// A start of the solver: a motion, an interval length, and costates where they are known.
 #[derive(Clone, Debug)]
-pub struct Initial {
+pub struct InitialGuess {
     /// Coordinates, multipliers and voltages.
-    pub history: History,
+    pub history: DiscreteTrajectory,
     /// Interval length in ms.
     pub h: f64,
     /// Costates and bound multipliers.
@@ -35,11 +35,11 @@ const SAME_DURATION: f64 = 1e-6;
 /// solution, within its bounds.
 pub fn guess(
     model: &Model,
-    boundary: &Boundary,
+    boundary: &BoundaryConditions,
     control: &Control,
     h: f64,
-    earlier: Option<&Solved>,
-) -> Initial {
+    earlier: Option<&Solution>,
+) -> InitialGuess {
     let intervals = control.intervals;
     match (&control.guess, earlier) {
         (_, Some(solved)) => from_solution(model, boundary, control, solved),
@@ -62,7 +62,7 @@ pub fn guess(
                 let still = || with_potentials(model, scalars(0.0, h));
                 history.scalars.push(last.unwrap_or_else(still));
             }
-            Initial {
+            InitialGuess {
                 history,
                 h,
                 costates: None,
@@ -74,7 +74,7 @@ pub fn guess(
 }
 
 /// 3s² − 2s³ between start and goal; rest voltages of the goal lifted a little.
-fn interpolate(model: &Model, boundary: &Boundary, control: &Control, h: f64) -> Initial {
+fn interpolate(model: &Model, boundary: &BoundaryConditions, control: &Control, h: f64) -> InitialGuess {
     let intervals = control.intervals;
     let lift = LIFT * control.voltage_unit(&model.system);
     let n = model.coordinate_count();
@@ -112,13 +112,13 @@ fn interpolate(model: &Model, boundary: &Boundary, control: &Control, h: f64) ->
     let rest = boundary.rest[1].as_ref().or(boundary.rest[0].as_ref());
     let held: Vec<f64> = rest.map_or_else(|| vec![0.0; model.sources.len()], Clone::clone);
     let scalars: Vec<f64> = model.scalars(&held).iter().map(|v| v + lift).collect();
-    let history = History {
+    let history = DiscreteTrajectory {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),
         z: z.collect(),
         scalars: vec![with_potentials(model, scalars); intervals],
-        ..History::default()
+        ..DiscreteTrajectory::default()
     };
-    Initial {
+    InitialGuess {
         history,
         h,
         costates: None,
@@ -159,10 +159,10 @@ fn between(from: &[Pose], to: &[Pose], part: f64) -> Vec<Pose> {
 /// not allowed; from other coordinates the joints and what the poses tell beside them.
 fn from_solution(
     model: &Model,
-    boundary: &Boundary,
+    boundary: &BoundaryConditions,
     control: &Control,
-    solved: &Solved,
-) -> Initial {
+    solved: &Solution,
+) -> InitialGuess {
     let motion = &model.action.motion;
     let has_same_coordinates = solved.coordinates == model.coordinates
         && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
@@ -200,13 +200,13 @@ fn from_solution(
             false => with_potentials(model, scalars),
         }
     };
-    let history = History {
+    let history = DiscreteTrajectory {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),
         z,
         scalars: (0..intervals).map(scalars).collect(),
-        ..History::default()
+        ..DiscreteTrajectory::default()
     };
-    Initial {
+    InitialGuess {
         history,
         h,
         costates: has_same_coordinates

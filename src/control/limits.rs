@@ -1,13 +1,13 @@
 //! Path limits and goals as bounded quantities at instants and in intervals.
 
-use crate::control::problem::{Limit, Side};
+use crate::control::problem::{PathConstraint, Side};
 use crate::functional::Stencil;
 use crate::math::significant;
 use crate::model::{FieldPlace, Quantity, Region, System};
 
 /// A quantity with bounds at some instants or intervals.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Bounded {
+pub struct BoundedQuantity {
     /// What is measured.
     pub quantity: Quantity,
     /// Lower bound.
@@ -15,14 +15,14 @@ pub struct Bounded {
     /// Upper bound.
     pub upper: f64,
     /// At the final instant only (a goal), or everywhere (a limit).
-    pub place: Place,
+    pub when: When,
     /// Words for messages.
     pub name: String,
 }
 
 /// Where a quantity is bounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum When {
     /// At every instant, or in every interval.
     Everywhere,
     /// At the last instant.
@@ -33,7 +33,7 @@ pub enum Place {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Limits {
     /// The quantities.
-    pub list: Vec<Bounded>,
+    pub list: Vec<BoundedQuantity>,
 }
 
 /// A value this far beyond its bound, relative to it, is rounding.
@@ -46,20 +46,20 @@ const TIMES: [Stencil; 3] = [Stencil::Here, Stencil::Mid, Stencil::Next];
 impl Limits {
     /// The path limits of a problem. Joint limits become measures only where `measure_joints`; in joint coordinates
     /// they are bounds of variables.
-    pub fn new(limits: &[Limit], system: &System, measure_joints: bool) -> Self {
+    pub fn new(limits: &[PathConstraint], system: &System, measure_joints: bool) -> Self {
         let mut list = Vec::new();
         for limit in limits {
             let mut add = |quantity, lower, upper, name| {
-                list.push(Bounded {
+                list.push(BoundedQuantity {
                     quantity,
                     lower,
                     upper,
-                    place: Place::Everywhere,
+                    when: When::Everywhere,
                     name,
                 });
             };
             match *limit {
-                Limit::JointAngle { joint, min, max } => {
+                PathConstraint::JointAngle { joint, min, max } => {
                     if measure_joints {
                         let near = match (min.is_finite(), max.is_finite()) {
                             (true, true) => 0.5 * (min + max),
@@ -69,7 +69,7 @@ impl Limits {
                         add(Quantity::Joint { joint, near }, min, max, name);
                     }
                 }
-                Limit::Stretch { muscle, min, max } => {
+                PathConstraint::Stretch { muscle, min, max } => {
                     let name = format!("stretch of {}", system.muscles[muscle].name);
                     add(
                         Quantity::SquaredStretch { muscle },
@@ -78,7 +78,7 @@ impl Limits {
                         name,
                     );
                 }
-                Limit::ElectricField { muscle, max } => {
+                PathConstraint::ElectricField { muscle, max } => {
                     let place = FieldPlace::Muscle(muscle);
                     for at in TIMES {
                         let limit = max;
@@ -87,7 +87,7 @@ impl Limits {
                         add(quantity, f64::NEG_INFINITY, 1.0, name);
                     }
                 }
-                Limit::BlockField { block, region, max } => {
+                PathConstraint::BlockField { block, region, max } => {
                     let name = system.block_name(block);
                     for (element, point) in system.field_points(block, region) {
                         let where_ = match point {
@@ -109,7 +109,7 @@ impl Limits {
                         }
                     }
                 }
-                Limit::Marker {
+                PathConstraint::Marker {
                     marker,
                     region,
                     side,
@@ -166,11 +166,11 @@ impl Limits {
 
     /// Adds an equality at the final instant.
     pub fn add_goal(&mut self, quantity: Quantity, value: f64, name: String) {
-        self.list.push(Bounded {
+        self.list.push(BoundedQuantity {
             quantity,
             lower: value,
             upper: value,
-            place: Place::Goal,
+            when: When::Goal,
             name,
         });
     }
@@ -181,7 +181,7 @@ impl Limits {
     }
 }
 
-impl Bounded {
+impl BoundedQuantity {
     /// A value and the bound that it breaks, in words; `None` where it keeps its bounds up to rounding.
     pub fn broken(&self, value: f64, system: &System) -> Option<String> {
         let rounding = |bound: f64| ROUNDING * (1.0 + bound.abs());

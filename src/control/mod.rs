@@ -16,11 +16,11 @@ mod transcription;
 mod unknowns;
 
 pub use boundary::resolve_start;
-pub use conditions::{Boundary, Goal};
+pub use conditions::{BoundaryConditions, TerminalState};
 pub use error::BoundaryError;
-pub use guess::{Initial, guess};
-pub use limits::{Bounded, Limits, Place};
+pub use guess::{InitialGuess, guess};
+pub use limits::{BoundedQuantity, Limits, When};
 pub use objective::Cost;
-pub use solution::{Costates, Solved};
+pub use solution::{Costates, Solution};
 pub use transcription::Transcription;
-pub use unknowns::{Row, Unknowns, Variable};
+pub use unknowns::{Row, Numbering, Variable};

@@ -2,7 +2,7 @@
 
 use crate::dynamics::Solving;
 use crate::ipopt::OptionValue;
-use crate::model::system::{Electric, Muscle};
+use crate::model::system::{ElectricConstants, Muscle};
 use crate::model::{Coordinates, Region, System};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -33,7 +33,7 @@ pub struct AtRest {
 
 /// A state of rest, or of given motion.
 #[derive(Clone, Debug, PartialEq)]
-pub enum State {
+pub enum BoundaryState {
     /// Static equilibrium under these voltages (V, one per muscle).
     RestAtVoltages(Vec<f64>),
     /// Joint coordinates by joint index (rad or mm); at a start, joints not named stay at zero.
@@ -152,7 +152,7 @@ pub struct Simulation {
     /// the system's; `None`: equal steps.
     pub tolerance: Option<f64>,
     /// Where it starts.
-    pub start: State,
+    pub start: BoundaryState,
     /// What drives it.
     pub voltages: Voltages,
     /// `None`: reduced where the joints form a tree.
@@ -203,9 +203,9 @@ pub struct Control {
     /// Number of intervals N ≥ 1.
     pub intervals: usize,
     /// Initial state.
-    pub start: State,
+    pub start: BoundaryState,
     /// Final state, at rest.
-    pub goal: State,
+    pub goal: BoundaryState,
     /// Bounds of the voltages that are looked for in V.
     pub voltage_bounds: [f64; 2],
     /// Voltages that are given for all the time (V, by source): no unknowns.
@@ -215,7 +215,7 @@ pub struct Control {
     /// What is minimised.
     pub objective: Objective,
     /// Path limits.
-    pub limits: Vec<Limit>,
+    pub limits: Vec<PathConstraint>,
     /// `None`: reduced where the joints form a tree.
     pub coordinates: Option<Coordinates>,
     /// Where the solver starts.
@@ -231,7 +231,7 @@ impl Control {
         let [low, high] = self.voltage_bounds.map(f64::abs);
         let large = |muscle: &Muscle| {
             let material = &muscle.material;
-            let Electric {
+            let ElectricConstants {
                 c1,
                 c2,
                 permittivity,
@@ -265,7 +265,7 @@ pub struct Objective {
 
 /// An inequality that holds at every instant or in every interval.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Limit {
+pub enum PathConstraint {
     /// Joint coordinate (rad or mm).
     JointAngle {
         /// Joint index.

@@ -4,13 +4,13 @@
 //! momentum balances and of Gauss's laws. What is summed over a step goes with its length: impulses of constraints, costates
 //! of path limits and of bounds. A finer grid has more and smaller ones.
 
-use crate::control::conditions::Boundary;
+use crate::control::conditions::BoundaryConditions;
 use crate::control::problem::Control;
-use crate::control::solution::{Costates, Solved};
+use crate::control::solution::{Costates, Solution};
 use crate::control::transcription::Layout;
 use crate::control::unknowns::{Row, Variable};
 use crate::model::Model;
-use crate::reduction::Motion;
+use crate::reduction::CoordinateMap;
 
 /// Instants of the old grid that a curve is led through.
 const THROUGH: usize = 4;
@@ -100,9 +100,9 @@ fn slope(rows: &[Vec<f64>], i: usize, s: usize) -> f64 {
 
 /// Coordinates and impulses of constraints at the new instants, the impulses in units of `unit` ms times a force.
 pub(super) fn coordinates(
-    solved: &Solved,
+    solved: &Solution,
     grids: Grids,
-    motion: &Motion,
+    motion: &CoordinateMap,
     unit: f64,
 ) -> Vec<Vec<f64>> {
     let impulse = grids.ratio() * solved.multiplier_time / unit;
@@ -127,9 +127,9 @@ pub(super) fn coordinates(
 /// Costates on the new grid; `None` where the solution has none of this program.
 pub(super) fn costates(
     model: &Model,
-    boundary: &Boundary,
+    boundary: &BoundaryConditions,
     control: &Control,
-    solved: &Solved,
+    solved: &Solution,
     grids: Grids,
 ) -> Option<Costates> {
     let old = solved.costates.as_ref()?;

@@ -5,7 +5,7 @@ use crate::model::Coordinates;
 
 /// A motion with voltages and, from an optimisation, costates. Times in ms, voltages in V.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Solved {
+pub struct Solution {
     /// Coordinates in which `z` and the costates are meant.
     pub coordinates: Coordinates,
     /// Instants.
@@ -39,7 +39,7 @@ pub struct Costates {
     pub upper: Vec<f64>,
 }
 
-impl Solved {
+impl Solution {
     /// Number of intervals.
     pub fn intervals(&self) -> usize {
         self.voltages.len()

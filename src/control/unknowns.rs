@@ -68,7 +68,7 @@ pub struct Counts {
 
 /// Variables and equations of a horizon of `intervals`.
 #[derive(Clone, Debug)]
-pub struct Unknowns {
+pub struct Numbering {
     /// All variables, in order.
     pub variables: Vec<Variable>,
     /// All equations, in order; limits follow where they are added.
@@ -82,7 +82,7 @@ pub struct Unknowns {
     scalars: usize,
 }
 
-impl Unknowns {
+impl Numbering {
     /// `given(k, i)` says whether coordinate i of instant k is given, `balanced(k, i)` whether its momentum balance is an
     /// equation, `prescribed(s)` whether voltage s is given.
     pub fn new(

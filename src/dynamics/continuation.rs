@@ -9,7 +9,7 @@ use crate::dynamics::equilibrium::{Equilibrium, Route};
 use crate::dynamics::instability::Instability;
 use crate::dynamics::ramp::{Load, Ramp};
 use crate::dynamics::spans::shortest;
-use crate::dynamics::statics::{Outcome, Reach, State, Statics};
+use crate::dynamics::statics::{NewtonOutcome, UpdateRange, RestState, Statics};
 use crate::ipopt::interrupt;
 use crate::model::Model;
 
@@ -38,13 +38,13 @@ const SHORTEST: f64 = 0.05;
 pub(super) struct LimitPoint {
     pub(super) fraction: f64,
     pub(super) kind: Instability,
-    pub(super) state: State,
+    pub(super) state: RestState,
 }
 
 /// A point of the path.
 #[derive(Clone, Debug)]
-struct Point {
-    state: State,
+struct PathPoint {
+    state: RestState,
     fraction: f64,
     /// Unit tangent: state, then fraction.
     tangent: (Vec<f64>, f64),
@@ -86,16 +86,16 @@ impl Path<'_, '_> {
     /// The point at a state of equilibrium; its tangent goes on along `before`, or towards larger fractions.
     fn point(
         &mut self,
-        state: State,
+        state: RestState,
         fraction: f64,
         before: Option<&(Vec<f64>, f64)>,
-    ) -> Option<Point> {
+    ) -> Option<PathPoint> {
         let slope = self.linearise(&state, fraction)?;
         let norm = (1.0 + self.dot(&slope, &slope)).sqrt();
         let along = before.map_or(1.0, |(y, f)| self.dot(&slope, y) + f);
         let ahead = along.signum() / norm;
         let unstable = self.statics.unstable();
-        Some(Point {
+        Some(PathPoint {
             tangent: (slope.iter().map(|v| v * ahead).collect(), ahead),
             state,
             fraction,
@@ -104,10 +104,10 @@ impl Path<'_, '_> {
     }
 
     /// The point at the arc length `step` from another; `None` where the corrections do not converge.
-    fn advance(&mut self, from: &Point, step: f64) -> Option<Point> {
+    fn advance(&mut self, from: &PathPoint, step: f64) -> Option<PathPoint> {
         let (direction, ahead) = &from.tangent;
         let predicted = from.state.iter().zip(direction);
-        let mut state: State = predicted.map(|(y, t)| y + step * t).collect();
+        let mut state: RestState = predicted.map(|(y, t)| y + step * t).collect();
         let mut fraction = from.fraction + step * ahead;
         for _ in 0..CORRECTIONS {
             self.statics.iterations += 1;
@@ -135,7 +135,7 @@ impl Path<'_, '_> {
     }
 
     /// The zero of ḟ between a point and the one a step later.
-    fn turn(&mut self, before: &Point, step: f64, after: &Point) -> Point {
+    fn turn(&mut self, before: &PathPoint, step: f64, after: &PathPoint) -> PathPoint {
         let (mut low, mut high) = (0.0, step);
         let (mut at_low, mut at_high) = (before.tangent.1, after.tangent.1);
         let mut best = if at_low.abs() < at_high.abs() {
@@ -169,7 +169,7 @@ impl Path<'_, '_> {
 
 impl Path<'_, '_> {
     /// The last stable point between a stable point and the unstable one a step later.
-    fn switch(&mut self, before: &Point, step: f64) -> Point {
+    fn switch(&mut self, before: &PathPoint, step: f64) -> PathPoint {
         let (mut low, mut high) = (0.0, step);
         let mut best = before.clone();
         for _ in 0..HALVINGS {
@@ -245,7 +245,7 @@ pub(super) fn crossings(
     fraction: f64,
     direction: f64,
     steps: usize,
-) -> Vec<State> {
+) -> Vec<RestState> {
     let mut found = Vec::new();
     let mut path = path(statics, ramp);
     let Some(mut here) = path.point(state.to_vec(), fraction, None) else {
@@ -270,7 +270,7 @@ pub(super) fn crossings(
             };
             let mut state = nearest.state.clone();
             let all = ramp.apply(path.statics, 1.0);
-            if let Ok(Outcome::Converged) = path.statics.newton(&mut state, &all, Reach::Near) {
+            if let Ok(NewtonOutcome::Converged) = path.statics.newton(&mut state, &all, UpdateRange::Near) {
                 let is_stable = path.statics.unstable() == Some(0);
                 found.push(state);
                 if is_stable {
@@ -349,7 +349,7 @@ pub fn continuation(
         } else {
             None
         };
-        let mut rest = |point: &Point| {
+        let mut rest = |point: &PathPoint| {
             let loaded: Vec<f64> = voltages.iter().map(|v| v * point.fraction).collect();
             Equilibrium::on_path(path.statics, &point.state, &loaded, Route::Loads)
         };

@@ -9,10 +9,10 @@
 
 #![expect(non_snake_case, reason = "notation of the law")]
 
-use crate::dynamics::History;
+use crate::dynamics::DiscreteTrajectory;
 use crate::math::{Matrix, Vector};
-use crate::model::system::{Electric, Fidelity};
-use crate::model::{Continuum, Model};
+use crate::model::system::{ElectricConstants, Fidelity};
+use crate::model::{SolidBlock, Model};
 use nalgebra::SymmetricEigen;
 
 /// A muscle or block that leaves the domain under voltage.
@@ -32,8 +32,8 @@ pub struct OutOfDomain {
 
 /// Stretch at which the permittivity along it vanishes where the volume is J times the reference volume; `None` where it does
 /// not, or is not even positive at rest.
-pub fn largest_stretch(electric: &Electric, J: f64) -> Option<f64> {
-    let Electric {
+pub fn largest_stretch(electric: &ElectricConstants, J: f64) -> Option<f64> {
+    let ElectricConstants {
         c1,
         c2,
         permittivity,
@@ -47,7 +47,7 @@ pub fn largest_stretch(electric: &Electric, J: f64) -> Option<f64> {
 
 /// What leaves the domain at the instants of a motion, in the order of muscles and blocks. The voltages of an instant are
 /// those of the interval that ends there.
-pub fn out_of_domain(model: &Model, history: &History) -> Vec<OutOfDomain> {
+pub fn out_of_domain(model: &Model, history: &DiscreteTrajectory) -> Vec<OutOfDomain> {
     let muscles = model.system.muscles.iter().enumerate();
     let lumped: Vec<Watched<'_>> = muscles
         .filter(|(_, muscle)| muscle.fidelity == Fidelity::Lumped)
@@ -63,7 +63,7 @@ pub fn out_of_domain(model: &Model, history: &History) -> Vec<OutOfDomain> {
             Some(Watched::new(&muscle.name, of))
         })
         .collect();
-    let blocks = model.continua.iter().filter(|continuum| {
+    let blocks = model.solids.iter().filter(|continuum| {
         let electric = continuum.solid.materials.iter().filter_map(|m| m.electric);
         continuum.is_dielectric.contains(&true)
             && electric
@@ -103,7 +103,7 @@ enum Of<'m> {
         scalar: usize,
         limit: f64,
     },
-    Block(&'m Continuum),
+    Block(&'m SolidBlock),
 }
 
 impl<'m> Watched<'m> {
@@ -150,7 +150,7 @@ impl<'m> Watched<'m> {
 }
 
 /// The largest principal stretch at the Gauss points of the elements outside the domain that have a field, and its limit.
-fn worst_of_block(continuum: &Continuum, x: &[Vector], scalars: &[f64]) -> Option<(f64, f64)> {
+fn worst_of_block(continuum: &SolidBlock, x: &[Vector], scalars: &[f64]) -> Option<(f64, f64)> {
     let potentials = continuum.potentials(scalars);
     let mut worst: Option<(f64, f64)> = None;
     for (e, nodes) in continuum.solid.mesh.hexahedra.iter().enumerate() {

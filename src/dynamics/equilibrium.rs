@@ -3,7 +3,7 @@
 
 use crate::dynamics::ramp::{Load, Ramp};
 use crate::dynamics::softest::{Mode, softest, stiffness};
-use crate::dynamics::statics::{Outcome, Reach, State, Statics};
+use crate::dynamics::statics::{NewtonOutcome, UpdateRange, RestState, Statics};
 use crate::dynamics::{EquilibriumError, Instability, LimitPoint, limit_point};
 use crate::model::{Floating, Model};
 
@@ -39,14 +39,14 @@ pub enum Route {
     /// On the path of growing loads: the weights, then the voltages.
     Loads,
     /// On the path that goes on beyond the point where growing loads lose their equilibrium, and comes back to all loads.
-    Beyond(Loss),
+    Beyond(StabilityLoss),
     /// At a minimum of the potential energy, downhill from a state where the path ends or is unstable.
-    Minimum(Loss),
+    Minimum(StabilityLoss),
 }
 
 /// Where the path of growing loads loses its stable equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Loss {
+pub struct StabilityLoss {
     /// The load that grew.
     pub load: Load,
     /// Its fraction.
@@ -65,7 +65,7 @@ impl Equilibrium {
     }
 
     /// Where growing loads lose the stable equilibrium, if it does not lie on their path.
-    pub fn loss(&self) -> Option<Loss> {
+    pub fn loss(&self) -> Option<StabilityLoss> {
         match self.route {
             Route::Loads => None,
             Route::Beyond(loss) | Route::Minimum(loss) => Some(loss),
@@ -161,30 +161,30 @@ pub(super) fn unloaded(
     statics: &mut Statics<'_>,
     start: &[f64],
     voltages: &[f64],
-) -> Result<State, EquilibriumError> {
+) -> Result<RestState, EquilibriumError> {
     let mut first = statics.state(start, &vec![0.0; statics.model.potentials]);
     let none = vec![0.0; voltages.len()];
     if statics.has_weight() {
         statics.weight = 0.0;
         let mut state = first.clone();
-        if let Ok(Outcome::Converged) = statics.newton(&mut state, &none, Reach::Far) {
+        if let Ok(NewtonOutcome::Converged) = statics.newton(&mut state, &none, UpdateRange::Far) {
             return Ok(state);
         }
     }
     statics.weight = 1.0;
-    match statics.newton(&mut first, &none, Reach::Far)? {
-        Outcome::Converged => Ok(first),
-        Outcome::Failed => Err(EquilibriumError::NoStart),
+    match statics.newton(&mut first, &none, UpdateRange::Far)? {
+        NewtonOutcome::Converged => Ok(first),
+        NewtonOutcome::Failed => Err(EquilibriumError::NoStart),
     }
 }
 
 /// How far a load has grown.
 #[derive(Debug)]
 pub(super) struct Grown {
-    pub(super) state: State,
+    pub(super) state: RestState,
     pub(super) fraction: f64,
     /// The last state of the path that was stable, and its fraction, where a later one is not.
-    pub(super) last_stable: Option<(State, f64)>,
+    pub(super) last_stable: Option<(RestState, f64)>,
 }
 
 /// Lets a load grow from nothing, from a state of rest without it, as far as there are equilibria.
@@ -193,7 +193,7 @@ pub(super) struct Grown {
 /// It was stopped.
 pub(super) fn grow(
     statics: &mut Statics<'_>,
-    mut state: State,
+    mut state: RestState,
     ramp: Ramp<'_>,
 ) -> Result<Grown, EquilibriumError> {
     let m = statics.model.action.motion.unknowns();
@@ -216,8 +216,8 @@ pub(super) fn grow(
         trial[m..].iter_mut().for_each(|p| *p *= growth);
         let fraction = ramp.fraction(target);
         let voltages = ramp.apply(statics, fraction);
-        match statics.newton(&mut trial, &voltages, Reach::Near) {
-            Ok(Outcome::Converged) => {
+        match statics.newton(&mut trial, &voltages, UpdateRange::Near) {
+            Ok(NewtonOutcome::Converged) => {
                 (state, reached) = (trial, target);
                 increment *= 2.0;
                 match statics.unstable() {
@@ -227,7 +227,7 @@ pub(super) fn grow(
                 }
             }
             Err(stopped @ EquilibriumError::Stopped(_)) => return Err(stopped),
-            Ok(Outcome::Failed) | Err(_) => increment *= 0.5,
+            Ok(NewtonOutcome::Failed) | Err(_) => increment *= 0.5,
         }
     }
     let fraction = if is_there {
@@ -258,7 +258,7 @@ pub(super) fn at_limit(
         }) => (fraction, Some(kind), state),
         None => (fraction, None, state.to_vec()),
     };
-    let loss = Loss {
+    let loss = StabilityLoss {
         load: ramp.load,
         fraction,
         kind,

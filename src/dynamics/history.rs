@@ -4,7 +4,7 @@ use crate::dynamics::StepperReport;
 
 /// N + 1 instants and N intervals.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct History {
+pub struct DiscreteTrajectory {
     /// Times of the instants in ms.
     pub times: Vec<f64>,
     /// Coordinates and multipliers of each instant; multipliers of the last instant are those before it.
@@ -35,7 +35,7 @@ pub enum Reading {
     Instants,
 }
 
-impl History {
+impl DiscreteTrajectory {
     /// Number of intervals.
     pub fn intervals(&self) -> usize {
         self.scalars.len()

@@ -8,11 +8,11 @@
 //!
 //! so that they meet the constraints; without constraints this is M v = p.
 
-use crate::dynamics::tangent::{Entries, Tangent};
-use crate::functional::{Blocks, Frame, Kind, Level, Part, Sides};
+use crate::dynamics::tangent::{EntryList, Tangent};
+use crate::functional::{Blocks, Sample, Kind, Order, Part, BlockMask};
 use crate::math::Vector;
 use crate::model::Model;
-use crate::reduction::{Instant, Scratch, Target};
+use crate::reduction::{Configuration, Scratch, Destination};
 use crate::sparse::Symmetry;
 
 /// Storage of the bordered mass matrix.
@@ -30,7 +30,7 @@ impl<'m> Kinetic<'m> {
     pub(super) fn new(model: &'m Model) -> Self {
         let action = &model.action;
         let (layout, n) = (action.layout(), action.motion.coordinates);
-        let mut entries = Entries::default();
+        let mut entries = EntryList::default();
         for (slot, &(i, j)) in layout.same.entries().iter().enumerate() {
             if i < n || j < n {
                 entries.add(slot, (i, j));
@@ -38,8 +38,8 @@ impl<'m> Kinetic<'m> {
         }
         let size = action.motion.unknowns();
         Self {
-            scratch: action.scratch(Level::Hessian),
-            masses: action.intervals.output(Level::Hessian).plain,
+            scratch: action.scratch(Order::Hessian),
+            masses: action.intervals.output(Order::Hessian).plain,
             values: vec![0.0; layout.values(0)],
             tangent: entries.tangent(size, Symmetry::Symmetric, None),
             model,
@@ -47,16 +47,16 @@ impl<'m> Kinetic<'m> {
     }
 
     /// Rates of the coordinates of a placed instant; nothing where masses are missing or constraints are redundant.
-    pub(super) fn rates(&mut self, instant: &mut Instant, momentum: &[f64]) -> Option<Vec<f64>> {
+    pub(super) fn rates(&mut self, instant: &mut Configuration, momentum: &[f64]) -> Option<Vec<f64>> {
         let action = &self.model.action;
         self.values.fill(0.0);
         // The gradients of the constraints alone: neither forces nor multipliers bend them.
         let mut bare = instant.clone();
         bare.z[momentum.len()..action.motion.unknowns()].fill(0.0);
         bare.forces.fill(Vector::zeros());
-        action.evaluate_instant(Level::Hessian, &mut bare, &[], &mut self.scratch);
+        action.evaluate_instant(Order::Hessian, &mut bare, &[], &mut self.scratch);
         action.pull_back_instant(
-            Level::Hessian,
+            Order::Hessian,
             &mut bare,
             0,
             &mut self.scratch,
@@ -75,7 +75,7 @@ impl<'m> Kinetic<'m> {
         for (sum, mass) in self.masses.blocks.full.iter_mut().zip(&blocks.full) {
             sum[0] = mass[3];
         }
-        let target = Target {
+        let target = Destination {
             blocks: [0; 4],
             mixed: [usize::MAX; 2],
             scalars: usize::MAX,
@@ -83,7 +83,7 @@ impl<'m> Kinetic<'m> {
         action.pull_back_part(
             [instant, instant],
             &self.masses,
-            Sides::HERE,
+            BlockMask::HERE,
             &target,
             &mut self.scratch,
             &mut self.values,
@@ -101,12 +101,12 @@ impl<'m> Kinetic<'m> {
 /// interval of length 1.
 pub(super) fn masses(model: &Model, x: &[Vector]) -> Blocks {
     let action = &model.action.intervals;
-    let mut out = action.output(Level::Hessian);
+    let mut out = action.output(Order::Hessian);
     let scalars = vec![0.0; action.scalars];
-    let frame = Frame::of_instant(x, &scalars);
+    let frame = Sample::of_instant(x, &scalars);
     for (effect, slots) in action.terms() {
         if effect.kind() == Kind::Kinetic {
-            effect.evaluate(Level::Hessian, &frame, slots, &mut out);
+            effect.evaluate(Order::Hessian, &frame, slots, &mut out);
         }
     }
     out.plain.blocks

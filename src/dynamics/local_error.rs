@@ -8,7 +8,7 @@
 //! The sum over all steps is an estimate of how far the motion ends from the exact one where errors neither grow nor decay.
 //! Damping makes them less, an unstable motion more than that.
 
-use crate::dynamics::History;
+use crate::dynamics::DiscreteTrajectory;
 use crate::dynamics::trajectory::Trajectory;
 use crate::math::Vector;
 use crate::model::Model;
@@ -50,7 +50,7 @@ impl LocalError {
 }
 
 /// Estimates the error of a motion by a method of an order; nothing where it has fewer than order + 1 steps.
-pub fn local_error(model: &Model, history: &History, order: usize) -> Option<LocalError> {
+pub fn local_error(model: &Model, history: &DiscreteTrajectory, order: usize) -> Option<LocalError> {
     let (steps, window) = (history.intervals(), order + 1);
     if steps < window {
         return None;
@@ -117,7 +117,7 @@ fn weights(times: &[f64], h: f64) -> Vec<f64> {
 }
 
 /// How many switches of voltages there are up to each instant.
-fn switches(model: &Model, history: &History) -> Vec<usize> {
+fn switches(model: &Model, history: &DiscreteTrajectory) -> Vec<usize> {
     let voltages = |k: usize| &history.scalars[k][..model.voltages.len()];
     let mut count = 0;
     let mut counts = vec![0];
@@ -131,7 +131,7 @@ fn switches(model: &Model, history: &History) -> Vec<usize> {
 
 /// Points that show a motion, by instant, in mm: markers; of each body the centre and the ends of its directors at the radius
 /// of gyration; nodes.
-fn places(model: &Model, history: &History) -> Vec<Vec<Vector>> {
+fn places(model: &Model, history: &DiscreteTrajectory) -> Vec<Vec<Vector>> {
     let motion = Trajectory::from_history(model, history);
     let nodes = &model.action.motion.of_nodes;
     let first = model.action.motion.of_bodies;

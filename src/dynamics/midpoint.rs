@@ -11,11 +11,11 @@
 use crate::dynamics::resolution::{Balance, typical_energy};
 use crate::dynamics::solving::Solving;
 use crate::dynamics::stepper::{Equations, Steps};
-use crate::dynamics::tangent::Entries;
-use crate::functional::{Level, Sides};
+use crate::dynamics::tangent::EntryList;
+use crate::functional::{Order, BlockMask};
 use crate::math::Vector;
 use crate::model::Model;
-use crate::reduction::{Instant as Place, Interval, Scratch};
+use crate::reduction::{Configuration as Place, Interval, Scratch};
 
 /// Steps of the midpoint rule.
 pub type Stepper<'m> = Steps<Midpoint<'m>>;
@@ -53,7 +53,7 @@ impl<'m> Stepper<'m> {
     pub fn new(model: &'m Model, z: &[f64], momentum: &[f64], solving: Solving) -> Self {
         let motion = &model.action.motion;
         let (n, layout) = (motion.coordinates, model.action.layout());
-        let mut entries = Entries::default();
+        let mut entries = EntryList::default();
         for (slot, &entry) in layout.cross.entries().iter().enumerate() {
             entries.add(layout.upper_at(0) + slot, entry);
         }
@@ -83,7 +83,7 @@ impl<'m> Stepper<'m> {
             lengths: [0.0; 2],
             is_first: true,
             time: 0.0,
-            scratch: model.action.scratch(Level::Hessian),
+            scratch: model.action.scratch(Order::Hessian),
             values: vec![0.0; layout.values(1)],
             scalars: vec![0.0; layout.interval_scalars],
             saved: [vec![0.0; motion.multipliers], vec![0.0; model.potentials]],
@@ -141,7 +141,7 @@ impl Equations for Midpoint<'_> {
         self.next.z[n..].copy_from_slice(&self.here.z[n..]);
     }
 
-    fn evaluate(&mut self, level: Level, h: f64, residual: &mut [f64]) {
+    fn evaluate(&mut self, level: Order, h: f64, residual: &mut [f64]) {
         let action = &self.model.action;
         let (n, m) = (action.motion.coordinates, action.motion.unknowns());
         let Self {
@@ -156,13 +156,13 @@ impl Equations for Midpoint<'_> {
         for instant in [&mut *here, &mut *next] {
             instant.forces.fill(Vector::zeros());
         }
-        if level >= Level::Hessian {
+        if level >= Order::Hessian {
             values.fill(0.0);
         }
         residual[..n].copy_from_slice(&self.momentum);
         residual[n..].fill(0.0);
         let interval = Interval {
-            sides: Sides::FORWARD,
+            sides: BlockMask::FORWARD,
             ..Interval::given(scalars, h)
         };
         action.evaluate_interval(level, [here, next], &interval, scratch);
@@ -228,11 +228,11 @@ impl Equations for Midpoint<'_> {
             ..
         } = self;
         let interval = Interval {
-            sides: Sides::FORWARD,
+            sides: BlockMask::FORWARD,
             ..Interval::given(scalars, h)
         };
         let action = &model.action;
-        action.evaluate_interval(Level::Gradient, [here, next], &interval, scratch);
+        action.evaluate_interval(Order::Gradient, [here, next], &interval, scratch);
         let forces = &scratch.interval.plain.forces;
         Some(Balance::new(
             model,

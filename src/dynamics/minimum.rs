@@ -5,7 +5,7 @@
 //! brought onto the constraints with potentials by Gauss's law, and falls in each step.
 
 use crate::dynamics::spans::{reversed, shortest};
-use crate::dynamics::statics::{State, Statics};
+use crate::dynamics::statics::{RestState, Statics};
 use crate::ipopt::interrupt;
 
 /// Limit of steps, and that for models with nodes.
@@ -22,7 +22,7 @@ const HALVINGS: usize = 30;
 const COLLAPSED: f64 = 0.03;
 
 /// A state of least potential energy downhill from another; `None` where the energy falls without end.
-pub(super) fn minimise(statics: &mut Statics<'_>, from: &[f64], voltages: &[f64]) -> Option<State> {
+pub(super) fn minimise(statics: &mut Statics<'_>, from: &[f64], voltages: &[f64]) -> Option<RestState> {
     statics.weight = 1.0;
     let model = statics.model;
     let n = model.action.motion.coordinates;
@@ -58,7 +58,7 @@ pub(super) fn minimise(statics: &mut Statics<'_>, from: &[f64], voltages: &[f64]
         let slope = slope / model.multiplier_time;
         let mut is_accepted = false;
         for _ in 0..HALVINGS {
-            let mut trial: State = state
+            let mut trial: RestState = state
                 .iter()
                 .zip(&update)
                 .map(|(y, u)| y - part * u)

@@ -38,9 +38,9 @@ use continuation::{LimitPoint, limit_point};
 
 pub use continuation::{Continuation, continuation};
 pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
-pub use equilibrium::{Equilibrium, Loss, Route, equilibrium};
+pub use equilibrium::{Equilibrium, StabilityLoss, Route, equilibrium};
 pub use error::{EquilibriumError, StepError};
-pub use history::{History, Reading};
+pub use history::{DiscreteTrajectory, Reading};
 pub use instability::Instability;
 pub use local_error::{LocalError, local_error};
 pub use midpoint::{Midpoint, Stepper};

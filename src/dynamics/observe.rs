@@ -7,14 +7,14 @@
 //! like row 0. The momenta are the momentum maps of p⁺ = D₂L_d + f⁺, which an invariant motion conserves exactly; reactions of
 //! joints enter with the next interval.
 
-use crate::dynamics::history::{History, Reading};
+use crate::dynamics::history::{DiscreteTrajectory, Reading};
 use crate::dynamics::kinetic::Kinetic;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
-use crate::functional::{Kind, Level};
+use crate::functional::{Kind, Order};
 use crate::kinematics::{Carrier, MaterialVector, Pose};
 use crate::math::Vector;
-use crate::model::{Continuum, Model};
-use crate::reduction::{Instant, Interval, Scratch};
+use crate::model::{SolidBlock, Model};
+use crate::reduction::{Configuration, Interval, Scratch};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use std::ops::Range;
 
@@ -40,7 +40,7 @@ impl Energies {
 }
 
 /// Energies of the interval of `h` ms between two placed instants under voltages by scalar.
-pub fn energies(model: &Model, a: &Instant, b: &Instant, scalars: &[f64], h: f64) -> Energies {
+pub fn energies(model: &Model, a: &Configuration, b: &Configuration, scalars: &[f64], h: f64) -> Energies {
     let interval = Interval::given(scalars, h);
     let frame = interval.frame([a, b]);
     let mut energies = Energies::default();
@@ -56,7 +56,7 @@ pub fn energies(model: &Model, a: &Instant, b: &Instant, scalars: &[f64], h: f64
 }
 
 /// All that is observed along a motion, time, joint coordinates and markers first.
-pub fn observations(model: &Model, history: &History) -> Observations {
+pub fn observations(model: &Model, history: &DiscreteTrajectory) -> Observations {
     let mut observations = Trajectory::from_history(model, history).observe(&model.system);
     let mut observer = Observer::new(model);
     let mut columns = observer.columns();
@@ -114,8 +114,8 @@ struct Ends {
 /// The storage to observe one instant after the other.
 struct Observer<'m> {
     model: &'m Model,
-    before: Instant,
-    here: Instant,
+    before: Configuration,
+    here: Configuration,
     scratch: Scratch,
     /// Made where momenta are read at instants.
     kinetic: Option<Kinetic<'m>>,
@@ -130,10 +130,10 @@ impl<'m> Observer<'m> {
             model,
             before: model.action.motion.instant(),
             here: model.action.motion.instant(),
-            scratch: model.action.scratch(Level::Gradient),
+            scratch: model.action.scratch(Order::Gradient),
             kinetic: None,
             dissipated: 0.0,
-            pulls: model.condensed.system.joint_pulls(),
+            pulls: model.presolved.system.joint_pulls(),
         }
     }
 
@@ -146,14 +146,14 @@ impl<'m> Observer<'m> {
     }
 
     /// Charges and potential energies at the last instant under the last voltages.
-    fn last(&mut self, history: &History) -> Ends {
+    fn last(&mut self, history: &DiscreteTrajectory) -> Ends {
         let model = self.model;
         let scalars = &history.scalars[history.intervals() - 1];
         self.here.z.copy_from_slice(&history.z[history.intervals()]);
         model.action.motion.place(&mut self.here);
         self.before.clone_from(&self.here);
         let potential = energies(model, &self.here, &self.here, scalars, 1.0).potential;
-        let still = model.continua.iter();
+        let still = model.solids.iter();
         let still = still.flat_map(|block| block.still_charges(&self.here.x, scalars));
         let mut charges: Vec<f64> = still.collect();
         charges.extend(self.interval(scalars, 1.0).0);
@@ -181,9 +181,9 @@ impl<'m> Observer<'m> {
         }
         let electrodes = self
             .model
-            .continua
+            .solids
             .iter()
-            .flat_map(Continuum::still_electrodes);
+            .flat_map(SolidBlock::still_electrodes);
         for (block, electrode) in electrodes {
             add(format!("{block}_{electrode}_charge"), "mC");
         }
@@ -217,7 +217,7 @@ impl<'m> Observer<'m> {
         columns
     }
 
-    fn row(&mut self, history: &History, k: usize) -> Vec<f64> {
+    fn row(&mut self, history: &DiscreteTrajectory, k: usize) -> Vec<f64> {
         let model = self.model;
         let none = vec![0.0; model.action.intervals.scalars];
         let scalars = history.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
@@ -261,7 +261,7 @@ impl<'m> Observer<'m> {
         row.extend(muscles.map(|(&span, m)| self.here.x[span].norm() / m.length()));
         let ends = self.before.x.iter().zip(&self.here.x);
         let middles: Vec<Vector> = ends.map(|(a, b)| (a + b) * 0.5).collect();
-        for block in &model.continua {
+        for block in &model.solids {
             row.extend(block.still_charges(&middles, scalars));
         }
         row.extend(charges);
@@ -305,7 +305,7 @@ impl<'m> Observer<'m> {
         before.forces.fill(Vector::zeros());
         here.forces.fill(Vector::zeros());
         self.model.action.evaluate_interval(
-            Level::Gradient,
+            Order::Gradient,
             [before, here],
             &Interval::given(scalars, h),
             scratch,
@@ -316,7 +316,7 @@ impl<'m> Observer<'m> {
     }
 
     /// Rates of the coordinates at instant k: as recorded at the start, or those of the momentum.
-    fn rates(&mut self, history: &History, k: usize, momentum: &[f64]) -> Vec<f64> {
+    fn rates(&mut self, history: &DiscreteTrajectory, k: usize, momentum: &[f64]) -> Vec<f64> {
         let model = self.model;
         if let (0, Some(known)) = (k, &history.rates) {
             return known.clone();
@@ -331,7 +331,7 @@ impl<'m> Observer<'m> {
     }
 
     /// Momentum of each coordinate at instant k: as recorded, or at the start as the first interval asks for it.
-    fn momentum(&mut self, history: &History, k: usize) -> Vec<f64> {
+    fn momentum(&mut self, history: &DiscreteTrajectory, k: usize) -> Vec<f64> {
         let model = self.model;
         if let Some(momentum) = history.momenta.get(k) {
             return momentum.clone();
@@ -345,14 +345,14 @@ impl<'m> Observer<'m> {
         model.action.motion.place(&mut b);
         a.forces.fill(Vector::zeros());
         model.action.evaluate_interval(
-            Level::Gradient,
+            Order::Gradient,
             [&mut a, &mut b],
             &Interval::given(scalars, history.times[1] - history.times[0]),
             &mut self.scratch,
         );
         model
             .action
-            .evaluate_instant(Level::Gradient, &mut a, &[], &mut self.scratch);
+            .evaluate_instant(Order::Gradient, &mut a, &[], &mut self.scratch);
         let mut rows = vec![0.0; model.action.motion.unknowns()];
         model.action.rows(&mut a, &self.scratch, &mut rows);
         rows[..n].iter().map(|row| -row).collect()
@@ -363,14 +363,14 @@ impl<'m> Observer<'m> {
         let model = self.model;
         model
             .action
-            .evaluate_instant(Level::Gradient, &mut self.here, &[], &mut self.scratch);
+            .evaluate_instant(Order::Gradient, &mut self.here, &[], &mut self.scratch);
         let rows = &self.scratch.instant.plain.rows;
         rows.iter().fold(0.0_f64, |m, row| m.max(row.abs())) / model.multiplier_time
     }
 }
 
 /// Rates of the coordinates with given momenta at a placed instant; coordinates without inertia rest.
-pub(super) fn rates(model: &Model, instant: &mut Instant, momentum: &[f64]) -> Vec<f64> {
+pub(super) fn rates(model: &Model, instant: &mut Configuration, momentum: &[f64]) -> Vec<f64> {
     let n = momentum.len();
     if momentum.iter().all(|&p| p == 0.0) {
         return vec![0.0; n];
@@ -397,7 +397,7 @@ pub(super) fn rates(model: &Model, instant: &mut Instant, momentum: &[f64]) -> V
 }
 
 /// Momenta ∂T/∂ẋ of all vectors at a placed instant with these rates of the coordinates.
-fn moving(model: &Model, instant: &mut Instant, rates: &[f64]) -> Vec<Vector> {
+fn moving(model: &Model, instant: &mut Configuration, rates: &[f64]) -> Vec<Vector> {
     instant.l.fill(0.0);
     instant.l[..rates.len()].copy_from_slice(rates);
     model.action.motion.along(instant);

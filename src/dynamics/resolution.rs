@@ -11,7 +11,7 @@ use crate::dynamics::StepError;
 use crate::functional::Kind;
 use crate::math::Vector;
 use crate::model::Model;
-use crate::reduction::{Instant, Interval};
+use crate::reduction::{Configuration, Interval};
 use std::f64::consts::PI;
 
 /// Part of the energy exchanged in a step that may be made or lost in it.
@@ -36,7 +36,7 @@ impl Balance {
     pub(super) fn new(
         model: &Model,
         typical: f64,
-        ends: [&Instant; 2],
+        ends: [&Configuration; 2],
         interval: &Interval<'_>,
         forces: &[Vec<Vector>; 2],
     ) -> Self {
@@ -87,7 +87,7 @@ impl Balance {
         let &Self {
             made, exchanged, ..
         } = self;
-        if !self.size.is_finite() && !model.continua.is_empty() {
+        if !self.size.is_finite() && !model.solids.is_empty() {
             return Some(StepError::Inverted { time, step });
         }
         let allowed = (PART * exchanged).max(ROUNDING * self.size);
@@ -124,7 +124,7 @@ pub(super) fn typical_energy(model: &Model) -> f64 {
 
 /// The first joint that a step turns by more than half a turn, or body that it turns by more than a right angle in space,
 /// between two placed instants; with the angle in rad.
-pub(super) fn turned(model: &Model, start: &Instant, end: &Instant) -> Option<(String, f64)> {
+pub(super) fn turned(model: &Model, start: &Configuration, end: &Configuration) -> Option<(String, f64)> {
     let motion = &model.action.motion;
     let of_joints = motion.tree.as_ref().map_or(0, |tree| tree.coordinates());
     let turns = |&i: &usize| {
@@ -134,7 +134,7 @@ pub(super) fn turned(model: &Model, start: &Instant, end: &Instant) -> Option<(S
     if let Some(i) = (0..of_joints).find(turns) {
         return Some((model.unknown_name(i), (end.z[i] - start.z[i]).abs()));
     }
-    let bodies = &model.condensed.system.bodies;
+    let bodies = &model.presolved.system.bodies;
     bodies.iter().enumerate().find_map(|(body, named)| {
         let [before, after] = [start, end].map(|at| motion.directors(at, body));
         // 1 + 2 cos θ of the rotation from one to the other.

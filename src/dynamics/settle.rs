@@ -1,9 +1,9 @@
 //! Energy of states of rest, and the way onto the constraints and to Gauss's law.
 
-use crate::dynamics::statics::{ITERATIONS, State, Statics};
-use crate::functional::{Kind, Level};
+use crate::dynamics::statics::{ITERATIONS, RestState, Statics};
+use crate::functional::{Kind, Order};
 use crate::math::Vector;
-use crate::reduction::{Instant, Interval};
+use crate::reduction::{Configuration, Interval};
 
 /// Size of the last correction, relative to angles of one radian and the length of the system.
 const UPDATE: f64 = 1e-12;
@@ -25,12 +25,12 @@ impl Statics<'_> {
     }
 
     /// The instant placed last.
-    pub(super) fn instant(&self) -> &Instant {
+    pub(super) fn instant(&self) -> &Configuration {
         &self.a
     }
 
     /// Brings coordinates onto the constraints by the shortest way, and potentials to Gauss's law; `None` where that fails.
-    pub(super) fn settle(&mut self, state: &mut State, voltages: &[f64]) -> Option<()> {
+    pub(super) fn settle(&mut self, state: &mut RestState, voltages: &[f64]) -> Option<()> {
         let motion = &self.model.action.motion;
         if motion.multipliers > 0 {
             self.meet_constraints(state)?;
@@ -50,7 +50,7 @@ impl Statics<'_> {
     }
 
     /// Newton on the constraints alone, in the metric of the scales.
-    fn meet_constraints(&mut self, state: &mut State) -> Option<()> {
+    fn meet_constraints(&mut self, state: &mut RestState) -> Option<()> {
         let action = &self.model.action;
         let (n, m) = (action.motion.coordinates, action.motion.unknowns());
         for _ in 0..ITERATIONS {
@@ -61,8 +61,8 @@ impl Statics<'_> {
             action.motion.place(a);
             a.forces.fill(Vector::zeros());
             self.values.fill(0.0);
-            action.evaluate_instant(Level::Hessian, a, &[], &mut self.scratch);
-            action.pull_back_instant(Level::Hessian, a, 0, &mut self.scratch, &mut self.values);
+            action.evaluate_instant(Order::Hessian, a, &[], &mut self.scratch);
+            action.pull_back_instant(Order::Hessian, a, 0, &mut self.scratch, &mut self.values);
             self.residual.fill(0.0);
             action.rows(a, &self.scratch, &mut self.residual[..m]);
             self.residual[..n].fill(0.0);

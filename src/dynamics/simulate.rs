@@ -1,6 +1,6 @@
 //! Simulation: step after step, recorded.
 
-use crate::dynamics::history::{History, Reading};
+use crate::dynamics::history::{DiscreteTrajectory, Reading};
 use crate::dynamics::observe::vector_momenta;
 use crate::dynamics::solving::{Integrator, Solving};
 use crate::dynamics::stepper::{Equations, Steps};
@@ -87,8 +87,8 @@ pub fn simulate(
     h: f64,
     steps: usize,
     voltages: impl Fn(f64, f64) -> Vec<f64>,
-    observer: impl FnMut(&History) -> ControlFlow<()>,
-) -> (History, Option<StepError>) {
+    observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
+) -> (DiscreteTrajectory, Option<StepError>) {
     simulate_by(
         Solving::default(),
         model,
@@ -108,10 +108,10 @@ pub fn simulate_by(
     h: f64,
     steps: usize,
     voltages: impl Fn(f64, f64) -> Vec<f64>,
-    observer: impl FnMut(&History) -> ControlFlow<()>,
-) -> (History, Option<StepError>) {
-    let mut history = History::at(start);
-    let grid = Grid { h, steps };
+    observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
+) -> (DiscreteTrajectory, Option<StepError>) {
+    let mut history = DiscreteTrajectory::at(start);
+    let grid = TimeGrid { h, steps };
     let failure = if solving.integrator == Integrator::Midpoint {
         let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
         record(&mut stepper, grid, voltages, observer, &mut history)
@@ -148,15 +148,15 @@ pub fn simulate_within(
     start: &Start,
     control: StepControl<'_>,
     voltages: impl Fn(f64, f64) -> Vec<f64>,
-    mut observer: impl FnMut(&History) -> ControlFlow<()>,
-) -> (History, Option<StepError>) {
+    mut observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
+) -> (DiscreteTrajectory, Option<StepError>) {
     let StepControl {
         duration,
         first,
         tolerance,
         switches,
     } = control;
-    let mut history = History::at(start);
+    let mut history = DiscreteTrajectory::at(start);
     let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
     if let Some(rates) = &start.rates {
         stepper.began_with(rates);
@@ -206,7 +206,7 @@ pub fn simulate_within(
     (history, failure)
 }
 
-impl History {
+impl DiscreteTrajectory {
     /// A motion that begins.
     fn at(start: &Start) -> Self {
         Self {
@@ -230,7 +230,7 @@ impl History {
 
 /// So many steps of h ms.
 #[derive(Clone, Copy, Debug)]
-struct Grid {
+struct TimeGrid {
     h: f64,
     steps: usize,
 }
@@ -238,10 +238,10 @@ struct Grid {
 /// Takes the steps and records them; returns why they end early.
 fn record<E: Equations>(
     stepper: &mut Steps<E>,
-    Grid { h, steps }: Grid,
+    TimeGrid { h, steps }: TimeGrid,
     voltages: impl Fn(f64, f64) -> Vec<f64>,
-    mut observer: impl FnMut(&History) -> ControlFlow<()>,
-    history: &mut History,
+    mut observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
+    history: &mut DiscreteTrajectory,
 ) -> Option<StepError> {
     let n = stepper.momentum().len();
     let mut failure = None;

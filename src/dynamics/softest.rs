@@ -190,7 +190,7 @@ fn moves(model: &Model, z: &[f64], direction: &[f64]) -> String {
         Coordinates::Redundant => {
             let rates = bodies.chunks(12);
             let moved = rates
-                .zip(&model.condensed.system.bodies)
+                .zip(&model.presolved.system.bodies)
                 .map(|(rates, body)| {
                     let (centre, turn) = rates.split_at(3);
                     let largest = |part: &[f64]| part.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
@@ -209,7 +209,7 @@ fn moves(model: &Model, z: &[f64], direction: &[f64]) -> String {
     let furthest = nodes.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     if let Some((&(node, _), _)) = furthest.filter(|_| words.is_empty()) {
         let (block, node) = model.node_names[node];
-        let solid = &model.continua[block].solid;
+        let solid = &model.solids[block].solid;
         let at = solid.mesh.nodes[node];
         words.push(format!(
             "block {} around ({:.3}, {:.3}, {:.3}) mm of its reference",

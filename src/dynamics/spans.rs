@@ -4,11 +4,11 @@
 //! Forces are those at the middle of a step, which says nothing of its end: a span that turns by a right angle or more within
 //! a step may have passed through zero, and an element that is sound in the middle may be crushed.
 
-use crate::dynamics::History;
+use crate::dynamics::DiscreteTrajectory;
 use crate::functional::Kind;
 use crate::model::Model;
 use crate::model::system::Fidelity;
-use crate::reduction::{Instant, Interval};
+use crate::reduction::{Configuration, Interval};
 
 /// Below this stretch a muscle is named where a step fails; pull-in of an ideal dielectric is at 0.63.
 const SHORT: f64 = 0.5;
@@ -25,7 +25,7 @@ fn lumped(model: &Model) -> impl Iterator<Item = (usize, usize)> + '_ {
 }
 
 /// The first lumped muscle whose span turns by a right angle or more from one placed instant to another.
-pub(super) fn reversed(model: &Model, before: &Instant, after: &Instant) -> Option<usize> {
+pub(super) fn reversed(model: &Model, before: &Configuration, after: &Configuration) -> Option<usize> {
     let turns = |span: usize| before.x[span].dot(&after.x[span]) <= 0.0;
     lumped(model)
         .find(|&(_, span)| turns(span))
@@ -33,7 +33,7 @@ pub(super) fn reversed(model: &Model, before: &Instant, after: &Instant) -> Opti
 }
 
 /// The shortest lumped muscle of a placed instant, if it is rather short: its index and its stretch.
-pub(super) fn shortest(model: &Model, at: &Instant) -> Option<(usize, f64)> {
+pub(super) fn shortest(model: &Model, at: &Configuration) -> Option<(usize, f64)> {
     let stretch = |(m, span): (usize, usize)| {
         let length = model.system.muscles[m].length();
         (m, at.x[span].norm() / length)
@@ -50,8 +50,8 @@ pub fn muscle_without_length(model: &Model, coordinates: &[f64]) -> Option<usize
 }
 
 /// Whether an elastic block has no energy at a placed instant: an element is turned inside out.
-pub(super) fn is_inverted(model: &Model, at: &Instant, scalars: &[f64]) -> bool {
-    if model.continua.is_empty() {
+pub(super) fn is_inverted(model: &Model, at: &Configuration, scalars: &[f64]) -> bool {
+    if model.solids.is_empty() {
         return false;
     }
     let interval = Interval::given(scalars, 1.0);
@@ -61,7 +61,7 @@ pub(super) fn is_inverted(model: &Model, at: &Instant, scalars: &[f64]) -> bool 
 }
 
 /// The first interval of a motion in which the span of a lumped muscle turns by a right angle or more, and the muscle.
-pub fn reversed_muscle(model: &Model, history: &History) -> Option<(usize, usize)> {
+pub fn reversed_muscle(model: &Model, history: &DiscreteTrajectory) -> Option<(usize, usize)> {
     let motion = &model.action.motion;
     let mut pairs = history.z.windows(2).enumerate();
     pairs.find_map(|(k, ends)| {

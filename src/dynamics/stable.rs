@@ -8,11 +8,11 @@
 //! The first stable one is the answer.
 
 use crate::dynamics::continuation::crossings;
-use crate::dynamics::equilibrium::{Grown, Loss, Route, at_limit, begin, grow, unloaded};
+use crate::dynamics::equilibrium::{Grown, StabilityLoss, Route, at_limit, begin, grow, unloaded};
 use crate::dynamics::minimum::minimise;
 use crate::dynamics::ramp::{Load, Ramp};
 use crate::dynamics::softest::softest;
-use crate::dynamics::statics::{Outcome, Reach, State, Statics};
+use crate::dynamics::statics::{NewtonOutcome, UpdateRange, RestState, Statics};
 use crate::dynamics::{Equilibrium, EquilibriumError, LimitPoint, limit_point};
 use crate::ipopt::interrupt;
 use crate::model::{Coordinates, Model};
@@ -46,7 +46,7 @@ pub fn stable_equilibrium(
             let EquilibriumError::LimitPoint { last, load, .. } = &error else {
                 unreachable!("matched above");
             };
-            let loss = Loss {
+            let loss = StabilityLoss {
                 load: *load,
                 fraction: last.loss().map_or(0.0, |l| l.fraction),
                 kind: last.loss().and_then(|l| l.kind),
@@ -85,7 +85,7 @@ fn under_weight(
     statics: &mut Statics<'_>,
     start: &[f64],
     none: &[f64],
-) -> Result<(State, Route), EquilibriumError> {
+) -> Result<(RestState, Route), EquilibriumError> {
     let ramp = Ramp {
         load: Load::Weight,
         voltages: none,
@@ -102,7 +102,7 @@ fn under_weight(
         Err(_) => vec![first],
     };
     statics.weight = 1.0;
-    let loss = Loss {
+    let loss = StabilityLoss {
         load: Load::Weight,
         fraction: 0.0,
         kind: None,
@@ -148,9 +148,9 @@ fn without_stiffness(
 /// The equilibrium under all of a load, from one without it.
 fn under(
     statics: &mut Statics<'_>,
-    rest: State,
+    rest: RestState,
     ramp: Ramp<'_>,
-) -> Result<(State, Route), EquilibriumError> {
+) -> Result<(RestState, Route), EquilibriumError> {
     let Grown {
         state,
         fraction,
@@ -164,7 +164,7 @@ fn under(
     // Where it was lost: the limit point from the last stable state on.
     let (before, at) = last_stable.unwrap_or((state.clone(), fraction));
     let limit = limit_point(statics, &before, ramp, at);
-    let loss = Loss {
+    let loss = StabilityLoss {
         load: ramp.load,
         fraction: limit.as_ref().map_or(at, |l| l.fraction),
         kind: limit.as_ref().map(|l| l.kind),
@@ -174,7 +174,7 @@ fn under(
         (_, true) => ((state.clone(), 1.0), &[1.0, -1.0]),
         (_, false) => ((state.clone(), fraction), &[1.0]),
     };
-    let mut met: Vec<State> = Vec::new();
+    let mut met: Vec<RestState> = Vec::new();
     if is_reached {
         met.push(state.clone());
     }
@@ -217,9 +217,9 @@ fn is_stable(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64]) -> Opti
 /// It was stopped.
 fn downhill(
     statics: &mut Statics<'_>,
-    from: &[State],
+    from: &[RestState],
     voltages: &[f64],
-) -> Result<Option<State>, EquilibriumError> {
+) -> Result<Option<RestState>, EquilibriumError> {
     for state in from {
         statics.evaluate(state, voltages);
         // At a limit point the tangent is singular, and still the lowest eigenvalue has its direction.
@@ -239,8 +239,8 @@ fn downhill(
                 continue;
             };
             statics.weight = 1.0;
-            let outcome = statics.newton(&mut found, voltages, Reach::Near);
-            if outcome == Ok(Outcome::Converged)
+            let outcome = statics.newton(&mut found, voltages, UpdateRange::Near);
+            if outcome == Ok(NewtonOutcome::Converged)
                 && is_stable(statics, &found, voltages) == Some(true)
             {
                 return Ok(Some(found));
@@ -257,7 +257,7 @@ fn pushed(
     voltages: &[f64],
     direction: &[f64],
     mut by: f64,
-) -> Option<State> {
+) -> Option<RestState> {
     for _ in 0..HALVINGS {
         let mut moved = state.to_vec();
         for (value, change) in moved.iter_mut().zip(direction) {

@@ -7,12 +7,12 @@
 //! coordinate may be added to the tangent, which makes any state's tangent that of a minimum.
 
 use crate::dynamics::EquilibriumError;
-use crate::dynamics::tangent::{Entries, Tangent};
-use crate::functional::Level;
+use crate::dynamics::tangent::{EntryList, Tangent};
+use crate::functional::Order;
 use crate::ipopt::interrupt;
 use crate::math::Vector;
 use crate::model::Model;
-use crate::reduction::{Instant, Interval, Scratch};
+use crate::reduction::{Configuration, Interval, Scratch};
 use crate::sparse::{Singular, Symmetry};
 
 /// Limit of Newton iterations for one load.
@@ -24,11 +24,11 @@ const UPDATE: f64 = 1e-11;
 const LONG: f64 = 0.5;
 
 /// A state of rest: coordinates and multipliers, then potentials.
-pub(super) type State = Vec<f64>;
+pub(super) type RestState = Vec<f64>;
 
 /// From how far Newton's method may come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Reach {
+pub(super) enum UpdateRange {
     /// From anywhere: long updates are shortened.
     Far,
     /// From a neighbour on a path: a long update is a failure, for it may end on another path.
@@ -37,7 +37,7 @@ pub(super) enum Reach {
 
 /// How Newton's method ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Outcome {
+pub(super) enum NewtonOutcome {
     Converged,
     Failed,
 }
@@ -46,8 +46,8 @@ pub(super) enum Outcome {
 #[derive(Debug)]
 pub(super) struct Statics<'m> {
     pub(super) model: &'m Model,
-    pub(super) a: Instant,
-    b: Instant,
+    pub(super) a: Configuration,
+    b: Configuration,
     pub(super) scratch: Scratch,
     pub(super) values: Vec<f64>,
     pub(super) scalars: Vec<f64>,
@@ -71,7 +71,7 @@ impl<'m> Statics<'m> {
         let motion = &model.action.motion;
         let layout = model.action.layout();
         let (n, m) = (motion.coordinates, motion.unknowns());
-        let mut entries = Entries::default();
+        let mut entries = EntryList::default();
         for (slot, &entry) in layout.same.entries().iter().enumerate() {
             entries.add(layout.same_at(0) + slot, entry);
             entries.add_to(layout.same_at(1) + slot, slot);
@@ -89,7 +89,7 @@ impl<'m> Statics<'m> {
             entries.add(added + place, (i, i));
         }
         let electric = (model.potentials > 0).then(|| {
-            let mut entries = Entries::default();
+            let mut entries = EntryList::default();
             entries.add_potentials(model, &[]);
             entries.tangent_from(m, model.potentials, Symmetry::Symmetric, None)
         });
@@ -103,7 +103,7 @@ impl<'m> Statics<'m> {
             model,
             a: motion.instant(),
             b: motion.instant(),
-            scratch: model.action.scratch(Level::Hessian),
+            scratch: model.action.scratch(Order::Hessian),
             values: vec![0.0; added + n + model.potentials],
             scalars: vec![0.0; layout.interval_scalars],
             gravity: weights(model),
@@ -118,7 +118,7 @@ impl<'m> Statics<'m> {
     }
 
     /// The state at a configuration, with potentials; all states are meant with the charts of the configuration taken last.
-    pub(super) fn state(&mut self, z: &[f64], potentials: &[f64]) -> State {
+    pub(super) fn state(&mut self, z: &[f64], potentials: &[f64]) -> RestState {
         let (unknowns, charts) = z.split_at(self.model.action.motion.unknowns());
         for instant in [&mut self.a, &mut self.b] {
             instant.z[unknowns.len()..].copy_from_slice(charts);
@@ -133,7 +133,7 @@ impl<'m> Statics<'m> {
     }
 
     /// The state with charts where its bodies are.
-    pub(super) fn recentred(&mut self, state: &[f64]) -> State {
+    pub(super) fn recentred(&mut self, state: &[f64]) -> RestState {
         let motion = &self.model.action.motion;
         let (m, z) = (motion.unknowns(), self.configuration(state));
         let mut instant = motion.placed(&z);
@@ -168,8 +168,8 @@ impl<'m> Statics<'m> {
             instant.forces.fill(Vector::zeros());
         }
         let interval = Interval::given(scalars, self.model.multiplier_time);
-        action.evaluate_interval(Level::Hessian, [a, b], &interval, scratch);
-        action.pull_back_interval(Level::Hessian, [a, b], &interval, 0, scratch, values);
+        action.evaluate_interval(Order::Hessian, [a, b], &interval, scratch);
+        action.pull_back_interval(Order::Hessian, [a, b], &interval, 0, scratch, values);
         for (force, other) in a.forces.iter_mut().zip(&b.forces) {
             *force += other;
         }
@@ -178,8 +178,8 @@ impl<'m> Statics<'m> {
                 *force += (*weight - 1.0) * *all;
             }
         }
-        action.evaluate_instant(Level::Hessian, a, &[], scratch);
-        action.pull_back_instant(Level::Hessian, a, 0, scratch, values);
+        action.evaluate_instant(Order::Hessian, a, &[], scratch);
+        action.pull_back_instant(Order::Hessian, a, 0, scratch, values);
         residual.fill(0.0);
         action.rows(a, scratch, &mut residual[..m]);
         residual[m..].copy_from_slice(&scratch.interval.plain.rows[driven..]);
@@ -289,10 +289,10 @@ impl<'m> Statics<'m> {
     /// Newton at one load.
     pub(super) fn newton(
         &mut self,
-        state: &mut State,
+        state: &mut RestState,
         voltages: &[f64],
-        reach: Reach,
-    ) -> Result<Outcome, EquilibriumError> {
+        reach: UpdateRange,
+    ) -> Result<NewtonOutcome, EquilibriumError> {
         let mut last = f64::INFINITY;
         for _ in 0..ITERATIONS {
             if let Some(status) = interrupt::stop() {
@@ -301,7 +301,7 @@ impl<'m> Statics<'m> {
             self.iterations += 1;
             self.evaluate(state, voltages);
             if self.residual.iter().any(|r| !r.is_finite()) {
-                return Ok(Outcome::Failed);
+                return Ok(NewtonOutcome::Failed);
             }
             if let Err(singular) = self.factor() {
                 return Err(EquilibriumError::Singular {
@@ -312,9 +312,9 @@ impl<'m> Statics<'m> {
             let mut update = std::mem::take(&mut self.residual);
             self.solve(&mut update);
             let size = self.size(&update);
-            if size.is_nan() || (size > LONG && reach == Reach::Near) {
+            if size.is_nan() || (size > LONG && reach == UpdateRange::Near) {
                 self.residual = update;
-                return Ok(Outcome::Failed);
+                return Ok(NewtonOutcome::Failed);
             }
             let damping = if size > LONG { LONG / size } else { 1.0 };
             for (value, update) in state.iter_mut().zip(&update) {
@@ -322,11 +322,11 @@ impl<'m> Statics<'m> {
             }
             self.residual = update;
             if size < UPDATE || (size < 1e-8 && size >= 0.5 * last) {
-                return Ok(Outcome::Converged);
+                return Ok(NewtonOutcome::Converged);
             }
             last = size;
         }
-        Ok(Outcome::Failed)
+        Ok(NewtonOutcome::Failed)
     }
 
     /// Number of directions in which the potential energy of the state evaluated and factorised last falls, potentials
@@ -372,10 +372,10 @@ fn weights(model: &Model) -> Vec<Vector> {
     let scalars = vec![0.0; model.action.layout().interval_scalars];
     let interval = Interval::given(&scalars, model.multiplier_time);
     let frame = interval.frame([&instant, &instant]);
-    let mut out = model.action.intervals.output(Level::Gradient);
+    let mut out = model.action.intervals.output(Order::Gradient);
     let terms = model.action.intervals.terms();
     for (gravity, slots) in terms.filter(|(effect, _)| effect.name() == "gravity") {
-        gravity.evaluate(Level::Gradient, &frame, slots, &mut out);
+        gravity.evaluate(Order::Gradient, &frame, slots, &mut out);
     }
     let [here, there] = &out.plain.forces;
     here.iter().zip(there).map(|(a, b)| a + b).collect()

@@ -6,10 +6,10 @@ use crate::dynamics::resolution::{Balance, turned};
 use crate::dynamics::solving::Newton;
 use crate::dynamics::spans;
 use crate::dynamics::tangent::Tangent;
-use crate::functional::Level;
+use crate::functional::Order;
 use crate::ipopt::interrupt;
 use crate::model::Model;
-use crate::reduction::Instant as Place;
+use crate::reduction::Configuration as Place;
 use std::time::Instant;
 
 /// Limit of Newton iterations in one step.
@@ -58,7 +58,7 @@ pub trait Equations {
     fn guess(&mut self, h: f64);
 
     /// Writes the residual; at level `Hessian` also the values of the tangent.
-    fn evaluate(&mut self, level: Level, h: f64, residual: &mut [f64]);
+    fn evaluate(&mut self, level: Order, h: f64, residual: &mut [f64]);
 
     /// Values of the tangent.
     fn values(&self) -> &[f64];
@@ -313,9 +313,9 @@ impl<E: Equations> Steps<E> {
             self.go_on(h)?;
             self.report.iterations += 1;
             let level = if reused {
-                Level::Gradient
+                Order::Gradient
             } else {
-                Level::Hessian
+                Order::Hessian
             };
             let began = Instant::now();
             self.equations.evaluate(level, h, &mut self.residual);

@@ -3,7 +3,7 @@
 //! Unknowns are the coordinates and multipliers of an instant, then the potentials of an interval.
 
 use crate::model::Model;
-use crate::reduction::Layout;
+use crate::reduction::StepPattern;
 use crate::sparse::{Backend, Direct, Singular, Symmetry};
 
 /// Places in the values of the action, summed into the entries of a matrix.
@@ -18,12 +18,12 @@ pub(super) struct Tangent {
 
 /// Lists entries before the factorisation is prepared.
 #[derive(Debug, Default)]
-pub(super) struct Entries {
+pub(super) struct EntryList {
     entries: Vec<(usize, usize)>,
     gather: Vec<(usize, usize)>,
 }
 
-impl Entries {
+impl EntryList {
     /// A new entry of the matrix that takes the value at a place.
     pub(super) fn add(&mut self, place: usize, entry: (usize, usize)) {
         self.gather.push((place, self.entries.len()));
@@ -38,7 +38,7 @@ impl Entries {
     /// Gauss's law: potentials against the coordinates of the rows (instant `sides[0]`) and of the columns
     /// (instant `sides[1]`) of the interval 0, and against each other.
     pub(super) fn add_potentials(&mut self, model: &Model, sides: &[[usize; 2]]) {
-        let layout: &Layout = model.action.layout();
+        let layout: &StepPattern = model.action.layout();
         let (first, driven) = (model.action.motion.unknowns(), model.voltages.len());
         for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
             let Some(s) = s.checked_sub(driven) else {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::dynamics::History;
+use crate::dynamics::DiscreteTrajectory;
 use crate::kinematics::Pose;
 use crate::model::Model;
 use crate::model::system::{Attachment, Joint, JointKind, System};
@@ -24,7 +24,7 @@ pub struct Trajectory {
 
 impl Trajectory {
     /// The motion of a model: poses, joint coordinates without jumps, and a voltage for every muscle.
-    pub fn from_history(model: &Model, history: &History) -> Self {
+    pub fn from_history(model: &Model, history: &DiscreteTrajectory) -> Self {
         let mut instant = model.action.motion.instant();
         let mut near = vec![0.0; model.gauges.len()];
         let mut trajectory = Self {

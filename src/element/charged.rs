@@ -4,7 +4,7 @@ use super::algebra::{Nine, Three, apply_plain, cross, dot, dot_plain, scale};
 use super::kinematics::load;
 use super::law::Dielectric;
 use super::number::{Points, Real};
-use super::state::{ElectricField, State};
+use super::state::{ElectricField, ElementState};
 
 /// Electric quantities of the nodes at the Gauss points.
 pub(super) struct Charged<N: Points> {
@@ -56,7 +56,7 @@ impl<N: Points> Charged<N> {
     pub(super) fn fill(
         &mut self,
         (w, F): (N::Plain, &Nine<N>),
-        state: &State<'_, N>,
+        state: &ElementState<'_, N>,
         field: &ElectricField<N>,
         constants: &Dielectric,
         g: &[[N; 3]; 8],

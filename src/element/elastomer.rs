@@ -5,8 +5,8 @@ use super::dual::Dual;
 use super::lanes::Lanes;
 use super::law::{Field, Volume};
 use super::local::{Local, Output, Pair};
-use super::shape::Shape;
-use super::state::State;
+use super::shape::ElementGeometry;
+use super::state::ElementState;
 use super::variations::Variations;
 use crate::math::Vector;
 use pulp::Simd;
@@ -34,7 +34,7 @@ pub struct Elastomer<F> {
 
 impl<F: Field> Elastomer<F> {
     /// Energy W in mJ of the hexahedron `shape` with nodes at `x` in mm and their potentials in V.
-    pub fn energy(&self, shape: &Shape, x: &[Vector; 8], potentials: &F::Potentials) -> f64 {
+    pub fn energy(&self, shape: &ElementGeometry, x: &[Vector; 8], potentials: &F::Potentials) -> f64 {
         let mut energy = 0.0;
         dispatch(Plain::<_, _, 0> {
             law: self,
@@ -49,7 +49,7 @@ impl<F: Field> Elastomer<F> {
     /// Fills energy, forces and charges.
     pub fn gradient(
         &self,
-        shape: &Shape,
+        shape: &ElementGeometry,
         x: &[Vector; 8],
         potentials: &F::Potentials,
         local: &mut Local<F>,
@@ -66,7 +66,7 @@ impl<F: Field> Elastomer<F> {
     /// Fills everything: energy, gradient, and stiffness, coupling and permittivity.
     pub fn tangent(
         &self,
-        shape: &Shape,
+        shape: &ElementGeometry,
         x: &[Vector; 8],
         potentials: &F::Potentials,
         local: &mut Local<F>,
@@ -88,7 +88,7 @@ impl<F: Field> Elastomer<F> {
     )]
     pub fn third(
         &self,
-        shape: &Shape,
+        shape: &ElementGeometry,
         x: &[Vector; 8],
         potentials: &F::Potentials,
         w: &[Vector; 8],
@@ -111,7 +111,7 @@ impl<F: Field> Elastomer<F> {
 /// Derivatives to the order `ORDER` at a state.
 struct Plain<'a, F: Field, O, const ORDER: usize> {
     law: &'a Elastomer<F>,
-    shape: &'a Shape,
+    shape: &'a ElementGeometry,
     x: &'a [Vector; 8],
     potentials: &'a F::Potentials,
     out: &'a mut O,
@@ -127,7 +127,7 @@ impl<F: Field, O: Output<f64>, const ORDER: usize> Task for Plain<'_, F, O, ORDE
             x[i] = [self.x[i].x, self.x[i].y, self.x[i].z];
         }
         let electric = self.law.field.constants(self.potentials);
-        let state = State {
+        let state = ElementState {
             token: unit,
             shear_modulus: self.law.shear_modulus,
             lame_lambda: self.law.lame_lambda,
@@ -143,7 +143,7 @@ impl<F: Field, O: Output<f64>, const ORDER: usize> Task for Plain<'_, F, O, ORDE
 /// Second derivatives at a state, and their rates along a direction.
 struct Along<'a, F: Field> {
     law: &'a Elastomer<F>,
-    shape: &'a Shape,
+    shape: &'a ElementGeometry,
     x: &'a [Vector; 8],
     potentials: &'a F::Potentials,
     w: &'a [Vector; 8],
@@ -171,7 +171,7 @@ impl<F: Field> Task for Along<'_, F> {
                 phi[i] = dual(value[i], rate[i]);
             }
         }
-        let state = State {
+        let state = ElementState {
             token: unit,
             shear_modulus: self.law.shear_modulus,
             lame_lambda: self.law.lame_lambda,

@@ -2,7 +2,7 @@
 
 use super::elastomer::Elastomer;
 use super::law::{Field, Volume};
-use super::shape::Shape;
+use super::shape::ElementGeometry;
 use super::viscosity::Viscosity;
 use crate::math::{Matrix, Vector};
 
@@ -35,7 +35,7 @@ impl Fields {
 impl<F: Field> Elastomer<F> {
     /// Fields of the hexahedron `shape` with nodes at `x` in mm and their potentials in V; add
     /// [`Viscosity::stress`] to the stress of a moving one.
-    pub fn fields(&self, shape: &Shape, x: &[Vector; 8], potentials: &F::Potentials) -> Fields {
+    pub fn fields(&self, shape: &ElementGeometry, x: &[Vector; 8], potentials: &F::Potentials) -> Fields {
         let one = Matrix::identity();
         let (mu, lambda) = (self.shear_modulus, self.lame_lambda);
         let electric = self.field.constants(potentials);
@@ -79,7 +79,7 @@ impl<F: Field> Elastomer<F> {
 
 impl Viscosity {
     /// Mean of σ = η d over the reference volume, in MPa.
-    pub fn stress(&self, shape: &Shape, x: &[Vector; 8], v: &[Vector; 8]) -> Matrix {
+    pub fn stress(&self, shape: &ElementGeometry, x: &[Vector; 8], v: &[Vector; 8]) -> Matrix {
         let at = |g: usize| {
             // lᵀ = F⁻ᵀ Ḟᵀ.
             let deformation = shape.gradient_of(x, g);
@@ -93,7 +93,7 @@ impl Viscosity {
     }
 }
 
-impl Shape {
+impl ElementGeometry {
     /// Σ x_i ⊗ G_i at the Gauss point `g`.
     pub fn gradient_of(&self, x: &[Vector; 8], g: usize) -> Matrix {
         gradient_of(x, &self.gradients_at(g))

@@ -2,7 +2,7 @@
 
 use super::algebra::{Nine, Three, cofactor, dot, scale_all};
 use super::number::Points;
-use super::shape::Shape;
+use super::shape::ElementGeometry;
 
 /// Deformation gradient, its inverse transpose and its determinant, with the weights of the points.
 #[expect(non_snake_case, reason = "notation of the law")]
@@ -20,7 +20,7 @@ pub(super) struct Kinematics<N: Points> {
 #[expect(non_snake_case, reason = "notation of the law")]
 impl<N: Points> Kinematics<N> {
     #[inline(always)]
-    pub(super) fn new(token: N::Token, shape: &Shape, x: &[Three<N::Uniform>; 8]) -> Self {
+    pub(super) fn new(token: N::Token, shape: &ElementGeometry, x: &[Three<N::Uniform>; 8]) -> Self {
         let F = gradient_of::<N>(token, shape, x);
         let H = cofactor(&F);
         let J = dot(F[0], H[0]).positive();
@@ -38,7 +38,7 @@ impl<N: Points> Kinematics<N> {
 #[inline(always)]
 pub(super) fn gradient_of<N: Points>(
     token: N::Token,
-    shape: &Shape,
+    shape: &ElementGeometry,
     x: &[Three<N::Uniform>; 8],
 ) -> Nine<N> {
     let mut sum = [[N::constant(token, 0.0); 3]; 3];
@@ -68,7 +68,7 @@ pub(super) fn load<N: Points>(token: N::Token, gradient: &[[f64; 8]; 3]) -> Thre
 #[inline(always)]
 pub(super) fn minus_gradient_of<N: Points>(
     token: N::Token,
-    shape: &Shape,
+    shape: &ElementGeometry,
     phi: &[N::Uniform; 8],
 ) -> Three<N> {
     let mut sum = [N::constant(token, 0.0); 3];

@@ -45,7 +45,7 @@ pub trait Field: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     fn constants(&self, potentials: &Self::Potentials) -> Option<(Dielectric, [f64; 8])>;
 
     /// The derivatives by potentials, where there are any.
-    fn electric(local: &mut Self::Local) -> Option<&mut Electric>;
+    fn electric(local: &mut Self::Local) -> Option<&mut ElectricDerivatives>;
 }
 
 impl Field for Passive {
@@ -58,14 +58,14 @@ impl Field for Passive {
     }
 
     #[inline(always)]
-    fn electric((): &mut ()) -> Option<&mut Electric> {
+    fn electric((): &mut ()) -> Option<&mut ElectricDerivatives> {
         None
     }
 }
 
 impl Field for Dielectric {
     type Potentials = [f64; 8];
-    type Local = Electric;
+    type Local = ElectricDerivatives;
 
     #[inline(always)]
     fn constants(&self, potentials: &[f64; 8]) -> Option<(Dielectric, [f64; 8])> {
@@ -73,14 +73,14 @@ impl Field for Dielectric {
     }
 
     #[inline(always)]
-    fn electric(local: &mut Electric) -> Option<&mut Electric> {
+    fn electric(local: &mut ElectricDerivatives) -> Option<&mut ElectricDerivatives> {
         Some(local)
     }
 }
 
 /// Derivatives of the energy of one hexahedron by the potentials of its nodes.
 #[derive(Clone, Debug)]
-pub struct Electric {
+pub struct ElectricDerivatives {
     /// ∂W/∂φ_i in mJ/V.
     pub charges: [f64; 8],
     /// ∂²W/∂x_i∂φ_j in N/V, `coupling[i][j]`: all 64 vectors differ.
@@ -89,7 +89,7 @@ pub struct Electric {
     pub permittivity: [[f64; 8]; 8],
 }
 
-impl Default for Electric {
+impl Default for ElectricDerivatives {
     fn default() -> Self {
         Self {
             charges: [0.0; 8],

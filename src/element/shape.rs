@@ -46,14 +46,14 @@ pub struct Inverted {
 ///
 /// Nodes in the order of VTK: the lower face counter-clockwise seen from above, then the upper face above it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shape {
+pub struct ElementGeometry {
     /// `gradients[i][m][g]`: component `m` of G_i at point `g`, in 1/mm.
     gradients: [[[f64; 8]; 3]; 8],
     /// w in mm³.
     weights: [f64; 8],
 }
 
-impl Shape {
+impl ElementGeometry {
     /// The hexahedron with these nodes, in mm.
     ///
     /// # Errors

@@ -3,15 +3,15 @@
 use super::algebra::Three;
 use super::law::{Dielectric, Volume};
 use super::number::Points;
-use super::shape::Shape;
+use super::shape::ElementGeometry;
 
 /// A law and the state at which it is evaluated.
-pub(super) struct State<'a, N: Points> {
+pub(super) struct ElementState<'a, N: Points> {
     pub(super) token: N::Token,
     pub(super) shear_modulus: f64,
     pub(super) lame_lambda: f64,
     pub(super) volume: Volume,
-    pub(super) shape: &'a Shape,
+    pub(super) shape: &'a ElementGeometry,
     pub(super) x: &'a [[N::Uniform; 3]; 8],
     /// Absent at compile time for a passive law.
     pub(super) electric: Option<(&'a Dielectric, &'a [N::Uniform; 8])>,

@@ -26,7 +26,7 @@ use super::kinematics::{Kinematics, load, minus_gradient_of};
 use super::law::Volume;
 use super::local::Output;
 use super::number::{Points, Real};
-use super::state::{ElectricField, State};
+use super::state::{ElectricField, ElementState};
 
 /// Quantities at the Gauss points that energy, gradient and tangent share.
 #[expect(non_snake_case, reason = "notation of the law")]
@@ -59,7 +59,7 @@ impl<N: Points> Variations<N> {
     /// Writes the energy; its gradient if `ORDER` ≥ 1; its tangent if `ORDER` ≥ 2.
     #[inline(always)]
     pub(super) fn write<const ORDER: usize>(
-        state: &State<'_, N>,
+        state: &ElementState<'_, N>,
         out: &mut impl Output<N::Uniform>,
     ) {
         let point = Self::new(state);
@@ -73,7 +73,7 @@ impl<N: Points> Variations<N> {
     }
 
     #[inline(always)]
-    fn new(state: &State<'_, N>) -> Self {
+    fn new(state: &ElementState<'_, N>) -> Self {
         let token = state.token;
         let Kinematics { w, F, T, J } = Kinematics::<N>::new(token, state.shape, state.x);
         let ln_J = J.ln();
@@ -123,7 +123,7 @@ impl<N: Points> Variations<N> {
     }
 
     #[inline(always)]
-    fn energy(&self, state: &State<'_, N>) -> N::Uniform {
+    fn energy(&self, state: &ElementState<'_, N>) -> N::Uniform {
         let F = &self.F;
         let square = dot(F[0], F[0]) + dot(F[1], F[1]) + dot(F[2], F[2]);
         let strain = square.shifted(-3.0).scaled(0.5) - self.ln_J;
@@ -144,7 +144,7 @@ impl<N: Points> Variations<N> {
     }
 
     #[inline(always)]
-    fn gradient(&self, state: &State<'_, N>, out: &mut impl Output<N::Uniform>) {
+    fn gradient(&self, state: &ElementState<'_, N>, out: &mut impl Output<N::Uniform>) {
         let token = state.token;
         let mu = state.shear_modulus;
         let mut isotropic = self.theta.shifted(-mu);
@@ -194,7 +194,7 @@ impl<N: Points> Variations<N> {
     }
 
     #[inline(always)]
-    fn tangent(&self, state: &State<'_, N>, out: &mut impl Output<N::Uniform>) {
+    fn tangent(&self, state: &ElementState<'_, N>, out: &mut impl Output<N::Uniform>) {
         let token = state.token;
         let zero = N::constant(token, 0.0);
         let w = self.w;

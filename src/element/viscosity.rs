@@ -25,7 +25,7 @@ use super::dispatch::{Task, dispatch};
 use super::kinematics::{Kinematics, gradient_of, load};
 use super::lanes::Lanes;
 use super::number::{Points, Real};
-use super::shape::Shape;
+use super::shape::ElementGeometry;
 use super::viscous_local::{ViscousContraction, ViscousLocal};
 use crate::math::{Matrix, Vector};
 use pulp::Simd;
@@ -43,7 +43,7 @@ pub struct Viscosity {
 impl Viscosity {
     /// Dissipation Σ v_i·f_i = ∫ J η d:d dV ≥ 0 in mJ/ms of the hexahedron `shape` with nodes at `x` in mm and their
     /// velocities `v` in mm/ms.
-    pub fn power(&self, shape: &Shape, x: &[Vector; 8], v: &[Vector; 8]) -> f64 {
+    pub fn power(&self, shape: &ElementGeometry, x: &[Vector; 8], v: &[Vector; 8]) -> f64 {
         let viscosity = self.viscosity;
         dispatch(Power {
             viscosity,
@@ -56,7 +56,7 @@ impl Viscosity {
     /// Fills the forces f_i.
     pub fn forces(
         &self,
-        shape: &Shape,
+        shape: &ElementGeometry,
         x: &[Vector; 8],
         v: &[Vector; 8],
         forces: &mut [Vector; 8],
@@ -74,7 +74,7 @@ impl Viscosity {
     /// Fills the forces and their derivatives.
     pub fn tangent(
         &self,
-        shape: &Shape,
+        shape: &ElementGeometry,
         x: &[Vector; 8],
         v: &[Vector; 8],
         local: &mut ViscousLocal,
@@ -92,7 +92,7 @@ impl Viscosity {
     /// Fills s = Σ y_i·f_i(x, v), its gradient and its Hessian.
     pub fn contraction(
         &self,
-        shape: &Shape,
+        shape: &ElementGeometry,
         x: &[Vector; 8],
         v: &[Vector; 8],
         y: &[Vector; 8],
@@ -121,7 +121,7 @@ struct Flow<N: Points> {
 
 impl<N: Points<Uniform = f64>> Flow<N> {
     #[inline(always)]
-    fn new(token: N::Token, viscosity: f64, shape: &Shape, x: &[Vector; 8]) -> Self {
+    fn new(token: N::Token, viscosity: f64, shape: &ElementGeometry, x: &[Vector; 8]) -> Self {
         let k = Kinematics::<N>::new(token, shape, &coordinates(x));
         Self {
             token,
@@ -132,14 +132,14 @@ impl<N: Points<Uniform = f64>> Flow<N> {
 
     /// Σ v_i ⊗ g_i.
     #[inline(always)]
-    fn rate(&self, shape: &Shape, v: &[Vector; 8]) -> Nine<N> {
+    fn rate(&self, shape: &ElementGeometry, v: &[Vector; 8]) -> Nine<N> {
         let rate = gradient_of::<N>(self.token, shape, &coordinates(v));
         product(&rate, &transpose(&self.inverse))
     }
 
     /// g_i.
     #[inline(always)]
-    fn gradients(&self, shape: &Shape) -> [Three<N>; 8] {
+    fn gradients(&self, shape: &ElementGeometry) -> [Three<N>; 8] {
         let mut g = [[N::constant(self.token, 0.0); 3]; 8];
         for (g, gradient) in g.iter_mut().zip(shape.gradients()) {
             *g = apply_plain(&self.inverse, load::<N>(self.token, gradient));
@@ -188,7 +188,7 @@ impl<N: Points<Uniform = f64>> Flow<N> {
 
 struct Power<'a> {
     viscosity: f64,
-    shape: &'a Shape,
+    shape: &'a ElementGeometry,
     x: &'a [Vector; 8],
     v: &'a [Vector; 8],
 }
@@ -206,7 +206,7 @@ impl Task for Power<'_> {
 
 struct Forces<'a> {
     viscosity: f64,
-    shape: &'a Shape,
+    shape: &'a ElementGeometry,
     x: &'a [Vector; 8],
     v: &'a [Vector; 8],
     forces: &'a mut [Vector; 8],
@@ -229,7 +229,7 @@ impl Task for Forces<'_> {
 
 struct Tangent<'a> {
     viscosity: f64,
-    shape: &'a Shape,
+    shape: &'a ElementGeometry,
     x: &'a [Vector; 8],
     v: &'a [Vector; 8],
     local: &'a mut ViscousLocal,
@@ -269,7 +269,7 @@ impl Task for Tangent<'_> {
 
 struct Contraction<'a> {
     viscosity: f64,
-    shape: &'a Shape,
+    shape: &'a ElementGeometry,
     x: &'a [Vector; 8],
     v: &'a [Vector; 8],
     y: &'a [Vector; 8],

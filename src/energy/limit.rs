@@ -6,14 +6,14 @@ use nalgebra::SVector;
 
 /// `(x − c)·n`, arguments: x.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct PositionComponent {
     /// c in mm.
     pub origin: Vector,
     /// n.
     pub normal: Vector,
 }
 
-impl Energy<3> for Place {
+impl Energy<3> for PositionComponent {
     const DEGREE: usize = 1;
 
     fn jet<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {

@@ -12,7 +12,7 @@ mod viscosity;
 pub use constraint::{Coincidence, Orthogonality};
 pub use damper::{AngularDamper, CoordinateDamper, LinearDamper};
 pub use gravity::Gravity;
-pub use limit::{Angle, OutsideBox, Place, Projection, SquaredDistance, SquaredField};
+pub use limit::{Angle, OutsideBox, PositionComponent, Projection, SquaredDistance, SquaredField};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
 pub use spring::{LinearSpring, SpanDamper};
 pub use tendon::Cable;

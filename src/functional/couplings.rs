@@ -83,12 +83,12 @@ pub struct Blocks {
 
 /// Which instants of an interval a reader asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sides {
+pub struct BlockMask {
     /// Blocks (k, k), (k, k+1), (k+1, k), (k+1, k+1).
     pub blocks: [bool; 4],
 }
 
-impl Sides {
+impl BlockMask {
     /// All four blocks.
     pub const ALL: Self = Self { blocks: [true; 4] };
     /// All but (k+1, k+1), which is carried on to the next interval.

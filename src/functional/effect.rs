@@ -1,12 +1,12 @@
 //! A term of a sum, and the sum.
 
-use crate::functional::{Couplings, Part, Sides};
+use crate::functional::{Couplings, Part, BlockMask};
 use crate::math::Vector;
 use std::fmt::Debug;
 
 /// How far derivatives are asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
+pub enum Order {
     /// Forces: first derivatives.
     Gradient,
     /// Also second derivatives.
@@ -17,7 +17,7 @@ pub enum Level {
 
 /// What an effect reads on one interval.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame<'a> {
+pub struct Sample<'a> {
     /// Vectors at t_k and t_{k+1}.
     pub vectors: [&'a [Vector]; 2],
     /// Rates of the vectors along the direction.
@@ -31,12 +31,12 @@ pub struct Frame<'a> {
     /// Whether the interval length is itself an argument.
     pub horizon: Horizon,
     /// Which blocks are asked for.
-    pub sides: Sides,
+    pub sides: BlockMask,
     /// Weights of the measures of the site in the contraction at level `Third`.
     pub weights: &'a [f64],
 }
 
-impl<'a> Frame<'a> {
+impl<'a> Sample<'a> {
     /// One instant by itself, in an interval of 1 ms that begins and ends there.
     pub fn of_instant(vectors: &'a [Vector], scalars: &'a [f64]) -> Self {
         Self {
@@ -46,7 +46,7 @@ impl<'a> Frame<'a> {
             scalars_along: &[],
             h: 1.0,
             horizon: Horizon::Given,
-            sides: Sides::ALL,
+            sides: BlockMask::ALL,
             weights: &[],
         }
     }
@@ -84,7 +84,7 @@ pub enum Kind {
 }
 
 /// A term of a sum: all elements of one kind at one site.
-pub trait Effect: Debug + Send + Sync {
+pub trait Term: Debug + Send + Sync {
     /// Name for reports.
     fn name(&self) -> &str;
 
@@ -98,7 +98,7 @@ pub trait Effect: Debug + Send + Sync {
     fn kind(&self) -> Kind;
 
     /// Kinetic or potential energy at the midpoint of an interval in mJ; the work that a virtual work does over it.
-    fn energy(&self, frame: &Frame<'_>) -> f64;
+    fn energy(&self, frame: &Sample<'_>) -> f64;
 
     /// Names of the parts of its energy, as reports show them.
     fn energy_parts(&self) -> Vec<String> {
@@ -106,7 +106,7 @@ pub trait Effect: Debug + Send + Sync {
     }
 
     /// The parts of its energy, in the order of their names.
-    fn energies(&self, frame: &Frame<'_>, out: &mut Vec<f64>) {
+    fn energies(&self, frame: &Sample<'_>, out: &mut Vec<f64>) {
         out.push(self.energy(frame));
     }
 
@@ -114,7 +114,7 @@ pub trait Effect: Debug + Send + Sync {
     fn momentum(&self, x: &[Vector], v: &[Vector], out: &mut [Vector]);
 
     /// Adds the derivatives; `slots` are those of its couplings.
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output);
+    fn evaluate(&self, level: Order, frame: &Sample<'_>, slots: &[u32], out: &mut Output);
 }
 
 /// A quantity at one site that is read by itself: a path limit, a goal.
@@ -132,20 +132,20 @@ pub trait Measure: Debug + Send + Sync {
     fn reads(&self, side: usize) -> bool;
 
     /// Its value.
-    fn value(&self, frame: &Frame<'_>) -> f64;
+    fn value(&self, frame: &Sample<'_>) -> f64;
 
     /// Adds its gradient.
-    fn gradient(&self, frame: &Frame<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]);
+    fn gradient(&self, frame: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]);
 
     /// Adds its gradient and Hessian times a weight; `slots` are those of its couplings.
-    fn add_weighted(&self, weight: f64, frame: &Frame<'_>, slots: &[u32], part: &mut Part);
+    fn add_weighted(&self, weight: f64, frame: &Sample<'_>, slots: &[u32], part: &mut Part);
 }
 
 /// A sum of effects at one site, and the quantities that are measured there.
 #[derive(Debug, Default)]
-pub struct Sum {
+pub struct Functional {
     /// The effects.
-    pub effects: Vec<Box<dyn Effect>>,
+    pub effects: Vec<Box<dyn Term>>,
     /// The quantities.
     pub measures: Vec<Box<dyn Measure>>,
     /// What couples in them.
@@ -160,10 +160,10 @@ pub struct Sum {
     pub scalars: usize,
 }
 
-impl Sum {
+impl Functional {
     /// A sum over effects that read `vectors` vectors and `scalars` scalars.
     pub fn new(
-        effects: Vec<Box<dyn Effect>>,
+        effects: Vec<Box<dyn Term>>,
         measures: Vec<Box<dyn Measure>>,
         vectors: usize,
         scalars: usize,
@@ -174,7 +174,7 @@ impl Sum {
             couple(&mut couplings, &mut slots);
             slots
         };
-        let of_effect = |effect: &dyn Effect| laid(&|c, slots| effect.couple(c, slots));
+        let of_effect = |effect: &dyn Term| laid(&|c, slots| effect.couple(c, slots));
         let effect_slots = effects.iter().map(Box::as_ref).map(of_effect).collect();
         let of_measure = |measure: &dyn Measure| laid(&|c, slots| measure.couple(c, slots));
         let measure_slots = measures.iter().map(Box::as_ref).map(of_measure).collect();
@@ -190,21 +190,21 @@ impl Sum {
     }
 
     /// The effects with the slots of their couplings.
-    pub fn terms(&self) -> impl Iterator<Item = (&dyn Effect, &[u32])> {
+    pub fn terms(&self) -> impl Iterator<Item = (&dyn Term, &[u32])> {
         let effects = self.effects.iter().map(Box::as_ref);
         effects.zip(self.effect_slots.iter().map(Vec::as_slice))
     }
 
     /// Storage for the derivatives up to a level.
-    pub fn output(&self, level: Level) -> Output {
-        let part = |least: Level| {
+    pub fn output(&self, level: Order) -> Output {
+        let part = |least: Order| {
             let couplings = (level >= least).then_some(&self.couplings);
             Part::new(self.vectors, self.scalars, couplings)
         };
         Output {
-            plain: part(Level::Hessian),
-            contracted: if level == Level::Third {
-                part(Level::Third)
+            plain: part(Order::Hessian),
+            contracted: if level == Order::Third {
+                part(Order::Third)
             } else {
                 Part::default()
             },
@@ -212,15 +212,15 @@ impl Sum {
     }
 
     /// The derivatives on one interval, in place of what `out` held.
-    pub fn evaluate(&self, level: Level, frame: &Frame<'_>, out: &mut Output) {
-        out.plain.clear(level >= Level::Hessian);
-        if level == Level::Third {
+    pub fn evaluate(&self, level: Order, frame: &Sample<'_>, out: &mut Output) {
+        out.plain.clear(level >= Order::Hessian);
+        if level == Order::Third {
             out.contracted.clear(true);
         }
         for (effect, slots) in self.terms() {
             effect.evaluate(level, frame, slots, out);
         }
-        if level == Level::Third {
+        if level == Order::Third {
             let measures = self.measures.iter().zip(&self.measure_slots);
             for ((measure, slots), &weight) in measures.zip(frame.weights) {
                 if weight != 0.0 {

@@ -1,7 +1,7 @@
 //! The true electric field at a point of a finite element as a measure of the intervals.
 
 use crate::element::{FieldPoint, SpatialField};
-use crate::functional::{Couplings, Frame, Measure, Part, Stencil, Terminal};
+use crate::functional::{Couplings, Sample, Measure, Part, Stencil, ScalarArg};
 use crate::math::Vector;
 
 /// |e|²/E² at a point of an element, with the nodes at one time of an interval and the potentials of the interval.
@@ -9,7 +9,7 @@ use crate::math::Vector;
 pub struct ElementField {
     point: FieldPoint,
     nodes: [usize; 8],
-    terminals: [Terminal; 8],
+    terminals: [ScalarArg; 8],
     at: Stencil,
 }
 
@@ -18,7 +18,7 @@ impl ElementField {
     pub fn new(
         point: FieldPoint,
         nodes: [usize; 8],
-        terminals: [Terminal; 8],
+        terminals: [ScalarArg; 8],
         at: Stencil,
     ) -> Self {
         Self {
@@ -29,7 +29,7 @@ impl ElementField {
         }
     }
 
-    fn field(&self, frame: &Frame<'_>) -> SpatialField {
+    fn field(&self, frame: &Sample<'_>) -> SpatialField {
         let [a, b] = self.at.weights(frame.h);
         let [here, next] = frame.vectors;
         let x = self.nodes.map(|v| match self.at {
@@ -37,7 +37,7 @@ impl ElementField {
             Stencil::Next => next[v],
             _ => here[v] * a + next[v] * b,
         });
-        let potentials = self.terminals.map(|Terminal { constant, scalar }| {
+        let potentials = self.terminals.map(|ScalarArg { constant, scalar }| {
             constant + scalar.map_or(0.0, |(s, factor)| factor * frame.scalars[s])
         });
         self.point.at(&x, &potentials)
@@ -99,15 +99,15 @@ impl Measure for ElementField {
         self.at.reads(side)
     }
 
-    fn value(&self, frame: &Frame<'_>) -> f64 {
+    fn value(&self, frame: &Sample<'_>) -> f64 {
         self.field(frame).value()
     }
 
-    fn gradient(&self, frame: &Frame<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]) {
+    fn gradient(&self, frame: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]) {
         self.add_first(&self.field(frame), 1.0, frame.h, forces, rows);
     }
 
-    fn add_weighted(&self, weight: f64, frame: &Frame<'_>, slots: &[u32], part: &mut Part) {
+    fn add_weighted(&self, weight: f64, frame: &Sample<'_>, slots: &[u32], part: &mut Part) {
         let mut slots = slots.iter().map(|&slot| slot as usize);
         let mut next = || slots.next().expect("a slot for each coupling");
         let field = self.field(frame);

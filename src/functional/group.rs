@@ -10,7 +10,7 @@
 
 use crate::energy::Energy;
 use crate::functional::slots::{NONE, Slots};
-use crate::functional::{Couplings, Frame, Horizon, Level, Output, Part, Stencil, VectorArg};
+use crate::functional::{Couplings, Sample, Horizon, Order, Output, Part, Stencil, VectorArg};
 use crate::math::{Jet, Matrix, Vector};
 use nalgebra::SVector;
 use std::fmt;
@@ -127,8 +127,8 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
     #[inline]
     pub(super) fn arguments(
         element: &Element<E, NV, NS>,
-        frame: &Frame<'_>,
-        level: Level,
+        frame: &Sample<'_>,
+        level: Order,
     ) -> (SVector<f64, M>, SVector<f64, M>) {
         let mut p = SVector::<f64, M>::zeros();
         let mut w = SVector::<f64, M>::zeros();
@@ -144,7 +144,7 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
                 p.fixed_rows_mut::<3>(3 * i)
                     .copy_from(&sample(frame.vectors));
             }
-            if level == Level::Third {
+            if level == Order::Third {
                 let rate = sample(frame.along);
                 if virtual_displacement {
                     p.fixed_rows_mut::<3>(3 * i).copy_from(&rate);
@@ -155,7 +155,7 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
         }
         for (i, &s) in element.scalars.iter().enumerate() {
             p[3 * NV + i] = frame.scalars[s];
-            if level == Level::Third {
+            if level == Order::Third {
                 w[3 * NV + i] = frame.scalars_along[s];
             }
         }
@@ -195,7 +195,7 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
         (element, slots): (&Element<E, NV, NS>, Slots<'_, NV, NS>),
         hessian: &nalgebra::SMatrix<f64, M, M>,
         c: f64,
-        frame: &Frame<'_>,
+        frame: &Sample<'_>,
         keep: impl Fn(usize, usize) -> bool,
         part: &mut Part,
     ) {
@@ -251,8 +251,8 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
     pub(super) fn evaluate_element<const ORDER: usize>(
         &self,
         (element, slots): (&Element<E, NV, NS>, Slots<'_, NV, NS>),
-        level: Level,
-        frame: &Frame<'_>,
+        level: Order,
+        frame: &Sample<'_>,
         out: &mut Output,
     ) {
         let (p, w) = Self::arguments(element, frame, level);
@@ -270,7 +270,7 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
         );
         let free = frame.horizon == Horizon::Free && self.site == Site::Intervals;
         let (v, mut border) = (Self::rates(element, &p), SVector::zeros());
-        if level >= Level::Hessian {
+        if level >= Order::Hessian {
             if E::DEGREE >= 2 {
                 let rows =
                     |i: usize, j: usize| E::VIRTUAL == 0 || (i < E::VIRTUAL && j >= E::VIRTUAL);
@@ -282,7 +282,7 @@ impl<E: Energy<M>, const M: usize, const NV: usize, const NS: usize> Group<E, M,
                 Self::add_gradient(element, &border, self.scale, h, Self::is_row, forces, rows);
             }
         }
-        if level < Level::Third {
+        if level < Order::Third {
             return;
         }
         let part = &mut out.contracted;

@@ -2,11 +2,11 @@
 
 use crate::energy::Energy;
 use crate::functional::group::{Element, Group, Site};
-use crate::functional::{Couplings, Effect, Frame, Kind, Level, Measure, Output, Part, Stencil};
+use crate::functional::{Couplings, Term, Sample, Kind, Order, Measure, Output, Part, Stencil};
 use crate::math::Vector;
 use nalgebra::SVector;
 
-impl<E, const M: usize, const NV: usize, const NS: usize> Effect for Group<E, M, NV, NS>
+impl<E, const M: usize, const NV: usize, const NS: usize> Term for Group<E, M, NV, NS>
 where
     E: Energy<M>,
 {
@@ -33,9 +33,9 @@ where
         }
     }
 
-    fn energy(&self, frame: &Frame<'_>) -> f64 {
+    fn energy(&self, frame: &Sample<'_>) -> f64 {
         let energy = |element: &Element<E, NV, NS>| {
-            let (mut p, w) = Self::arguments(element, frame, Level::Gradient);
+            let (mut p, w) = Self::arguments(element, frame, Order::Gradient);
             for (i, arg) in element.vectors.iter().enumerate().take(E::VIRTUAL) {
                 let step = frame.vectors[1][arg.vector] - frame.vectors[0][arg.vector];
                 p.fixed_rows_mut::<3>(3 * i).copy_from(&step);
@@ -71,11 +71,11 @@ where
         }
     }
 
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output) {
+    fn evaluate(&self, level: Order, frame: &Sample<'_>, slots: &[u32], out: &mut Output) {
         for pair in self.with_slots(slots) {
             match (level, E::VIRTUAL) {
-                (Level::Gradient, _) => self.evaluate_element::<1>(pair, level, frame, out),
-                (Level::Third, 0) => self.evaluate_element::<3>(pair, level, frame, out),
+                (Order::Gradient, _) => self.evaluate_element::<1>(pair, level, frame, out),
+                (Order::Third, 0) => self.evaluate_element::<3>(pair, level, frame, out),
                 _ => self.evaluate_element::<2>(pair, level, frame, out),
             }
         }
@@ -87,7 +87,7 @@ where
     E: Energy<M>,
 {
     fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
-        Effect::couple(self, couplings, slots);
+        Term::couple(self, couplings, slots);
     }
 
     fn vectors(&self) -> Vec<usize> {
@@ -106,17 +106,17 @@ where
         args.any(|arg| arg.stencil.reads(side))
     }
 
-    fn value(&self, frame: &Frame<'_>) -> f64 {
+    fn value(&self, frame: &Sample<'_>) -> f64 {
         let value = |element: &Element<E, NV, NS>| {
-            let (p, w) = Self::arguments(element, frame, Level::Gradient);
+            let (p, w) = Self::arguments(element, frame, Order::Gradient);
             element.energy.jet::<1>(&p, &w).value
         };
         self.scale * self.elements.iter().map(value).sum::<f64>()
     }
 
-    fn gradient(&self, frame: &Frame<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]) {
+    fn gradient(&self, frame: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]) {
         for element in &self.elements {
-            let (p, w) = Self::arguments(element, frame, Level::Gradient);
+            let (p, w) = Self::arguments(element, frame, Order::Gradient);
             let jet = element.energy.jet::<1>(&p, &w);
             Self::add_gradient(
                 element,
@@ -130,9 +130,9 @@ where
         }
     }
 
-    fn add_weighted(&self, weight: f64, frame: &Frame<'_>, slots: &[u32], part: &mut Part) {
+    fn add_weighted(&self, weight: f64, frame: &Sample<'_>, slots: &[u32], part: &mut Part) {
         for (element, slots) in self.with_slots(slots) {
-            let (p, w) = Self::arguments(element, frame, Level::Gradient);
+            let (p, w) = Self::arguments(element, frame, Order::Gradient);
             let jet = element.energy.jet::<2>(&p, &w);
             let c = self.scale * weight;
             Self::add_gradient(

@@ -3,9 +3,9 @@
 //! Nodes are read at the midpoint of an interval, potentials are scalars of the interval: `−h W(x̄, φ)`. A large mesh is
 //! evaluated on all cores.
 
-use crate::element::{Dielectric, Elastomer, Field, Local, Passive, Shape};
-use crate::functional::stretches::Stretches;
-use crate::functional::{Couplings, Effect, Frame, Horizon, Kind, Level, Output, Part};
+use crate::element::{Dielectric, Elastomer, Field, Local, Passive, ElementGeometry};
+use crate::functional::stretches::Batches;
+use crate::functional::{Couplings, Term, Sample, Horizon, Kind, Order, Output, Part};
 use crate::math::Vector;
 use std::fmt;
 
@@ -14,9 +14,9 @@ const NONE: u32 = u32::MAX;
 
 /// One hexahedron: its geometry, its law, and what it reads.
 #[derive(Clone, Debug)]
-pub struct Hexahedron<F: Wired> {
+pub struct Hexahedron<F: Electrical> {
     /// Gradients of the shape functions.
-    pub shape: Shape,
+    pub shape: ElementGeometry,
     /// The law.
     pub law: Elastomer<F>,
     /// Vectors of the nodes.
@@ -27,7 +27,7 @@ pub struct Hexahedron<F: Wired> {
 
 /// Where the potential of a node comes from: a constant plus a factor times a scalar of the interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Terminal {
+pub struct ScalarArg {
     /// The constant in V.
     pub constant: f64,
     /// Scalar and factor.
@@ -35,14 +35,14 @@ pub struct Terminal {
 }
 
 /// How the potentials of an element are wired to the scalars of an interval.
-pub trait Wired: Field {
+pub trait Electrical: Field {
     /// Whether the nodes have potentials.
     const HAS_POTENTIALS: bool;
     /// One terminal a node, or nothing.
     type Terminals: Clone + fmt::Debug + Send + Sync;
 
     /// The terminals; none for a passive element.
-    fn wires(terminals: &Self::Terminals) -> &[Terminal];
+    fn wires(terminals: &Self::Terminals) -> &[ScalarArg];
 
     /// Potentials of the nodes.
     fn potentials(potential: impl Fn(usize) -> f64) -> Self::Potentials;
@@ -58,22 +58,22 @@ pub trait Wired: Field {
     }
 }
 
-impl Wired for Passive {
+impl Electrical for Passive {
     const HAS_POTENTIALS: bool = false;
     type Terminals = ();
 
-    fn wires((): &()) -> &[Terminal] {
+    fn wires((): &()) -> &[ScalarArg] {
         &[]
     }
 
     fn potentials(_: impl Fn(usize) -> f64) {}
 }
 
-impl Wired for Dielectric {
+impl Electrical for Dielectric {
     const HAS_POTENTIALS: bool = true;
-    type Terminals = [Terminal; 8];
+    type Terminals = [ScalarArg; 8];
 
-    fn wires(terminals: &[Terminal; 8]) -> &[Terminal] {
+    fn wires(terminals: &[ScalarArg; 8]) -> &[ScalarArg] {
         terminals
     }
 
@@ -86,13 +86,13 @@ impl Wired for Dielectric {
 const PAIRS: usize = 64;
 
 /// Hexahedra of one kind.
-pub struct Hexahedra<F: Wired> {
+pub struct Hexahedra<F: Electrical> {
     name: String,
     elements: Vec<Hexahedron<F>>,
-    locals: Stretches<Local<F>>,
+    locals: Batches<Local<F>>,
 }
 
-impl<F: Wired> fmt::Debug for Hexahedra<F> {
+impl<F: Electrical> fmt::Debug for Hexahedra<F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} ({} elements)", self.name, self.elements.len())
     }
@@ -103,13 +103,13 @@ pub(super) fn middle(vectors: [&[Vector]; 2], nodes: &[usize; 8]) -> [Vector; 8]
     nodes.map(|v| (vectors[0][v] + vectors[1][v]) * 0.5)
 }
 
-impl<F: Wired> Hexahedra<F> {
+impl<F: Electrical> Hexahedra<F> {
     /// Hexahedra under one name.
     pub fn new(name: &str, elements: Vec<Hexahedron<F>>) -> Self {
         Self {
             name: name.to_owned(),
             elements,
-            locals: Stretches::default(),
+            locals: Batches::default(),
         }
     }
 
@@ -121,7 +121,7 @@ impl<F: Wired> Hexahedra<F> {
     fn potentials(element: &Hexahedron<F>, scalars: &[f64]) -> F::Potentials {
         let wires = F::wires(&element.terminals);
         F::potentials(|i| {
-            let Terminal { constant, scalar } = wires[i];
+            let ScalarArg { constant, scalar } = wires[i];
             constant + scalar.map_or(0.0, |(s, factor)| factor * scalars[s])
         })
     }
@@ -132,11 +132,11 @@ impl<F: Wired> Hexahedra<F> {
     }
 
     /// Derivatives of one element, up to `Hessian`.
-    fn local(element: &Hexahedron<F>, level: Level, frame: &Frame<'_>, local: &mut Local<F>) {
+    fn local(element: &Hexahedron<F>, level: Order, frame: &Sample<'_>, local: &mut Local<F>) {
         let x = middle(frame.vectors, &element.nodes);
         let potentials = Self::potentials(element, frame.scalars);
         match level {
-            Level::Gradient => element.law.gradient(&element.shape, &x, &potentials, local),
+            Order::Gradient => element.law.gradient(&element.shape, &x, &potentials, local),
             _ => element.law.tangent(&element.shape, &x, &potentials, local),
         }
     }
@@ -145,7 +145,7 @@ impl<F: Wired> Hexahedra<F> {
     fn add_first(
         element: &Hexahedron<F>,
         local: &mut Local<F>,
-        frame: &Frame<'_>,
+        frame: &Sample<'_>,
         part: &mut Part,
     ) {
         let c = -0.5 * frame.h;
@@ -177,7 +177,7 @@ impl<F: Wired> Hexahedra<F> {
     fn add_second(
         (element, slots): (&Hexahedron<F>, &[u32]),
         local: &mut Local<F>,
-        frame: &Frame<'_>,
+        frame: &Sample<'_>,
         part: &mut Part,
     ) {
         let c = -0.25 * frame.h;
@@ -222,14 +222,14 @@ impl<F: Wired> Hexahedra<F> {
         &self,
         index: usize,
         local: &mut Local<F>,
-        level: Level,
-        frame: &Frame<'_>,
+        level: Order,
+        frame: &Sample<'_>,
         slots: &[u32],
         part: &mut Part,
     ) {
         let element = &self.elements[index];
         Self::add_first(element, local, frame, part);
-        if level >= Level::Hessian {
+        if level >= Order::Hessian {
             let count = Self::slots();
             let slots = &slots[count * index..count * (index + 1)];
             Self::add_second((element, slots), local, frame, part);
@@ -238,7 +238,7 @@ impl<F: Wired> Hexahedra<F> {
 
     fn energy_of(
         &self,
-        frame: &Frame<'_>,
+        frame: &Sample<'_>,
         energy: impl Fn(&Hexahedron<F>, &[Vector; 8]) -> f64 + Sync,
     ) -> f64 {
         let of = |element: &Hexahedron<F>| energy(element, &middle(frame.vectors, &element.nodes));
@@ -246,7 +246,7 @@ impl<F: Wired> Hexahedra<F> {
     }
 }
 
-impl<F: Wired> Effect for Hexahedra<F> {
+impl<F: Electrical> Term for Hexahedra<F> {
     fn name(&self) -> &str {
         &self.name
     }
@@ -284,7 +284,7 @@ impl<F: Wired> Effect for Hexahedra<F> {
         Kind::Potential
     }
 
-    fn energy(&self, frame: &Frame<'_>) -> f64 {
+    fn energy(&self, frame: &Sample<'_>) -> f64 {
         self.energy_of(frame, |element, x| {
             let potentials = Self::potentials(element, frame.scalars);
             element.law.energy(&element.shape, x, &potentials)
@@ -300,7 +300,7 @@ impl<F: Wired> Effect for Hexahedra<F> {
         }
     }
 
-    fn energies(&self, frame: &Frame<'_>, out: &mut Vec<f64>) {
+    fn energies(&self, frame: &Sample<'_>, out: &mut Vec<f64>) {
         let total = self.energy(frame);
         if self.energy_parts().len() == 1 {
             out.push(total);
@@ -314,8 +314,8 @@ impl<F: Wired> Effect for Hexahedra<F> {
 
     fn momentum(&self, _x: &[Vector], _v: &[Vector], _out: &mut [Vector]) {}
 
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output) {
-        if level < Level::Third {
+    fn evaluate(&self, level: Order, frame: &Sample<'_>, slots: &[u32], out: &mut Output) {
+        if level < Order::Third {
             let compute = |element: &Hexahedron<F>, local: &mut Local<F>| {
                 Self::local(element, level, frame, local);
             };

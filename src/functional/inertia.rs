@@ -1,6 +1,6 @@
 //! Kinetic energy of constant masses: the one effect whose second derivative never changes.
 
-use crate::functional::{Couplings, Effect, Frame, Horizon, Kind, Level, Output};
+use crate::functional::{Couplings, Term, Sample, Horizon, Kind, Order, Output};
 use crate::math::Vector;
 
 /// A mass m on a material vector, ½ m |ẋ|², or between two, m ẋ·ẏ.
@@ -47,7 +47,7 @@ impl Inertia {
     }
 }
 
-impl Effect for Inertia {
+impl Term for Inertia {
     fn name(&self) -> &str {
         &self.name
     }
@@ -67,7 +67,7 @@ impl Effect for Inertia {
         Kind::Kinetic
     }
 
-    fn energy(&self, frame: &Frame<'_>) -> f64 {
+    fn energy(&self, frame: &Sample<'_>) -> f64 {
         let [x, y] = frame.vectors;
         let product = |m: &Mass| {
             let [a, b] = m.vectors;
@@ -87,7 +87,7 @@ impl Effect for Inertia {
         }
     }
 
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output) {
+    fn evaluate(&self, level: Order, frame: &Sample<'_>, slots: &[u32], out: &mut Output) {
         for (m, slots) in self.masses.iter().zip(slots.chunks_exact(2)) {
             let [a, b] = m.vectors;
             add(level, frame, m.mass, [a, b], slots[0] as usize, out);
@@ -101,8 +101,8 @@ impl Effect for Inertia {
 /// The rows of vector `a` against the rate of vector `b`.
 #[inline]
 fn add(
-    level: Level,
-    frame: &Frame<'_>,
+    level: Order,
+    frame: &Sample<'_>,
     mass: f64,
     [a, b]: [usize; 2],
     slot: usize,
@@ -114,7 +114,7 @@ fn add(
     let momentum = step * (mass * r);
     out.plain.forces[0][a] -= momentum;
     out.plain.forces[1][a] += momentum;
-    if level >= Level::Hessian {
+    if level >= Order::Hessian {
         let block = &mut out.plain.blocks.isotropic[slot];
         let c = mass * r;
         block[0] += c;
@@ -126,7 +126,7 @@ fn add(
             out.plain.horizon_forces[1][a] -= momentum * r;
         }
     }
-    if level == Level::Third {
+    if level == Order::Third {
         let momentum_w = (wy[b] - wx[b]) * (mass * r);
         out.contracted.forces[0][a] -= momentum_w;
         out.contracted.forces[1][a] += momentum_w;

@@ -23,11 +23,11 @@ mod stencil;
 mod stretches;
 mod viscous_hexahedra;
 
-pub use couplings::{Blocks, Couplings, Part, Sides};
-pub use effect::{Effect, Frame, Horizon, Kind, Level, Measure, Output, Sum};
+pub use couplings::{Blocks, Couplings, Part, BlockMask};
+pub use effect::{Term, Sample, Horizon, Kind, Order, Measure, Output, Functional};
 pub use element_field::ElementField;
 pub use group::{Element, Group};
-pub use hexahedra::{Hexahedra, Hexahedron, Terminal, Wired};
+pub use hexahedra::{Hexahedra, Hexahedron, ScalarArg, Electrical};
 pub use inertia::{Inertia, Mass};
 pub use paths::{Path, Paths};
 pub use stencil::{Stencil, VectorArg};

@@ -13,7 +13,7 @@
 //! ```
 
 use crate::energy::Cable;
-use crate::functional::{Couplings, Effect, Frame, Horizon, Kind, Level, Output, Part};
+use crate::functional::{Couplings, Term, Sample, Horizon, Kind, Order, Output, Part};
 use crate::math::{Matrix, Vector};
 
 /// A path and the energy of its length.
@@ -45,13 +45,13 @@ struct Span {
 }
 
 impl Span {
-    fn new(vector: usize, level: Level, frame: &Frame<'_>) -> Self {
+    fn new(vector: usize, level: Order, frame: &Sample<'_>) -> Self {
         let middle = |v: [&[Vector]; 2]| (v[0][vector] + v[1][vector]) * 0.5;
         let r = middle(frame.vectors);
         let length = r.norm();
         let direction = r / length;
         let w = match level {
-            Level::Third => middle(frame.along),
+            Order::Third => middle(frame.along),
             _ => Vector::zeros(),
         };
         let stretch = direction.dot(&w);
@@ -78,7 +78,7 @@ impl Span {
 }
 
 impl Path {
-    fn length(&self, frame: &Frame<'_>) -> f64 {
+    fn length(&self, frame: &Sample<'_>) -> f64 {
         let spans = self.spans.iter();
         spans
             .map(|&v| ((frame.vectors[0][v] + frame.vectors[1][v]) * 0.5).norm())
@@ -86,7 +86,7 @@ impl Path {
     }
 
     /// Adds `−h` times the forces, and by the length of the interval.
-    fn add_force(frame: &Frame<'_>, vector: usize, force: &Vector, part: &mut Part) {
+    fn add_force(frame: &Sample<'_>, vector: usize, force: &Vector, part: &mut Part) {
         for side in 0..2 {
             part.forces[side][vector] -= force * (0.5 * frame.h);
             if frame.horizon == Horizon::Free {
@@ -95,32 +95,32 @@ impl Path {
         }
     }
 
-    fn add_block(frame: &Frame<'_>, slot: u32, block: &Matrix, part: &mut Part) {
+    fn add_block(frame: &Sample<'_>, slot: u32, block: &Matrix, part: &mut Part) {
         let to = &mut part.blocks.full[slot as usize];
         for side in (0..4).filter(|&side| frame.sides.blocks[side]) {
             to[side] -= block * (0.25 * frame.h);
         }
     }
 
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output) {
+    fn evaluate(&self, level: Order, frame: &Sample<'_>, slots: &[u32], out: &mut Output) {
         let [_, tension, stiffness] = self.energy.of_length(self.length(frame));
         if tension == 0.0 {
             return;
         }
         let span = |&vector: &usize| Span::new(vector, level, frame);
         let stretch: f64 = match level {
-            Level::Third => self.spans.iter().map(|v| span(v).stretch).sum(),
+            Order::Third => self.spans.iter().map(|v| span(v).stretch).sum(),
             _ => 0.0,
         };
         let rows = slots.chunks_exact(self.spans.len());
         for ((i, v), row) in self.spans.iter().enumerate().zip(rows) {
             let a = span(v);
             Self::add_force(frame, *v, &(a.direction * tension), &mut out.plain);
-            if level == Level::Third {
+            if level == Order::Third {
                 let rate = a.direction * (stiffness * stretch) + a.turn * tension;
                 Self::add_force(frame, *v, &rate, &mut out.contracted);
             }
-            if level < Level::Hessian {
+            if level < Order::Hessian {
                 continue;
             }
             for ((j, other), &slot) in self.spans.iter().enumerate().zip(row) {
@@ -131,7 +131,7 @@ impl Path {
                     block += a.curvature() * tension;
                 }
                 Self::add_block(frame, slot, &block, &mut out.plain);
-                if level == Level::Third {
+                if level == Order::Third {
                     let mut rate = (a.turn * v + u * b.turn.transpose()) * stiffness;
                     if i == j {
                         rate += a.curvature() * (stiffness * stretch);
@@ -154,7 +154,7 @@ impl Paths {
     }
 }
 
-impl Effect for Paths {
+impl Term for Paths {
     fn name(&self) -> &str {
         &self.name
     }
@@ -175,14 +175,14 @@ impl Effect for Paths {
         Kind::Potential
     }
 
-    fn energy(&self, frame: &Frame<'_>) -> f64 {
+    fn energy(&self, frame: &Sample<'_>) -> f64 {
         let energy = |path: &Path| path.energy.of_length(path.length(frame))[0];
         self.paths.iter().map(energy).sum()
     }
 
     fn momentum(&self, _x: &[Vector], _v: &[Vector], _out: &mut [Vector]) {}
 
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output) {
+    fn evaluate(&self, level: Order, frame: &Sample<'_>, slots: &[u32], out: &mut Output) {
         let mut slots = slots;
         for path in &self.paths {
             let (own, rest) = slots.split_at(path.spans.len() * path.spans.len());

@@ -12,15 +12,15 @@ const LEAST: usize = 32;
 
 /// Derivatives of the elements of a stretch, kept for the next evaluation.
 #[derive(Debug)]
-pub(super) struct Stretches<L>(Mutex<Vec<L>>);
+pub(super) struct Batches<L>(Mutex<Vec<L>>);
 
-impl<L> Default for Stretches<L> {
+impl<L> Default for Batches<L> {
     fn default() -> Self {
         Self(Mutex::default())
     }
 }
 
-impl<L: Default + Send> Stretches<L> {
+impl<L: Default + Send> Batches<L> {
     /// `add` takes what `compute` makes of each element, in their order.
     pub(super) fn each<E: Sync>(
         &self,

@@ -3,17 +3,17 @@
 //! The forces are linear in the velocities, so the work over an interval does not depend on its length: there is nothing to
 //! derive by it.
 
-use crate::element::{Shape, Viscosity, ViscousContraction, ViscousLocal};
+use crate::element::{ElementGeometry, Viscosity, ViscousContraction, ViscousLocal};
 use crate::functional::hexahedra::middle;
-use crate::functional::stretches::Stretches;
-use crate::functional::{Couplings, Effect, Frame, Kind, Level, Output};
+use crate::functional::stretches::Batches;
+use crate::functional::{Couplings, Term, Sample, Kind, Order, Output};
 use crate::math::{Matrix, Vector};
 
 /// One viscous hexahedron.
 #[derive(Clone, Debug)]
 pub struct ViscousHexahedron {
     /// Gradients of the shape functions.
-    pub shape: Shape,
+    pub shape: ElementGeometry,
     /// The law.
     pub law: Viscosity,
     /// Vectors of the nodes.
@@ -25,7 +25,7 @@ pub struct ViscousHexahedron {
 pub struct ViscousHexahedra {
     name: String,
     elements: Vec<ViscousHexahedron>,
-    locals: Stretches<ViscousLocal>,
+    locals: Batches<ViscousLocal>,
 }
 
 /// Difference quotients over the interval.
@@ -47,11 +47,11 @@ impl ViscousHexahedra {
         Self {
             name: name.to_owned(),
             elements,
-            locals: Stretches::default(),
+            locals: Batches::default(),
         }
     }
 
-    fn state(element: &ViscousHexahedron, frame: &Frame<'_>) -> [[Vector; 8]; 2] {
+    fn state(element: &ViscousHexahedron, frame: &Sample<'_>) -> [[Vector; 8]; 2] {
         let x = middle(frame.vectors, &element.nodes);
         [x, rates(frame.vectors, &element.nodes, frame.h)]
     }
@@ -59,7 +59,7 @@ impl ViscousHexahedra {
     /// Adds what `block(i, j, row, col)` gives of the nodes i, j at the instants k + row, k + col.
     fn add_blocks(
         slots: &[u32],
-        frame: &Frame<'_>,
+        frame: &Sample<'_>,
         blocks: &mut [[Matrix; 4]],
         block: impl Fn(usize, usize, usize, usize) -> Matrix,
     ) {
@@ -76,8 +76,8 @@ impl ViscousHexahedra {
         &self,
         index: usize,
         local: &ViscousLocal,
-        level: Level,
-        frame: &Frame<'_>,
+        level: Order,
+        frame: &Sample<'_>,
         slots: &[u32],
         out: &mut Output,
     ) {
@@ -86,7 +86,7 @@ impl ViscousHexahedra {
             out.plain.forces[0][v] -= force * (0.5 * h);
             out.plain.forces[1][v] -= force * (0.5 * h);
         }
-        if level >= Level::Hessian {
+        if level >= Order::Hessian {
             let blocks = &mut out.plain.blocks.full;
             Self::add_blocks(of(slots, index), frame, blocks, |i, j, _, col| {
                 local.by_place[i][j] * (-0.25 * h) - local.by_velocity[i][j] * (0.5 * SIGNS[col])
@@ -98,7 +98,7 @@ impl ViscousHexahedra {
         &self,
         index: usize,
         s: &ViscousContraction,
-        frame: &Frame<'_>,
+        frame: &Sample<'_>,
         slots: &[u32],
         out: &mut Output,
     ) {
@@ -118,7 +118,7 @@ impl ViscousHexahedra {
     }
 }
 
-impl Effect for ViscousHexahedra {
+impl Term for ViscousHexahedra {
     fn name(&self) -> &str {
         &self.name
     }
@@ -139,7 +139,7 @@ impl Effect for ViscousHexahedra {
         Kind::VirtualWork
     }
 
-    fn energy(&self, frame: &Frame<'_>) -> f64 {
+    fn energy(&self, frame: &Sample<'_>) -> f64 {
         let work = |element: &ViscousHexahedron| {
             let [x, v] = Self::state(element, frame);
             -frame.h * element.law.power(&element.shape, &x, &v)
@@ -149,11 +149,11 @@ impl Effect for ViscousHexahedra {
 
     fn momentum(&self, _x: &[Vector], _v: &[Vector], _out: &mut [Vector]) {}
 
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output) {
+    fn evaluate(&self, level: Order, frame: &Sample<'_>, slots: &[u32], out: &mut Output) {
         let compute = |element: &ViscousHexahedron, local: &mut ViscousLocal| {
             let [x, v] = Self::state(element, frame);
             match level {
-                Level::Gradient => element
+                Order::Gradient => element
                     .law
                     .forces(&element.shape, &x, &v, &mut local.forces),
                 _ => element.law.tangent(&element.shape, &x, &v, local),
@@ -162,7 +162,7 @@ impl Effect for ViscousHexahedra {
         self.locals.each(&self.elements, compute, |index, local| {
             self.add(index, local, level, frame, slots, out);
         });
-        if level < Level::Third {
+        if level < Order::Third {
             return;
         }
         let mut contraction = ViscousContraction::default();

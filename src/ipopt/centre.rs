@@ -12,7 +12,7 @@
 //! whose positive root is the new distance. The parameter is the mean complementarity r (x − bound) of the point as it came, within
 //! a range.
 
-use crate::ipopt::solution::Costates;
+use crate::ipopt::solution::Multipliers;
 use crate::nlp::{Bounds, Entries, Nlp};
 
 /// Range of the barrier parameter.
@@ -37,7 +37,7 @@ pub(super) fn centre(
     nlp: &mut dyn Nlp,
     structures: &Structures<'_>,
     x: &mut [f64],
-    costates: &mut Costates,
+    costates: &mut Multipliers,
 ) {
     let (slope, curvature) = slopes(nlp, structures, x, &costates.constraints);
     let is_known = |list: &[f64]| list.iter().all(|v| v.is_finite());

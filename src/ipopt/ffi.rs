@@ -16,7 +16,7 @@ use std::slice;
 
 use crate::ipopt::evaluation::Evaluator;
 use crate::ipopt::options::OptionValue;
-use crate::ipopt::solution::{Costates, Iteration};
+use crate::ipopt::solution::{Multipliers, Iteration};
 use crate::nlp::{Bounds, Entries};
 use crate::sparse::mumps::{self, Exclusive};
 
@@ -132,7 +132,7 @@ impl Problem {
         self,
         evaluator: &mut Evaluator<'_>,
         x: &mut [f64],
-        costates: &mut Costates,
+        costates: &mut Multipliers,
     ) -> i32 {
         assert_eq!(x.len(), self.variables, "one value per variable");
         assert_eq!(

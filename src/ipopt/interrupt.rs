@@ -17,7 +17,7 @@ const EXIT_STATUS: i32 = 130;
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
 thread_local! {
-    static LIMIT: Cell<Option<Limit>> = const { Cell::new(None) };
+    static LIMIT: Cell<Option<TimeLimit>> = const { Cell::new(None) };
 }
 
 /// Makes Ctrl-C end the solves of this process with [`Status::Interrupted`], and says so
@@ -47,11 +47,11 @@ pub fn requested() -> bool {
 
 /// Until when work may go on.
 #[derive(Clone, Copy, Debug)]
-pub struct Limit {
+pub struct TimeLimit {
     end: Option<Instant>,
 }
 
-impl Limit {
+impl TimeLimit {
     /// So many seconds from now; a time that no clock reaches is no limit.
     #[must_use]
     pub fn after(seconds: Option<f64>) -> Self {
@@ -73,30 +73,30 @@ impl Limit {
 
 /// The limit of this thread, while somebody watches over it.
 #[must_use]
-pub fn limit() -> Option<Limit> {
+pub fn limit() -> Option<TimeLimit> {
     LIMIT.get()
 }
 
 /// Why this thread is to stop now, if so; never without a [`Watch`].
 #[must_use]
 pub fn stop() -> Option<Status> {
-    limit().and_then(Limit::reached)
+    limit().and_then(TimeLimit::reached)
 }
 
 /// Watches over Ctrl-C and the time of this thread until it is dropped.
 #[derive(Debug)]
 #[must_use = "it ends where it is dropped"]
 pub struct Watch {
-    before: Option<Limit>,
+    before: Option<TimeLimit>,
 }
 
 /// Begins to watch: this thread is to stop at Ctrl-C, after so many seconds, or when a watch around this one says so.
 pub fn watch(seconds: Option<f64>) -> Watch {
     let before = LIMIT.get();
     let around = before.and_then(|limit| limit.end);
-    let own = Limit::after(seconds).end;
+    let own = TimeLimit::after(seconds).end;
     let end = [own, around].into_iter().flatten().min();
-    LIMIT.set(Some(Limit { end }));
+    LIMIT.set(Some(TimeLimit { end }));
     Watch { before }
 }
 

@@ -20,7 +20,7 @@ use crate::nlp::{Bounds, Entries, Nlp};
 use centre::{Structures, centre};
 use evaluation::Evaluator;
 pub use options::{MUMPS_ORDERING, OptionValue, Options, Start};
-pub use solution::{Costates, Evaluations, Iteration, Point, Seconds, Solution};
+pub use solution::{Multipliers, Evaluations, Iteration, StartingPoint, Seconds, SolverResult};
 pub use status::Status;
 
 /// Version of the Ipopt that the program was built with.
@@ -74,10 +74,10 @@ fn hint(nearest: Option<&str>) -> String {
 /// without any.
 pub fn solve(
     nlp: &mut dyn Nlp,
-    start: &Point,
+    start: &StartingPoint,
     options: &Options,
     observer: &mut dyn FnMut(&Iteration, &[f64]) -> ControlFlow<()>,
-) -> Result<Solution, IpoptError> {
+) -> Result<SolverResult, IpoptError> {
     let (variables, constraints) = (nlp.variables(), nlp.constraints());
     let (jacobian, hessian) = (nlp.jacobian_structure(), nlp.hessian_structure());
     let (n, m) = (variables.lower.len(), constraints.lower.len());
@@ -149,7 +149,7 @@ pub fn solve(
         }
     }
     costates.scale(scale.recip());
-    Ok(Solution {
+    Ok(SolverResult {
         status,
         x: end.x,
         objective: end.objective,
@@ -199,14 +199,14 @@ impl Ending {
 }
 
 /// The multipliers to begin with; zeros unless they are asked for.
-fn starting_costates(start: &Point, kind: Start, n: usize, m: usize) -> Costates {
+fn starting_costates(start: &StartingPoint, kind: Start, n: usize, m: usize) -> Multipliers {
     assert_eq!(
         start.x.len(),
         n,
         "one value per variable in the starting point"
     );
     match kind {
-        Start::Cold | Start::Simulated | Start::Primal { .. } => Costates {
+        Start::Cold | Start::Simulated | Start::Primal { .. } => Multipliers {
             constraints: vec![0.0; m],
             lower: vec![0.0; n],
             upper: vec![0.0; n],

@@ -7,7 +7,7 @@ use crate::ipopt::Status;
 /// Multipliers of constraints and bounds, in the sign convention of Ipopt:
 /// ∇f(x) + Σ yᵢ ∇gᵢ(x) − z_L + z_U = 0 with z_L, z_U ≥ 0.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Costates {
+pub struct Multipliers {
     /// y, one per constraint.
     pub constraints: Vec<f64>,
     /// z_L, one per variable.
@@ -16,7 +16,7 @@ pub struct Costates {
     pub upper: Vec<f64>,
 }
 
-impl Costates {
+impl Multipliers {
     /// Multiplies all by a factor; what is not finite becomes zero.
     pub(super) fn scale(&mut self, factor: f64) {
         for values in [&mut self.constraints, &mut self.lower, &mut self.upper] {
@@ -33,11 +33,11 @@ impl Costates {
 
 /// A point to start from.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Point {
+pub struct StartingPoint {
     /// The variables.
     pub x: Vec<f64>,
     /// Their multipliers, read by the starts of [`Start`](crate::ipopt::Start) that keep them.
-    pub costates: Option<Costates>,
+    pub costates: Option<Multipliers>,
 }
 
 /// One line of the iteration log, told after the iterate was accepted.
@@ -133,7 +133,7 @@ impl AddAssign for Evaluations {
 /// The two differ if Ipopt gave up on the way to the next iterate, for instance for want of a derivative there.
 /// `costates` are always those of Ipopt.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Solution {
+pub struct SolverResult {
     /// How the solve ended.
     pub status: Status,
     /// The variables.
@@ -143,7 +143,7 @@ pub struct Solution {
     /// g(x).
     pub constraints: Vec<f64>,
     /// Multipliers of constraints and bounds; zero where Ipopt left something that is not a number.
-    pub costates: Costates,
+    pub costates: Multipliers,
     /// One record per iteration.
     pub iterations: Vec<Iteration>,
     /// Where the time went.
@@ -154,11 +154,11 @@ pub struct Solution {
     pub failed_evaluations: usize,
 }
 
-impl Solution {
+impl SolverResult {
     /// The point to start a related problem from.
     #[must_use]
-    pub fn to_point(&self) -> Point {
-        Point {
+    pub fn to_point(&self) -> StartingPoint {
+        StartingPoint {
             x: self.x.clone(),
             costates: Some(self.costates.clone()),
         }

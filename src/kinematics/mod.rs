@@ -2,4 +2,4 @@
 
 mod vector;
 
-pub use vector::{Carrier, MaterialVector, Pose, Term, Vectors};
+pub use vector::{Carrier, MaterialVector, Pose, VectorTerm, Vectors};

@@ -55,7 +55,7 @@ impl Carrier {
 
 /// c φ + ρᵢ dᵢ on one carrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Term {
+pub struct VectorTerm {
     /// The carrier.
     pub carrier: Carrier,
     /// Coefficient c of the centre.
@@ -64,7 +64,7 @@ pub struct Term {
     pub directors: Vector,
 }
 
-impl Term {
+impl VectorTerm {
     /// The value at a pose.
     #[inline]
     pub fn at(&self, pose: &Pose) -> Vector {
@@ -76,7 +76,7 @@ impl Term {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MaterialVector {
     /// At most one term a body.
-    pub terms: Vec<Term>,
+    pub terms: Vec<VectorTerm>,
 }
 
 impl MaterialVector {
@@ -84,7 +84,7 @@ impl MaterialVector {
     pub fn point(body: Option<usize>, place: &Vector, reference: &[Pose]) -> Self {
         let pose = body.map_or(Pose::GROUND, |b| reference[b]);
         Self {
-            terms: vec![Term {
+            terms: vec![VectorTerm {
                 carrier: Carrier::of(body),
                 centre: 1.0,
                 directors: pose.local(place),
@@ -96,7 +96,7 @@ impl MaterialVector {
     pub fn direction(body: Option<usize>, direction: &Vector, reference: &[Pose]) -> Self {
         let pose = body.map_or(Pose::GROUND, |b| reference[b]);
         Self {
-            terms: vec![Term {
+            terms: vec![VectorTerm {
                 carrier: Carrier::of(body),
                 centre: 0.0,
                 directors: pose.directors.tr_mul(direction),
@@ -106,9 +106,9 @@ impl MaterialVector {
 
     /// a x + b y.
     pub fn combine(a: f64, x: &Self, b: f64, y: &Self) -> Self {
-        let mut terms: Vec<Term> = Vec::new();
+        let mut terms: Vec<VectorTerm> = Vec::new();
         let scaled = |factor: f64, v: &Self| {
-            let scale = move |t: &Term| Term {
+            let scale = move |t: &VectorTerm| VectorTerm {
                 carrier: t.carrier,
                 centre: factor * t.centre,
                 directors: t.directors * factor,
@@ -135,7 +135,7 @@ impl MaterialVector {
     /// The place of a node.
     pub fn node(node: usize) -> Self {
         Self {
-            terms: vec![Term {
+            terms: vec![VectorTerm {
                 carrier: Carrier::Node(node),
                 centre: 1.0,
                 directors: Vector::zeros(),
@@ -146,7 +146,7 @@ impl MaterialVector {
     /// A coordinate of a joint of a tree.
     pub fn joint(coordinate: usize) -> Self {
         Self {
-            terms: vec![Term {
+            terms: vec![VectorTerm {
                 carrier: Carrier::Joint(coordinate),
                 centre: 1.0,
                 directors: Vector::zeros(),
@@ -163,7 +163,7 @@ impl MaterialVector {
 
     /// The value at given poses of the bodies and places of the nodes; coordinates of joints are not read from poses.
     pub fn at(&self, poses: &[Pose], nodes: &[Vector]) -> Vector {
-        let part = |t: &Term| match t.carrier {
+        let part = |t: &VectorTerm| match t.carrier {
             Carrier::Ground => t.at(&Pose::GROUND),
             Carrier::Body(body) => t.at(&poses[body]),
             Carrier::Node(node) => nodes[node] * t.centre,

@@ -2,8 +2,8 @@
 
 use crate::element::Viscosity;
 use crate::functional::{Hexahedron, Mass, ViscousHexahedron};
-use crate::model::Continuum;
-use crate::model::continua::Continua;
+use crate::model::SolidBlock;
+use crate::model::continua::Solids;
 use crate::model::terms::Terms;
 use std::collections::BTreeMap;
 
@@ -12,9 +12,9 @@ const ELASTICITY: &str = "block elasticity";
 const ELECTROELASTICITY: &str = "block electroelasticity";
 const VISCOSITY: &str = "block viscosity";
 
-impl Continua {
+impl Solids {
     /// Elements of all blocks of which anything is unknown, as pairs of block and element.
-    fn elements(&self) -> impl Iterator<Item = (&Continuum, usize)> + '_ {
+    fn elements(&self) -> impl Iterator<Item = (&SolidBlock, usize)> + '_ {
         self.list
             .iter()
             .filter(|continuum| !continuum.is_still)
@@ -41,7 +41,7 @@ impl Continua {
     /// Consistent masses, and the weight at each node.
     fn add_inertia(&self, terms: &mut Terms<'_>) {
         let moving = || self.list.iter().filter(|continuum| !continuum.is_still);
-        let is_heavy = |c: &&Continuum| c.solid.materials.iter().any(|m| m.density.is_some());
+        let is_heavy = |c: &&SolidBlock| c.solid.materials.iter().any(|m| m.density.is_some());
         for (vector, mass) in self.loads() {
             terms.weigh_vector(vector, mass);
         }

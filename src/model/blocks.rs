@@ -2,15 +2,15 @@
 
 use crate::math::Matrix;
 use crate::mesh::grid::Grid;
-use crate::model::condensed::{Condensed, hold};
+use crate::model::condensed::{Presolved, hold};
 use crate::model::joints::triad;
 use crate::model::system::{Discretisation, Electrode, Fidelity, Glue, Muscle, Potential, Solid};
 use nalgebra::Vector3;
 
 /// All blocks, those of the scene taken out of the condensed system; every node of a muscle that nothing moves is held.
-pub(super) fn blocks(condensed: &mut Condensed) -> Vec<Solid> {
+pub(super) fn blocks(condensed: &mut Presolved) -> Vec<Solid> {
     let of_scene = std::mem::take(&mut condensed.system.solids);
-    let (system, still) = (&condensed.system, &condensed.still);
+    let (system, still) = (&condensed.system, &condensed.immobile);
     let muscles = system.muscles.iter().enumerate();
     let of_muscles = muscles.filter_map(|(source, muscle)| match muscle.fidelity {
         Fidelity::Lumped => None,

@@ -5,8 +5,8 @@
 
 use crate::kinematics::Pose;
 use crate::math::{Matrix, Vector};
-use crate::model::question::Question;
-use crate::model::still::{self, Still};
+use crate::model::question::Analysis;
+use crate::model::still::{self, Immobile};
 use crate::model::system::{
     Body, Electrode, Joint, JointKind, Material, Potential, Shape, Solid, Support, System,
 };
@@ -14,7 +14,7 @@ use nalgebra::SymmetricEigen;
 
 /// Where a body of the scene is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
+pub enum BodyLocation {
     /// It is this body of the condensed system.
     Body(usize),
     /// It is fixed to this body.
@@ -32,23 +32,23 @@ pub enum Place {
 
 /// A system without what is not solved for.
 #[derive(Clone, Debug)]
-pub struct Condensed {
+pub struct Presolved {
     /// The system.
     pub system: System,
     /// Where each body of the scene is found.
-    pub places: Vec<Place>,
+    pub bodies: Vec<BodyLocation>,
     /// Joint of the scene of each joint.
     pub joints: Vec<usize>,
     /// What nothing moves.
-    pub still: Still,
+    pub immobile: Immobile,
 }
 
-impl Condensed {
+impl Presolved {
     /// What remains of a system for a question.
-    pub fn new(system: &System, question: &Question) -> Self {
+    pub fn new(system: &System, question: &Analysis) -> Self {
         let mut rest = system.clone();
         silence(&mut rest, question);
-        let still = still::still(&rest, question);
+        let still = still::immobile(&rest, question);
         for (solid, &is_still) in rest.solids.iter_mut().zip(&still.solids) {
             if is_still {
                 hold(solid);
@@ -65,11 +65,11 @@ impl Condensed {
         }
         let index = |b: Option<usize>| b.and_then(|b| of_group[group[b]]);
         let place = |(b, body): (usize, &Body)| match index(Some(b)) {
-            None => Place::Ground,
-            Some(to) if bodies[to] == *body => Place::Body(to),
+            None => BodyLocation::Ground,
+            Some(to) if bodies[to] == *body => BodyLocation::Body(to),
             Some(to) => {
                 let pose = bodies[to].pose();
-                Place::Welded {
+                BodyLocation::Welded {
                     to,
                     centre: pose.local(&body.centre),
                     directors: pose.directors.tr_mul(&body.directors),
@@ -99,18 +99,18 @@ impl Condensed {
         rest.bodies = bodies;
         Self {
             system: rest,
-            places,
+            bodies: places,
             joints,
-            still,
+            immobile: still,
         }
     }
 
     /// Poses of the bodies of the scene from those of the condensed system.
     pub fn poses(&self, poses: &[Pose], reference: &[Body]) -> Vec<Pose> {
-        let pose = |(place, body): (&Place, &Body)| match *place {
-            Place::Ground => body.pose(),
-            Place::Body(b) => poses[b],
-            Place::Welded {
+        let pose = |(place, body): (&BodyLocation, &Body)| match *place {
+            BodyLocation::Ground => body.pose(),
+            BodyLocation::Body(b) => poses[b],
+            BodyLocation::Welded {
                 to,
                 centre,
                 directors,
@@ -119,25 +119,25 @@ impl Condensed {
                 directors: poses[to].directors * directors,
             },
         };
-        self.places.iter().zip(reference).map(pose).collect()
+        self.bodies.iter().zip(reference).map(pose).collect()
     }
 
     /// Body of the condensed system that carries what is fixed to a body of the scene; `None` is the ground.
     pub fn carrier(&self, body: Option<usize>) -> Option<usize> {
-        match self.places[body?] {
-            Place::Ground => None,
-            Place::Body(to) | Place::Welded { to, .. } => Some(to),
+        match self.bodies[body?] {
+            BodyLocation::Ground => None,
+            BodyLocation::Body(to) | BodyLocation::Welded { to, .. } => Some(to),
         }
     }
 
     /// Poses of the condensed bodies from those of the bodies of the scene; `reference` where none tells.
     pub fn condense(&self, poses: &[Pose], reference: &[Pose]) -> Vec<Pose> {
         let mut condensed = reference.to_vec();
-        for (place, pose) in self.places.iter().zip(poses) {
+        for (place, pose) in self.bodies.iter().zip(poses) {
             match *place {
-                Place::Ground => {}
-                Place::Body(b) => condensed[b] = *pose,
-                Place::Welded {
+                BodyLocation::Ground => {}
+                BodyLocation::Body(b) => condensed[b] = *pose,
+                BodyLocation::Welded {
                     to,
                     centre,
                     directors,
@@ -165,8 +165,8 @@ impl Condensed {
 }
 
 /// Without voltage a muscle is passive and a driven electrode is grounded.
-fn silence(system: &mut System, question: &Question) {
-    for &source in &question.silent {
+fn silence(system: &mut System, question: &Analysis) {
+    for &source in &question.zero_voltage {
         if let Some(muscle) = system.muscles.get_mut(source) {
             let material = muscle.material;
             muscle.material = Material {
@@ -179,7 +179,7 @@ fn silence(system: &mut System, question: &Question) {
         let mut electrodes: Vec<Electrode> = Vec::new();
         for electrode in std::mem::take(&mut solid.electrodes) {
             let is_silent = matches!(electrode.potential, Potential::Driven { source, .. }
-                if question.silent.contains(&source));
+                if question.zero_voltage.contains(&source));
             if !is_silent {
                 electrodes.push(electrode);
                 continue;
@@ -209,7 +209,7 @@ pub(super) fn hold(solid: &mut Solid) {
 }
 
 /// The first body that each body is rigidly connected to, itself included; the number of bodies for those of the ground.
-fn groups(system: &System, still: &Still) -> Vec<usize> {
+fn groups(system: &System, still: &Immobile) -> Vec<usize> {
     let ground = system.bodies.len();
     let at = |b: Option<usize>| b.unwrap_or(ground);
     // The ground comes first in its group.

@@ -1,10 +1,10 @@
 //! Constraints that redundant coordinates leave open: rigid bodies and joints, times their multipliers.
 
 use crate::energy::{Coincidence, Energy, Orthogonality};
-use crate::functional::{Effect, Element, Group, Stencil, VectorArg};
+use crate::functional::{Term, Element, Group, Stencil, VectorArg};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
-use crate::model::continua::Continua;
+use crate::model::continua::Solids;
 use crate::model::joints::triad;
 use crate::model::plan::{self, LeftOut, Present};
 use crate::model::system::{Glue, Joint, JointKind, System};
@@ -28,13 +28,13 @@ pub(super) struct Builder<'a> {
     pub(super) reference: &'a [Pose],
     pub(super) vectors: &'a mut Vectors,
     /// Elastic blocks.
-    pub(super) continua: &'a Continua,
+    pub(super) continua: &'a Solids,
 }
 
 /// Constraints on their way to the action, with the names of their multipliers.
 #[derive(Default)]
 pub(super) struct Made {
-    pub(super) effects: Vec<Box<dyn Effect>>,
+    pub(super) effects: Vec<Box<dyn Term>>,
     pub(super) multipliers: Vec<String>,
     pub(super) present: Vec<Present>,
     pub(super) left_out: Vec<LeftOut>,

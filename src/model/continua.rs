@@ -3,18 +3,18 @@
 //! A node glued to a body is a material point of it, a node held in all directions a point of the ground; all others have
 //! coordinates. Only nodes that an electric field reaches have a potential.
 
-use crate::element::{Inverted, Shape};
-use crate::functional::Terminal;
+use crate::element::{Inverted, ElementGeometry};
+use crate::functional::ScalarArg;
 use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
 use crate::model::system::{Glue, Material, Potential, Solid};
-use crate::model::{Continuum, ModelError, reach};
+use crate::model::{SolidBlock, ModelError, reach};
 use crate::reduction::NodePlace;
 use std::collections::HashMap;
 
 /// Blocks on their way to effects: nodes, ties and potentials of all of them.
 #[derive(Debug, Default)]
-pub(super) struct Continua {
-    pub(super) list: Vec<Continuum>,
+pub(super) struct Solids {
+    pub(super) list: Vec<SolidBlock>,
     /// Nodes with coordinates.
     pub(super) nodes: Vec<NodePlace>,
     /// Block and node of the mesh of each of them.
@@ -29,14 +29,14 @@ pub(super) struct Continua {
 
 /// What is in use of a potential before it is numbered.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Wire {
-    Terminal(Terminal),
+enum Connection {
+    Terminal(ScalarArg),
     /// The potential of a floating electrode, by index.
     Floating(usize),
     Free,
 }
 
-impl Continua {
+impl Solids {
     /// Lays out blocks, of which the first `scene` are those of the scene; `voltages` are the sources of the first scalars, and glued nodes keep coordinates of their own
     /// where `ties` says so.
     ///
@@ -64,7 +64,7 @@ impl Continua {
                 terms.all(|term| term.carrier == Carrier::Ground)
             };
             let is_still = !is_dielectric.contains(&true) && places.iter().all(on_ground);
-            out.list.push(Continuum {
+            out.list.push(SolidBlock {
                 solid,
                 vectors: places,
                 of_muscle: index >= scene,
@@ -134,28 +134,28 @@ impl Continua {
         solid: &Solid,
         is_dielectric: &[bool],
         voltages: &[usize],
-    ) -> Vec<Option<Terminal>> {
+    ) -> Vec<Option<ScalarArg>> {
         let mut wires = vec![None; solid.mesh.nodes.len()];
         let elements = solid.mesh.hexahedra.iter().zip(is_dielectric);
         for (nodes, _) in elements.filter(|(_, is)| **is) {
             for &node in nodes {
-                wires[node] = Some(Wire::Free);
+                wires[node] = Some(Connection::Free);
             }
         }
         for (e, electrode) in solid.electrodes.iter().enumerate() {
             let wire = match electrode.potential {
-                Potential::Given(constant) => Wire::Terminal(Terminal {
+                Potential::Given(constant) => Connection::Terminal(ScalarArg {
                     constant,
                     scalar: None,
                 }),
-                Potential::Driven { source, factor } => Wire::Terminal(Terminal {
+                Potential::Driven { source, factor } => Connection::Terminal(ScalarArg {
                     constant: 0.0,
                     scalar: voltages
                         .iter()
                         .position(|&v| v == source)
                         .map(|s| (s, factor)),
                 }),
-                Potential::Floating => Wire::Floating(e),
+                Potential::Floating => Connection::Floating(e),
             };
             for &node in &electrode.nodes {
                 if wires[node].is_some() {
@@ -168,19 +168,19 @@ impl Continua {
             potentials.push(name);
             voltages.len() + potentials.len() - 1
         };
-        let mut terminal = |(node, wire): (usize, Option<Wire>)| {
+        let mut terminal = |(node, wire): (usize, Option<Connection>)| {
             let scalar = match wire? {
-                Wire::Terminal(terminal) => return Some(terminal),
-                Wire::Floating(e) => *floating.entry(e).or_insert_with(|| {
+                Connection::Terminal(terminal) => return Some(terminal),
+                Connection::Floating(e) => *floating.entry(e).or_insert_with(|| {
                     let name = format!("{}.{}", solid.name, solid.electrodes[e].name);
                     fresh(name, &mut self.potentials)
                 }),
-                Wire::Free => fresh(
+                Connection::Free => fresh(
                     format!("node {node} of {}", solid.name),
                     &mut self.potentials,
                 ),
             };
-            Some(Terminal {
+            Some(ScalarArg {
                 constant: 0.0,
                 scalar: Some((scalar, self.unit)),
             })
@@ -203,9 +203,9 @@ fn unit(solids: &[Solid]) -> f64 {
     if largest > 0.0 { largest } else { 1.0 }
 }
 
-fn shapes(solid: &Solid) -> Result<Vec<Shape>, ModelError> {
+fn shapes(solid: &Solid) -> Result<Vec<ElementGeometry>, ModelError> {
     let shape = |(element, nodes): (usize, &[usize; 8])| {
-        Shape::new(&nodes.map(|n| solid.mesh.nodes[n])).map_err(|Inverted { .. }| {
+        ElementGeometry::new(&nodes.map(|n| solid.mesh.nodes[n])).map_err(|Inverted { .. }| {
             ModelError::Inverted {
                 solid: solid.name.clone(),
                 element,

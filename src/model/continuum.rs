@@ -1,30 +1,30 @@
 //! An elastic block as the model sees it: vectors and potentials of its nodes, laws of its elements, charges of its electrodes.
 
-use crate::element::{Dielectric, Elastomer, Local, Passive, Shape, Volume};
-use crate::functional::Terminal;
+use crate::element::{Dielectric, Elastomer, Local, Passive, ElementGeometry, Volume};
+use crate::functional::ScalarArg;
 use crate::math::Vector;
-use crate::model::system::{Electric, Electrode, ElementKind, Material, Potential, Solid};
+use crate::model::system::{ElectricConstants, Electrode, ElementKind, Material, Potential, Solid};
 
 /// A block as the model sees it.
 #[derive(Clone, Debug)]
-pub struct Continuum {
+pub struct SolidBlock {
     /// What the scene says.
     pub solid: Solid,
     /// Vector of each node of the mesh.
     pub vectors: Vec<usize>,
     /// Terminal of each node of the mesh; `None` where there is no potential.
-    pub terminals: Vec<Option<Terminal>>,
+    pub terminals: Vec<Option<ScalarArg>>,
     /// Whether it is a muscle, whose electrodes are one.
     pub of_muscle: bool,
     /// Geometry of each element.
-    pub shapes: Vec<Shape>,
+    pub shapes: Vec<ElementGeometry>,
     /// Whether a field reaches each element.
     pub is_dielectric: Vec<bool>,
     /// Whether all nodes rest on the ground, and no field is there.
     pub is_still: bool,
 }
 
-impl Continuum {
+impl SolidBlock {
     /// The material of an element.
     pub fn material(&self, element: usize) -> &Material {
         &self.solid.materials[self.solid.mesh.regions[element]]
@@ -38,11 +38,11 @@ impl Continuum {
     /// Gradients of the shape functions at the centre of an element; `None` where it is turned inside out there.
     pub(super) fn central_gradients(&self, element: usize) -> Option<[Vector; 8]> {
         let mesh = &self.solid.mesh;
-        Shape::central_gradients(&mesh.hexahedra[element].map(|node| mesh.nodes[node]))
+        ElementGeometry::central_gradients(&mesh.hexahedra[element].map(|node| mesh.nodes[node]))
     }
 
     /// Terminals of the nodes of a dielectric element.
-    pub fn terminals(&self, element: usize) -> [Terminal; 8] {
+    pub fn terminals(&self, element: usize) -> [ScalarArg; 8] {
         self.solid.mesh.hexahedra[element]
             .map(|node| self.terminals[node].expect("a dielectric element has potentials"))
     }
@@ -63,7 +63,7 @@ impl Continuum {
 
     /// The law of a dielectric element.
     pub fn dielectric(&self, element: usize) -> Elastomer<Dielectric> {
-        let Electric {
+        let ElectricConstants {
             c1,
             c2,
             permittivity,
@@ -131,8 +131,8 @@ impl Continuum {
 
     /// Potentials of the nodes in V; zero where there is none.
     pub fn potentials(&self, scalars: &[f64]) -> Vec<f64> {
-        let value = |t: &Option<Terminal>| {
-            let Terminal { constant, scalar } = t.unwrap_or_default();
+        let value = |t: &Option<ScalarArg>| {
+            let ScalarArg { constant, scalar } = t.unwrap_or_default();
             constant + scalar.map_or(0.0, |(s, factor)| factor * scalars[s])
         };
         self.terminals.iter().map(value).collect()

@@ -4,7 +4,7 @@ use crate::energy::{AngularDamper, CoordinateDamper, LinearDamper};
 use crate::functional::Element;
 use crate::kinematics::{MaterialVector, Pose};
 use crate::model::Coordinates;
-use crate::model::joints::{JointGauge, Measure};
+use crate::model::joints::{JointReading, JointCoordinate};
 use crate::model::system::{Joint, System};
 use crate::model::terms::{Terms, mid, rate};
 
@@ -51,8 +51,8 @@ fn on_coordinate(joint: &str, coefficient: f64, coordinate: usize, terms: &mut T
 }
 
 fn on_vectors(joint: &Joint, coefficient: f64, reference: &[Pose], terms: &mut Terms<'_>) {
-    match JointGauge::new(joint, None, reference).measure {
-        Measure::Angle { vectors } => {
+    match JointReading::new(joint, None, reference).measure {
+        JointCoordinate::Angle { vectors } => {
             let [a, b, x] = vectors.map(|v| terms.vector(v));
             let element = Element {
                 energy: AngularDamper { coefficient },
@@ -71,7 +71,7 @@ fn on_vectors(joint: &Joint, coefficient: f64, reference: &[Pose], terms: &mut T
             };
             terms.add(DAMPING, "damping of", &joint.name, element);
         }
-        Measure::Displacement { axis, span } => {
+        JointCoordinate::Displacement { axis, span } => {
             let [n, r] = [axis, span].map(|v| terms.vector(v));
             let element = Element {
                 energy: LinearDamper { coefficient },
@@ -80,6 +80,6 @@ fn on_vectors(joint: &Joint, coefficient: f64, reference: &[Pose], terms: &mut T
             };
             terms.add(DAMPING, "damping of", &joint.name, element);
         }
-        Measure::None => {}
+        JointCoordinate::None => {}
     }
 }

@@ -1,8 +1,8 @@
 //! Rigid motions of elastic blocks that nothing holds.
 
-use crate::kinematics::{Carrier, MaterialVector, Term};
+use crate::kinematics::{Carrier, MaterialVector, VectorTerm};
 use crate::math::Vector;
-use crate::model::Continuum;
+use crate::model::SolidBlock;
 use crate::reduction::NodePlace;
 
 /// A part of a block that can move without resistance: its name and the motion.
@@ -16,7 +16,7 @@ pub struct Floating {
 
 /// The first part of the blocks that neither supports nor bodies hold.
 pub(super) fn floating(
-    continua: &[Continuum],
+    continua: &[SolidBlock],
     vectors: &[MaterialVector],
     nodes: &[NodePlace],
 ) -> Option<Floating> {
@@ -38,7 +38,7 @@ pub(super) fn floating(
 /// A rigid motion of nodes that leaves every held direction alone, to first order.
 fn free_motion(
     members: &[usize],
-    continuum: &Continuum,
+    continuum: &SolidBlock,
     vectors: &[MaterialVector],
     nodes: &[NodePlace],
 ) -> Option<String> {
@@ -50,7 +50,7 @@ fn free_motion(
         .fold(f64::MIN_POSITIVE, f64::max);
     let mut gram = nalgebra::Matrix6::<f64>::zeros();
     for &node in members {
-        let Term { carrier, .. } = vectors[continuum.vectors[node]].terms[0];
+        let VectorTerm { carrier, .. } = vectors[continuum.vectors[node]].terms[0];
         let is_glued = continuum
             .solid
             .glued

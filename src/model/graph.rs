@@ -1,11 +1,11 @@
 //! The joint graph: a spanning tree from the ground, and the joints that close loops.
 
-use crate::kinematics::{Carrier, MaterialVector, Pose, Term};
+use crate::kinematics::{Carrier, MaterialVector, Pose, VectorTerm};
 use crate::math::{Matrix, Vector};
 use crate::model::ModelError;
 use crate::model::joints::Screw;
 use crate::model::system::{JointKind, System};
-use crate::reduction::{Instant, Link, LinkKind, Motion, Tree};
+use crate::reduction::{Configuration, Link, LinkKind, CoordinateMap, Tree};
 
 /// Joints in an order from the ground outwards, those that close loops, and bodies that nothing holds.
 #[derive(Clone, Debug)]
@@ -140,7 +140,7 @@ impl Graph {
 
     /// Poses at joint coordinates (by joint), along the spanning tree.
     pub fn poses(&self, system: &System, reference: &[Pose], joints: &[f64]) -> Vec<Pose> {
-        let motion = Motion::articulated(self.tree(system, reference, &[]), &[], &[], 0);
+        let motion = CoordinateMap::articulated(self.tree(system, reference, &[]), &[], &[], 0);
         let instant = motion.placed(&self.coordinates(system, joints));
         motion.poses(&instant, system.bodies.len())
     }
@@ -152,8 +152,8 @@ impl Graph {
         reference: &[Pose],
         joints: &[f64],
         rates: &[f64],
-    ) -> (Motion, Instant) {
-        let term = |body: usize, i: usize| Term {
+    ) -> (CoordinateMap, Configuration) {
+        let term = |body: usize, i: usize| VectorTerm {
             carrier: Carrier::Body(body),
             centre: if i == 0 { 1.0 } else { 0.0 },
             directors: if i == 0 {
@@ -168,7 +168,7 @@ impl Graph {
                 terms: vec![term(b, i)],
             })
             .collect();
-        let motion = Motion::articulated(self.tree(system, reference, &vectors), &vectors, &[], 0);
+        let motion = CoordinateMap::articulated(self.tree(system, reference, &vectors), &vectors, &[], 0);
         let mut instant = motion.placed(&self.coordinates(system, joints));
         instant.l.copy_from_slice(&self.coordinates(system, rates));
         motion.along(&mut instant);

@@ -19,16 +19,16 @@ pub(super) fn triad(n: &Vector) -> [Vector; 2] {
 
 /// How the coordinate of a joint is read from the poses of its bodies.
 #[derive(Clone, Debug)]
-pub struct JointGauge {
+pub struct JointReading {
     /// Index among the joint coordinates; `None` where the joint has none.
     pub coordinate: Option<usize>,
     /// Vectors a, b of the parent and c of the child, whose angle is the coordinate; or n, span for a displacement.
-    pub measure: Measure,
+    pub measure: JointCoordinate,
 }
 
 /// What the coordinate is.
 #[derive(Clone, Debug)]
-pub enum Measure {
+pub enum JointCoordinate {
     /// atan2(b·c, a·c).
     Angle {
         /// a, b, c.
@@ -102,7 +102,7 @@ impl System {
     }
 }
 
-impl JointGauge {
+impl JointReading {
     /// The gauge of joint `index` of a system; `coordinates` are those of [`System::joint_coordinates`].
     pub fn new(joint: &Joint, coordinate: Option<usize>, reference: &[Pose]) -> Self {
         let parent =
@@ -112,18 +112,18 @@ impl JointGauge {
         let measure = match joint.kind {
             JointKind::Revolute { axis } => {
                 let [a, b] = triad(&axis);
-                Measure::Angle {
+                JointCoordinate::Angle {
                     vectors: [parent(&a), parent(&b), child(&a)],
                 }
             }
-            JointKind::Prismatic { axis } => Measure::Displacement {
+            JointKind::Prismatic { axis } => JointCoordinate::Displacement {
                 axis: parent(&axis),
                 span: MaterialVector::span(
                     &MaterialVector::point(joint.parent, &joint.at, reference),
                     &MaterialVector::point(Some(joint.child), &joint.at, reference),
                 ),
             },
-            JointKind::Spherical | JointKind::Floating | JointKind::Fixed => Measure::None,
+            JointKind::Spherical | JointKind::Floating | JointKind::Fixed => JointCoordinate::None,
         };
         Self {
             coordinate,
@@ -134,13 +134,13 @@ impl JointGauge {
     /// The coordinate at poses; an angle in the branch nearest to `near`; zero where there is none.
     pub fn read(&self, poses: &[Pose], near: f64) -> f64 {
         match &self.measure {
-            Measure::Angle { vectors } => {
+            JointCoordinate::Angle { vectors } => {
                 let [a, b, c] = vectors.each_ref().map(|v| v.at(poses, &[]));
                 let angle = b.dot(&c).atan2(a.dot(&c));
                 angle + ((near - angle) / std::f64::consts::TAU).round() * std::f64::consts::TAU
             }
-            Measure::Displacement { axis, span } => axis.at(poses, &[]).dot(&span.at(poses, &[])),
-            Measure::None => 0.0,
+            JointCoordinate::Displacement { axis, span } => axis.at(poses, &[]).dot(&span.at(poses, &[])),
+            JointCoordinate::None => 0.0,
         }
     }
 }

@@ -1,12 +1,12 @@
 //! Measures of quantities: what they read, and their formulas.
 
 use crate::element::FieldPoint;
-use crate::energy::{Angle, Energy, OutsideBox, Place, Projection, SquaredDistance, SquaredField};
+use crate::energy::{Angle, Energy, OutsideBox, PositionComponent, Projection, SquaredDistance, SquaredField};
 use crate::functional::{Element, ElementField, Group, Measure, Stencil, VectorArg};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
-use crate::model::joints::{JointGauge, Measure as Gauge};
-use crate::model::{Condensed, Continuum, FieldPlace, Quantity, Region};
+use crate::model::joints::{JointReading, JointCoordinate as Gauge};
+use crate::model::{Presolved, SolidBlock, FieldPlace, Quantity, Region};
 
 /// Measures by site, in the order of the quantities.
 #[derive(Debug, Default)]
@@ -20,13 +20,13 @@ pub(super) struct Measures {
 /// What quantities are measured on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known<'a> {
-    pub(super) condensed: &'a Condensed,
+    pub(super) condensed: &'a Presolved,
     pub(super) reference: &'a [Pose],
     /// Source of each voltage.
     pub(super) voltages: &'a [usize],
     /// Vector of each marker.
     pub(super) markers: &'a [usize],
-    pub(super) continua: &'a [Continuum],
+    pub(super) continua: &'a [SolidBlock],
 }
 
 impl Measures {
@@ -53,7 +53,7 @@ impl Known<'_> {
             Quantity::Joint { joint, near } => {
                 let joint = self.condensed.joint(joint)?;
                 let joint = &self.condensed.system.joints[joint];
-                match JointGauge::new(joint, None, self.reference).measure {
+                match JointReading::new(joint, None, self.reference).measure {
                     Gauge::Angle { vectors: v } => {
                         instant(Angle { near }, v.map(|x| vectors.index(x)))
                     }
@@ -72,7 +72,7 @@ impl Known<'_> {
             }
             Quantity::MarkerPlace { marker, axis } => {
                 let normal = Vector::ith(axis, 1.0);
-                instant(Place { origin, normal }, [self.markers[marker]])
+                instant(PositionComponent { origin, normal }, [self.markers[marker]])
             }
             Quantity::MarkerRegion { marker, region } => {
                 let vectors = [self.markers[marker]];
@@ -90,7 +90,7 @@ impl Known<'_> {
             Quantity::MarkerStep { marker, axis } => {
                 let normal = Vector::ith(axis, 1.0);
                 let marker = (self.markers[marker], Stencil::Difference);
-                interval::<_, 3, 1, 0>(Place { origin, normal }, [marker], [])
+                interval::<_, 3, 1, 0>(PositionComponent { origin, normal }, [marker], [])
             }
             Quantity::SquaredField { place, limit, at } => match place {
                 FieldPlace::Muscle(muscle) => {

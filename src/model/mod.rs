@@ -27,26 +27,26 @@ pub mod system;
 mod terms;
 
 pub use component::Component;
-pub use condensed::{Condensed, Place};
-pub use continuum::Continuum;
+pub use condensed::{Presolved, BodyLocation};
+pub use continuum::SolidBlock;
 pub use error::ModelError;
 pub use floating::Floating;
 pub use graph::Graph;
-pub use joints::{JointGauge, Screw};
+pub use joints::{JointReading, Screw};
 pub use named::Freedom;
 pub use plan::{LeftOut, Present};
 pub use quantity::{FieldPlace, Quantity, Region, joint_unit};
-pub use question::{Question, Stirred};
-pub use still::Still;
+pub use question::{Analysis, InitiallyMoving};
+pub use still::Immobile;
 pub use system::{System, VACUUM_PERMITTIVITY};
 pub use terms::{Terms, mid, rate};
 
-use crate::functional::{Kind, Sum};
+use crate::functional::{Kind, Functional};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
-use crate::reduction::{Instant, Motion, NodePlace, Reduced};
+use crate::reduction::{Configuration, CoordinateMap, NodePlace, Reduced};
 use crate::sparse::Symmetry;
-use continua::Continua;
+use continua::Solids;
 use measures::Measures;
 use std::collections::BTreeSet;
 use system::{Attachment, Muscle, Source};
@@ -76,9 +76,9 @@ pub struct Model {
     /// What the scene means.
     pub system: System,
     /// What is asked of it.
-    pub question: Question,
+    pub analysis: Analysis,
     /// What remains of it to be solved for; its blocks are in `continua`.
-    pub condensed: Condensed,
+    pub presolved: Presolved,
     /// Which coordinates.
     pub coordinates: Coordinates,
     /// The action as a function of coordinates and voltages.
@@ -98,7 +98,7 @@ pub struct Model {
     /// All that voltages are named for.
     pub sources: Vec<Source>,
     /// Elastic blocks, those of muscles last.
-    pub continua: Vec<Continuum>,
+    pub solids: Vec<SolidBlock>,
     /// Vector of the span of each muscle.
     pub spans: Vec<usize>,
     /// Vector of each marker.
@@ -106,7 +106,7 @@ pub struct Model {
     /// Index of each quantity of the question among the measures of its site; `None` where nothing of the model can change it.
     pub measured: Vec<Option<usize>>,
     /// How the coordinates of each joint are read from poses.
-    pub gauges: Vec<JointGauge>,
+    pub gauges: Vec<JointReading>,
     /// Names of the multipliers.
     pub multiplier_names: Vec<String>,
     /// Time that scales multipliers: the action holds −h₀ λ·g, in ms.
@@ -136,10 +136,10 @@ impl Model {
         h0: f64,
         quantities: &[Quantity],
     ) -> Result<Self, ModelError> {
-        let question = Question {
+        let question = Analysis {
             coordinates,
             quantities: quantities.to_vec(),
-            ..Question::of_motion(h0)
+            ..Analysis::of_motion(h0)
         };
         Self::answering(system, question)
     }
@@ -148,8 +148,8 @@ impl Model {
     ///
     /// # Errors
     /// Reduced coordinates were asked for and do not exist.
-    pub fn answering(system: System, question: Question) -> Result<Self, ModelError> {
-        let mut condensed = Condensed::new(&system, &question);
+    pub fn answering(system: System, question: Analysis) -> Result<Self, ModelError> {
+        let mut condensed = Presolved::new(&system, &question);
         let solids = blocks::blocks(&mut condensed);
         let rest = &condensed.system;
         let coordinates = Self::choose(rest, question.coordinates)?;
@@ -157,13 +157,13 @@ impl Model {
         let reference: Vec<Pose> = rest.bodies.iter().map(system::Body::pose).collect();
         let mut vectors = Vectors::default();
         let voltages = reach::voltages(rest, &solids);
-        let reached = match question.silent.is_empty() {
+        let reached = match question.zero_voltage.is_empty() {
             true => voltages.clone(),
             false => Self::reached(&system, &question),
         };
         let ties = coordinates == Coordinates::Redundant;
         let scene = system.solids.len();
-        let continua = Continua::new(solids, scene, &reference, &voltages, ties, &mut vectors)?;
+        let continua = Solids::new(solids, scene, &reference, &voltages, ties, &mut vectors)?;
         let (intervals, mut present, mut left_out, spans) = {
             let motion = question.of_motion;
             let mut terms = Terms::new(&condensed, &reference, &voltages, motion, &mut vectors);
@@ -224,17 +224,17 @@ impl Model {
         let motion = match coordinates {
             Coordinates::Reduced => {
                 let tree = graph.tree(rest, &reference, list);
-                Motion::articulated(tree, list, &continua.nodes, multipliers)
+                CoordinateMap::articulated(tree, list, &continua.nodes, multipliers)
             }
             Coordinates::Redundant => {
-                Motion::redundant(rest.bodies.len(), list, &continua.nodes, multipliers)
+                CoordinateMap::redundant(rest.bodies.len(), list, &continua.nodes, multipliers)
             }
         };
         let intervals = {
             let scalars = voltages.len() + continua.potentials.len();
-            Sum::new(intervals, measures.intervals, list.len(), scalars)
+            Functional::new(intervals, measures.intervals, list.len(), scalars)
         };
-        let instants = Sum::new(instants, measures.instants, list.len(), multipliers);
+        let instants = Functional::new(instants, measures.instants, list.len(), multipliers);
         Ok(Self {
             coordinates,
             action: Reduced::new(motion, intervals, instants),
@@ -245,7 +245,7 @@ impl Model {
             potential_unit: continua.unit,
             potential_names: continua.potentials,
             sources: system.sources(),
-            continua: continua.list,
+            solids: continua.list,
             nodes: continua.nodes,
             node_names: continua.names,
             spans,
@@ -259,30 +259,30 @@ impl Model {
             present,
             left_out,
             system,
-            question,
-            condensed,
+            analysis: question,
+            presolved: condensed,
         })
     }
 
     /// Sources whose voltage would do something if none were silent.
-    fn reached(system: &System, question: &Question) -> Vec<usize> {
-        let question = Question {
-            silent: BTreeSet::new(),
+    fn reached(system: &System, question: &Analysis) -> Vec<usize> {
+        let question = Analysis {
+            zero_voltage: BTreeSet::new(),
             stirred: None,
             ..question.clone()
         };
-        let mut whole = Condensed::new(system, &question);
+        let mut whole = Presolved::new(system, &question);
         let solids = blocks::blocks(&mut whole);
         reach::voltages(&whole.system, &solids)
     }
 
     /// How the coordinates of the joints of the scene are read from the poses of its bodies.
-    fn gauges(system: &System, condensed: &Condensed) -> Vec<JointGauge> {
+    fn gauges(system: &System, condensed: &Presolved) -> Vec<JointReading> {
         let reference: Vec<Pose> = system.bodies.iter().map(system::Body::pose).collect();
         let coordinates = condensed.system.joint_coordinates();
         let gauge = |(j, joint)| {
             let coordinate = condensed.joint(j).and_then(|kept| coordinates[kept]);
-            JointGauge::new(joint, coordinate, &reference)
+            JointReading::new(joint, coordinate, &reference)
         };
         system.joints.iter().enumerate().map(gauge).collect()
     }
@@ -328,8 +328,8 @@ impl Model {
                 z
             }
             Coordinates::Redundant => {
-                let joints = self.condensed.by_joint(joints);
-                let system = &self.condensed.system;
+                let joints = self.presolved.by_joint(joints);
+                let system = &self.presolved.system;
                 self.coordinates_of(&self.graph.poses(system, &self.reference, &joints))
             }
         }
@@ -362,7 +362,7 @@ impl Model {
         let mut moves = false;
         for (rate, &(node, axis)) in rates[motion.of_bodies..].iter_mut().zip(&motion.of_nodes) {
             let (block, node) = self.node_names[node];
-            if let Some(velocity) = self.continua[block].solid.velocities.get(node) {
+            if let Some(velocity) = self.solids[block].solid.velocities.get(node) {
                 *rate = velocity[axis];
                 moves |= *rate != 0.0;
             }
@@ -383,7 +383,7 @@ impl Model {
 
     /// The part of a block that nothing holds, if there is one.
     pub fn floating(&self) -> Option<Floating> {
-        floating::floating(&self.continua, &self.vectors, &self.nodes)
+        floating::floating(&self.solids, &self.vectors, &self.nodes)
     }
 
     /// Joint coordinates (rad or mm, zero where a joint has none) at poses, angles in the branch nearest to `near`.
@@ -396,7 +396,7 @@ impl Model {
     }
 
     /// Joint coordinates of an instant.
-    pub fn joints(&self, instant: &Instant, near: &[f64]) -> Vec<f64> {
+    pub fn joints(&self, instant: &Configuration, near: &[f64]) -> Vec<f64> {
         match self.coordinates {
             Coordinates::Reduced => self
                 .gauges
@@ -408,14 +408,14 @@ impl Model {
     }
 
     /// Poses of all bodies of the scene at an instant.
-    pub fn poses(&self, instant: &Instant) -> Vec<Pose> {
+    pub fn poses(&self, instant: &Configuration) -> Vec<Pose> {
         let poses = self.condensed_poses(instant);
-        self.condensed.poses(&poses, &self.system.bodies)
+        self.presolved.poses(&poses, &self.system.bodies)
     }
 
     /// Poses of the condensed bodies at an instant, which carry the vectors.
-    pub fn condensed_poses(&self, instant: &Instant) -> Vec<Pose> {
-        let bodies = self.condensed.system.bodies.len();
+    pub fn condensed_poses(&self, instant: &Configuration) -> Vec<Pose> {
+        let bodies = self.presolved.system.bodies.len();
         self.action.motion.poses(instant, bodies)
     }
 
@@ -430,7 +430,7 @@ impl Model {
         let nodes = self.nodes.iter().map(|n| &n.reference);
         let places = self.reference.iter().map(|p| &p.centre).chain(nodes);
         let length = places
-            .chain(self.condensed.system.joints.iter().map(|j| &j.at))
+            .chain(self.presolved.system.joints.iter().map(|j| &j.at))
             .fold(0.0, far);
         if length > 0.0 { length } else { 1.0 }
     }

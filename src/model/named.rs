@@ -17,7 +17,7 @@ impl Model {
             _ if i >= self.action.motion.of_bodies => {
                 let (node, axis) = self.action.motion.of_nodes[i - self.action.motion.of_bodies];
                 let (block, node) = self.node_names[node];
-                let name = &self.continua[block].solid.name;
+                let name = &self.solids[block].solid.name;
                 format!("{} of node {node} of {name}", ["x", "y", "z"][axis])
             }
             Coordinates::Reduced => {
@@ -35,7 +35,7 @@ impl Model {
                 let axis = ["x", "y", "z"][i % 3];
                 format!(
                     "{} {part}.{axis}",
-                    self.condensed.system.bodies[i / 12].name
+                    self.presolved.system.bodies[i / 12].name
                 )
             }
         }
@@ -52,7 +52,7 @@ impl Model {
 
     /// Joint coordinate `i` of reduced coordinates.
     pub fn freedom(&self, i: usize) -> Freedom<'_> {
-        let system = &self.condensed.system;
+        let system = &self.presolved.system;
         let mut at = i;
         for joint in &system.joints {
             let (screws, _) = joint.kind.screws();

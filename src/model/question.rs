@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 /// A question to a system.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Question {
+pub struct Analysis {
     /// Coordinates; without a choice reduced where the joints form a tree.
     pub coordinates: Option<Coordinates>,
     /// Length of the intervals in ms, about; it scales multipliers.
@@ -15,22 +15,22 @@ pub struct Question {
     /// Whether anything moves: a state of rest has neither inertia nor viscosity.
     pub of_motion: bool,
     /// Sources whose voltage is zero all the time.
-    pub silent: BTreeSet<usize>,
+    pub zero_voltage: BTreeSet<usize>,
     /// What is spoken of; `None`: anything may be set in motion by hand.
-    pub stirred: Option<Stirred>,
+    pub stirred: Option<InitiallyMoving>,
 }
 
 /// Bodies and blocks that a start, a goal or a limit speaks of; all others start at rest in the reference configuration, and
 /// nothing but forces moves them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Stirred {
+pub struct InitiallyMoving {
     /// Bodies.
     pub bodies: BTreeSet<usize>,
     /// Blocks of the scene.
     pub solids: BTreeSet<usize>,
 }
 
-impl Question {
+impl Analysis {
     /// The motion in intervals of about `interval` ms, of which nothing is known: any voltage may act, anything may move.
     pub fn of_motion(interval: f64) -> Self {
         Self {
@@ -38,7 +38,7 @@ impl Question {
             interval,
             quantities: Vec::new(),
             of_motion: true,
-            silent: BTreeSet::new(),
+            zero_voltage: BTreeSet::new(),
             stirred: None,
         }
     }

@@ -1,6 +1,6 @@
 //! Constraints that follow from others: closed loops with more joints than they need, joints written twice.
 
-use crate::functional::Level;
+use crate::functional::Order;
 use crate::model::Model;
 use nalgebra::{DMatrix, DVector};
 
@@ -19,11 +19,11 @@ impl Model {
             return Vec::new();
         }
         let layout = action.layout();
-        let mut scratch = action.scratch(Level::Hessian);
+        let mut scratch = action.scratch(Order::Hessian);
         let mut values = vec![0.0; layout.values(1)];
         let mut instant = action.motion.placed(z);
-        action.evaluate_instant(Level::Hessian, &mut instant, &[], &mut scratch);
-        action.pull_back_instant(Level::Hessian, &mut instant, 0, &mut scratch, &mut values);
+        action.evaluate_instant(Order::Hessian, &mut instant, &[], &mut scratch);
+        action.pull_back_instant(Order::Hessian, &mut instant, 0, &mut scratch, &mut values);
         let mut gradients = DMatrix::<f64>::zeros(n, m);
         for (slot, &(row, col)) in layout.same.entries().iter().enumerate() {
             if row < n && col >= n {

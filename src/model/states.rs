@@ -3,7 +3,7 @@
 use crate::kinematics::Pose;
 use crate::math::Vector;
 use crate::model::{Coordinates, Model};
-use crate::reduction::Instant;
+use crate::reduction::Configuration;
 use std::collections::BTreeMap;
 
 impl Model {
@@ -34,7 +34,7 @@ impl Model {
 
     /// Whether some body turns in ways that joint coordinates in files do not tell: it is free, or on a spherical joint.
     pub fn turns_freely(&self) -> bool {
-        let mut joints = self.condensed.system.joints.iter();
+        let mut joints = self.presolved.system.joints.iter();
         !self.graph.free().is_empty() || joints.any(|joint| joint.kind.freedoms() > 1)
     }
 
@@ -44,22 +44,22 @@ impl Model {
         joints: &[f64],
         rates: &[f64],
         velocities: &BTreeMap<usize, [Vector; 2]>,
-    ) -> Result<Instant, usize> {
-        let [joints, rates] = [joints, rates].map(|values| self.condensed.by_joint(values));
+    ) -> Result<Configuration, usize> {
+        let [joints, rates] = [joints, rates].map(|values| self.presolved.by_joint(values));
         let (motion, mut instant) =
             self.graph
-                .moving(&self.condensed.system, &self.reference, &joints, &rates);
+                .moving(&self.presolved.system, &self.reference, &joints, &rates);
         // A body before those that it carries.
         let mut named: Vec<_> = velocities.iter().collect();
         named.sort_by_key(|&(&body, _)| {
-            self.condensed
+            self.presolved
                 .carrier(Some(body))
                 .map(|b| motion.place_in_tree(b))
         });
         for (&body, &[velocity, spin]) in named {
             let poses = motion.poses(&instant, self.reference.len());
-            let all = self.condensed.poses(&poses, &self.system.bodies);
-            let kept = self.condensed.carrier(Some(body)).ok_or(body)?;
+            let all = self.presolved.poses(&poses, &self.system.bodies);
+            let kept = self.presolved.carrier(Some(body)).ok_or(body)?;
             let arm = poses[kept].centre - all[body].centre;
             let velocity = velocity + spin.cross(&arm);
             if !motion.set_in_motion(kept, [velocity, spin], &mut instant) {
@@ -75,11 +75,11 @@ impl Model {
         let z = self.coordinates_at(joints);
         if self
             .graph
-            .has_one_coordinate_a_joint(&self.condensed.system)
+            .has_one_coordinate_a_joint(&self.presolved.system)
         {
             return z;
         }
-        let poses = self.condensed.condense(poses, &self.reference);
+        let poses = self.presolved.condense(poses, &self.reference);
         let motion = &self.action.motion;
         match &motion.tree {
             None => self.coordinates_of(&poses),

@@ -3,13 +3,13 @@
 //! In the reference configuration muscles and blocks are free of stress, so that weight and electric fields are the only
 //! forces. Bodies hang together by joints, muscles and glue, and the ground hangs together with nothing.
 
-use crate::model::question::Question;
+use crate::model::question::Analysis;
 use crate::model::reach;
 use crate::model::system::System;
 
 /// Parts of a scene that rest all the time.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Still {
+pub struct Immobile {
     /// Whether each body rests.
     pub bodies: Vec<bool>,
     /// Whether each block of the scene rests.
@@ -19,7 +19,7 @@ pub struct Still {
 }
 
 /// What rests of a system whose silent sources drive nothing any more.
-pub(super) fn still(system: &System, question: &Question) -> Still {
+pub(super) fn immobile(system: &System, question: &Analysis) -> Immobile {
     let counts = [
         system.bodies.len(),
         system.solids.len(),
@@ -27,7 +27,7 @@ pub(super) fn still(system: &System, question: &Question) -> Still {
     ];
     let [of_bodies, of_solids, of_muscles] = counts;
     let Some(stirred) = &question.stirred else {
-        return Still {
+        return Immobile {
             bodies: vec![false; of_bodies],
             solids: vec![false; of_solids],
             muscles: vec![false; of_muscles],
@@ -84,7 +84,7 @@ pub(super) fn still(system: &System, question: &Question) -> Still {
         parts.moved[root] = true;
     }
     let rests = |from: usize, count: usize| (from..from + count).map(|i| !parts.moved[parts.of[i]]);
-    Still {
+    Immobile {
         bodies: rests(0, of_bodies).collect(),
         solids: rests(first_solid, of_solids).collect(),
         muscles: rests(first_muscle, of_muscles).collect(),

@@ -331,14 +331,14 @@ pub struct Material {
     /// First Lamé constant λ in MPa; finite elements need it, lumped muscles keep their volume and do not read it.
     pub lame_lambda: Option<f64>,
     /// Electric constants.
-    pub electric: Option<Electric>,
+    pub electric: Option<ElectricConstants>,
     /// Viscosity η in MPa ms, σ_vis = η d.
     pub viscosity: Option<f64>,
 }
 
 /// Constants of the electric energy c₁ E·E + c₂ C:(E⊗E) − ½ ε J C⁻¹:(E⊗E), in N/V².
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Electric {
+pub struct ElectricConstants {
     /// c₁.
     pub c1: f64,
     /// c₂.

@@ -3,19 +3,19 @@
 
 use crate::energy::{Energy, Gravity};
 use crate::functional::{
-    Effect, Element, Group, Hexahedra, Hexahedron, Inertia, Mass, Path, Paths, Stencil, VectorArg,
-    ViscousHexahedra, ViscousHexahedron, Wired,
+    Term, Element, Group, Hexahedra, Hexahedron, Inertia, Mass, Path, Paths, Stencil, VectorArg,
+    ViscousHexahedra, ViscousHexahedron, Electrical,
 };
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::model::attachment::Attachment;
-use crate::model::condensed::Condensed;
+use crate::model::condensed::Presolved;
 use crate::model::plan::{self, LeftOut, Present};
 use std::any::Any;
 use std::fmt;
 
 /// Terms of components on their way to the action.
 pub struct Terms<'a> {
-    condensed: &'a Condensed,
+    condensed: &'a Presolved,
     reference: &'a [Pose],
     vectors: &'a mut Vectors,
     /// Source of each voltage.
@@ -37,37 +37,37 @@ struct Collected {
     term: &'static str,
     /// A vector of the type.
     list: Box<dyn Any>,
-    finish: fn(&str, Box<dyn Any>) -> Box<dyn Effect>,
+    finish: fn(&str, Box<dyn Any>) -> Box<dyn Term>,
 }
 
 /// What elements of one type are together.
 pub(super) trait Member: Sized + 'static {
-    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect>;
+    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term>;
 }
 
 impl Member for Mass {
-    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect> {
+    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         Box::new(Inertia::new(name, list))
     }
 }
 
-impl<F: Wired + 'static> Member for Hexahedron<F>
+impl<F: Electrical + 'static> Member for Hexahedron<F>
 where
-    Hexahedra<F>: Effect,
+    Hexahedra<F>: Term,
 {
-    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect> {
+    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         Box::new(Hexahedra::new(name, list))
     }
 }
 
 impl Member for ViscousHexahedron {
-    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect> {
+    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         Box::new(ViscousHexahedra::new(name, list))
     }
 }
 
 impl Member for Path {
-    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect> {
+    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         Box::new(Paths::new(name, list))
     }
 }
@@ -82,7 +82,7 @@ impl<E, const M: usize, const NV: usize, const NS: usize, const KINETIC: bool> M
 where
     E: Energy<M> + 'static,
 {
-    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Effect> {
+    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         // The action has the kinetic energy less the potential one; a virtual work is added.
         let scale = if KINETIC || E::VIRTUAL > 0 { 1.0 } else { -1.0 };
         let elements = list.into_iter().map(|Self(element)| element).collect();
@@ -92,7 +92,7 @@ where
 
 impl<'a> Terms<'a> {
     pub(super) fn new(
-        condensed: &'a Condensed,
+        condensed: &'a Presolved,
         reference: &'a [Pose],
         voltages: &'a [usize],
         of_motion: bool,
@@ -242,7 +242,7 @@ impl<'a> Terms<'a> {
     }
 
     /// The terms in the order of the plan, what they are there for, and what is left out.
-    pub(super) fn finish(mut self) -> (Vec<Box<dyn Effect>>, Vec<Present>, Vec<LeftOut>) {
+    pub(super) fn finish(mut self) -> (Vec<Box<dyn Term>>, Vec<Present>, Vec<LeftOut>) {
         self.collected
             .sort_by_key(|collected| plan::rank(collected.term));
         let collected = self.collected.into_iter();

@@ -2,11 +2,11 @@
 
 use crate::kinematics::Pose;
 use crate::math::Vector;
-use crate::reduction::instant::Instant;
-use crate::reduction::motion::Motion;
+use crate::reduction::instant::Configuration;
+use crate::reduction::motion::CoordinateMap;
 use crate::reduction::tree::{CHART, Tree};
 
-impl Motion {
+impl CoordinateMap {
     /// Coordinates that turn behind a chart.
     pub fn charted(&self) -> Vec<[usize; 3]> {
         self.tree.as_ref().map_or_else(Vec::new, Tree::charted)
@@ -14,7 +14,7 @@ impl Motion {
 
     /// Moves the charts of a placed instant to where its bodies are: nothing moves, and the coordinates that turn behind a
     /// chart become zero. Returns whether there are charts.
-    pub fn recentre(&self, instant: &mut Instant) -> bool {
+    pub fn recentre(&self, instant: &mut Configuration) -> bool {
         let Some(tree) = self.tree.as_ref().filter(|tree| tree.charts() > 0) else {
             return false;
         };
@@ -31,7 +31,7 @@ impl Motion {
 
     /// Gives a body on a joint with a chart, with turns of zero, a velocity of its centre and an angular velocity by the rates of this joint,
     /// and tells the motion of all vectors; `false` where the body is on another joint.
-    pub fn set_in_motion(&self, body: usize, twist: [Vector; 2], instant: &mut Instant) -> bool {
+    pub fn set_in_motion(&self, body: usize, twist: [Vector; 2], instant: &mut Configuration) -> bool {
         let Some(tree) = &self.tree else { return false };
         let is_set = tree.set_in_motion(body, twist, &instant.tree, &mut instant.l);
         self.along(instant);
@@ -63,7 +63,7 @@ impl Motion {
     }
 
     /// Lets the joints with a chart follow given poses of the bodies: their charts and slides, the turns behind them zero.
-    pub fn follow(&self, poses: &[Pose], instant: &mut Instant) {
+    pub fn follow(&self, poses: &[Pose], instant: &mut Configuration) {
         let unknowns = self.unknowns();
         if let Some(tree) = &self.tree {
             let (u, charts) = instant.z.split_at_mut(unknowns);

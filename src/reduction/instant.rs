@@ -5,7 +5,7 @@ use crate::math::Vector;
 
 /// Data of one instant, allocated once.
 #[derive(Clone, Debug, Default)]
-pub struct Instant {
+pub struct Configuration {
     /// Coordinates u, then multipliers λ, then the charts of the tree: data that no equation changes.
     pub z: Vec<f64>,
     /// Direction l: one costate for each coordinate and multiplier.

@@ -22,9 +22,9 @@ mod pull_back;
 mod reduced;
 mod tree;
 
-pub use instant::Instant;
-pub use motion::{Motion, NodePlace};
-pub use pattern::{Layout, Pattern};
-pub use pull_back::Target;
+pub use instant::Configuration;
+pub use motion::{CoordinateMap, NodePlace};
+pub use pattern::{StepPattern, BlockPattern};
+pub use pull_back::Destination;
 pub use reduced::{Interval, Reduced, Scratch};
 pub use tree::{CHART, Link, LinkKind, Tree};

@@ -2,8 +2,8 @@
 
 use crate::kinematics::{Carrier, MaterialVector, Pose};
 use crate::math::{Matrix, Vector};
-use crate::reduction::instant::Instant;
-use crate::reduction::tree::{Packed, Tree};
+use crate::reduction::instant::Configuration;
+use crate::reduction::tree::{TangentColumns, Tree};
 
 /// How one vector depends on the coordinates.
 #[derive(Clone, Debug)]
@@ -16,7 +16,7 @@ pub enum Dependence {
         parts: Vec<LinearPart>,
     },
     /// Columns of a tree.
-    Articulated(Packed),
+    Articulated(TangentColumns),
 }
 
 /// Factor c times one coordinate along an axis.
@@ -43,7 +43,7 @@ pub struct NodePlace {
 ///
 /// Coordinates of the bodies (of a tree, or directors) come first, then those of the nodes.
 #[derive(Clone, Debug)]
-pub struct Motion {
+pub struct CoordinateMap {
     /// Number of coordinates u.
     pub coordinates: usize,
     /// Number of multipliers λ.
@@ -65,7 +65,7 @@ pub(super) fn body_offset(body: usize) -> usize {
     12 * body
 }
 
-impl Motion {
+impl CoordinateMap {
     /// Joint coordinates of a tree, and coordinates of nodes.
     pub fn articulated(
         tree: Tree,
@@ -74,7 +74,7 @@ impl Motion {
         multipliers: usize,
     ) -> Self {
         let parts = parts_of_nodes(tree.coordinates(), nodes);
-        let dependence = |(vector, packed): (&MaterialVector, &Packed)| {
+        let dependence = |(vector, packed): (&MaterialVector, &TangentColumns)| {
             if vector.is_of_bodies() {
                 Dependence::Articulated(packed.clone())
             } else {
@@ -125,14 +125,14 @@ impl Motion {
     }
 
     /// Storage for an instant.
-    pub fn instant(&self) -> Instant {
+    pub fn instant(&self) -> Configuration {
         let zeros = || vec![Vector::zeros(); self.vectors.len()];
         let columns = vec![0.0; self.tree.as_ref().map_or(0, Tree::size)];
         let mut z = vec![0.0; self.unknowns()];
         for _ in 0..self.charts() {
             z.extend([1.0, 0.0, 0.0, 0.0]);
         }
-        Instant {
+        Configuration {
             z,
             l: vec![0.0; self.unknowns()],
             x: zeros(),
@@ -156,7 +156,7 @@ impl Motion {
     }
 
     /// An instant placed at coordinates, and multipliers and charts where they are given.
-    pub fn placed(&self, z: &[f64]) -> Instant {
+    pub fn placed(&self, z: &[f64]) -> Configuration {
         let mut instant = self.instant();
         instant.z[..z.len()].copy_from_slice(z);
         self.place(&mut instant);
@@ -164,14 +164,14 @@ impl Motion {
     }
 
     /// x = F(u) and the columns of P.
-    pub fn place(&self, instant: &mut Instant) {
+    pub fn place(&self, instant: &mut Configuration) {
         self.vectors(instant);
         self.tangent(instant);
     }
 
     /// x = F(u).
-    pub fn vectors(&self, instant: &mut Instant) {
-        let Instant {
+    pub fn vectors(&self, instant: &mut Configuration) {
+        let Configuration {
             z, x, tree: state, ..
         } = instant;
         if let Some(tree) = &self.tree {
@@ -185,7 +185,7 @@ impl Motion {
     }
 
     /// The columns of P, once the vectors are known; linear vectors need none.
-    pub fn tangent(&self, instant: &mut Instant) {
+    pub fn tangent(&self, instant: &mut Configuration) {
         if let Some(tree) = &self.tree {
             tree.tangent(&mut instant.tree, &mut instant.columns);
         }
@@ -207,7 +207,7 @@ impl Motion {
     }
 
     /// w = P l and, for a tree, the derivatives of the columns along l.
-    pub fn along(&self, instant: &mut Instant) {
+    pub fn along(&self, instant: &mut Configuration) {
         if let Some(tree) = &self.tree {
             tree.along(instant);
         }
@@ -217,7 +217,7 @@ impl Motion {
     }
 
     /// Adds Pᵀ R of the forces on an instant to the rows of the coordinates; needs no columns.
-    pub fn rows(&self, instant: &mut Instant, rows: &mut [f64]) {
+    pub fn rows(&self, instant: &mut Configuration, rows: &mut [f64]) {
         if let Some(tree) = &self.tree {
             tree.pull_back(&mut instant.tree, &instant.forces, rows);
         }
@@ -268,7 +268,7 @@ impl Motion {
     }
 
     /// Poses of the bodies at an instant.
-    pub fn poses(&self, instant: &Instant, bodies: usize) -> Vec<Pose> {
+    pub fn poses(&self, instant: &Configuration, bodies: usize) -> Vec<Pose> {
         if self.tree.is_some() {
             return instant.tree.poses[..bodies].to_vec();
         }
@@ -283,7 +283,7 @@ impl Motion {
     }
 
     /// Directors of a body at a placed instant.
-    pub fn directors(&self, instant: &Instant, body: usize) -> Matrix {
+    pub fn directors(&self, instant: &Configuration, body: usize) -> Matrix {
         match self.tree {
             Some(_) => instant.tree.poses[body].directors,
             None => Matrix::from_column_slice(&instant.z[body_offset(body) + 3..][..9]),

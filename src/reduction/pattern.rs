@@ -8,12 +8,12 @@ use rustc_hash::FxHashMap;
 
 /// Places of the entries of one kind of block, in the order in which they were asked for.
 #[derive(Clone, Debug, Default)]
-pub struct Pattern {
+pub struct BlockPattern {
     entries: Vec<(usize, usize)>,
     slots: FxHashMap<(u32, u32), u32>,
 }
 
-impl Pattern {
+impl BlockPattern {
     /// Slot of an entry, which joins the pattern if it is new.
     pub fn slot(&mut self, row: usize, col: usize) -> usize {
         let entries = &mut self.entries;
@@ -38,22 +38,22 @@ impl Pattern {
 
 /// The blocks of one step and their places in its segment of the values.
 #[derive(Clone, Debug, Default)]
-pub struct Layout {
+pub struct StepPattern {
     /// (z_k, z_k).
-    pub same: Pattern,
+    pub same: BlockPattern,
     /// (z_{k+1}, z_k), and likewise (z_k, z_{k+1}).
-    pub cross: Pattern,
+    pub cross: BlockPattern,
     /// (z_k, s_k), and likewise (z_{k+1}, s_k).
-    pub mixed: Pattern,
+    pub mixed: BlockPattern,
     /// (s_k, s_k), lower triangle.
-    pub scalars: Pattern,
+    pub scalars: BlockPattern,
     /// Number of entries of z.
     pub unknowns: usize,
     /// Number of scalars of an interval.
     pub interval_scalars: usize,
 }
 
-impl Layout {
+impl StepPattern {
     /// Places of (z_k, z_k).
     pub fn same_at(&self, k: usize) -> usize {
         k * self.stride()

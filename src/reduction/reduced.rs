@@ -1,25 +1,25 @@
 //! A functional seen through coordinates.
 
-use crate::functional::{Blocks, Frame, Horizon, Level, Output, Part, Sides, Sum};
+use crate::functional::{Blocks, Sample, Horizon, Order, Output, Part, BlockMask, Functional};
 use crate::math::{Matrix, Vector};
-use crate::reduction::instant::Instant;
-use crate::reduction::motion::Motion;
-use crate::reduction::pattern::Layout;
-use crate::reduction::pull_back::{PullBack, Site, Target};
+use crate::reduction::instant::Configuration;
+use crate::reduction::motion::CoordinateMap;
+use crate::reduction::pattern::StepPattern;
+use crate::reduction::pull_back::{PullBack, Site, Destination};
 
 /// Sums over intervals and instants as functions of the coordinates z of the instants and the scalars of the intervals.
 #[derive(Debug)]
 pub struct Reduced {
     /// Coordinates and the vectors that follow from them.
-    pub motion: Motion,
+    pub motion: CoordinateMap,
     /// Sum over intervals; its scalars are voltages.
-    pub intervals: Sum,
+    pub intervals: Functional,
     /// Sum over instants; its scalars are multipliers.
-    pub instants: Sum,
+    pub instants: Functional,
     interval_plan: PullBack,
     instant_plan: PullBack,
     curvature: Vec<[usize; 2]>,
-    layout: Layout,
+    layout: StepPattern,
 }
 
 /// What an interval is asked with, besides its two instants.
@@ -34,7 +34,7 @@ pub struct Interval<'a> {
     /// Whether the length is an argument.
     pub horizon: Horizon,
     /// Which blocks are asked for.
-    pub sides: Sides,
+    pub sides: BlockMask,
     /// Weights of the measures of the site.
     pub weights: &'a [f64],
 }
@@ -47,14 +47,14 @@ impl<'a> Interval<'a> {
             along: &[],
             h,
             horizon: Horizon::Given,
-            sides: Sides::ALL,
+            sides: BlockMask::ALL,
             weights: &[],
         }
     }
 
     /// What effects read of it.
-    pub fn frame(&self, [a, b]: [&'a Instant; 2]) -> Frame<'a> {
-        Frame {
+    pub fn frame(&self, [a, b]: [&'a Configuration; 2]) -> Sample<'a> {
+        Sample {
             vectors: [&a.x, &b.x],
             along: [&a.w, &b.w],
             scalars: self.scalars,
@@ -117,11 +117,11 @@ impl Scratch {
     }
 
     /// Moves the blocks of the second instant of the interval evaluated last to the next interval.
-    pub fn carry(&mut self, level: Level) {
-        if level >= Level::Hessian {
+    pub fn carry(&mut self, level: Order) {
+        if level >= Order::Hessian {
             self.carried[0].exchange(&mut self.interval.plain.blocks);
         }
-        if level == Level::Third {
+        if level == Order::Third {
             self.carried[1].exchange(&mut self.interval.contracted.blocks);
         }
     }
@@ -129,11 +129,11 @@ impl Scratch {
 
 impl Reduced {
     /// Lays down the structure.
-    pub fn new(motion: Motion, intervals: Sum, instants: Sum) -> Self {
-        let mut layout = Layout {
+    pub fn new(motion: CoordinateMap, intervals: Functional, instants: Functional) -> Self {
+        let mut layout = StepPattern {
             unknowns: motion.unknowns(),
             interval_scalars: intervals.scalars,
-            ..Layout::default()
+            ..StepPattern::default()
         };
         let interval_plan =
             PullBack::new(&intervals.couplings, &motion, &mut layout, Site::Intervals);
@@ -154,14 +154,14 @@ impl Reduced {
     }
 
     /// Where entries lie.
-    pub fn layout(&self) -> &Layout {
+    pub fn layout(&self) -> &StepPattern {
         &self.layout
     }
 
     /// Storage for evaluations up to a level; sweeps, which carry blocks on, need `Third`.
-    pub fn scratch(&self, level: Level) -> Scratch {
+    pub fn scratch(&self, level: Order) -> Scratch {
         let interval = self.intervals.output(level);
-        let carried = if level == Level::Third {
+        let carried = if level == Order::Third {
             Carried::new(&interval.plain.blocks)
         } else {
             Carried::new(&Blocks::default())
@@ -178,8 +178,8 @@ impl Reduced {
     /// directions, with contracted forces and the measures of the site by their weights.
     pub fn evaluate_interval(
         &self,
-        level: Level,
-        [a, b]: [&mut Instant; 2],
+        level: Order,
+        [a, b]: [&mut Configuration; 2],
         interval: &Interval<'_>,
         scratch: &mut Scratch,
     ) {
@@ -189,7 +189,7 @@ impl Reduced {
         let out = &scratch.interval;
         add(&mut a.forces, &out.plain.forces[0]);
         add(&mut b.forces, &out.plain.forces[1]);
-        if level == Level::Third {
+        if level == Order::Third {
             add(&mut a.contracted, &out.contracted.forces[0]);
             add(&mut b.contracted, &out.contracted.forces[1]);
         }
@@ -199,15 +199,15 @@ impl Reduced {
     /// lower triangle of ∇³ along the directions at level `Third`.
     pub fn pull_back_interval(
         &self,
-        level: Level,
-        [a, b]: [&Instant; 2],
+        level: Order,
+        [a, b]: [&Configuration; 2],
         &Interval { horizon, sides, .. }: &Interval<'_>,
         k: usize,
         scratch: &mut Scratch,
         values: &mut [f64],
     ) {
         let layout = &self.layout;
-        let target = Target {
+        let target = Destination {
             blocks: [
                 layout.same_at(k),
                 layout.upper_at(k),
@@ -222,12 +222,12 @@ impl Reduced {
         } = scratch;
         let (plain, contracted) = (&interval.plain, &interval.contracted);
         match level {
-            Level::Gradient => return,
-            Level::Hessian => {
+            Order::Gradient => return,
+            Order::Hessian => {
                 self.interval_plan
                     .hessian([a, b], plain, sides, &target, local, values);
             }
-            Level::Third => {
+            Order::Third => {
                 self.interval_plan.third(
                     [a, b],
                     [plain, contracted],
@@ -239,7 +239,7 @@ impl Reduced {
             }
         }
         if horizon == Horizon::Free {
-            let part = if level == Level::Third {
+            let part = if level == Order::Third {
                 contracted
             } else {
                 plain
@@ -249,7 +249,7 @@ impl Reduced {
                 let rows = &mut values[at..at + layout.unknowns];
                 self.motion
                     .pull_back(&instant.columns, &part.horizon_forces[side], rows);
-                if level == Level::Third {
+                if level == Order::Third {
                     let forces = &plain.horizon_forces[side];
                     self.motion
                         .pull_back_along(&instant.columns_l, forces, rows);
@@ -269,10 +269,10 @@ impl Reduced {
     /// of a target.
     pub fn pull_back_part(
         &self,
-        ends: [&Instant; 2],
+        ends: [&Configuration; 2],
         part: &Part,
-        sides: Sides,
-        target: &Target,
+        sides: BlockMask,
+        target: &Destination,
         scratch: &mut Scratch,
         values: &mut [f64],
     ) {
@@ -284,20 +284,20 @@ impl Reduced {
     /// Pulls back the blocks that the last interval of a sweep carried on to the final instant k.
     pub fn pull_back_last(
         &self,
-        level: Level,
-        last: &Instant,
+        level: Order,
+        last: &Configuration,
         k: usize,
         scratch: &mut Scratch,
         values: &mut [f64],
     ) {
-        if level == Level::Gradient {
+        if level == Order::Gradient {
             return;
         }
         scratch.interval.plain.clear(true);
         scratch.interval.contracted.clear(true);
         scratch.carry(level);
         let same = self.layout.same_at(k);
-        let target = Target {
+        let target = Destination {
             blocks: [same; 4],
             mixed: [usize::MAX; 2],
             scalars: self.layout.scalars_at(k),
@@ -308,42 +308,42 @@ impl Reduced {
         let (plain, contracted) = (&interval.plain, &interval.contracted);
         let ends = [last, last];
         match level {
-            Level::Third => self.interval_plan.third(
+            Order::Third => self.interval_plan.third(
                 ends,
                 [plain, contracted],
-                Sides::HERE,
+                BlockMask::HERE,
                 &target,
                 local,
                 values,
             ),
             _ => self
                 .interval_plan
-                .hessian(ends, plain, Sides::HERE, &target, local, values),
+                .hessian(ends, plain, BlockMask::HERE, &target, local, values),
         }
     }
 
     /// Evaluates an instant and adds its forces.
     pub fn evaluate_instant(
         &self,
-        level: Level,
-        instant: &mut Instant,
+        level: Order,
+        instant: &mut Configuration,
         weights: &[f64],
         scratch: &mut Scratch,
     ) {
         let n = self.motion.coordinates;
-        let frame = Frame {
+        let frame = Sample {
             vectors: [&instant.x, &instant.x],
             along: [&instant.w, &instant.w],
             scalars: &instant.z[n..self.motion.unknowns()],
             scalars_along: &instant.l[n..],
             h: 1.0,
             horizon: Horizon::Given,
-            sides: Sides::HERE,
+            sides: BlockMask::HERE,
             weights,
         };
         self.instants.evaluate(level, &frame, &mut scratch.instant);
         add(&mut instant.forces, &scratch.instant.plain.forces[0]);
-        if level == Level::Third {
+        if level == Order::Third {
             add(
                 &mut instant.contracted,
                 &scratch.instant.contracted.forces[0],
@@ -355,14 +355,14 @@ impl Reduced {
     /// on it, to the values of instant k; levels as for an interval.
     pub fn pull_back_instant(
         &self,
-        level: Level,
-        instant: &mut Instant,
+        level: Order,
+        instant: &mut Configuration,
         k: usize,
         scratch: &mut Scratch,
         values: &mut [f64],
     ) {
         let same = self.layout.same_at(k);
-        let target = Target {
+        let target = Destination {
             blocks: [same; 4],
             mixed: [same, usize::MAX],
             scalars: usize::MAX,
@@ -374,19 +374,19 @@ impl Reduced {
         } = scratch;
         let (plain, contracted) = (&output.plain, &output.contracted);
         match level {
-            Level::Gradient => return,
-            Level::Hessian => self.instant_plan.hessian(
+            Order::Gradient => return,
+            Order::Hessian => self.instant_plan.hessian(
                 [instant, instant],
                 plain,
-                Sides::HERE,
+                BlockMask::HERE,
                 &target,
                 local,
                 values,
             ),
-            Level::Third => self.instant_plan.third(
+            Order::Third => self.instant_plan.third(
                 [instant, instant],
                 [plain, contracted],
-                Sides::HERE,
+                BlockMask::HERE,
                 &target,
                 local,
                 values,
@@ -395,14 +395,14 @@ impl Reduced {
         if let Some(tree) = &self.motion.tree {
             let values = &mut values[same..];
             match level {
-                Level::Third => tree.curvature_along(instant, &self.curvature, values),
+                Order::Third => tree.curvature_along(instant, &self.curvature, values),
                 _ => tree.curvature(instant, &self.curvature, values),
             }
         }
     }
 
     /// Momentum Pᵀ ∂T/∂ẋ of each coordinate of a placed instant with rates `rates` of the coordinates.
-    pub fn momentum(&self, instant: &mut Instant, rates: &[f64]) -> Vec<f64> {
+    pub fn momentum(&self, instant: &mut Configuration, rates: &[f64]) -> Vec<f64> {
         instant.l.fill(0.0);
         instant.l[..rates.len()].copy_from_slice(rates);
         self.motion.along(instant);
@@ -418,7 +418,7 @@ impl Reduced {
     /// Adds Pᵀ R to the first rows and the rows of the multipliers to the others.
     ///
     /// The instant has to be evaluated last.
-    pub fn rows(&self, instant: &mut Instant, scratch: &Scratch, rows: &mut [f64]) {
+    pub fn rows(&self, instant: &mut Configuration, scratch: &Scratch, rows: &mut [f64]) {
         self.motion.rows(instant, rows);
         for (row, value) in rows[self.motion.coordinates..]
             .iter_mut()

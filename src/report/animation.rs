@@ -6,10 +6,10 @@ use serde_json::{Value, json};
 use crate::model::system::Attachment;
 use crate::report::Run;
 use crate::report::markup::escape;
-use crate::report::plotly::{Figure, Frame, Trace, layout, rgb};
+use crate::report::plotly::{Figure, AnimationFrame, Trace, layout, rgb};
 use crate::report::pose::{ANGLES, lumped};
 use crate::report::skins::{Skin, shown};
-use crate::report::solids::{Mesh, Prism};
+use crate::report::solids::{SurfaceMesh, Prism};
 use crate::report::style::{self, Colour};
 use crate::report::ties;
 use crate::report::view::View;
@@ -40,7 +40,7 @@ pub fn figure(run: &Run<'_>) -> Figure {
         traces
     };
     let has_ties = usize::from(run.system.components.iter().next().is_some());
-    let frame = |&k: &usize| Frame {
+    let frame = |&k: &usize| AnimationFrame {
         name: name(k),
         traces: (0..3 + kinds.len() + has_ties).collect(),
         data: moving(k, false),
@@ -77,7 +77,7 @@ struct Stage<'a> {
 
 impl Stage<'_> {
     fn bodies(&self, k: usize) -> Trace {
-        let mut mesh = Mesh::default();
+        let mut mesh = SurfaceMesh::default();
         for (body, pose) in self
             .run
             .system
@@ -96,7 +96,7 @@ impl Stage<'_> {
     fn muscles(&self, k: usize) -> Trace {
         let trajectory = self.run.trajectory;
         let voltages = trajectory.voltages.get(k.saturating_sub(1));
-        let mut mesh = Mesh::default();
+        let mut mesh = SurfaceMesh::default();
         let mut intensity = Vec::new();
         for i in lumped(self.run.system) {
             mesh.add_prism(&Prism::muscle(self.run.system, trajectory, k, i));
@@ -132,7 +132,7 @@ impl Stage<'_> {
         let skins = self.run.skins;
         let position = skins.position(k);
         let of_kind = |skin: &&Skin| skin.is_charged == is_charged;
-        let (mut mesh, mut kilovolts) = (Mesh::default(), Vec::new());
+        let (mut mesh, mut kilovolts) = (SurfaceMesh::default(), Vec::new());
         for skin in skins.list.iter().filter(of_kind) {
             let first = mesh.vertices.len();
             mesh.vertices.extend(&skin.places[position]);
@@ -205,7 +205,7 @@ impl Stage<'_> {
 
     /// Axes that stay while the motion runs, seen as in the figure of the configuration.
     fn scene(&self, instants: &[usize]) -> Value {
-        let mut mesh = Mesh::default();
+        let mut mesh = SurfaceMesh::default();
         for &k in instants {
             for (body, pose) in self
                 .run
@@ -313,7 +313,7 @@ fn buttons(pace: f64) -> Value {
 }
 
 /// A surface; what does not say so otherwise answers nothing to the mouse.
-fn surface(mesh: &Mesh, mut look: Value) -> Trace {
+fn surface(mesh: &SurfaceMesh, mut look: Value) -> Trace {
     look["type"] = "mesh3d".into();
     look["hoverinfo"] = "skip".into();
     let [x, y, z] = columns(&mesh.vertices);

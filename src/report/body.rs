@@ -13,7 +13,7 @@ use crate::report::view::{View, hull};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tint {
     /// The initial configuration in light grey.
-    Ghost,
+    Reference,
     /// The deflected state in colour.
     Coloured,
 }
@@ -21,14 +21,14 @@ pub enum Tint {
 impl Tint {
     fn colour(self) -> Colour {
         match self {
-            Self::Ghost => style::GHOST,
+            Self::Reference => style::REFERENCE,
             Self::Coloured => style::BODY,
         }
     }
 
     fn edge(self) -> Colour {
         match self {
-            Self::Ghost => style::GHOST.mix(style::INK, 0.1),
+            Self::Reference => style::REFERENCE.mix(style::INK, 0.1),
             Self::Coloured => style::BODY.mix(style::INK, 0.45),
         }
     }

@@ -12,7 +12,7 @@ use crate::report::style::{self, Colour, Dash};
 const FINE: f64 = 16.0;
 
 /// A place on the sheet in pt, to the right and down from the upper left corner.
-pub type Place = [f64; 2];
+pub type CanvasPoint = [f64; 2];
 
 /// Colour, width and dash of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,7 +118,7 @@ const IN_MEMORY: &str = "drawing into memory does not fail";
 
 impl Canvas<'_> {
     /// A line through the places, interrupted where one of them is not finite.
-    pub fn line(&self, places: &[Place], stroke: Stroke) {
+    pub fn line(&self, places: &[CanvasPoint], stroke: Stroke) {
         for run in places.split(|p| !finite(p)) {
             let run: Vec<_> = run.iter().map(pixel).collect();
             if run.len() < 2 {
@@ -137,13 +137,13 @@ impl Canvas<'_> {
     }
 
     /// A closed line.
-    pub fn outline(&self, places: &[Place], stroke: Stroke) {
+    pub fn outline(&self, places: &[CanvasPoint], stroke: Stroke) {
         let closed: Vec<_> = places.iter().chain(places.first()).copied().collect();
         self.line(&closed, stroke);
     }
 
     /// A filled polygon.
-    pub fn fill(&self, places: &[Place], colour: Colour, opacity: f64) {
+    pub fn fill(&self, places: &[CanvasPoint], colour: Colour, opacity: f64) {
         if places.len() < 3 || !places.iter().all(finite) {
             return;
         }
@@ -155,7 +155,7 @@ impl Canvas<'_> {
     }
 
     /// A filled disc with a rim.
-    pub fn disc(&self, centre: Place, radius: f64, inside: Colour, rim: Stroke) {
+    pub fn disc(&self, centre: CanvasPoint, radius: f64, inside: Colour, rim: Stroke) {
         if !finite(&centre) {
             return;
         }
@@ -168,7 +168,7 @@ impl Canvas<'_> {
     }
 
     /// A line of text of the given size in pt, vertically centred on its place.
-    pub fn text(&self, place: Place, text: &str, size: f64, colour: Colour, align: Align) {
+    pub fn text(&self, place: CanvasPoint, text: &str, size: f64, colour: Colour, align: Align) {
         if text.is_empty() || !finite(&place) {
             return;
         }
@@ -213,7 +213,7 @@ fn wrap(text: &str, width: f64) -> Vec<String> {
     lines
 }
 
-fn finite(place: &Place) -> bool {
+fn finite(place: &CanvasPoint) -> bool {
     place.iter().all(|x| x.is_finite())
 }
 
@@ -221,7 +221,7 @@ fn fine(x: f64) -> i32 {
     (x * FINE).round() as i32
 }
 
-fn pixel(place: &Place) -> (i32, i32) {
+fn pixel(place: &CanvasPoint) -> (i32, i32) {
     (fine(place[0]), fine(place[1]))
 }
 

@@ -1,11 +1,11 @@
 //! The bar that says which colour is which voltage.
 
 use crate::report::axes::{Axis, Extent};
-use crate::report::canvas::{Align, Canvas, Place, Stroke};
+use crate::report::canvas::{Align, Canvas, CanvasPoint, Stroke};
 use crate::report::style;
 
 /// Colours of the voltages from zero to the full scale in V, labelled in kV; the upper left corner is given.
-pub fn colour_bar(canvas: &Canvas<'_>, [left, top]: Place, scale: f64) {
+pub fn colour_bar(canvas: &Canvas<'_>, [left, top]: CanvasPoint, scale: f64) {
     const STEPS: usize = 64;
     let (width, height) = (14.0, 120.0);
     let at = |fraction: f64| top + height * (1.0 - fraction);

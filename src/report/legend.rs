@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::report::canvas::{Align, Canvas, Place, Stroke, text_width};
+use crate::report::canvas::{Align, Canvas, CanvasPoint, Stroke, text_width};
 use crate::report::style::{self, Colour};
 use crate::report::view::View;
 
@@ -15,7 +15,7 @@ const TEXT: f64 = 20.0;
 
 /// How a thing looks in the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sample {
+pub enum LegendSymbol {
     /// A surface.
     Swatch(Colour),
     /// The path of a marker.
@@ -25,26 +25,26 @@ pub enum Sample {
 }
 
 /// Width in pt that rows take.
-pub fn width(rows: &[(String, Sample)]) -> f64 {
+pub fn width(rows: &[(String, LegendSymbol)]) -> f64 {
     let texts = rows.iter();
     let widths = texts.map(|(name, _)| text_width(name, style::TICK_SIZE));
     TEXT + widths.fold(0.0, f64::max)
 }
 
 /// The rows, the middle of the first at the given place.
-pub fn draw(canvas: &Canvas<'_>, [left, top]: Place, rows: &[(String, Sample)]) {
+pub fn draw(canvas: &Canvas<'_>, [left, top]: CanvasPoint, rows: &[(String, LegendSymbol)]) {
     let ink = Stroke::solid(style::INK, 1.1);
     for (i, (name, sample)) in rows.iter().enumerate() {
         let at = top + ROW * i as f64;
         match *sample {
-            Sample::Swatch(colour) => {
+            LegendSymbol::Swatch(colour) => {
                 let corners = [[0.0, -4.0], [14.0, -4.0], [14.0, 4.0], [0.0, 4.0]];
                 let corners = corners.map(|c| [left + c[0], at + c[1]]);
                 canvas.fill(&corners, colour.mix(style::PAPER, 0.55), 1.0);
                 canvas.outline(&corners, Stroke::solid(colour, 0.8));
             }
-            Sample::Path => canvas.line(&[[left, at], [left + 14.0, at]], ink),
-            Sample::Place => canvas.disc([left + 7.0, at], 2.4, style::INK, ink),
+            LegendSymbol::Path => canvas.line(&[[left, at], [left + 14.0, at]], ink),
+            LegendSymbol::Place => canvas.disc([left + 7.0, at], 2.4, style::INK, ink),
         }
         let place = [left + TEXT, at];
         canvas.text(place, name, style::TICK_SIZE, style::INK, Align::Left);
@@ -52,7 +52,7 @@ pub fn draw(canvas: &Canvas<'_>, [left, top]: Place, rows: &[(String, Sample)]) 
 }
 
 /// The axes of the ground frame, and a bar of a round length.
-pub fn triad(canvas: &Canvas<'_>, view: &View, at: Place) {
+pub fn triad(canvas: &Canvas<'_>, view: &View, at: CanvasPoint) {
     let unit = View {
         scale: 24.0,
         origin: at,

@@ -1,7 +1,7 @@
 //! Curves over a pair of axes: the plot that the other figures share.
 
 use crate::report::axes::{Axis, Scale};
-use crate::report::canvas::{self, Align, Canvas, Place, Stroke, text_width};
+use crate::report::canvas::{self, Align, Canvas, CanvasPoint, Stroke, text_width};
 use crate::report::origin::Origin;
 use crate::report::style::{self, Colour, Dash};
 
@@ -142,7 +142,7 @@ impl LinePlot {
             top + frame[1] + MARGIN[2],
         ];
         canvas::svg(size, origin, |canvas| {
-            let plot = Frame {
+            let plot = PlotFrame {
                 canvas,
                 corner: [MARGIN[0], top],
                 size: frame,
@@ -199,14 +199,14 @@ fn equal_frame(ranges: [[f64; 2]; 2], scale: f64) -> ([f64; 2], [[f64; 2]; 2]) {
 }
 
 /// The rectangle between the axes.
-struct Frame<'a, 'b> {
+struct PlotFrame<'a, 'b> {
     canvas: &'a Canvas<'b>,
-    corner: Place,
+    corner: CanvasPoint,
     size: [f64; 2],
     ranges: [[f64; 2]; 2],
 }
 
-impl Frame<'_, '_> {
+impl PlotFrame<'_, '_> {
     fn horizontal(&self, position: f64) -> f64 {
         let [low, high] = self.ranges[0];
         self.corner[0] + self.size[0] * (position - low) / (high - low)
@@ -277,7 +277,7 @@ impl Frame<'_, '_> {
     }
 
     /// A curve, and its labels where none of another curve stands yet; `labelled` are the places and widths of those.
-    fn series(&self, series: &Series, x: &Axis, y: &Axis, labelled: &mut Vec<(Place, f64)>) {
+    fn series(&self, series: &Series, x: &Axis, y: &Axis, labelled: &mut Vec<(CanvasPoint, f64)>) {
         let places: Vec<_> = series
             .points
             .iter()
@@ -296,7 +296,7 @@ impl Frame<'_, '_> {
             let at = [place[0], place[1] + beside];
             let size = style::LABEL_OF_POINT_SIZE;
             let width = text_width(label, size);
-            let covers = |(other, its): &(Place, f64)| {
+            let covers = |(other, its): &(CanvasPoint, f64)| {
                 2.0 * (at[0] - other[0]).abs() < width + its && (at[1] - other[1]).abs() < size
             };
             if label.is_empty() || labelled.iter().any(covers) {
@@ -317,7 +317,7 @@ impl Frame<'_, '_> {
 }
 
 /// Line and marks of a series along places on the sheet.
-fn trace(canvas: &Canvas<'_>, places: &[Place], series: &Series) {
+fn trace(canvas: &Canvas<'_>, places: &[CanvasPoint], series: &Series) {
     if let Some(dash) = series.line {
         let stroke = Stroke {
             dash,
@@ -335,7 +335,7 @@ fn trace(canvas: &Canvas<'_>, places: &[Place], series: &Series) {
     }
 }
 
-fn legend_entry(canvas: &Canvas<'_>, [left, at]: Place, series: &Series) {
+fn legend_entry(canvas: &Canvas<'_>, [left, at]: CanvasPoint, series: &Series) {
     let sample = Series {
         mark: Mark::None,
         ..series.clone()

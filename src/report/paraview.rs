@@ -29,7 +29,7 @@ pub struct Field<'a> {
 
 /// One solid at an instant.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Grid<'a> {
+pub struct UnstructuredGrid<'a> {
     /// Places of the points.
     pub points: &'a [Vector3<f64>],
     /// Points of each cell, ordered as in [`Mesh::hexahedra`](crate::mesh::Mesh::hexahedra).
@@ -47,7 +47,7 @@ enum At {
     Cells,
 }
 
-impl<'a> Grid<'a> {
+impl<'a> UnstructuredGrid<'a> {
     fn fields(&self, at: At) -> &'a [Field<'a>] {
         match at {
             At::Points => self.point_data,
@@ -72,7 +72,7 @@ impl<'a> Grid<'a> {
 ///
 /// Where the values of a field are not as many as its components times points or cells, where fields of one name differ in
 /// their components, and where a cell has a point that does not exist.
-pub fn vtu(grids: &[Grid<'_>], origin: &Origin) -> Vec<u8> {
+pub fn vtu(grids: &[UnstructuredGrid<'_>], origin: &Origin) -> Vec<u8> {
     let mut text = head("UnstructuredGrid", origin);
     text.push_str("<UnstructuredGrid>\n");
     if !grids.is_empty() {
@@ -140,7 +140,7 @@ impl<'a> Series<'a> {
     }
 
     /// Writes the solids at a time in s as the next file; its path.
-    pub fn add(&mut self, time: f64, grids: &[Grid<'_>]) -> Result<PathBuf, WriteError> {
+    pub fn add(&mut self, time: f64, grids: &[UnstructuredGrid<'_>]) -> Result<PathBuf, WriteError> {
         let number = self.instants.len();
         let file = match &self.within {
             Some(folder) => format!("{folder}/{number:04}.vtu"),
@@ -161,7 +161,7 @@ impl<'a> Series<'a> {
 }
 
 /// Names and components of the fields of all grids, in the order of their first appearance.
-fn layout<'a>(grids: &[Grid<'a>], at: At) -> Vec<(&'a str, usize)> {
+fn layout<'a>(grids: &[UnstructuredGrid<'a>], at: At) -> Vec<(&'a str, usize)> {
     let mut names: Vec<(&str, usize)> = Vec::new();
     for grid in grids {
         for field in grid.fields(at) {
@@ -181,7 +181,7 @@ fn layout<'a>(grids: &[Grid<'a>], at: At) -> Vec<(&'a str, usize)> {
     names
 }
 
-fn piece(text: &mut String, grids: &[Grid<'_>]) {
+fn piece(text: &mut String, grids: &[UnstructuredGrid<'_>]) {
     let count = |at| grids.iter().map(|grid| grid.count(at)).sum::<usize>();
     let (points, cells) = (count(At::Points), count(At::Cells));
     line(
@@ -218,7 +218,7 @@ fn piece(text: &mut String, grids: &[Grid<'_>]) {
 }
 
 /// Points of the cells, counted over all solids.
-fn connectivity(grids: &[Grid<'_>]) -> Vec<u8> {
+fn connectivity(grids: &[UnstructuredGrid<'_>]) -> Vec<u8> {
     let (mut bytes, mut before) = (Vec::new(), 0);
     for grid in grids {
         for &point in grid.hexahedra.as_flattened() {

@@ -5,9 +5,9 @@ use nalgebra::Vector3;
 use crate::dynamics::trajectory::Trajectory;
 use crate::model::system::{Attachment, Fidelity, Joint, System};
 use crate::report::body::{Tint, draw_back, draw_front, extent_points};
-use crate::report::canvas::{self, Canvas, Place, Stroke};
+use crate::report::canvas::{self, Canvas, CanvasPoint, Stroke};
 use crate::report::colour_bar::colour_bar;
-use crate::report::legend::{self, Sample};
+use crate::report::legend::{self, LegendSymbol};
 use crate::report::origin::Origin;
 use crate::report::skin::{self, Paint};
 use crate::report::skins::{Skin, Skins};
@@ -95,10 +95,10 @@ pub fn svg(
     canvas::svg(size, origin, |canvas| {
         drawing.ground(canvas, &ground);
         if last > 0 {
-            drawing.instant(canvas, 0, Tint::Ghost);
+            drawing.instant(canvas, 0, Tint::Reference);
         } else {
             for skin in &skins.list {
-                drawing.skin(canvas, skin, &skin.reference, Tint::Ghost);
+                drawing.skin(canvas, skin, &skin.reference, Tint::Reference);
             }
         }
         drawing.instant(canvas, last, Tint::Coloured);
@@ -174,10 +174,10 @@ impl Drawing<'_> {
     fn ground(&self, canvas: &Canvas<'_>, plate: &[Vector3<f64>]) {
         let places = self.view.places(plate);
         let thickness = 4.0;
-        let lower: Vec<Place> = places.iter().map(|p| [p[0], p[1] + thickness]).collect();
-        canvas.fill(&lower, style::GHOST.mix(style::INK, 0.25), 1.0);
+        let lower: Vec<CanvasPoint> = places.iter().map(|p| [p[0], p[1] + thickness]).collect();
+        canvas.fill(&lower, style::REFERENCE.mix(style::INK, 0.25), 1.0);
         canvas.fill(&places, style::GRID, 1.0);
-        canvas.outline(&places, Stroke::solid(style::GHOST, 0.6));
+        canvas.outline(&places, Stroke::solid(style::REFERENCE, 0.6));
     }
 
     /// Bodies as glass around muscles and joints, what is far first.
@@ -227,7 +227,7 @@ impl Drawing<'_> {
     /// Colour of a muscle by its voltage.
     fn colour(&self, muscle: usize, tint: Tint) -> Colour {
         match tint {
-            Tint::Ghost => style::GRID,
+            Tint::Reference => style::GRID,
             Tint::Coloured => style::voltage(self.voltages[muscle].abs() / self.scale),
         }
     }
@@ -235,7 +235,7 @@ impl Drawing<'_> {
     /// The surface of a block, coloured as at the last instant: by its potentials, of a muscle by its voltage.
     fn skin(&self, canvas: &Canvas<'_>, skin: &Skin, places: &[Vector3<f64>], tint: Tint) {
         let paint = match (skin.muscle, skin.potentials.last()) {
-            (_, _) if tint == Tint::Ghost => Paint::Ghost,
+            (_, _) if tint == Tint::Reference => Paint::Reference,
             (Some(muscle), _) => Paint::Even(self.colour(muscle, tint)),
             (None, Some(potentials)) if skin.is_charged => Paint::Potential {
                 potentials,
@@ -286,7 +286,7 @@ impl Drawing<'_> {
     /// A line through the joints of each body, and a disc at each joint.
     fn joints(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
         let ink = match tint {
-            Tint::Ghost => style::GHOST,
+            Tint::Reference => style::REFERENCE,
             Tint::Coloured => style::INK.mix(style::PAPER, 0.25),
         };
         let places = self.view.places(&self.joint_places(k));
@@ -306,7 +306,7 @@ impl Drawing<'_> {
     /// Springs, tendons and other components.
     fn ties(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
         let ink = match tint {
-            Tint::Ghost => style::GHOST,
+            Tint::Reference => style::REFERENCE,
             Tint::Coloured => style::TIE,
         };
         for line in ties::lines(self.system, self.trajectory, k) {
@@ -331,7 +331,7 @@ impl Drawing<'_> {
     }
 
     /// What the drawn things are.
-    fn names(&self, last: usize) -> Vec<(String, Sample)> {
+    fn names(&self, last: usize) -> Vec<(String, LegendSymbol)> {
         let time = |k: usize| {
             let seconds = format!("{:.3}", self.trajectory.times[k] / 1e3);
             format!("{} s", seconds.trim_end_matches('0').trim_end_matches('.'))
@@ -347,22 +347,22 @@ impl Drawing<'_> {
         match last {
             0 => {
                 if has_blocks {
-                    rows.push(("reference".to_owned(), Sample::Swatch(style::GHOST)));
+                    rows.push(("reference".to_owned(), LegendSymbol::Swatch(style::REFERENCE)));
                 }
-                rows.push(("at rest".to_owned(), Sample::Swatch(now)));
+                rows.push(("at rest".to_owned(), LegendSymbol::Swatch(now)));
             }
             _ => {
                 let first = format!("at {}", time(0));
-                rows.push((first, Sample::Swatch(style::GHOST)));
+                rows.push((first, LegendSymbol::Swatch(style::REFERENCE)));
                 let held = if self.is_held { ", held" } else { "" };
                 let end = format!("at {}{held}", time(last));
-                rows.push((end, Sample::Swatch(now)));
+                rows.push((end, LegendSymbol::Swatch(now)));
             }
         }
         for marker in self.system.markers.iter().take(3) {
             rows.push(match last {
-                0 => (marker.name.clone(), Sample::Place),
-                _ => (format!("path of {}", marker.name), Sample::Path),
+                0 => (marker.name.clone(), LegendSymbol::Place),
+                _ => (format!("path of {}", marker.name), LegendSymbol::Path),
             });
         }
         rows

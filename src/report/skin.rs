@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::report::canvas::{Canvas, Place, Stroke};
+use crate::report::canvas::{Canvas, CanvasPoint, Stroke};
 use crate::report::skins::{Skin, normal};
 use crate::report::style::{self, Colour};
 use crate::report::view::View;
@@ -22,7 +22,7 @@ const FEW: usize = 1000;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Paint<'a> {
     /// The initial configuration: outlines on light grey.
-    Ghost,
+    Reference,
     /// One colour.
     Even(Colour),
     /// Amounts of the potential at the corners in V, and the full scale of the colours.
@@ -53,20 +53,20 @@ pub fn draw(
         }
     }
     faces.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let is_ghost = paint == Paint::Ghost;
+    let is_ghost = paint == Paint::Reference;
     let few = faces.len() < FEW;
     for (_, quad, sharp, corners, normal) in faces {
         let strength = if is_ghost { 0.12 } else { 0.34 };
         let shade = strength * (1.0 - normal.dot(&light).max(0.0));
         let sheet = corners.map(|corner| view.place(&corner));
-        let patch = |corners: &[Place; 4], colour: Colour| {
+        let patch = |corners: &[CanvasPoint; 4], colour: Colour| {
             let fill = colour.mix(style::INK, shade);
             canvas.fill(corners, fill, 1.0);
             // A seam between neighbours is painted over.
             canvas.outline(corners, Stroke::solid(fill, 0.3));
         };
         let middle = match paint {
-            Paint::Ghost => style::GRID,
+            Paint::Reference => style::GRID,
             Paint::Even(colour) => colour,
             Paint::Potential { potentials, scale } => {
                 let values = quad.map(|corner| potentials[corner] / scale);
@@ -97,7 +97,7 @@ pub fn draw(
 }
 
 /// A face in parts between which a quantity changes little, with its value in the middle of each.
-fn patches(corners: &[Place; 4], values: &[f64; 4]) -> Vec<([Place; 4], f64)> {
+fn patches(corners: &[CanvasPoint; 4], values: &[f64; 4]) -> Vec<([CanvasPoint; 4], f64)> {
     let count = |a: [usize; 2], b: [usize; 2]| {
         let change = |[from, to]: [usize; 2]| (values[to] - values[from]).abs();
         let parts = (change(a).max(change(b)) / STEP).ceil();
@@ -125,7 +125,7 @@ fn patches(corners: &[Place; 4], values: &[f64; 4]) -> Vec<([Place; 4], f64)> {
 /// How an edge is drawn: strong where it is the body's, faint where it is an element's.
 fn edge(fill: Colour, is_sharp: bool, length: f64, is_ghost: bool) -> Option<Stroke> {
     match (is_ghost, is_sharp) {
-        (true, true) => Some(Stroke::solid(style::GHOST, 0.6)),
+        (true, true) => Some(Stroke::solid(style::REFERENCE, 0.6)),
         (true, false) => None,
         (false, true) => Some(Stroke::solid(fill.mix(style::INK, 0.55), 0.7)),
         (false, false) if length < FINEST => None,
@@ -136,6 +136,6 @@ fn edge(fill: Colour, is_sharp: bool, length: f64, is_ghost: bool) -> Option<Str
     }
 }
 
-fn length([a, b]: [Place; 2]) -> f64 {
+fn length([a, b]: [CanvasPoint; 2]) -> f64 {
     (b[0] - a[0]).hypot(b[1] - a[1])
 }

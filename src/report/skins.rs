@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use nalgebra::Vector3;
 
-use crate::dynamics::History;
+use crate::dynamics::DiscreteTrajectory;
 use crate::model::system::Fidelity;
-use crate::model::{Continuum, Model};
+use crate::model::{SolidBlock, Model};
 
 /// Most instants that an animation shows.
 const FRAMES: usize = 80;
@@ -67,7 +67,7 @@ pub fn shown(times: &[f64], places: usize) -> Vec<usize> {
 
 impl Skins {
     /// Surfaces of the blocks of a model along a motion of one instant or more.
-    pub fn new(model: &Model, history: &History) -> Self {
+    pub fn new(model: &Model, history: &DiscreteTrajectory) -> Self {
         let mut muscles = model
             .system
             .muscles
@@ -75,7 +75,7 @@ impl Skins {
             .enumerate()
             .filter_map(|(i, m)| (m.fidelity != Fidelity::Lumped).then_some(i));
         let mut parts = Vec::new();
-        for continuum in &model.continua {
+        for continuum in &model.solids {
             let muscle = continuum.of_muscle.then(|| muscles.next()).flatten();
             parts.push(Skin::still(continuum, muscle));
         }
@@ -87,7 +87,7 @@ impl Skins {
             instant.z.copy_from_slice(&history.z[k]);
             model.action.motion.place(&mut instant);
             let scalars = history.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
-            for (continuum, (skin, nodes)) in model.continua.iter().zip(&mut parts) {
+            for (continuum, (skin, nodes)) in model.solids.iter().zip(&mut parts) {
                 let vectors = nodes.iter().map(|&n| instant.x[continuum.vectors[n]]);
                 skin.places.push(vectors.collect());
                 let potentials = match skin.muscle {
@@ -125,7 +125,7 @@ impl Skins {
 
 impl Skin {
     /// A surface at no instants yet, and the nodes of the mesh that its corners are.
-    fn still(continuum: &Continuum, muscle: Option<usize>) -> (Self, Vec<usize>) {
+    fn still(continuum: &SolidBlock, muscle: Option<usize>) -> (Self, Vec<usize>) {
         let mesh = &continuum.solid.mesh;
         let mut nodes = Vec::new();
         let mut corner = HashMap::new();

@@ -144,14 +144,14 @@ pub(super) fn slice(
 
 /// Vertices in mm and triangles of a surface.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Mesh {
+pub struct SurfaceMesh {
     /// Vertices in mm.
     pub vertices: Vec<Vector3<f64>>,
     /// Vertices of each triangle.
     pub triangles: Vec<[usize; 3]>,
 }
 
-impl Mesh {
+impl SurfaceMesh {
     /// Adds the surface of a body.
     pub fn add_body(&mut self, shape: &Shape, pose: &Pose) {
         match *shape {

@@ -34,7 +34,7 @@ pub const PASSIVE: Colour = Colour(0xd9, 0xcf, 0xbc);
 /// Springs and tendons.
 pub const TIE: Colour = Colour(0x8a, 0x5a, 0x2b);
 /// The initial configuration.
-pub const GHOST: Colour = Colour(0xc4, 0xc8, 0xcd);
+pub const REFERENCE: Colour = Colour(0xc4, 0xc8, 0xcd);
 
 /// Hues of Okabe and Ito that stand on white, distinguishable with any colour vision.
 const HUES: [Colour; 6] = [

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::report::canvas::Place;
+use crate::report::canvas::CanvasPoint;
 
 /// An orthographic view; lengths in mm become lengths on the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub struct View {
     /// Points per mm.
     pub scale: f64,
     /// Place of the origin on the sheet in pt.
-    pub origin: Place,
+    pub origin: CanvasPoint,
 }
 
 impl View {
@@ -36,7 +36,7 @@ impl View {
     }
 
     /// Place of a point on the sheet in pt.
-    pub fn place(&self, point: &Vector3<f64>) -> Place {
+    pub fn place(&self, point: &Vector3<f64>) -> CanvasPoint {
         [
             self.origin[0] + self.scale * self.right.dot(point),
             self.origin[1] - self.scale * self.up.dot(point),
@@ -44,7 +44,7 @@ impl View {
     }
 
     /// Places of many points.
-    pub fn places<'a>(&self, points: impl IntoIterator<Item = &'a Vector3<f64>>) -> Vec<Place> {
+    pub fn places<'a>(&self, points: impl IntoIterator<Item = &'a Vector3<f64>>) -> Vec<CanvasPoint> {
         points.into_iter().map(|p| self.place(p)).collect()
     }
 
@@ -58,7 +58,7 @@ impl View {
     pub fn fitted(
         self,
         points: &[Vector3<f64>],
-        corner: Place,
+        corner: CanvasPoint,
         size: [f64; 2],
     ) -> (Self, [f64; 2]) {
         let unit = Self {
@@ -88,14 +88,14 @@ impl View {
 }
 
 /// Convex hull of places, by Andrew's monotone chain.
-pub fn hull(mut places: Vec<Place>) -> Vec<Place> {
+pub fn hull(mut places: Vec<CanvasPoint>) -> Vec<CanvasPoint> {
     places.retain(|p| p.iter().all(|x| x.is_finite()));
     places.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    let turn = |o: Place, a: Place, b: Place| {
+    let turn = |o: CanvasPoint, a: CanvasPoint, b: CanvasPoint| {
         (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
     };
-    let half = |places: &mut dyn Iterator<Item = Place>| {
-        let mut chain: Vec<Place> = Vec::new();
+    let half = |places: &mut dyn Iterator<Item = CanvasPoint>| {
+        let mut chain: Vec<CanvasPoint> = Vec::new();
         for place in places {
             while let [.., a, b] = chain[..]
                 && turn(a, b, place) <= 0.0

@@ -5,7 +5,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::run::error::RunError;
-use crate::run::estimate::{Convergence, Measures, Sample, greatest};
+use crate::run::estimate::{Convergence, Measures, ErrorSample, greatest};
 
 /// No grid has more than so many times the intervals of the first.
 const FINEST: usize = 1 << 10;
@@ -14,7 +14,7 @@ const VARIABLES: usize = 2_000_000;
 
 /// What is asked about the error of discretisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wanted {
+pub enum AccuracyTarget {
     /// Grids are refined until every error is estimated below this.
     Below(f64),
     /// The error on the grid of the problem is estimated by one refinement.
@@ -27,7 +27,7 @@ pub struct Attempt<R> {
     /// The run.
     pub run: R,
     /// What of it is compared.
-    pub sample: Sample,
+    pub sample: ErrorSample,
     /// Number of intervals or steps.
     pub intervals: usize,
     /// Iterations of the solver.
@@ -56,7 +56,7 @@ pub struct Accuracy {
     /// Order where none is shown.
     pub assumed_order: f64,
     /// The grids, coarsest first.
-    pub levels: Vec<Level>,
+    pub levels: Vec<GridLevel>,
     /// Why there is no finer grid, where the accuracy is not met or no estimate could be made.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stopped: Option<String>,
@@ -64,7 +64,7 @@ pub struct Accuracy {
 
 /// A grid.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Level {
+pub struct GridLevel {
     /// Number of intervals or steps.
     pub intervals: usize,
     /// How it ended.
@@ -102,7 +102,7 @@ pub struct Refined<R> {
 /// # Errors
 /// The first run has no answer. A later one that has none ends the refinement.
 pub fn refine<R>(
-    wanted: Wanted,
+    wanted: AccuracyTarget,
     assumed: f64,
     stop: impl Fn() -> Option<&'static str>,
     mut attempt: impl FnMut(usize, Option<&R>) -> Result<Attempt<R>, RunError>,
@@ -113,7 +113,7 @@ pub fn refine<R>(
         attempt(times, before).map(|attempt| (attempt, began.elapsed().as_secs_f64()))
     };
     let (mut kept, seconds) = timed(1, None)?;
-    levels.push(Level::new(&kept, seconds));
+    levels.push(GridLevel::new(&kept, seconds));
     let mut times = 1;
     let mut iterations = kept.iterations;
     let mut convergence = Convergence::default();
@@ -142,14 +142,14 @@ pub fn refine<R>(
                 break;
             }
         };
-        let mut level = Level::new(&fine, seconds);
+        let mut level = GridLevel::new(&fine, seconds);
         if !fine.is_complete {
             stopped = Some(fine.status.to_owned());
             levels.push(level);
             break;
         }
         convergence.add(Some(&kept.sample), &fine.sample);
-        let Wanted::Below(requested) = wanted else {
+        let AccuracyTarget::Below(requested) = wanted else {
             estimate = convergence.errors_before(assumed);
             levels[0].estimate.clone_from(&estimate);
             levels.push(level);
@@ -165,8 +165,8 @@ pub fn refine<R>(
         }
     }
     let requested = match wanted {
-        Wanted::Below(value) => Some(value),
-        Wanted::Estimate => None,
+        AccuracyTarget::Below(value) => Some(value),
+        AccuracyTarget::Estimate => None,
     };
     Ok(Refined {
         run: kept.run,
@@ -189,7 +189,7 @@ fn is_below(estimate: &Measures, value: f64) -> bool {
     greatest(estimate).is_some_and(|(_, error)| error <= value)
 }
 
-impl Level {
+impl GridLevel {
     fn new<R>(attempt: &Attempt<R>, seconds: f64) -> Self {
         Self {
             intervals: attempt.intervals,

@@ -1,6 +1,6 @@
 //! Errors of discretisation in words: a line for each grid, and how it ended.
 
-use crate::run::accuracy::{Accuracy, Level};
+use crate::run::accuracy::{Accuracy, GridLevel};
 use crate::run::estimate::greatest;
 
 /// Errors that have a column, where a run has them.
@@ -21,7 +21,7 @@ impl Accuracy {
             let lead = if i == 0 { "  error of " } else { "" };
             head.push_str(&format!("{lead}{name:>10}"));
         }
-        let line = |level: &Level| {
+        let line = |level: &GridLevel| {
             let (n, i) = (level.intervals, level.iterations);
             let mut line = format!("{n:>9}{i:>12}{:>10.2}", level.seconds);
             if let Some(objective) = level.objective {

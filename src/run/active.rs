@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::control::problem::{Control, Duration, Limit};
-use crate::control::{Place, Row, Transcription, Variable};
+use crate::control::problem::{Control, Duration, PathConstraint};
+use crate::control::{When, Row, Transcription, Variable};
 use crate::math::significant;
-use crate::model::{JointGauge, Model, joint_unit};
+use crate::model::{JointReading, Model, joint_unit};
 use crate::nlp::Nlp;
 
 /// A bound that is reached.
@@ -33,7 +33,7 @@ pub fn active(
     model: &Model,
     control: &Control,
 ) -> Vec<Active> {
-    let mut seen = Seen::default();
+    let mut seen = ActiveLimits::default();
     let bounds = program.variables();
     for (i, variable) in program.unknowns().variables.iter().enumerate() {
         let [low, high] = [bounds.lower[i], bounds.upper[i]];
@@ -50,12 +50,12 @@ pub fn active(
                 }
             }
             Variable::Unknown { i, .. } if i < model.coordinate_count() => {
-                let of = |gauge: &JointGauge| gauge.coordinate == Some(i);
+                let of = |gauge: &JointReading| gauge.coordinate == Some(i);
                 let Some(joint) = model.gauges.iter().position(of) else {
                     continue;
                 };
                 for limit in &control.limits {
-                    let Limit::JointAngle { joint: j, min, max } = *limit else {
+                    let PathConstraint::JointAngle { joint: j, min, max } = *limit else {
                         continue;
                     };
                     let (name, unit) = (
@@ -92,7 +92,7 @@ pub fn active(
             continue;
         };
         let bounded = program.limit(limit);
-        if bounded.place == Place::Goal {
+        if bounded.when == When::Goal {
             continue;
         }
         let noun = match bounded.quantity.is_of_intervals() {
@@ -128,9 +128,9 @@ fn reached(value: f64, low: f64, high: f64) -> [bool; 2] {
 
 /// Counts by what is told.
 #[derive(Debug, Default)]
-struct Seen(BTreeMap<String, Active>);
+struct ActiveLimits(BTreeMap<String, Active>);
 
-impl Seen {
+impl ActiveLimits {
     fn add(&mut self, what: String, is_reached: bool, noun: &'static str, is_voltage: bool) {
         let entry = self.0.entry(what).or_insert_with_key(|what| Active {
             what: what.clone(),

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::dynamics::trajectory::Observations;
 use crate::kinematics::Carrier;
-use crate::model::{Continuum, Model};
+use crate::model::{SolidBlock, Model};
 
 /// A block, or a muscle of finite elements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -23,7 +23,7 @@ pub struct BlockSize {
 
 /// All blocks of a scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Blocks {
+pub struct BlockSizes {
     /// By name.
     pub blocks: BTreeMap<String, BlockSize>,
     /// Nodes of all blocks.
@@ -42,13 +42,13 @@ pub struct Blocks {
     pub instants_written: Option<usize>,
 }
 
-impl Blocks {
+impl BlockSizes {
     /// Those of a model; `None` where nothing is elastic.
     pub fn of(model: &Model) -> Option<Self> {
-        if model.continua.is_empty() {
+        if model.solids.is_empty() {
             return None;
         }
-        let named = model.continua.iter();
+        let named = model.solids.iter();
         let blocks: BTreeMap<_, _> = named
             .map(|c| (c.solid.name.clone(), BlockSize::of(model, c)))
             .collect();
@@ -65,7 +65,7 @@ impl Blocks {
 
     /// The same with the charges at the last instant observed and the number of instants written.
     pub(super) fn after(self, model: &Model, observed: &Observations, written: usize) -> Self {
-        let still = model.continua.iter().flat_map(Continuum::still_electrodes);
+        let still = model.solids.iter().flat_map(SolidBlock::still_electrodes);
         let still = still.map(|(block, electrode)| format!("{block}.{electrode}"));
         let driven = model.voltages.iter();
         let driven = driven.map(|&source| model.sources[source].name.clone());
@@ -82,7 +82,7 @@ impl Blocks {
 }
 
 impl BlockSize {
-    fn of(model: &Model, continuum: &Continuum) -> Self {
+    fn of(model: &Model, continuum: &SolidBlock) -> Self {
         let coordinates = |&vector: &usize| {
             let is_node = |carrier| matches!(carrier, Carrier::Node(_));
             let terms = &model.vectors[vector].terms;

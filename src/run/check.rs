@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, HashMap};
 use std::time::Instant;
 
 use crate::control::problem::{
-    Control, Duration, Guess, Objective, Simulation, Solver, State, Task, Voltages,
+    Control, Duration, Guess, Objective, Simulation, Solver, BoundaryState, Task, Voltages,
 };
 use crate::control::{Row, Transcription, Variable};
-use crate::ipopt::interrupt::Limit;
+use crate::ipopt::interrupt::TimeLimit;
 use crate::mesh::Mesh;
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
@@ -16,7 +16,7 @@ use crate::run::effects;
 use crate::run::error::RunError;
 use crate::run::memory;
 use crate::run::optimise::{Counted, Prepared, prepare, resolve};
-use crate::run::request::{Request, Told};
+use crate::run::request::{CommandInput, CommandOutput};
 use crate::scene::read_problem;
 
 /// Noise on each variable, relative to its size.
@@ -34,7 +34,7 @@ const WORK: f64 = 2e8;
 ///
 /// # Errors
 /// The input is wrong.
-pub fn check(request: &Request) -> Result<Told, RunError> {
+pub fn check(request: &CommandInput) -> Result<CommandOutput, RunError> {
     let began = Instant::now();
     let loaded = read_problem(&request.input, &request.set)?;
     memory::of_elements(&request.input, &loaded.system)?;
@@ -60,7 +60,7 @@ pub fn check(request: &Request) -> Result<Told, RunError> {
         sizes: &sizes,
     };
     let left = |seconds: f64| seconds - began.elapsed().as_secs_f64();
-    let limit = Limit::after(request.max_seconds.map(left));
+    let limit = TimeLimit::after(request.max_seconds.map(left));
     let mut stopped = None;
     let report = differences::check_along(&mut program, &x, along, SEED, || {
         stopped = limit.reached();
@@ -90,7 +90,7 @@ pub fn check(request: &Request) -> Result<Told, RunError> {
             report.unchecked.len()
         ),
     };
-    Ok(Told {
+    Ok(CommandOutput {
         is_solved: report.is_consistent(),
         result,
         notes,
@@ -99,7 +99,7 @@ pub fn check(request: &Request) -> Result<Told, RunError> {
 
 /// The size of each variable as the solver sees it: that of an element for the coordinates of its nodes.
 fn sizes(program: &Transcription<'_>, model: &Model) -> Vec<f64> {
-    let blocks = model.continua.iter().map(|block| &block.solid.mesh);
+    let blocks = model.solids.iter().map(|block| &block.solid.mesh);
     let edge = blocks
         .map(Mesh::shortest_edge)
         .fold(f64::INFINITY, f64::min);
@@ -151,7 +151,7 @@ fn coupling(program: &Transcription<'_>, model: &Model, row: &str, column: &str)
 
 /// The control problem whose program has the derivatives of a task.
 fn as_control(task: Task, system: &System) -> Control {
-    let at_reference = || State::JointAngles {
+    let at_reference = || BoundaryState::JointAngles {
         angles: BTreeMap::new(),
         rates: BTreeMap::new(),
         velocities: Default::default(),
@@ -181,7 +181,7 @@ fn as_control(task: Task, system: &System) -> Control {
     match task {
         Task::Control(control) => *control,
         Task::Simulate(simulation) => {
-            let silent = simulation.question(system, simulation.step).silent;
+            let silent = simulation.question(system, simulation.step).zero_voltage;
             let Simulation {
                 step,
                 start,

@@ -8,7 +8,7 @@ use crate::control::problem::Control;
 use crate::ipopt::interrupt;
 use crate::model::System;
 use crate::run::error::RunError;
-use crate::run::optimise::{Allowed, Iterate, Optimum, optimise};
+use crate::run::optimise::{SolveLimits, Iterate, Optimum, optimise};
 
 /// How many times the intervals of the problem are tried.
 const TIMES: [usize; 3] = [2, 4, 8];
@@ -34,7 +34,7 @@ pub(super) fn reproduced(
     file: &Path,
     system: &System,
     control: &Control,
-    allowed: Allowed,
+    allowed: SolveLimits,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Cured, RunError> {
     let began = Instant::now();
@@ -47,7 +47,7 @@ pub(super) fn reproduced(
             intervals,
             ..control.clone()
         };
-        let limits = Allowed {
+        let limits = SolveLimits {
             seconds: left(),
             ..allowed
         };

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::control::Solved;
+use crate::control::Solution;
 use crate::model::Model;
 use crate::model::system::JointKind;
 
@@ -22,9 +22,9 @@ impl Distance {
     /// Between instant `k` of a motion and instant `l` of another.
     pub(super) fn between(
         model: &Model,
-        motion: &Solved,
+        motion: &Solution,
         k: usize,
-        other: &Solved,
+        other: &Solution,
         l: usize,
     ) -> Self {
         let mut out = Self::default();
@@ -36,7 +36,7 @@ impl Distance {
     }
 
     /// The longest way of a joint, and of a body or a node, along a motion.
-    pub(super) fn way(model: &Model, motion: &Solved) -> Self {
+    pub(super) fn way(model: &Model, motion: &Solution) -> Self {
         let mut ways: Vec<(Kind, f64)> = Vec::new();
         for k in 1..motion.times.len() {
             each(model, motion, k - 1, motion, k, |i, kind, apart| {
@@ -119,9 +119,9 @@ fn metres(model: &Model) -> f64 {
 /// between its orientations, where joint coordinates do not tell all.
 fn each(
     model: &Model,
-    motion: &Solved,
+    motion: &Solution,
     k: usize,
-    other: &Solved,
+    other: &Solution,
     l: usize,
     mut visit: impl FnMut(usize, Kind, f64),
 ) {

@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use crate::control::problem::Control;
-use crate::functional::{Couplings, Effect, Kind};
+use crate::functional::{Couplings, Term, Kind};
 use crate::model::Model;
-use crate::reduction::Motion;
+use crate::reduction::CoordinateMap;
 use crate::run::reasons::{self, Absent, absent};
 use crate::run::stopwatch;
 
@@ -69,14 +69,14 @@ enum Matrix {
 /// An effect with the pairs of unknowns it couples, the smaller of each pair first, sorted; coordinates by entry, scalars
 /// of the site behind them.
 struct Coupled<'a> {
-    effect: &'a dyn Effect,
+    effect: &'a dyn Term,
     pairs: Vec<[u32; 2]>,
 }
 
 /// Counts of all effects of a model, each measured for `spent` seconds or one evaluation; of a control problem in its
 /// program, otherwise in the tangent.
 pub fn effect_counts(model: &Model, control: Option<&Control>, spent: f64) -> Vec<EffectCounts> {
-    let matrix = match (control, model.question.of_motion) {
+    let matrix = match (control, model.analysis.of_motion) {
         (Some(_), _) => Matrix::Program,
         (None, true) => Matrix::Step,
         (None, false) => Matrix::Rest,
@@ -123,7 +123,7 @@ fn each(model: &Model) -> impl Iterator<Item = Coupled<'_>> {
 }
 
 impl<'a> Coupled<'a> {
-    fn new(effect: &'a dyn Effect, motion: &Motion) -> Self {
+    fn new(effect: &'a dyn Term, motion: &CoordinateMap) -> Self {
         let mut couplings = Couplings::default();
         effect.couple(&mut couplings, &mut Vec::new());
         let scalar = |s: usize| motion.coordinates + s;
@@ -232,7 +232,7 @@ impl<'a> Coupled<'a> {
 }
 
 /// Direction of a coordinate that moves along one; `None` for a joint's.
-fn axis(motion: &Motion, i: usize) -> Option<usize> {
+fn axis(motion: &CoordinateMap, i: usize) -> Option<usize> {
     match i.checked_sub(motion.of_bodies) {
         Some(of_node) => Some(motion.of_nodes[of_node].1),
         None => motion.tree.is_none().then_some(i % 3),

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-use crate::dynamics::History;
+use crate::dynamics::DiscreteTrajectory;
 use crate::dynamics::trajectory::Trajectory;
 use crate::model::Model;
 use crate::model::system::JointKind;
@@ -26,7 +26,7 @@ const ROUNDING: f64 = 1e-13;
 
 /// What of a run is compared with the same on another grid, and with the motion at half the step.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Sample {
+pub struct ErrorSample {
     /// The objective; a simulation has none.
     pub objective: Option<f64>,
     /// The final time in ms, where it is free.
@@ -39,9 +39,9 @@ pub struct Sample {
     pub response: Option<f64>,
 }
 
-impl Sample {
+impl ErrorSample {
     /// A motion without objective.
-    pub fn of_motion(model: &Model, history: &History) -> Self {
+    pub fn of_motion(model: &Model, history: &DiscreteTrajectory) -> Self {
         let motion = Trajectory::from_history(model, history);
         let length = model.length();
         let of_bodies = model.action.motion.of_bodies;
@@ -140,7 +140,7 @@ struct Difference {
 
 impl Convergence {
     /// Takes in the next finer grid.
-    pub fn add(&mut self, coarse: Option<&Sample>, fine: &Sample) {
+    pub fn add(&mut self, coarse: Option<&ErrorSample>, fine: &ErrorSample) {
         let mut new = coarse
             .map(|coarse| coarse.differences(fine))
             .unwrap_or_default();

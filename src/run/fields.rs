@@ -7,14 +7,14 @@
 use std::fs;
 use std::path::Path;
 
-use crate::dynamics::History;
+use crate::dynamics::DiscreteTrajectory;
 use crate::element::{Fields, Viscosity};
 use crate::math::{Matrix, Vector};
-use crate::model::{Continuum, Model};
-use crate::reduction::Instant;
+use crate::model::{SolidBlock, Model};
+use crate::reduction::Configuration;
 use crate::report::atomic::WriteError;
 use crate::report::origin::Origin;
-use crate::report::paraview::{Field, Grid, Series};
+use crate::report::paraview::{Field, UnstructuredGrid, Series};
 
 /// Instants that are written at most.
 const MOST: usize = 200;
@@ -25,18 +25,18 @@ const FOLDER: &str = "fields";
 pub(super) fn write(
     folder: &Path,
     model: &Model,
-    history: &History,
+    history: &DiscreteTrajectory,
     origin: &Origin,
 ) -> Result<usize, WriteError> {
-    if model.continua.is_empty() {
+    if model.solids.is_empty() {
         return Ok(0);
     }
     let instants = spread(history.z.len(), MOST);
     let mut series = Series::build(folder, "trajectory", origin)?.within(FOLDER)?;
-    let mut states = States::new(model, history);
+    let mut states = SolidStates::new(model, history);
     for &k in &instants {
         let blocks: Vec<Block<'_>> = states.at(k);
-        let grids: Vec<Grid<'_>> = blocks.iter().map(Block::grid).collect();
+        let grids: Vec<UnstructuredGrid<'_>> = blocks.iter().map(Block::grid).collect();
         series.add(history.times[k] / 1e3, &grids)?;
     }
     series.finish()?;
@@ -45,10 +45,10 @@ pub(super) fn write(
 }
 
 /// Largest reference field −∂φ/∂X of an element in V/m at an instant; `None` where there is none.
-pub(super) fn largest_nominal_field(model: &Model, history: &History, k: usize) -> Option<f64> {
-    let mut states = States::new(model, history);
+pub(super) fn largest_nominal_field(model: &Model, history: &DiscreteTrajectory, k: usize) -> Option<f64> {
+    let mut states = SolidStates::new(model, history);
     let state = states.place(k);
-    let each = model.continua.iter().flat_map(|continuum| {
+    let each = model.solids.iter().flat_map(|continuum| {
         let (places, potentials) = (
             continuum.places(&state.here.x),
             continuum.potentials(state.scalars),
@@ -80,23 +80,23 @@ fn remove_older(folder: &Path, count: usize) {
 }
 
 /// The instants of a motion, one at a time.
-struct States<'m> {
+struct SolidStates<'m> {
     model: &'m Model,
-    history: &'m History,
-    here: Instant,
-    there: Instant,
+    history: &'m DiscreteTrajectory,
+    here: Configuration,
+    there: Configuration,
     none: Vec<f64>,
 }
 
 /// One instant: its places, those of the other end of its interval and the time to there, voltages and potentials.
-struct State<'s> {
-    here: &'s Instant,
-    there: Option<(&'s Instant, f64)>,
+struct SolidState<'s> {
+    here: &'s Configuration,
+    there: Option<(&'s Configuration, f64)>,
     scalars: &'s [f64],
 }
 
-impl<'m> States<'m> {
-    fn new(model: &'m Model, history: &'m History) -> Self {
+impl<'m> SolidStates<'m> {
+    fn new(model: &'m Model, history: &'m DiscreteTrajectory) -> Self {
         Self {
             model,
             history,
@@ -106,7 +106,7 @@ impl<'m> States<'m> {
         }
     }
 
-    fn place(&mut self, k: usize) -> State<'_> {
+    fn place(&mut self, k: usize) -> SolidState<'_> {
         let Self { model, history, .. } = *self;
         let last = history.z.len() - 1;
         let other = match k {
@@ -119,7 +119,7 @@ impl<'m> States<'m> {
         }
         let time = history.times[other] - history.times[k];
         let scalars = history.scalars.get(k.saturating_sub(1));
-        State {
+        SolidState {
             here: &self.here,
             there: (other != k).then_some((&self.there, time)),
             scalars: scalars.unwrap_or(&self.none),
@@ -129,7 +129,7 @@ impl<'m> States<'m> {
     fn at(&mut self, k: usize) -> Vec<Block<'m>> {
         let model = self.model;
         let state = self.place(k);
-        let blocks = model.continua.iter().enumerate();
+        let blocks = model.solids.iter().enumerate();
         blocks.map(|(b, c)| Block::new(b, c, &state)).collect()
     }
 }
@@ -143,7 +143,7 @@ struct Block<'m> {
 }
 
 impl<'m> Block<'m> {
-    fn new(number: usize, continuum: &'m Continuum, state: &State<'_>) -> Self {
+    fn new(number: usize, continuum: &'m SolidBlock, state: &SolidState<'_>) -> Self {
         let mesh = &continuum.solid.mesh;
         let places = continuum.places(&state.here.x);
         let potentials = continuum.potentials(state.scalars);
@@ -185,8 +185,8 @@ impl<'m> Block<'m> {
         }
     }
 
-    fn grid(&self) -> Grid<'_> {
-        Grid {
+    fn grid(&self) -> UnstructuredGrid<'_> {
+        UnstructuredGrid {
             points: &self.points,
             hexahedra: self.hexahedra,
             point_data: &self.point_data,
@@ -198,7 +198,7 @@ impl<'m> Block<'m> {
 /// Quantities of the elements.
 fn cells(
     number: usize,
-    continuum: &Continuum,
+    continuum: &SolidBlock,
     places: &[Vector],
     potentials: &[f64],
     velocities: Option<&[Vector]>,
@@ -253,7 +253,7 @@ fn cells(
 }
 
 /// Fields of an element without its viscosity.
-fn fields(continuum: &Continuum, e: usize, places: &[Vector], potentials: &[f64]) -> Fields {
+fn fields(continuum: &SolidBlock, e: usize, places: &[Vector], potentials: &[f64]) -> Fields {
     let (shape, nodes) = (&continuum.shapes[e], continuum.solid.mesh.hexahedra[e]);
     let x = nodes.map(|n| places[n]);
     if continuum.is_dielectric[e] {

@@ -12,12 +12,12 @@ pub(super) struct Followed {
     /// Largest fraction of the voltages among them.
     largest_fraction: f64,
     /// Where stability is lost.
-    pub(super) lost: Vec<Loss>,
+    pub(super) lost: Vec<StabilityLossRecord>,
 }
 
 /// A loss of stability.
 #[derive(Debug, Serialize)]
-pub(super) struct Loss {
+pub(super) struct StabilityLossRecord {
     /// Exact fraction of the voltages.
     pub(super) fraction: f64,
     /// `pull_in` or `buckling`.
@@ -29,7 +29,7 @@ pub(super) struct Loss {
 
 impl Followed {
     pub(super) fn new(found: &Continuation) -> Self {
-        let loss = |&(_, fraction, kind): &(usize, f64, Instability)| Loss {
+        let loss = |&(_, fraction, kind): &(usize, f64, Instability)| StabilityLossRecord {
             fraction,
             kind: kind.key(),
             words: kind.words(),

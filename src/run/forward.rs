@@ -4,12 +4,12 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::control::problem::{Afterwards, Simulation, Voltages};
-use crate::dynamics::{History, local_error, observations, out_of_domain};
+use crate::dynamics::{DiscreteTrajectory, local_error, observations, out_of_domain};
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
-use crate::run::blocks::Blocks;
+use crate::run::blocks::BlockSizes;
 use crate::run::comparison::{self, Comparison};
 use crate::run::domain;
 use crate::run::effects::Plan;
@@ -20,7 +20,7 @@ use crate::run::grids::integrate_to;
 use crate::run::integrate::{Simulated, grid, integrate};
 use crate::run::motion::{solved, trajectory};
 use crate::run::progress::{Progress, phase};
-use crate::run::request::{Request, Told};
+use crate::run::request::{CommandInput, CommandOutput};
 use crate::run::solution_file;
 use crate::run::steps;
 use crate::run::summary::{self, MEASURED, Seconds, Summary};
@@ -29,11 +29,11 @@ use crate::run::words::counted;
 
 /// Simulates and writes the folder; a motion that ends early is kept as far as it went.
 pub(super) fn simulation(
-    request: &Request,
+    request: &CommandInput,
     system: &System,
     task: &Simulation,
     began: Instant,
-) -> Result<Told, RunError> {
+) -> Result<CommandOutput, RunError> {
     let (steps, _) = grid(task);
     if task.tolerance.is_some() && request.wanted.is_some() {
         return Err(RunError::Problem {
@@ -59,7 +59,7 @@ pub(super) fn simulation(
         accuracy,
     ) = {
         let progress = Progress::of_steps(request.progress, steps);
-        let mut observer = |steps: usize, model: &Model, history: &History| {
+        let mut observer = |steps: usize, model: &Model, history: &DiscreteTrajectory| {
             let step = history.intervals();
             progress.step(steps, step);
             // A folder that cannot be made is told before a long run, not after it.
@@ -121,7 +121,7 @@ pub(super) fn simulation(
     summary.domain = domain::told(&out_of_domain(&model, &history));
     let origin = request.origin(false);
     let written = fields::write(&folder, &model, &history, &origin)?;
-    summary.blocks = Blocks::of(&model).map(|b| b.after(&model, &observed, written));
+    summary.blocks = BlockSizes::of(&model).map(|b| b.after(&model, &observed, written));
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),
         setup: read + setup,
@@ -197,7 +197,7 @@ pub(super) fn simulation(
         notes.extend(accuracy.notes());
         (word, is_solved) = accuracy.outcome(&word);
     }
-    Ok(Told {
+    Ok(CommandOutput {
         is_solved,
         result: format!(
             "{word}: {}, {} s of motion, {:.2} s, {}",

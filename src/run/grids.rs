@@ -5,15 +5,15 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::control::problem::{Control, Duration, Simulation, Voltages};
-use crate::dynamics::History;
+use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
-use crate::run::accuracy::{Attempt, Refined, Wanted, refine};
+use crate::run::accuracy::{Attempt, Refined, AccuracyTarget, refine};
 use crate::run::error::RunError;
-use crate::run::estimate::Sample;
+use crate::run::estimate::ErrorSample;
 use crate::run::integrate::{Simulated, grid, integrate};
 use crate::run::motion;
-use crate::run::optimise::{Allowed, Iterate, Optimum, optimise};
+use crate::run::optimise::{SolveLimits, Iterate, Optimum, optimise};
 
 /// The solver's tolerance as a part of the accuracy asked for, where the problem names no smaller one.
 const SOLVER: f64 = 1e-2;
@@ -32,8 +32,8 @@ pub fn optimise_to(
     file: &Path,
     system: &System,
     control: &Control,
-    wanted: Wanted,
-    allowed: Allowed,
+    wanted: AccuracyTarget,
+    allowed: SolveLimits,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Refined<Optimum>, RunError> {
     let began = Instant::now();
@@ -49,11 +49,11 @@ pub fn optimise_to(
         |times, before: Option<&Optimum>| {
             let mut control = control.clone();
             control.intervals *= times;
-            if let Wanted::Below(error) = wanted {
+            if let AccuracyTarget::Below(error) = wanted {
                 control.solver.tolerance = control.solver.tolerance.min(SOLVER * error);
             }
             let seconds = left();
-            let limits = Allowed { seconds, ..allowed };
+            let limits = SolveLimits { seconds, ..allowed };
             let earlier = before.map(|optimum| &optimum.motion);
             let mut run = optimise(file, system, &control, earlier, limits, &mut |iterate| {
                 observer(control.intervals, iterate)
@@ -64,7 +64,7 @@ pub fn optimise_to(
             let is_complete = run.meets_equations();
             let sample = match is_complete {
                 true => sample(&run, matches!(control.duration, Duration::Free { .. })),
-                false => Sample::default(),
+                false => ErrorSample::default(),
             };
             Ok(Attempt {
                 sample,
@@ -88,9 +88,9 @@ pub fn integrate_to(
     file: &Path,
     system: &System,
     task: &Simulation,
-    wanted: Wanted,
+    wanted: AccuracyTarget,
     seconds: Option<f64>,
-    observer: &mut dyn FnMut(usize, &Model, &History) -> ControlFlow<()>,
+    observer: &mut dyn FnMut(usize, &Model, &DiscreteTrajectory) -> ControlFlow<()>,
 ) -> Result<Refined<Simulated>, RunError> {
     let began = Instant::now();
     let left = || seconds.map(|s| s - began.elapsed().as_secs_f64());
@@ -121,8 +121,8 @@ pub fn integrate_to(
             };
             Ok(Attempt {
                 sample: match is_complete {
-                    true => Sample::of_motion(&run.model, &run.history),
-                    false => Sample::default(),
+                    true => ErrorSample::of_motion(&run.model, &run.history),
+                    false => ErrorSample::default(),
                 },
                 intervals: run.history.intervals(),
                 iterations: run.history.report.iterations,
@@ -145,24 +145,24 @@ fn stop(seconds: Option<f64>) -> Option<&'static str> {
 }
 
 /// What is compared of an optimum.
-fn sample(optimum: &Optimum, is_free: bool) -> Sample {
+fn sample(optimum: &Optimum, is_free: bool) -> ErrorSample {
     let kept = &optimum.motion;
-    let sample = Sample {
+    let sample = ErrorSample {
         objective: Some(optimum.solution.objective),
         duration: is_free.then(|| kept.times[kept.intervals()]),
-        ..Sample::of_motion(&optimum.model, &motion::history(&optimum.model, kept))
+        ..ErrorSample::of_motion(&optimum.model, &motion::history(&optimum.model, kept))
     };
-    Sample {
+    ErrorSample {
         response: Some(response(optimum, &sample)),
         ..sample
     }
 }
 
 /// Deviation of an optimal motion from the one under its voltages with half the step; infinite where there is none.
-fn response(optimum: &Optimum, optimal: &Sample) -> f64 {
+fn response(optimum: &Optimum, optimal: &ErrorSample) -> f64 {
     let tested = optimum.resimulation.as_ref();
     let half = tested.and_then(|tested| tested.half.as_ref());
     half.map_or(f64::INFINITY, |history| {
-        optimal.deviation(&Sample::of_motion(&optimum.model, history))
+        optimal.deviation(&ErrorSample::of_motion(&optimum.model, history))
     })
 }

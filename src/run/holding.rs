@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::control::Boundary;
-use crate::control::problem::{Control, Hold, State};
+use crate::control::BoundaryConditions;
+use crate::control::problem::{Control, Hold, BoundaryState};
 use crate::model::Model;
 use crate::run::error::RunError;
 use crate::run::resimulate::Resimulation;
@@ -17,7 +17,7 @@ pub(super) fn check(
     file: &Path,
     control: &Control,
     model: &Model,
-    boundary: &Boundary,
+    boundary: &BoundaryConditions,
 ) -> Result<(), RunError> {
     if control.hold == Hold::Reported {
         return Ok(());
@@ -47,7 +47,7 @@ pub(super) fn check(
 pub(super) fn warning(
     control: &Control,
     model: &Model,
-    boundary: &Boundary,
+    boundary: &BoundaryConditions,
     resimulation: Option<&Resimulation>,
 ) -> Option<String> {
     let beyond = beyond_bounds(control, model).map(|(name, reason)| format!("{name}: {reason}"));
@@ -66,7 +66,7 @@ pub(super) fn warning(
 
 /// The first source that is looked for and held at a voltage that it may not have, and why not.
 fn beyond_bounds(control: &Control, model: &Model) -> Option<(String, String)> {
-    let State::Markers {
+    let BoundaryState::Markers {
         hold: Some(hold), ..
     } = &control.goal
     else {
@@ -86,7 +86,7 @@ fn beyond_bounds(control: &Control, model: &Model) -> Option<(String, String)> {
 }
 
 /// That the goal is an unstable equilibrium, where it is.
-fn unstable(boundary: &Boundary) -> Option<String> {
+fn unstable(boundary: &BoundaryConditions) -> Option<String> {
     let rest = boundary.goal.rest.as_ref()?;
     if rest.is_stable() != Some(false) {
         return None;

@@ -3,13 +3,13 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use crate::control::Boundary;
-use crate::control::problem::{Control, Duration, Objective, State};
+use crate::control::BoundaryConditions;
+use crate::control::problem::{Control, Duration, Objective, BoundaryState};
 use crate::dynamics::simulate;
 use crate::math::{Vector, significant};
 use crate::model::{Model, System, joint_unit};
-use crate::reduction::Instant;
-use crate::run::optimise::{Allowed, Iterate, Optimum, optimise};
+use crate::reduction::Configuration;
+use crate::run::optimise::{SolveLimits, Iterate, Optimum, optimise};
 use crate::run::second_start::is_infeasible;
 
 /// Bounds told at most.
@@ -83,9 +83,9 @@ fn miss(control: &Control, optimum: &Optimum) -> Option<String> {
 /// What of the goal is missed, in words and relative to the size of the system.
 fn distances(
     model: &Model,
-    boundary: &Boundary,
-    goal: &State,
-    end: &Instant,
+    boundary: &BoundaryConditions,
+    goal: &BoundaryState,
+    end: &Configuration,
 ) -> Vec<(String, f64)> {
     let of_marker = |m: usize, place: &Vector| {
         let far = (end.x[model.markers[m]] - place).norm();
@@ -93,7 +93,7 @@ fn distances(
         let words = format!("{name} comes within {} mm of its goal", significant(far, 3));
         (words, far / model.length())
     };
-    let joints = |instant: &Instant| model.joints(instant, &vec![0.0; model.gauges.len()]);
+    let joints = |instant: &Configuration| model.joints(instant, &vec![0.0; model.gauges.len()]);
     let of_joint = |joint: usize, value: f64, found: f64| {
         let unit = joint_unit(&model.system, joint);
         let far = (found - value).abs();
@@ -103,17 +103,17 @@ fn distances(
         (words, far / size)
     };
     match goal {
-        State::Markers { places, .. } => {
+        BoundaryState::Markers { places, .. } => {
             let all = places.iter();
             all.map(|(&m, place)| of_marker(m, place)).collect()
         }
-        State::JointAngles { angles, .. } => {
+        BoundaryState::JointAngles { angles, .. } => {
             let found = joints(end);
             let all = angles.iter();
             all.map(|(&j, &angle)| of_joint(j, angle, found[j]))
                 .collect()
         }
-        State::RestAtVoltages(_) => {
+        BoundaryState::RestAtVoltages(_) => {
             let goal: Option<Vec<f64>> = boundary.goal.coordinates.iter().copied().collect();
             let Some(goal) = goal else {
                 return Vec::new();
@@ -169,7 +169,7 @@ fn longer(
         ..Objective::default()
     };
     let patience = optimum.solution.seconds.solver.max(PATIENCE);
-    let allowed = Allowed {
+    let allowed = SolveLimits {
         iterations: Some(ITERATIONS),
         seconds: Some(seconds.map_or(patience, |left| left.min(patience))),
     };

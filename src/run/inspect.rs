@@ -5,14 +5,14 @@ use crate::model::{Model, System};
 use crate::nlp::Nlp;
 use crate::report::atomic;
 use crate::report::table;
-use crate::run::blocks::Blocks;
+use crate::run::blocks::BlockSizes;
 use crate::run::effects::Plan;
 use crate::run::error::RunError;
 use crate::run::extent;
 use crate::run::folder::make_folder;
 use crate::run::memory;
 use crate::run::optimise::{Counted, Prepared, prepare, resolve};
-use crate::run::request::{Request, Told};
+use crate::run::request::{CommandInput, CommandOutput};
 use crate::run::spy;
 use crate::run::words::key;
 use crate::scene::read_problem;
@@ -22,7 +22,7 @@ use crate::sparse::Symmetry;
 ///
 /// # Errors
 /// The input is wrong, or a picture cannot be written.
-pub fn inspect(request: &Request) -> Result<Told, RunError> {
+pub fn inspect(request: &CommandInput) -> Result<CommandOutput, RunError> {
     let loaded = read_problem(&request.input, &request.set)?;
     let system = &loaded.system;
     memory::of_elements(&request.input, system)?;
@@ -40,7 +40,7 @@ pub fn inspect(request: &Request) -> Result<Told, RunError> {
             of_model(&model, None)
         }
     };
-    Ok(Told {
+    Ok(CommandOutput {
         is_solved: true,
         result,
         notes: Vec::new(),
@@ -73,14 +73,14 @@ fn of_model(model: &Model, control: Option<&Control>) -> String {
     if !system.solids.is_empty() {
         sizes.insert(3, ("elastic blocks", system.solids.len()));
     }
-    if let Some(blocks) = Blocks::of(model) {
+    if let Some(blocks) = BlockSizes::of(model) {
         sizes.extend([
             ("potentials of an interval", blocks.potentials),
             ("nodes", blocks.nodes),
             ("elements", blocks.elements),
         ]);
     }
-    let tangent = match (model.question.of_motion, control) {
+    let tangent = match (model.analysis.of_motion, control) {
         (true, None) => factorisation(model),
         _ => "",
     };
@@ -152,7 +152,7 @@ fn listed<'a>(heading: &str, lines: impl Iterator<Item = (&'a String, &'a String
     text
 }
 
-fn of_control(request: &Request, system: &System, control: &Control) -> Result<String, RunError> {
+fn of_control(request: &CommandInput, system: &System, control: &Control) -> Result<String, RunError> {
     let (model, boundary) = resolve(&request.input, system, control)?;
     let Prepared { program, start, .. } = prepare(
         &request.input,
@@ -195,7 +195,7 @@ fn of_control(request: &Request, system: &System, control: &Control) -> Result<S
             ("hessian.svg", "Hessian", variables, &hessian),
         ];
         for (file, name, rows, entries) in pictures {
-            let shape = spy::Shape {
+            let shape = spy::MatrixSize {
                 name,
                 rows,
                 columns: variables,

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use crate::control::problem::Simulation;
 use crate::control::resolve_start;
-use crate::dynamics::{History, StepControl, StepError, simulate_by, simulate_within};
+use crate::dynamics::{DiscreteTrajectory, StepControl, StepError, simulate_by, simulate_within};
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::run::error::RunError;
@@ -19,7 +19,7 @@ pub struct Simulated {
     /// The model that moved.
     pub model: Model,
     /// The motion as far as it went.
-    pub history: History,
+    pub history: DiscreteTrajectory,
     /// Why it ended early.
     pub failure: Option<StepError>,
     /// Seconds before the first step.
@@ -49,7 +49,7 @@ pub fn integrate(
     file: &Path,
     system: &System,
     task: &Simulation,
-    mut observer: impl FnMut(&Model, &History) -> ControlFlow<()>,
+    mut observer: impl FnMut(&Model, &DiscreteTrajectory) -> ControlFlow<()>,
 ) -> Result<Simulated, RunError> {
     let began = Instant::now();
     let (steps, h) = grid(task);
@@ -67,7 +67,7 @@ pub fn integrate(
     let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;
     let setup = began.elapsed().as_secs_f64();
     phase("ordering and first factorisation");
-    let observer = |history: &History| observer(&model, history);
+    let observer = |history: &DiscreteTrajectory| observer(&model, history);
     let scalars = |from: f64, to: f64| model.scalars(task.voltages.at(0.5 * (from + to)));
     let (history, failure) = match task.tolerance {
         Some(tolerance) => {

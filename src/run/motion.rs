@@ -1,14 +1,14 @@
 //! From coordinates and multipliers to what people look at: poses, joint coordinates, voltages by muscle.
 
-use crate::control::{Costates, Solved};
-use crate::dynamics::History;
+use crate::control::{Costates, Solution};
+use crate::dynamics::DiscreteTrajectory;
 use crate::dynamics::trajectory::Trajectory;
 use crate::math::Vector;
 use crate::model::Model;
 use crate::model::system::Joint;
 
 /// What is kept of a motion.
-pub fn solved(model: &Model, history: &History, costates: Option<Costates>) -> Solved {
+pub fn solved(model: &Model, history: &DiscreteTrajectory, costates: Option<Costates>) -> Solution {
     let motion = Trajectory::from_history(model, history);
     // One value a joint, zero where a joint has no coordinate.
     let by_joint = |row: Vec<f64>| {
@@ -17,7 +17,7 @@ pub fn solved(model: &Model, history: &History, costates: Option<Costates>) -> S
         let joints = model.system.joints.iter();
         joints.map(value).map(Option::unwrap_or_default).collect()
     };
-    Solved {
+    Solution {
         coordinates: model.coordinates,
         times: motion.times,
         joints: motion.joints.into_iter().map(by_joint).collect(),
@@ -32,7 +32,7 @@ pub fn solved(model: &Model, history: &History, costates: Option<Costates>) -> S
 }
 
 /// The motion as tables and figures show it.
-pub fn trajectory(model: &Model, solved: &Solved) -> Trajectory {
+pub fn trajectory(model: &Model, solved: &Solution) -> Trajectory {
     let shown = |row: &Vec<f64>| {
         let joints = row.iter().zip(&model.system.joints);
         joints
@@ -61,7 +61,7 @@ fn marks(model: &Model, z: &[Vec<f64>]) -> Vec<Vec<Vector>> {
 }
 
 /// Potentials of a motion by interval; none where a scene has none.
-fn potentials(model: &Model, history: &History) -> Vec<Vec<f64>> {
+fn potentials(model: &Model, history: &DiscreteTrajectory) -> Vec<Vec<f64>> {
     if model.potentials == 0 {
         return Vec::new();
     }
@@ -71,7 +71,7 @@ fn potentials(model: &Model, history: &History) -> Vec<Vec<f64>> {
 }
 
 /// Voltages and potentials of a motion that is kept, by interval.
-pub(super) fn scalars(model: &Model, kept: &Solved) -> Vec<Vec<f64>> {
+pub(super) fn scalars(model: &Model, kept: &Solution) -> Vec<Vec<f64>> {
     let row = |(k, voltages): (usize, &Vec<f64>)| {
         let mut row = model.scalars(voltages);
         row.extend(kept.potentials.get(k).into_iter().flatten());
@@ -82,11 +82,11 @@ pub(super) fn scalars(model: &Model, kept: &Solved) -> Vec<Vec<f64>> {
 }
 
 /// The record of a motion that is kept.
-pub(super) fn history(model: &Model, kept: &Solved) -> History {
-    History {
+pub(super) fn history(model: &Model, kept: &Solution) -> DiscreteTrajectory {
+    DiscreteTrajectory {
         times: kept.times.clone(),
         z: kept.z.clone(),
         scalars: scalars(model, kept),
-        ..History::default()
+        ..DiscreteTrajectory::default()
     }
 }

@@ -7,9 +7,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::control::problem::{Control, Duration, Guess};
-use crate::control::{Boundary, Initial, Solved, Transcription, guess};
-use crate::dynamics::{History, reversed_muscle};
-use crate::ipopt::{self, Iteration, OptionValue, Options, Solution, Start, Status, interrupt};
+use crate::control::{BoundaryConditions, InitialGuess, Solution, Transcription, guess};
+use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
+use crate::ipopt::{self, Iteration, OptionValue, Options, SolverResult, Start, Status, interrupt};
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
 use crate::run::active::{Active, active};
@@ -40,7 +40,7 @@ const CHARTS: usize = 4;
 
 /// What a solve may take, in place of what its problem says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Allowed {
+pub struct SolveLimits {
     /// Iterations of the solver.
     pub iterations: Option<usize>,
     /// Seconds, set-up included.
@@ -53,9 +53,9 @@ pub struct Optimum {
     /// The model it was solved in.
     pub model: Model,
     /// Start and goal.
-    pub boundary: Boundary,
+    pub boundary: BoundaryConditions,
     /// The motion: the optimal one, or the last iterate.
-    pub motion: Solved,
+    pub motion: Solution,
     /// What the solver returned.
     pub solution: Solution,
     /// Interval in which the span of a muscle turns by a right angle or more, and the muscle: the discrete equations hold, but
@@ -135,7 +135,7 @@ pub struct Iterate<'a> {
     /// The model.
     pub model: &'a Model,
     /// Its motion.
-    pub motion: &'a dyn Fn() -> Solved,
+    pub motion: &'a dyn Fn() -> Solution,
 }
 
 impl fmt::Debug for Iterate<'_> {
@@ -152,8 +152,8 @@ pub fn optimise(
     file: &Path,
     system: &System,
     control: &Control,
-    earlier: Option<&Solved>,
-    allowed: Allowed,
+    earlier: Option<&Solution>,
+    allowed: SolveLimits,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Optimum, RunError> {
     let began = Instant::now();
@@ -177,7 +177,7 @@ pub fn optimise(
     };
     phase("ordering and first factorisation");
     tracing::info!(?start, variables = point.x.len(), "solve");
-    let mut solve = |program: &mut Transcription<'_>, point: &ipopt::Point, options: &Options| {
+    let mut solve = |program: &mut Transcription<'_>, point: &ipopt::StartingPoint, options: &Options| {
         let decoder = program.decoder();
         let mut observer = |report: &Iteration, x: &[f64]| {
             let motion = || solved(&model, &decoder.decode(x), None);
@@ -225,7 +225,7 @@ pub fn optimise(
     }
     drop(watch);
     let history = program.decode(&solution.x);
-    let motion = Solved {
+    let motion = Solution {
         hold: boundary.rest[1].clone(),
         ..solved(&model, &history, Some(program.costates(&solution.costates)))
     };
@@ -275,7 +275,7 @@ pub fn optimise(
 }
 
 /// The motion with charts where its bodies are, where it ends far from those that it has.
-fn recentred(model: &Model, history: &History) -> Option<Initial> {
+fn recentred(model: &Model, history: &DiscreteTrajectory) -> Option<InitialGuess> {
     let motion = &model.action.motion;
     let is_far = |z: &Vec<f64>| motion.way_from_charts(z) > FAR;
     history.z.iter().any(is_far).then(|| {
@@ -284,8 +284,8 @@ fn recentred(model: &Model, history: &History) -> Option<Initial> {
             motion.recentre(&mut instant);
             instant.z
         });
-        Initial {
-            history: History {
+        InitialGuess {
+            history: DiscreteTrajectory {
                 z: z.collect(),
                 ..history.clone()
             },
@@ -299,7 +299,7 @@ fn recentred(model: &Model, history: &History) -> Option<Initial> {
 /// The program of a control problem with the point to start from and what that point is worth.
 pub(super) struct Prepared<'m> {
     pub(super) program: Transcription<'m>,
-    pub(super) point: ipopt::Point,
+    pub(super) point: ipopt::StartingPoint,
     pub(super) start: Start,
     /// Durations in ms of the earlier solution and of the start, where they differ.
     pub(super) stretched: Option<[f64; 2]>,
@@ -310,8 +310,8 @@ pub(super) fn resolve(
     file: &Path,
     system: &System,
     control: &Control,
-) -> Result<(Model, Boundary), RunError> {
-    let (model, boundary) = Boundary::resolve(system, control, interval(control))
+) -> Result<(Model, BoundaryConditions), RunError> {
+    let (model, boundary) = BoundaryConditions::resolve(system, control, interval(control))
         .map_err(|error| RunError::boundary(file, "control", &error))?;
     holding::check(file, control, &model, &boundary)?;
     Ok((model, boundary))
@@ -335,9 +335,9 @@ pub(super) enum Counted {
 pub(super) fn prepare<'m>(
     file: &Path,
     model: &'m Model,
-    boundary: &Boundary,
+    boundary: &BoundaryConditions,
     control: &Control,
-    earlier: Option<&Solved>,
+    earlier: Option<&Solution>,
     counted: Counted,
 ) -> Result<Prepared<'m>, RunError> {
     memory::of_program(file, model, control.intervals)?;
@@ -355,7 +355,7 @@ pub(super) fn prepare<'m>(
     let point = program.start(&initial);
     let stretched = initial.stretched;
     let is_same_grid =
-        |earlier: &Solved| earlier.intervals() == control.intervals && stretched.is_none();
+        |earlier: &Solution| earlier.intervals() == control.intervals && stretched.is_none();
     let start = match (earlier, &point.costates) {
         (None, _) if matches!(control.guess, Guess::Simulate(_)) => Start::Simulated,
         (None, _) => Start::Cold,

@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
-    Continuation, Equilibrium, History, Instability, continuation, observations, out_of_domain,
+    Continuation, Equilibrium, DiscreteTrajectory, Instability, continuation, observations, out_of_domain,
 };
 use crate::ipopt::{Status, interrupt};
 use crate::model::{Model, System};
@@ -21,7 +21,7 @@ use crate::run::fields;
 use crate::run::folder::make_folder;
 use crate::run::followed::Followed;
 use crate::run::progress::phase;
-use crate::run::request::{Request, Told};
+use crate::run::request::{CommandInput, CommandOutput};
 use crate::run::rest_observed::at_rest;
 use crate::run::rest_refused::refused;
 use crate::run::summary::{MEASURED, Seconds, Summary};
@@ -30,12 +30,12 @@ use crate::run::words::counted;
 /// Follows the path for `points` equilibria and writes `path.csv`, `path.svg`, the fields, and figure and page of the last
 /// equilibrium before stability is lost, or of the last one.
 pub(super) fn follow(
-    request: &Request,
+    request: &CommandInput,
     system: &System,
     task: &AtRest,
     points: usize,
     began: Instant,
-) -> Result<Told, RunError> {
+) -> Result<CommandOutput, RunError> {
     let wrong = |error| RunError::boundary(&request.input, "equilibrium", &error);
     let model = Model::answering(system.clone(), task.question(system))
         .map_err(|error| wrong(error.into()))?;
@@ -54,7 +54,7 @@ pub(super) fn follow(
     let stops = Stop::all(&found);
     // The first equilibrium stands at both ends of an interval of its own, so that each has its potentials.
     let states = || stops.iter().map(|stop| stop.rest);
-    let history = History {
+    let history = DiscreteTrajectory {
         times: std::iter::once(0.0)
             .chain(stops.iter().map(|stop| stop.fraction))
             .collect(),
@@ -64,7 +64,7 @@ pub(super) fn follow(
             .collect(),
         momenta: vec![vec![0.0; model.coordinate_count()]; stops.len() + 1],
         scalars: states().map(|p| p.scalars.clone()).collect(),
-        ..History::default()
+        ..DiscreteTrajectory::default()
     };
     let observed = observed(&model, &stops, &history);
     let shown = stops.iter().position(|stop| stop.lost.is_some());
@@ -100,7 +100,7 @@ pub(super) fn follow(
         let why = status.word().replace('_', " ");
         format!("the path was not followed to its end ({why})")
     });
-    let told = Told {
+    let told = CommandOutput {
         is_solved: stopped.is_none(),
         result: format!(
             "{}, {}",
@@ -159,19 +159,19 @@ impl<'a> Stop<'a> {
 }
 
 /// The state at an instant, alone.
-fn still(history: &History, k: usize) -> History {
-    History {
+fn still(history: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
+    DiscreteTrajectory {
         times: vec![0.0],
         z: vec![history.z[k].clone()],
         momenta: vec![history.momenta[k].clone()],
         scalars: vec![history.scalars[k - 1].clone()],
-        ..History::default()
+        ..DiscreteTrajectory::default()
     }
 }
 
 /// Fraction, voltages, markers, stretches, charges, energies and stability of each equilibrium, and whether stability is lost
 /// there.
-fn observed(model: &Model, stops: &[Stop<'_>], history: &History) -> Observations {
+fn observed(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory) -> Observations {
     let mut columns = Vec::new();
     let mut add = |name: String, unit: &'static str, values: Vec<f64>| {
         columns.push(Column { name, unit, values });
@@ -195,7 +195,7 @@ fn observed(model: &Model, stops: &[Stop<'_>], history: &History) -> Observation
 
 /// `path.svg`: fraction of the voltages over the way of each marker, or of the coordinate that moves most; where stability is
 /// lost it is marked.
-fn figure(model: &Model, stops: &[Stop<'_>], history: &History, origin: &Origin) -> String {
+fn figure(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory, origin: &Origin) -> String {
     let marks = Trajectory::from_history(model, history).marks;
     let reference = &model.coordinates_at(&vec![0.0; model.gauges.len()]);
     let way = |m: usize, k: usize| (marks[k + 1][m] - marks[0][m]).norm();

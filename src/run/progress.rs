@@ -10,7 +10,7 @@ use crate::ipopt::Iteration;
 
 /// Whether progress is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shown {
+pub enum ProgressDisplay {
     /// Where standard error is a terminal.
     OnTerminal,
     /// Never.
@@ -42,12 +42,12 @@ pub(super) struct Progress {
 
 impl Progress {
     /// A run of which nothing is known yet but what it [does](phase).
-    pub(super) fn of_phases(shown: Shown) -> Self {
+    pub(super) fn of_phases(shown: ProgressDisplay) -> Self {
         Self::of_solve(shown)
     }
 
     /// A solve with an open number of iterations.
-    pub(super) fn of_solve(shown: Shown) -> Self {
+    pub(super) fn of_solve(shown: ProgressDisplay) -> Self {
         let bar = target(ProgressBar::no_length(), shown);
         bar.set_style(style("{spinner} {elapsed_precise} {msg}"));
         bar.enable_steady_tick(Duration::from_millis(120));
@@ -55,7 +55,7 @@ impl Progress {
     }
 
     /// A simulation of `steps` steps.
-    pub(super) fn of_steps(shown: Shown, steps: usize) -> Self {
+    pub(super) fn of_steps(shown: ProgressDisplay, steps: usize) -> Self {
         let bar = target(ProgressBar::new(steps as u64), shown);
         bar.set_style(style(
             "{elapsed_precise} {bar:20} step {pos} of {len} {msg}",
@@ -65,7 +65,7 @@ impl Progress {
     }
 
     /// A solve from `starts` starting points.
-    pub(super) fn of_starts(shown: Shown, starts: usize) -> Self {
+    pub(super) fn of_starts(shown: ProgressDisplay, starts: usize) -> Self {
         let bar = target(ProgressBar::new(starts as u64), shown);
         bar.set_style(style(
             "{elapsed_precise} {wide_bar} start {pos} of {len} {msg}",
@@ -136,7 +136,7 @@ fn rough(seconds: f64) -> String {
 }
 
 /// A bar of another command: `length` steps, shown by a template of indicatif.
-pub(crate) fn progress_bar(shown: Shown, length: u64, template: &str) -> ProgressBar {
+pub(crate) fn progress_bar(shown: ProgressDisplay, length: u64, template: &str) -> ProgressBar {
     let bar = target(ProgressBar::new(length), shown);
     bar.set_style(style(template));
     bar
@@ -153,8 +153,8 @@ impl Drop for Progress {
     }
 }
 
-fn target(bar: ProgressBar, shown: Shown) -> ProgressBar {
-    if shown == Shown::Never {
+fn target(bar: ProgressBar, shown: ProgressDisplay) -> ProgressBar {
+    if shown == ProgressDisplay::Never {
         bar.set_draw_target(ProgressDrawTarget::hidden());
     }
     bar

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::control::problem::{Control, Duration};
 use crate::model::system::JointKind;
-use crate::model::{Model, Place};
+use crate::model::{Model, BodyLocation};
 
 /// Something that a scene or a problem could call for and does not.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -43,7 +43,7 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
         .reached
         .iter()
         .filter(|s| !model.voltages.contains(s))
-        .partition(|s| model.question.silent.contains(s));
+        .partition(|s| model.analysis.zero_voltage.contains(s));
     if !silent.is_empty() {
         let why = format!("0 V all the time at {}", names(&silent));
         add("voltage".to_owned(), why);
@@ -57,27 +57,27 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
         let why = "it is fixed or locked: what it connects is one body";
         add(format!("joint {}", joint.name), why.to_owned());
     }
-    for (body, place) in model.system.bodies.iter().zip(&model.condensed.places) {
+    for (body, place) in model.system.bodies.iter().zip(&model.presolved.bodies) {
         let b = model
             .system
             .bodies
             .iter()
             .position(|other| other.name == body.name);
-        let is_still = b.is_some_and(|b| model.condensed.still.bodies[b]);
+        let is_still = b.is_some_and(|b| model.presolved.immobile.bodies[b]);
         let why = match place {
-            Place::Body(_) => continue,
-            Place::Ground if is_still => "it starts at rest and nothing moves it".to_owned(),
-            Place::Ground => "it is fixed to the ground".to_owned(),
-            Place::Welded { to, .. } => {
+            BodyLocation::Body(_) => continue,
+            BodyLocation::Ground if is_still => "it starts at rest and nothing moves it".to_owned(),
+            BodyLocation::Ground => "it is fixed to the ground".to_owned(),
+            BodyLocation::Welded { to, .. } => {
                 format!(
                     "it is one body with {}",
-                    model.condensed.system.bodies[*to].name
+                    model.presolved.system.bodies[*to].name
                 )
             }
         };
         add(format!("body {}", body.name), why);
     }
-    for continuum in model.continua.iter().filter(|c| c.is_still) {
+    for continuum in model.solids.iter().filter(|c| c.is_still) {
         let why = "it starts at rest and nothing moves it";
         add(format!("block {}", continuum.solid.name), why.to_owned());
     }

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use crate::report::origin::Origin;
-use crate::run::accuracy::Wanted;
-use crate::run::progress::Shown;
+use crate::run::accuracy::AccuracyTarget;
+use crate::run::progress::ProgressDisplay;
 
 /// A command on a problem file.
 #[derive(Clone, Debug)]
-pub struct Request {
+pub struct CommandInput {
     /// The command as typed.
     pub command: String,
     /// The problem file as typed.
@@ -22,14 +22,14 @@ pub struct Request {
     /// Iterations that the solver may take, in place of those of the file.
     pub max_iterations: Option<usize>,
     /// What is asked about the error of discretisation.
-    pub wanted: Option<Wanted>,
+    pub wanted: Option<AccuracyTarget>,
     /// Whether progress is shown.
-    pub progress: Shown,
+    pub progress: ProgressDisplay,
 }
 
 /// The answer of a command.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Told {
+pub struct CommandOutput {
     /// Whether the question has an answer: exit status 0, otherwise 1.
     pub is_solved: bool,
     /// What goes to standard output.
@@ -38,7 +38,7 @@ pub struct Told {
     pub notes: Vec<String>,
 }
 
-impl Request {
+impl CommandInput {
     /// Folder for the results.
     pub fn folder(&self) -> PathBuf {
         self.output.clone().unwrap_or_else(|| {

@@ -9,8 +9,8 @@ use std::ops::ControlFlow;
 
 use serde::Serialize;
 
-use crate::control::{Boundary, Solved};
-use crate::dynamics::{History, Start, StepError, simulate};
+use crate::control::{BoundaryConditions, Solution};
+use crate::dynamics::{DiscreteTrajectory, Start, StepError, simulate};
 use crate::ipopt::interrupt;
 use crate::model::Model;
 use crate::model::system::JointKind;
@@ -57,7 +57,7 @@ pub struct Resimulation {
     pub cause: Option<Cause>,
     /// The motion with half the step, where there is one.
     #[serde(skip)]
-    pub(super) half: Option<History>,
+    pub(super) half: Option<DiscreteTrajectory>,
     /// Where the motion with the step of the optimum ends.
     #[serde(skip)]
     end: Option<Start>,
@@ -116,7 +116,7 @@ pub enum Cause {
 pub(super) fn resimulate(
     model: &Model,
     start: &Start,
-    optimal: &Solved,
+    optimal: &Solution,
     tolerance: f64,
 ) -> Resimulation {
     let way = Distance::way(model, optimal);
@@ -180,7 +180,7 @@ pub(super) fn resimulate(
 
 impl Resimulation {
     /// Holds the voltages of the goal, where they are known and the motion came to its end.
-    pub(super) fn hold(&mut self, model: &Model, boundary: &Boundary, optimal: &Solved) {
+    pub(super) fn hold(&mut self, model: &Model, boundary: &BoundaryConditions, optimal: &Solution) {
         let (Some(end), Some(rest)) = (&self.end, &boundary.rest[1]) else {
             return;
         };
@@ -222,7 +222,7 @@ impl Resimulation {
 
 /// A simulation under optimal voltages, with so many steps for an interval.
 struct Repeat {
-    history: History,
+    history: DiscreteTrajectory,
     /// Distances from the optimum at its instants, as far as it goes.
     distances: Vec<Distance>,
     failure: Option<String>,
@@ -233,7 +233,7 @@ struct Repeat {
 }
 
 impl Repeat {
-    fn of(model: &Model, start: &Start, optimal: &Solved, steps: usize) -> Self {
+    fn of(model: &Model, start: &Start, optimal: &Solution, steps: usize) -> Self {
         let n = optimal.intervals();
         let h = optimal.times[n] / n as f64;
         let scalars = |from: f64, to: f64| {
@@ -263,7 +263,7 @@ impl Repeat {
     }
 
     /// Why a simulation with the step of the optimum is another motion, where it is by more than `same`.
-    fn cause(&self, model: &Model, optimal: &Solved, same: f64) -> Option<Cause> {
+    fn cause(&self, model: &Model, optimal: &Solution, same: f64) -> Option<Cause> {
         if self.is_halved && self.failure.is_none() {
             return None;
         }
@@ -295,7 +295,7 @@ impl Repeat {
 }
 
 /// The joint that turns farthest in the interval that ends at instant `k`.
-fn turns(model: &Model, motion: &Solved, k: usize) -> Option<(String, f64)> {
+fn turns(model: &Model, motion: &Solution, k: usize) -> Option<(String, f64)> {
     let [a, b] = [&motion.joints[k - 1], &motion.joints[k]];
     let angles = a.iter().zip(b).map(|(a, b)| (a - b).abs());
     let joints = model.system.joints.iter().zip(angles);
@@ -353,10 +353,10 @@ impl Cause {
 /// The motion under the constant voltages of the goal, for `durations` times as long as the optimal one.
 pub(super) fn under_constant_voltages(
     model: &Model,
-    boundary: &Boundary,
-    optimal: &Solved,
+    boundary: &BoundaryConditions,
+    optimal: &Solution,
     durations: usize,
-) -> Option<(History, Option<StepError>)> {
+) -> Option<(DiscreteTrajectory, Option<StepError>)> {
     let scalars = model.scalars(boundary.rest[1].as_ref()?);
     let n = optimal.intervals();
     let h = optimal.times[n] / n as f64;

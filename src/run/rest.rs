@@ -5,13 +5,13 @@ use std::time::Instant;
 use crate::control::problem::{AtRest, Task};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
-    EquilibriumError, History, Loss, observations, out_of_domain, stable_equilibrium,
+    EquilibriumError, DiscreteTrajectory, StabilityLoss, observations, out_of_domain, stable_equilibrium,
 };
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::report::skins::Skins;
 use crate::report::{Run, write_still};
-use crate::run::blocks::Blocks;
+use crate::run::blocks::BlockSizes;
 use crate::run::domain;
 use crate::run::effects::Plan;
 use crate::run::error::RunError;
@@ -20,7 +20,7 @@ use crate::run::folder::make_folder;
 use crate::run::memory;
 use crate::run::path;
 use crate::run::progress::{Progress, phase};
-use crate::run::request::{Request, Told};
+use crate::run::request::{CommandInput, CommandOutput};
 use crate::run::rest_observed::at_rest;
 use crate::run::rest_refused::refused;
 use crate::run::rest_words::{describe, lost, rows, status, text};
@@ -34,9 +34,9 @@ use crate::scene::{driven_voltages, read_problem, read_system};
 /// # Errors
 /// The file or a voltage is wrong, or the problem asks for something else and no voltages are given.
 pub fn equilibrium_of_file(
-    request: &Request,
+    request: &CommandInput,
     voltages: Option<&[String]>,
-) -> Result<Told, RunError> {
+) -> Result<CommandOutput, RunError> {
     let began = Instant::now();
     let _progress = Progress::of_phases(request.progress);
     phase("reading");
@@ -66,11 +66,11 @@ pub fn equilibrium_of_file(
 /// Finds the equilibrium under voltages, or follows the path there, and writes the folder; where it is lost on the way there,
 /// the last one is kept.
 pub(super) fn at(
-    request: &Request,
+    request: &CommandInput,
     system: &System,
     task: &AtRest,
     began: Instant,
-) -> Result<Told, RunError> {
+) -> Result<CommandOutput, RunError> {
     let left = |seconds| seconds - began.elapsed().as_secs_f64();
     let watch = interrupt::watch(request.max_seconds.map(left));
     if let Some(points) = task.path {
@@ -91,7 +91,7 @@ pub(super) fn at(
             load,
             last,
         }) => {
-            let loss = Loss {
+            let loss = StabilityLoss {
                 load,
                 fraction,
                 kind,
@@ -101,12 +101,12 @@ pub(super) fn at(
         Err(error) => return refused(request, &error, "no equilibrium"),
     };
     drop(watch);
-    let state = History {
+    let state = DiscreteTrajectory {
         times: vec![0.0],
         z: vec![found.z.clone()],
         momenta: vec![vec![0.0; model.coordinate_count()]],
         scalars: vec![found.scalars.clone()],
-        ..History::default()
+        ..DiscreteTrajectory::default()
     };
     let motion = Trajectory::from_history(&model, &state);
     let observed = at_rest(observations(&model, &state));
@@ -121,7 +121,7 @@ pub(super) fn at(
     summary.message = failure.map(|loss| lost(&rest, loss, &folder));
     summary.domain = domain::told(&out_of_domain(&model, &state));
     summary.plan = Plan::of(&model, None, MEASURED);
-    summary.blocks = Blocks::of(&model).map(|b| b.after(&model, &observed, written));
+    summary.blocks = BlockSizes::of(&model).map(|b| b.after(&model, &observed, written));
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),
         setup,
@@ -147,12 +147,12 @@ pub(super) fn at(
     let notes = summary.message.iter().chain(&summary.notes);
     let notes = notes.cloned().collect();
     let told = match &failure {
-        None => Told {
+        None => CommandOutput {
             is_solved: true,
             result: format!("{}, {}", text(&model, &rest), folder.display()),
             notes,
         },
-        Some(_) => Told {
+        Some(_) => CommandOutput {
             is_solved: false,
             result: "no equilibrium".to_owned(),
             notes,

@@ -2,14 +2,14 @@
 
 use crate::dynamics::EquilibriumError;
 use crate::run::error::RunError;
-use crate::run::request::{Request, Told};
+use crate::run::request::{CommandInput, CommandOutput};
 
 /// Why there is no equilibrium at all: a floating block is wrong input, anything else a result without files.
 pub(super) fn refused(
-    request: &Request,
+    request: &CommandInput,
     error: &EquilibriumError,
     result: &str,
-) -> Result<Told, RunError> {
+) -> Result<CommandOutput, RunError> {
     match error {
         EquilibriumError::Floating { .. } => {
             return Err(RunError::Problem {
@@ -21,7 +21,7 @@ pub(super) fn refused(
         EquilibriumError::Stopped(status) => return Err(RunError::Stopped(*status)),
         _ => {}
     }
-    Ok(Told {
+    Ok(CommandOutput {
         is_solved: false,
         result: result.to_owned(),
         notes: vec![error.to_string()],

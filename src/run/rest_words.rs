@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::dynamics::trajectory::{Observations, Trajectory};
-use crate::dynamics::{Equilibrium, History, Instability, Load, Loss, Route, Softening};
+use crate::dynamics::{Equilibrium, DiscreteTrajectory, Instability, Load, StabilityLoss, Route, Softening};
 use crate::model::Model;
 use crate::model::system::{Joint, JointKind};
 use crate::report::table;
@@ -72,7 +72,7 @@ struct Lost {
 }
 
 /// The word in files for how an equilibrium is lost.
-pub(super) fn status(loss: Loss) -> &'static str {
+pub(super) fn status(loss: StabilityLoss) -> &'static str {
     loss.kind.map_or("limit_point", Instability::key)
 }
 
@@ -83,18 +83,18 @@ fn load(load: Load) -> (&'static str, &'static str) {
     }
 }
 
-fn kind(loss: Loss) -> &'static str {
+fn kind(loss: StabilityLoss) -> &'static str {
     loss.kind.map_or("a limit point", Instability::words)
 }
 
 /// What there is to tell of an equilibrium; of the last one where growing loads lose it.
 pub(super) fn describe(
     model: &Model,
-    state: &History,
+    state: &DiscreteTrajectory,
     motion: &Trajectory,
     observed: &Observations,
     found: &Equilibrium,
-    failure: Option<Loss>,
+    failure: Option<StabilityLoss>,
 ) -> Rest {
     let system = &model.system;
     let kept = solved(model, state, None);
@@ -231,7 +231,7 @@ impl Rest {
 }
 
 /// One line: what is lost, at which loads, what gives way, and where the last state is.
-pub(super) fn lost(rest: &Rest, loss: Loss, folder: &Path) -> String {
+pub(super) fn lost(rest: &Rest, loss: StabilityLoss, folder: &Path) -> String {
     let mut text = format!(
         "no equilibrium was found, neither on the path of growing loads nor downhill from it: {} at {:.6} % of the {}",
         kind(loss),

@@ -1,8 +1,8 @@
 //! A second start from elsewhere, before a problem is called infeasible.
 
-use crate::control::Boundary;
+use crate::control::BoundaryConditions;
 use crate::control::problem::{Control, Guess, Voltages};
-use crate::ipopt::{Solution, Status};
+use crate::ipopt::{SolverResult, Status};
 
 /// Iterations of the second start; what is found from it is found soon.
 pub(super) const ITERATIONS: usize = 100;
@@ -14,7 +14,7 @@ pub(super) fn is_infeasible(status: Status) -> bool {
 
 /// The problem with another guess: the motion under the voltages of the goal, or half of the largest ones; interpolated where it
 /// was simulated.
-pub(super) fn displaced(control: &Control, boundary: &Boundary, sources: usize) -> Control {
+pub(super) fn displaced(control: &Control, boundary: &BoundaryConditions, sources: usize) -> Control {
     let [low, high] = control.voltage_bounds;
     let guess = match (&control.guess, &boundary.rest[1]) {
         (Guess::Simulate(_), _) => Guess::Interpolate,
@@ -33,7 +33,7 @@ pub(super) fn displaced(control: &Control, boundary: &Boundary, sources: usize) 
 }
 
 /// The better of two solves, with the iterations, evaluations and seconds of both.
-pub(super) fn one_of_both(first: Solution, second: Solution) -> Solution {
+pub(super) fn one_of_both(first: SolverResult, second: SolverResult) -> SolverResult {
     let (mut kept, other, is_second) = match second.status.is_solved() {
         true => (second, first, true),
         false => (first, second, false),

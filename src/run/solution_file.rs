@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::control::{Costates, Solved};
+use crate::control::{Costates, Solution};
 use crate::kinematics::Pose;
 use crate::math::Matrix;
 use crate::model::system::{Joint, JointKind, Source, System};
@@ -72,7 +72,7 @@ struct File {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     joints: Option<BTreeMap<String, Vec<f64>>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    configuration: Option<Configuration>,
+    configuration: Option<ConfigurationRecord>,
     voltages: BTreeMap<String, Vec<f64>>,
     /// Voltages that hold the goal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -83,13 +83,13 @@ struct File {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     coordinates: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    state: Option<State>,
+    state: Option<StateRecord>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     costates: Option<Multipliers>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
-struct Configuration {
+struct ConfigurationRecord {
     #[serde(default)]
     bodies: BTreeMap<String, Body>,
     joints: BTreeMap<String, Vec<f64>>,
@@ -104,7 +104,7 @@ struct Body {
 
 /// Times in ms, coordinates and multipliers by instant.
 #[derive(Debug, Serialize, Deserialize)]
-struct State {
+struct StateRecord {
     times_ms: Vec<f64>,
     multiplier_time_ms: f64,
     z: Vec<Vec<f64>>,
@@ -121,7 +121,7 @@ struct Multipliers {
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write(path: &Path, model: &Model, solved: &Solved) -> Result<(), WriteError> {
+pub fn write(path: &Path, model: &Model, solved: &Solution) -> Result<(), WriteError> {
     let system = &model.system;
     let columns = |j: usize, unit: f64| solved.joints.iter().map(|row| row[j] / unit).collect();
     let joints = system.joints.iter().enumerate();
@@ -146,7 +146,7 @@ pub fn write(path: &Path, model: &Model, solved: &Solved) -> Result<(), WriteErr
         scene: system.name.clone(),
         time: solved.times.iter().map(|t| t / SECOND).collect(),
         joints: None,
-        configuration: Some(Configuration {
+        configuration: Some(ConfigurationRecord {
             bodies: bodies.map(|(b, it)| (it.name.clone(), body(b))).collect(),
             joints: joints.collect(),
         }),
@@ -157,7 +157,7 @@ pub fn write(path: &Path, model: &Model, solved: &Solved) -> Result<(), WriteErr
         }),
         potentials: solved.potentials.clone(),
         coordinates: Some(solved.coordinates.name().to_owned()),
-        state: Some(State {
+        state: Some(StateRecord {
             times_ms: solved.times.clone(),
             multiplier_time_ms: solved.multiplier_time,
             z: solved.z.clone(),
@@ -176,14 +176,14 @@ pub fn write(path: &Path, model: &Model, solved: &Solved) -> Result<(), WriteErr
 ///
 /// # Errors
 /// The file is no solution, or one of another scene.
-pub fn read(path: &Path, model: &Model) -> Result<Solved, SolutionError> {
+pub fn read(path: &Path, model: &Model) -> Result<Solution, SolutionError> {
     parse(path, model).map_err(|reason| SolutionError {
         path: path.to_owned(),
         reason,
     })
 }
 
-fn parse(path: &Path, model: &Model) -> Result<Solved, Reason> {
+fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
     let text = std::fs::read_to_string(path).map_err(Reason::Unreadable)?;
     let value: serde_json::Value = serde_json::from_str(&text).map_err(Reason::NoJson)?;
     let file: File =
@@ -280,7 +280,7 @@ fn parse(path: &Path, model: &Model) -> Result<Solved, Reason> {
             (times, model.multiplier_time, z.collect())
         }
     };
-    Ok(Solved {
+    Ok(Solution {
         coordinates,
         times,
         joints: joint_rows,
@@ -300,7 +300,7 @@ fn parse(path: &Path, model: &Model) -> Result<Solved, Reason> {
 
 /// Poses by instant and body; none where the file gives none.
 fn poses(
-    configuration: Option<&Configuration>,
+    configuration: Option<&ConfigurationRecord>,
     system: &System,
     instants: usize,
 ) -> Result<Vec<Vec<Pose>>, Reason> {

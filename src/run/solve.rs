@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::control::problem::{Control, Hold};
-use crate::control::{Boundary, Solved};
+use crate::control::{BoundaryConditions, Solution};
 use crate::dynamics::{observations, out_of_domain};
 use crate::ipopt::{Status, interrupt};
 use crate::math::significant;
@@ -14,7 +14,7 @@ use crate::report::atomic::WriteError;
 use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::run::accuracy::{Accuracy, Refined};
-use crate::run::blocks::Blocks;
+use crate::run::blocks::BlockSizes;
 use crate::run::cure::{Cured, reproduced};
 use crate::run::domain;
 use crate::run::effects::Plan;
@@ -25,9 +25,9 @@ use crate::run::grids::optimise_to;
 use crate::run::holding;
 use crate::run::infeasible::explain;
 use crate::run::motion::{history, solved, trajectory};
-use crate::run::optimise::{Allowed, Iterate, Optimum};
+use crate::run::optimise::{SolveLimits, Iterate, Optimum};
 use crate::run::progress::Progress;
-use crate::run::request::{Request, Told};
+use crate::run::request::{CommandInput, CommandOutput};
 use crate::run::resimulate::{Cause, Resimulation, under_constant_voltages};
 use crate::run::second_start::is_infeasible;
 use crate::run::solution_file;
@@ -40,16 +40,16 @@ use crate::run::words::counted;
 const COMPARED: usize = 3;
 /// Solves a control problem and writes its folder, solved or not.
 pub(super) fn control(
-    request: &Request,
+    request: &CommandInput,
     system: &System,
     control: &Control,
     began: Instant,
-) -> Result<Told, RunError> {
+) -> Result<CommandOutput, RunError> {
     let folder = request.folder();
     let mut unwritable = None;
     let mut unfinished = Unfinished::of(&folder);
     let read = began.elapsed().as_secs_f64();
-    let allowed = Allowed {
+    let allowed = SolveLimits {
         iterations: request.max_iterations,
         seconds: request.max_seconds.map(|s| (s - read).max(0.0)),
     };
@@ -186,10 +186,10 @@ struct Found {
 
 /// Solves on the grid of the problem, or on finer ones where an accuracy is asked for.
 fn find(
-    request: &Request,
+    request: &CommandInput,
     system: &System,
     control: &Control,
-    allowed: Allowed,
+    allowed: SolveLimits,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Found, RunError> {
     let file = &request.input;
@@ -221,11 +221,11 @@ fn find(
 }
 
 fn write_files(
-    request: &Request,
+    request: &CommandInput,
     folder: &Path,
     model: &Model,
-    boundary: &Boundary,
-    kept: &Solved,
+    boundary: &BoundaryConditions,
+    kept: &Solution,
     summary: &mut Summary,
 ) -> Result<(), WriteError> {
     solution_file::write(&folder.join("solution.json"), model, kept)?;
@@ -233,7 +233,7 @@ fn write_files(
     let observed = observations(model, &history);
     let origin = request.origin(true);
     let written = fields::write(folder, model, &history, &origin)?;
-    summary.blocks = Blocks::of(model).map(|b| b.after(model, &observed, written));
+    summary.blocks = BlockSizes::of(model).map(|b| b.after(model, &observed, written));
     summary.domain = domain::told(&out_of_domain(model, &history));
     summary.notes.extend(domain::note(&summary.domain, true));
     summary.write(folder)?;
@@ -313,7 +313,7 @@ fn describe(violation: &Violation) -> String {
     }
 }
 
-fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> Told {
+fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> CommandOutput {
     let program = summary.program.as_ref();
     let (objective, iterations) = program.map_or((f64::NAN, 0), |p| (p.objective, p.iterations));
     let mut is_solved = summary.message.is_none();
@@ -332,7 +332,7 @@ fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> Told {
         let intervals = program.map_or(0, |p| p.intervals);
         grid = format!(", {}", counted(intervals, "interval"));
     }
-    Told {
+    CommandOutput {
         is_solved,
         result: format!(
             "{word}: objective {objective:.7}{grid}, {}, {:.2} s, {}",

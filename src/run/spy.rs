@@ -14,15 +14,15 @@ const CELLS: usize = 420;
 
 /// What a matrix is called and how large it is.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Shape<'a> {
+pub(super) struct MatrixSize<'a> {
     pub(super) name: &'a str,
     pub(super) rows: usize,
     pub(super) columns: usize,
 }
 
 /// An SVG of the entries of a matrix, rows downwards.
-pub(super) fn svg(shape: Shape<'_>, entries: &Entries, origin: &Origin) -> String {
-    let Shape {
+pub(super) fn svg(shape: MatrixSize<'_>, entries: &Entries, origin: &Origin) -> String {
+    let MatrixSize {
         name,
         rows,
         columns,

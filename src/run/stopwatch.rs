@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use crate::functional::{Effect, Frame, Level, Output};
+use crate::functional::{Term, Sample, Order, Output};
 use crate::model::Model;
 use crate::reduction::Interval;
 
@@ -19,10 +19,10 @@ pub(super) fn times(model: &Model, spent: f64) -> Vec<f64> {
     let start = model.coordinates_at(&vec![0.0; model.gauges.len()]);
     let instant = action.motion.placed(&start);
     let scalars = vec![0.0; action.intervals.scalars];
-    let interval = Interval::given(&scalars, model.question.interval);
+    let interval = Interval::given(&scalars, model.analysis.interval);
     let of_interval = interval.frame([&instant, &instant]);
     let multipliers = vec![0.0; model.multiplier_names.len()];
-    let of_instant = Frame {
+    let of_instant = Sample {
         scalars: &multipliers,
         ..of_interval
     };
@@ -31,7 +31,7 @@ pub(super) fn times(model: &Model, spent: f64) -> Vec<f64> {
         (&action.intervals, &of_interval),
         (&action.instants, &of_instant),
     ] {
-        let mut output = sum.output(Level::Hessian);
+        let mut output = sum.output(Order::Hessian);
         times.extend(
             sum.terms()
                 .map(|term| 1e6 * time(term, frame, &mut output, spent)),
@@ -42,15 +42,15 @@ pub(super) fn times(model: &Model, spent: f64) -> Vec<f64> {
 
 /// Time of one evaluation in s.
 fn time(
-    (effect, slots): (&dyn Effect, &[u32]),
-    frame: &Frame<'_>,
+    (effect, slots): (&dyn Term, &[u32]),
+    frame: &Sample<'_>,
     output: &mut Output,
     spent: f64,
 ) -> f64 {
     let mut run = |count: u32| {
         let began = Instant::now();
         for _ in 0..count {
-            effect.evaluate(Level::Hessian, black_box(frame), slots, output);
+            effect.evaluate(Order::Hessian, black_box(frame), slots, output);
         }
         black_box(&output);
         began.elapsed().as_secs_f64() / f64::from(count)

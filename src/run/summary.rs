@@ -5,15 +5,15 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::control::problem;
-use crate::dynamics::{History, LocalError};
+use crate::dynamics::{DiscreteTrajectory, LocalError};
 use crate::report::atomic::{self, WriteError};
 use crate::run::accuracy::Accuracy;
-use crate::run::blocks::Blocks;
+use crate::run::blocks::BlockSizes;
 use crate::run::comparison::Comparison;
 use crate::run::domain::Outside;
 use crate::run::effects::Plan;
 use crate::run::followed::Followed;
-use crate::run::request::Request;
+use crate::run::request::CommandInput;
 use crate::run::resimulate::Resimulation;
 use crate::run::rest_words::Rest;
 use crate::run::violations::Violation;
@@ -51,7 +51,7 @@ pub(super) struct Summary {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) domain: Vec<Outside>,
     #[serde(flatten)]
-    pub(super) blocks: Option<Blocks>,
+    pub(super) blocks: Option<BlockSizes>,
     pub(super) coordinates: &'static str,
     pub(super) seconds: Seconds,
     #[serde(flatten)]
@@ -162,7 +162,7 @@ impl Neglected {
 impl Simulation {
     /// Of a motion.
     pub(super) fn new(
-        history: &History,
+        history: &DiscreteTrajectory,
         task: &problem::Simulation,
         error: Option<LocalError>,
     ) -> Self {
@@ -222,7 +222,7 @@ impl Versions {
 
 impl Summary {
     /// A summary without a result.
-    pub(super) fn new(request: &Request, status: &str, coordinates: &'static str) -> Self {
+    pub(super) fn new(request: &CommandInput, status: &str, coordinates: &'static str) -> Self {
         Self {
             command: request.command.clone(),
             input: request.input.display().to_string(),

@@ -3,11 +3,11 @@
 use std::time::Instant;
 
 use crate::control::problem::Task;
-use crate::run::accuracy::Wanted;
+use crate::run::accuracy::AccuracyTarget;
 use crate::run::error::RunError;
 use crate::run::memory;
 use crate::run::progress::{Progress, phase};
-use crate::run::request::{Request, Told};
+use crate::run::request::{CommandInput, CommandOutput};
 use crate::run::{forward, rest, solve};
 use crate::scene::read_problem;
 
@@ -15,7 +15,7 @@ use crate::scene::read_problem;
 ///
 /// # Errors
 /// The input is wrong, and nothing was written; or the results cannot be written.
-pub fn run(request: &Request) -> Result<Told, RunError> {
+pub fn run(request: &CommandInput) -> Result<CommandOutput, RunError> {
     let began = Instant::now();
     let _progress = Progress::of_phases(request.progress);
     phase("reading");
@@ -32,10 +32,10 @@ pub fn run(request: &Request) -> Result<Told, RunError> {
 }
 
 /// Refuses options that the task has no use for.
-fn refuse_unused(request: &Request, task: &Task) -> Result<(), RunError> {
+fn refuse_unused(request: &CommandInput, task: &Task) -> Result<(), RunError> {
     let option = match (task, request.wanted) {
-        (Task::Equilibrium(_), Some(Wanted::Below(_))) => "--accuracy",
-        (Task::Equilibrium(_), Some(Wanted::Estimate)) => "--estimate-error",
+        (Task::Equilibrium(_), Some(AccuracyTarget::Below(_))) => "--accuracy",
+        (Task::Equilibrium(_), Some(AccuracyTarget::Estimate)) => "--estimate-error",
         (Task::Equilibrium(_) | Task::Simulate(_), _) if request.max_iterations.is_some() => {
             "--max-iterations"
         }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::control::Solved;
+use crate::control::Solution;
 use crate::model::Model;
 use crate::run::solution_file;
 
@@ -43,7 +43,7 @@ impl Unfinished {
         &mut self,
         model: &Model,
         violation: f64,
-        motion: impl FnOnce() -> Solved,
+        motion: impl FnOnce() -> Solution,
     ) {
         let began = Instant::now();
         if began < self.next || violation > self.violation.max(MEETS) {

@@ -1,6 +1,6 @@
 //! From a control problem as written to the task.
 
-use crate::control::problem::{Control, Duration, Objective, Solver, State};
+use crate::control::problem::{Control, Duration, Objective, Solver, BoundaryState};
 use crate::ipopt::OptionValue;
 use crate::model::system::{Fidelity, Muscle, System};
 use crate::scene::build_choice::{coordinates, count};
@@ -120,13 +120,13 @@ pub(super) fn given_voltages(
 
 /// Rest voltages of sources that are looked for lie in the bounds.
 pub(super) fn check_rest_voltages(
-    state: &State,
+    state: &BoundaryState,
     system: &System,
     given: &BTreeMap<usize, f64>,
     [lower, upper]: [f64; 2],
     scope: &Scope<'_>,
 ) -> Result<(), SceneError> {
-    let State::RestAtVoltages(voltages) = state else {
+    let BoundaryState::RestAtVoltages(voltages) = state else {
         return Ok(());
     };
     for (s, (source, &voltage)) in system.sources().iter().zip(voltages).enumerate() {
@@ -143,7 +143,7 @@ pub(super) fn check_rest_voltages(
 
 /// No more final conditions than degrees of freedom, where these can be counted from the joints: nodes bring more.
 pub(super) fn check_final_conditions(
-    goal: &State,
+    goal: &BoundaryState,
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<(), SceneError> {
@@ -152,9 +152,9 @@ pub(super) fn check_final_conditions(
         return Ok(());
     }
     let (conditions, key) = match goal {
-        State::Markers { places, .. } => (3 * places.len(), "markers"),
-        State::JointAngles { angles, .. } => (angles.len(), "joint_angles"),
-        State::RestAtVoltages(_) => return Ok(()),
+        BoundaryState::Markers { places, .. } => (3 * places.len(), "markers"),
+        BoundaryState::JointAngles { angles, .. } => (angles.len(), "joint_angles"),
+        BoundaryState::RestAtVoltages(_) => return Ok(()),
     };
     match tree_freedoms(system.bodies.len(), &system.joints) {
         Some(freedoms) if conditions > freedoms => {

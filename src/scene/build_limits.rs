@@ -1,6 +1,6 @@
 //! From path limits as written to indices, bounds and regions.
 
-use crate::control::problem::{Limit, Side};
+use crate::control::problem::{PathConstraint, Side};
 use crate::model::Region;
 use crate::model::system::System;
 use crate::scene::build_state::{ELECTRIC_KEYS, joint_value, joint_with_coordinate};
@@ -19,7 +19,7 @@ pub(crate) fn limit(
     spec: &LimitSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<Limit>, SceneError> {
+) -> Result<Vec<PathConstraint>, SceneError> {
     let key = scope.exactly_one([
         (
             "joint_angle",
@@ -53,7 +53,7 @@ fn joint_angle(
     spec: &JointAngleLimitSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Limit, SceneError> {
+) -> Result<PathConstraint, SceneError> {
     let joint = joint_with_coordinate(&spec.joint, system, &scope.key("joint"))?;
     let kinds = [Angle::kind(), Length::kind()];
     let bound = |key: &str, quantity: Option<&_>, absent: f64| match quantity {
@@ -63,14 +63,14 @@ fn joint_angle(
     let min = bound("min", spec.min.as_ref(), f64::NEG_INFINITY)?;
     let max = bound("max", spec.max.as_ref(), f64::INFINITY)?;
     check_bounds(min, max, spec.min.is_some() || spec.max.is_some(), scope)?;
-    Ok(Limit::JointAngle { joint, min, max })
+    Ok(PathConstraint::JointAngle { joint, min, max })
 }
 
 fn stretch(
     spec: &StretchLimitSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Limit, SceneError> {
+) -> Result<PathConstraint, SceneError> {
     let muscles = names(&system.muscles, |muscle| &muscle.name);
     let expected = "the name of a muscle";
     let muscle = scope.key("muscle").find(&spec.muscle, &muscles, expected)?;
@@ -83,7 +83,7 @@ fn stretch(
     }
     let (min, max) = (spec.min.unwrap_or(0.0), spec.max.unwrap_or(f64::INFINITY));
     check_bounds(min, max, spec.min.is_some() || spec.max.is_some(), scope)?;
-    Ok(Limit::Stretch { muscle, min, max })
+    Ok(PathConstraint::Stretch { muscle, min, max })
 }
 
 fn check_bounds(min: f64, max: f64, there: bool, scope: &Scope<'_>) -> Result<(), SceneError> {
@@ -101,7 +101,7 @@ fn electric_field(
     spec: &ElectricFieldLimitSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<Limit>, SceneError> {
+) -> Result<Vec<PathConstraint>, SceneError> {
     let max = scope.key("max").positive(&spec.max)?;
     let one = |name: &Option<String>| name.clone().map(Some);
     let all = |all: Option<All>| all.map(|_| None);
@@ -135,8 +135,8 @@ fn electric_field(
             return Err(nothing(format!("a muscle of {ELECTRIC_KEYS}{beside}")));
         }
         let limit = |muscle| match system.meshed_muscles().position(|m| m == muscle) {
-            None => Limit::ElectricField { muscle, max },
-            Some(index) => Limit::BlockField {
+            None => PathConstraint::ElectricField { muscle, max },
+            Some(index) => PathConstraint::BlockField {
                 block: system.solids.len() + index,
                 region: None,
                 max,
@@ -166,7 +166,7 @@ fn electric_field(
         let expected = format!("elements of {ELECTRIC_KEYS} between electrodes");
         return Err(nothing(expected));
     }
-    let limit = |block| Limit::BlockField { block, region, max };
+    let limit = |block| PathConstraint::BlockField { block, region, max };
     Ok(blocks.into_iter().map(limit).collect())
 }
 
@@ -181,7 +181,7 @@ fn muscle_with_field(name: &str, system: &System, scope: &Scope<'_>) -> Result<u
     Err(scope.wrong(found, format!("a muscle of {ELECTRIC_KEYS}")))
 }
 
-fn marker(spec: &MarkerLimitSpec, system: &System, scope: &Scope<'_>) -> Result<Limit, SceneError> {
+fn marker(spec: &MarkerLimitSpec, system: &System, scope: &Scope<'_>) -> Result<PathConstraint, SceneError> {
     let markers = names(&system.markers, |marker| &marker.name);
     let expected = "the name of a marker";
     let marker = scope.key("marker").find(&spec.marker, &markers, expected)?;
@@ -200,7 +200,7 @@ fn marker(spec: &MarkerLimitSpec, system: &System, scope: &Scope<'_>) -> Result<
         ),
     ])?;
     let region = region(region_spec, &scope.key(key))?;
-    Ok(Limit::Marker {
+    Ok(PathConstraint::Marker {
         marker,
         region,
         side,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::model::system::{Electric, Material, VACUUM_PERMITTIVITY};
+use crate::model::system::{ElectricConstants, Material, VACUUM_PERMITTIVITY};
 use crate::scene::error::SceneError;
 use crate::scene::quantity::Quantity;
 use crate::scene::scope::Scope;
@@ -68,7 +68,7 @@ fn lame_lambda(
 }
 
 /// Constants of the electric energy, where the material has one.
-fn electric(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<Electric>, SceneError> {
+fn electric(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<ElectricConstants>, SceneError> {
     let ratio = spec.relative_permittivity;
     if let (None, Some(_)) = (ratio, spec.dielectric) {
         let expected = "\"relative_permittivity\" beside it";
@@ -79,19 +79,19 @@ fn electric(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<Electric>, 
     let (c1, c2) = (spec.c1.as_ref(), spec.c2.as_ref());
     match (ratio, c1, c2) {
         (None, None, None) => Ok(None),
-        (None, Some(c1), Some(c2)) => Ok(Some(Electric {
+        (None, Some(c1), Some(c2)) => Ok(Some(ElectricConstants {
             c1: c1.value(),
             c2: c2.value(),
             permittivity: VACUUM_PERMITTIVITY,
         })),
         (Some(ratio), None, None) if ratio >= 1.0 => {
             Ok(Some(match spec.dielectric.unwrap_or_default() {
-                Dielectric::FirstOrder => Electric {
+                Dielectric::FirstOrder => ElectricConstants {
                     c1: -(ratio - 1.0) * VACUUM_PERMITTIVITY,
                     c2: (ratio - 1.0) * VACUUM_PERMITTIVITY / 2.0,
                     permittivity: VACUUM_PERMITTIVITY,
                 },
-                Dielectric::Ideal => Electric {
+                Dielectric::Ideal => ElectricConstants {
                     c1: 0.0,
                     c2: 0.0,
                     permittivity: ratio * VACUUM_PERMITTIVITY,

@@ -29,11 +29,11 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     if let Some(chain) = &scene.chain {
         check_chain(chain, &materials, &scope.key("chain"))?;
     }
-    let bodies = Entries::new(scope, "bodies", scene.bodies.len());
-    let joints = Entries::new(scope, "joints", scene.joints.len());
-    let muscles = Entries::new(scope, "muscles", scene.muscles.len());
-    let solids = Entries::new(scope, "solids", scene.solids.len());
-    let markers = Entries::new(scope, "markers", scene.markers.len());
+    let bodies = NamedEntries::new(scope, "bodies", scene.bodies.len());
+    let joints = NamedEntries::new(scope, "joints", scene.joints.len());
+    let muscles = NamedEntries::new(scope, "muscles", scene.muscles.len());
+    let solids = NamedEntries::new(scope, "solids", scene.solids.len());
+    let markers = NamedEntries::new(scope, "markers", scene.markers.len());
 
     let scene = expanded(scene.clone());
     let body_names = names(&scene.bodies, |body| &body.name);
@@ -42,8 +42,8 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     bodies.unique(&body_names, &["ground"])?;
     joints.unique(&names(&scene.joints, |joint| &joint.name), &[])?;
     muscles.unique(&muscle_names, &["solution", "time", "voltages", "hold"])?;
-    let springs = Entries::new(scope, "springs", scene.springs.len());
-    let tendons = Entries::new(scope, "tendons", scene.tendons.len());
+    let springs = NamedEntries::new(scope, "springs", scene.springs.len());
+    let tendons = NamedEntries::new(scope, "tendons", scene.tendons.len());
     let spring_names = names(&scene.springs, |spring| &spring.name);
     let tendon_names = names(&scene.tendons, |tendon| &tendon.name);
     springs.unique(&spring_names, &[])?;
@@ -120,13 +120,13 @@ impl Elements {
 }
 
 /// One list of the scene; entries beyond the written ones come from the chain.
-struct Entries<'a> {
+struct NamedEntries<'a> {
     list: Scope<'a>,
     chain: Scope<'a>,
     written: usize,
 }
 
-impl<'a> Entries<'a> {
+impl<'a> NamedEntries<'a> {
     fn new(scene: &Scope<'a>, list: &str, written: usize) -> Self {
         Self {
             list: scene.key(list),

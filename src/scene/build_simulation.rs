@@ -1,6 +1,6 @@
 //! From a simulation as written to the task.
 
-use crate::control::problem::{Simulation, State};
+use crate::control::problem::{Simulation, BoundaryState};
 use crate::dynamics::{Integrator, Newton, Solving};
 use crate::model::system::{Fidelity, System};
 use crate::scene::build_choice::coordinates;
@@ -34,7 +34,7 @@ pub(super) fn simulation(
     let (step, tolerance) = step(spec, duration, method, scope)?;
     let start = match &spec.start {
         Some(start) => start_state(start, system, &scope.key("start"))?,
-        None => State::JointAngles {
+        None => BoundaryState::JointAngles {
             angles: BTreeMap::new(),
             rates: BTreeMap::new(),
             velocities: Default::default(),

@@ -3,13 +3,13 @@
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
-use crate::control::problem::State;
+use crate::control::problem::BoundaryState;
 use crate::model::Graph;
 use crate::model::system::{JointKind, Source, System};
 use crate::scene::error::SceneError;
 use crate::scene::names::names;
 use crate::scene::point::{Point, vector};
-use crate::scene::quantity::{Angle, AngularVelocity, Kind, Length, Measure, Quantity, Velocity};
+use crate::scene::quantity::{Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity};
 use crate::scene::scope::Scope;
 use crate::scene::spec_states::{BodyVelocitySpec, GoalSpec, StartSpec};
 use crate::scene::spec_voltages::VoltageMap;
@@ -54,7 +54,7 @@ pub(crate) fn start_state(
     spec: &StartSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<State, SceneError> {
+) -> Result<BoundaryState, SceneError> {
     let moving =
         spec.joint_angles.is_some() || spec.joint_rates.is_some() || spec.body_velocities.is_some();
     let rest = spec.rest_at_voltages.as_ref().map(Some);
@@ -63,7 +63,7 @@ pub(crate) fn start_state(
         ("joint_angles", moving.then_some(None)),
     ])? {
         Some(map) => {
-            voltages(map, system, &scope.key("rest_at_voltages")).map(State::RestAtVoltages)
+            voltages(map, system, &scope.key("rest_at_voltages")).map(BoundaryState::RestAtVoltages)
         }
         None => {
             let kinds = [Angle::kind(), Length::kind()];
@@ -76,7 +76,7 @@ pub(crate) fn start_state(
             let kinds = [AngularVelocity::kind(), Velocity::kind()];
             let rates = by_joint(&spec.joint_rates, &kinds, system, &scope.key("joint_rates"))?;
             let place = scope.key("body_velocities");
-            Ok(State::JointAngles {
+            Ok(BoundaryState::JointAngles {
                 angles,
                 rates,
                 velocities: velocities(&spec.body_velocities, system, &place)?,
@@ -128,7 +128,7 @@ pub(crate) fn goal_state(
     spec: &GoalSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<State, SceneError> {
+) -> Result<BoundaryState, SceneError> {
     let key = scope.exactly_one([
         (
             "rest_at_voltages",
@@ -149,11 +149,11 @@ pub(crate) fn goal_state(
         }
     }
     if let Some(map) = &spec.rest_at_voltages {
-        return voltages(map, system, &scope).map(State::RestAtVoltages);
+        return voltages(map, system, &scope).map(BoundaryState::RestAtVoltages);
     }
     if let Some(markers) = &spec.markers {
         let held = |map| voltages(map, system, &outer.key("hold"));
-        return Ok(State::Markers {
+        return Ok(BoundaryState::Markers {
             places: marker_goals(markers, system, &scope)?,
             rest: spec.rest.unwrap_or_default().into(),
             hold: spec.hold.as_ref().map(held).transpose()?,
@@ -164,7 +164,7 @@ pub(crate) fn goal_state(
     if angles.is_empty() {
         return Err(scope.wrong("no joint", "the coordinate of a joint or more"));
     }
-    Ok(State::JointAngles {
+    Ok(BoundaryState::JointAngles {
         angles,
         rates: BTreeMap::new(),
         velocities: BTreeMap::new(),
@@ -195,7 +195,7 @@ fn marker_goals(
 }
 
 /// Values by joint index, of the first kind for rotations and of the second for translations.
-fn by_joint<M: Measure>(
+fn by_joint<M: PhysicalQuantity>(
     map: &Option<BTreeMap<String, Quantity<M>>>,
     kinds: &[Kind; 2],
     system: &System,
@@ -229,7 +229,7 @@ pub(crate) fn joint_with_coordinate(
 }
 
 /// A value of a joint in the kind that the joint calls for.
-pub(crate) fn joint_value<M: Measure>(
+pub(crate) fn joint_value<M: PhysicalQuantity>(
     quantity: &Quantity<M>,
     [angular, linear]: &[Kind; 2],
     joint: usize,

@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use crate::scene::error::{Mistake, SceneError, is_printable, nearest};
-use crate::scene::locate::{Place, Step, locate};
+use crate::scene::locate::{JsonPath, Step, locate};
 use crate::scene::wording::wording;
 
 /// A JSON file.
@@ -17,7 +17,7 @@ pub(crate) struct Document {
     /// Values, with overrides applied.
     pub(crate) value: Value,
     /// Places set on the command line.
-    pub(crate) set: Vec<Place>,
+    pub(crate) set: Vec<JsonPath>,
     text: String,
 }
 
@@ -32,11 +32,11 @@ impl Document {
         };
         let bytes = std::fs::read(path).map_err(|error| {
             let found = format!("no readable file ({error})");
-            document.mistake(&Place::default(), found, "a JSON file")
+            document.mistake(&JsonPath::default(), found, "a JSON file")
         })?;
         document.text = String::from_utf8(bytes).map_err(|error| {
             let found = format!("a file that is not UTF-8 text ({})", error.utf8_error());
-            document.mistake(&Place::default(), found, "a JSON file")
+            document.mistake(&JsonPath::default(), found, "a JSON file")
         })?;
         document.value = serde_json::from_str(&document.text)
             .map_err(|error| document.syntax_mistake(&error))?;
@@ -63,7 +63,7 @@ impl Document {
                 serde_path_to_error::Segment::Enum { variant } => Some(Step::Key(variant.clone())),
                 _ => None,
             });
-            let place = Place(steps.collect());
+            let place = JsonPath(steps.collect());
             let wording = wording(place.last_key(), &error.inner().to_string());
             let at_key = wording.at_key;
             self.describe(
@@ -79,7 +79,7 @@ impl Document {
     /// A wrong value at a place.
     pub(crate) fn mistake(
         &self,
-        place: &Place,
+        place: &JsonPath,
         found: impl Into<String>,
         expected: impl Into<String>,
     ) -> SceneError {
@@ -89,7 +89,7 @@ impl Document {
     /// A wrong name at a place, with the nearest right one.
     pub(crate) fn wrong_name<'a>(
         &self,
-        place: &Place,
+        place: &JsonPath,
         name: &str,
         expected: impl Into<String>,
         candidates: impl IntoIterator<Item = &'a str>,
@@ -102,7 +102,7 @@ impl Document {
 
     fn describe(
         &self,
-        place: &Place,
+        place: &JsonPath,
         found: String,
         expected: String,
         nearest: Option<String>,
@@ -147,7 +147,7 @@ impl Document {
     }
 
     /// Bytes of a value (or its key), or of the nearest value around it.
-    fn span(&self, place: &Place, at_key: bool) -> Option<Range<usize>> {
+    fn span(&self, place: &JsonPath, at_key: bool) -> Option<Range<usize>> {
         let all = locate(&self.text);
         let mut place = place.clone();
         let mut at_key = at_key;
@@ -205,7 +205,7 @@ impl Document {
             return Ok(());
         };
         found.steps.reverse();
-        let (place, text) = (Place(found.steps), found.text);
+        let (place, text) = (JsonPath(found.steps), found.text);
         let expected = "a text without control characters".to_owned();
         Err(self.describe(
             &place,

@@ -13,9 +13,9 @@ pub(crate) enum Step {
 
 /// A path from the root of a JSON document.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) struct Place(pub(crate) Vec<Step>);
+pub(crate) struct JsonPath(pub(crate) Vec<Step>);
 
-impl Place {
+impl JsonPath {
     /// The entry under a key.
     pub(crate) fn key(&self, key: &str) -> Self {
         self.then(Step::Key(key.to_owned()))
@@ -69,7 +69,7 @@ impl Place {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for JsonPath {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (position, step) in self.0.iter().enumerate() {
             match step {
@@ -114,7 +114,7 @@ pub(crate) fn locate(text: &str) -> Located {
 
 impl Located {
     /// The value at a place.
-    pub(crate) fn find(&self, place: &Place) -> Option<&Found> {
+    pub(crate) fn find(&self, place: &JsonPath) -> Option<&Found> {
         let mut here = self.of(None, None, 0)?;
         for step in &place.0 {
             here = self.of(Some(here), Some(step), here + 1)?;
@@ -123,7 +123,7 @@ impl Located {
     }
 
     /// The innermost value around a byte of the text, with its place.
-    pub(crate) fn around(&self, at: usize) -> Option<(Place, Range<usize>)> {
+    pub(crate) fn around(&self, at: usize) -> Option<(JsonPath, Range<usize>)> {
         let is_around = |&i: &usize| {
             let value = self.ended(i).map(|found| &found.value);
             value.is_some_and(|value| value.start <= at && at <= value.end)
@@ -133,7 +133,7 @@ impl Located {
     }
 
     /// The first value under a key that stood in the same object before, with its place.
-    pub(crate) fn repeated(&self) -> Option<(Place, &Found)> {
+    pub(crate) fn repeated(&self) -> Option<(JsonPath, &Found)> {
         let mut seen = HashSet::new();
         let mut all = self.0.iter();
         let index = all.position(|found| !seen.insert((found.parent, found.step.as_ref())))?;
@@ -152,7 +152,7 @@ impl Located {
         self.0.get(index).filter(|found| found.value.end != OPEN)
     }
 
-    fn place(&self, index: usize) -> Place {
+    fn place(&self, index: usize) -> JsonPath {
         let mut steps = Vec::new();
         let mut next = Some(index);
         while let Some(found) = next.map(|index| &self.0[index]) {
@@ -160,7 +160,7 @@ impl Located {
             next = found.parent;
         }
         steps.reverse();
-        Place(steps)
+        JsonPath(steps)
     }
 }
 

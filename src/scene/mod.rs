@@ -58,7 +58,7 @@ mod wording;
 pub(crate) use document::Document;
 pub use error::{SceneError, printable};
 pub(crate) use layout::lay_out;
-pub(crate) use locate::Place;
+pub(crate) use locate::JsonPath;
 pub(crate) use scope::Scope;
 pub use start::new_trunk;
 pub use typed::{driven_voltages, read_system};

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::scene::quantity::{Length, Measure, Quantity};
+use crate::scene::quantity::{Length, PhysicalQuantity, Quantity};
 
 /// A point or a vector of lengths.
 pub type Point = [Quantity<Length>; 3];
@@ -20,6 +20,6 @@ pub struct PointSpec {
 }
 
 /// A vector of quantities in the units inside.
-pub(crate) fn vector<M: Measure>(entries: &[Quantity<M>; 3]) -> Vector3<f64> {
+pub(crate) fn vector<M: PhysicalQuantity>(entries: &[Quantity<M>; 3]) -> Vector3<f64> {
     Vector3::from(entries.each_ref().map(Quantity::value))
 }

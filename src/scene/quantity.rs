@@ -29,7 +29,7 @@ impl Kind {
 }
 
 /// What a [`Quantity`] measures.
-pub trait Measure {
+pub trait PhysicalQuantity {
     /// Name of the measure in the JSON Schema.
     const NAME: &'static str;
 
@@ -159,7 +159,7 @@ pub struct Quantity<M> {
     measure: PhantomData<M>,
 }
 
-impl<M: Measure> Quantity<M> {
+impl<M: PhysicalQuantity> Quantity<M> {
     /// A number in SI units.
     fn try_from_number(number: f64) -> Result<Self, String> {
         Self {
@@ -267,7 +267,7 @@ impl<M> Serialize for Quantity<M> {
     }
 }
 
-impl<'de, M: Measure> Deserialize<'de> for Quantity<M> {
+impl<'de, M: PhysicalQuantity> Deserialize<'de> for Quantity<M> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(QuantityVisitor(PhantomData))
     }
@@ -275,7 +275,7 @@ impl<'de, M: Measure> Deserialize<'de> for Quantity<M> {
 
 struct QuantityVisitor<M>(PhantomData<M>);
 
-impl<M: Measure> QuantityVisitor<M> {
+impl<M: PhysicalQuantity> QuantityVisitor<M> {
     fn wrong<T, E: Error>(found: Result<T, String>) -> Result<T, E> {
         found.map_err(|found| {
             E::invalid_value(
@@ -286,7 +286,7 @@ impl<M: Measure> QuantityVisitor<M> {
     }
 }
 
-impl<M: Measure> Visitor<'_> for QuantityVisitor<M> {
+impl<M: PhysicalQuantity> Visitor<'_> for QuantityVisitor<M> {
     type Value = Quantity<M>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -310,7 +310,7 @@ impl<M: Measure> Visitor<'_> for QuantityVisitor<M> {
     }
 }
 
-impl<M: Measure> JsonSchema for Quantity<M> {
+impl<M: PhysicalQuantity> JsonSchema for Quantity<M> {
     fn schema_name() -> Cow<'static, str> {
         M::NAME.into()
     }

@@ -5,20 +5,20 @@ use std::fmt;
 
 use crate::scene::document::Document;
 use crate::scene::error::SceneError;
-use crate::scene::locate::Place;
-use crate::scene::quantity::{Measure, Quantity};
+use crate::scene::locate::JsonPath;
+use crate::scene::quantity::{PhysicalQuantity, Quantity};
 
 /// A place in a document.
 #[derive(Clone)]
 pub(crate) struct Scope<'a> {
     pub(crate) document: &'a Document,
-    pub(crate) place: Place,
+    pub(crate) place: JsonPath,
 }
 
 impl<'a> Scope<'a> {
     /// The whole document.
     pub(crate) fn of(document: &'a Document) -> Self {
-        let place = Place::default();
+        let place = JsonPath::default();
         Self { document, place }
     }
 
@@ -59,7 +59,7 @@ impl<'a> Scope<'a> {
     }
 
     /// A positive quantity in the units inside.
-    pub(crate) fn positive<M: Measure>(&self, quantity: &Quantity<M>) -> Result<f64, SceneError> {
+    pub(crate) fn positive<M: PhysicalQuantity>(&self, quantity: &Quantity<M>) -> Result<f64, SceneError> {
         let value = quantity.value();
         if value > 0.0 {
             return Ok(value);
@@ -69,7 +69,7 @@ impl<'a> Scope<'a> {
     }
 
     /// A quantity that is zero or more; zero leaves no trace.
-    pub(crate) fn absent_or_positive<M: Measure>(
+    pub(crate) fn absent_or_positive<M: PhysicalQuantity>(
         &self,
         quantity: Option<&Quantity<M>>,
     ) -> Result<Option<f64>, SceneError> {

@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use crate::scene::document::Document;
 use crate::scene::error::{Mistake, SceneError};
-use crate::scene::locate::{Place, Step};
+use crate::scene::locate::{JsonPath, Step};
 
 /// Longest path of an override; files are not nested deeper.
 const DEEPEST: usize = 64;
@@ -12,7 +12,7 @@ const DEEPEST: usize = 64;
 /// An override: a place and the value to put there.
 #[derive(Clone, Debug)]
 pub(crate) struct Override {
-    pub(crate) place: Place,
+    pub(crate) place: JsonPath,
     value: Value,
     written: String,
 }
@@ -22,7 +22,7 @@ impl Override {
     pub(crate) fn parse(written: &str) -> Result<Self, SceneError> {
         let parts = written.split_once('=');
         let read = |(path, value): (&str, &str)| {
-            let place = Place::parse(path.trim()).filter(|place| place.0.len() <= DEEPEST)?;
+            let place = JsonPath::parse(path.trim()).filter(|place| place.0.len() <= DEEPEST)?;
             Some(Self {
                 place,
                 value: serde_json::from_str(value).unwrap_or_else(|_| value.trim().into()),
@@ -47,7 +47,7 @@ impl Override {
     pub(crate) fn in_scene(&self) -> Option<Self> {
         match self.place.0.as_slice() {
             [Step::Key(first), rest @ ..] if first == "scene" && !rest.is_empty() => Some(Self {
-                place: Place(rest.to_vec()),
+                place: JsonPath(rest.to_vec()),
                 ..self.clone()
             }),
             _ => None,
@@ -69,7 +69,7 @@ impl Override {
 }
 
 /// The place itself, or the first one on the way to it that is not there yet.
-fn changed(root: &Value, place: &Place) -> Place {
+fn changed(root: &Value, place: &JsonPath) -> JsonPath {
     let mut value = Some(root);
     let missing = place.0.iter().position(|step| {
         value = value.and_then(|value| match step {
@@ -79,18 +79,18 @@ fn changed(root: &Value, place: &Place) -> Place {
         value.is_none()
     });
     match missing {
-        Some(position) => Place(place.0[..=position].to_vec()),
+        Some(position) => JsonPath(place.0[..=position].to_vec()),
         None => place.clone(),
     }
 }
 
 /// Where a value goes; otherwise what was found and what is expected.
-fn slot<'a>(root: &'a mut Value, place: &Place) -> Result<&'a mut Value, (String, String)> {
+fn slot<'a>(root: &'a mut Value, place: &JsonPath) -> Result<&'a mut Value, (String, String)> {
     let mut value = root;
     for (position, step) in place.0.iter().enumerate() {
         let parent = match position {
             0 => "the file".to_owned(),
-            _ => Place(place.0[..position].to_vec()).to_string(),
+            _ => JsonPath(place.0[..position].to_vec()).to_string(),
         };
         value = match (step, value) {
             // What is not there yet is made; a key that has no meaning is found when the file is read.

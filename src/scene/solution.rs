@@ -14,7 +14,7 @@ use crate::scene::spec_voltages::TableSpec;
 
 /// What is read of a solution.
 #[derive(Debug, Deserialize)]
-struct Solution {
+struct SolutionRecord {
     /// Instants in s.
     time: Vec<f64>,
     /// Voltages in V by source, one per interval.
@@ -28,7 +28,7 @@ struct Solution {
 /// not know.
 pub(crate) fn of_solution(path: &Path, system: &System) -> Result<Voltages, SceneError> {
     let document = &Document::read(path)?;
-    let solution: Solution = document.parse()?;
+    let solution: SolutionRecord = document.parse()?;
     let scope = Scope::of(document);
     let instants: Vec<f64> = solution.time.iter().map(|time| 1e3 * time).collect();
     let rows = rows(&instants, &solution.voltages, system, &scope)?;

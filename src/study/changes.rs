@@ -1,7 +1,7 @@
 //! Overrides of a study, with the places that they are from.
 
 use crate::scene::spec_study::ChangesSpec;
-use crate::scene::{Place, SceneError, Scope};
+use crate::scene::{JsonPath, SceneError, Scope};
 use serde_json::Value;
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use std::path::Path;
 #[derive(Default)]
 pub(super) struct Changes<'a> {
     pub(super) words: Vec<String>,
-    pub(super) from: Vec<(Place, Scope<'a>)>,
+    pub(super) from: Vec<(JsonPath, Scope<'a>)>,
 }
 
 impl<'a> Changes<'a> {
@@ -28,7 +28,7 @@ impl<'a> Changes<'a> {
         value: &Value,
         scope: Scope<'a>,
     ) -> Result<(), SceneError> {
-        let Some(place) = Place::parse(key) else {
+        let Some(place) = JsonPath::parse(key) else {
             let expected = "a place in the problem, such as control.intervals";
             return Err(scope.wrong(format!("the key {key:?}"), expected));
         };
@@ -42,11 +42,11 @@ impl<'a> Changes<'a> {
         if !error.is_overridden() {
             return error;
         }
-        let Some(wrong) = Place::parse(error.path()) else {
+        let Some(wrong) = JsonPath::parse(error.path()) else {
             return error;
         };
-        let in_scene = Place::parse(&format!("scene.{}", error.path())).unwrap_or_default();
-        let touches = |place: &Place| {
+        let in_scene = JsonPath::parse(&format!("scene.{}", error.path())).unwrap_or_default();
+        let touches = |place: &JsonPath| {
             [&wrong, &in_scene]
                 .iter()
                 .any(|wrong| wrong.is_within(place) || place.is_within(wrong))

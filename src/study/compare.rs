@@ -1,8 +1,8 @@
 //! Errors of all points: values against the limit of a reference, and what is an error by itself.
 
-use crate::study::limit::{Limit, distance, limit, observed_order};
+use crate::study::limit::{SequenceLimit, distance, limit, observed_order};
 use crate::study::measure::Measure;
-use crate::study::outcome::Seen;
+use crate::study::outcome::Observed;
 use crate::study::read::{Reference, Study};
 use crate::study::schedule::{Done, Results};
 
@@ -15,7 +15,7 @@ pub struct Judged {
     /// What is measured.
     pub measure: Measure,
     /// The limits of the methods, or that of the reference alone; none where nothing was solved, or nothing is compared.
-    pub limits: Vec<Option<Limit>>,
+    pub limits: Vec<Option<SequenceLimit>>,
     /// Whether all methods have the one limit.
     pub is_shared: bool,
     /// What an error is small against: the way of the markers in mm, the size of the objective; 1 where errors are relative.
@@ -37,7 +37,7 @@ impl Judged {
     }
 
     /// The limit that the points of a method are compared with.
-    pub fn limit_of(&self, method: usize) -> Option<&Limit> {
+    pub fn limit_of(&self, method: usize) -> Option<&SequenceLimit> {
         let index = if self.is_shared { 0 } else { method };
         self.limits.get(index)?.as_ref()
     }
@@ -58,7 +58,7 @@ pub fn judge(study: &Study, results: &Results<'_>) -> Vec<Judged> {
 /// The instants that all points have, as parts of the duration.
 pub fn common(results: &Results<'_>) -> Vec<f64> {
     let points = results.methods.iter().flatten().chain(&results.reference);
-    let seen: Vec<&Seen> = points.filter_map(|done| done.seen.as_ref()).collect();
+    let seen: Vec<&Observed> = points.filter_map(|done| done.seen.as_ref()).collect();
     let Some(fewest) = seen.iter().min_by_key(|seen| seen.instants.len()) else {
         return Vec::new();
     };
@@ -73,7 +73,7 @@ fn index(instants: &[f64], wanted: f64) -> Option<usize> {
 }
 
 /// The value of a measure that is compared.
-fn value(seen: &Seen, measure: Measure, instants: &[f64]) -> Option<Vec<f64>> {
+fn value(seen: &Observed, measure: Measure, instants: &[f64]) -> Option<Vec<f64>> {
     let flat = |row: &Vec<nalgebra::Vector3<f64>>| -> Vec<f64> {
         row.iter()
             .flat_map(|place| [place.x, place.y, place.z])
@@ -192,7 +192,7 @@ fn scale(results: &Results<'_>, measure: Measure) -> f64 {
             .flatten()
             .filter_map(|done| done.seen.as_ref())
     };
-    let way = |seen: &Seen| {
+    let way = |seen: &Observed| {
         let from = match measure {
             Measure::Place => &seen.reference,
             _ => &seen.places[0],

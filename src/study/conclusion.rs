@@ -6,7 +6,7 @@ use crate::study::compare::Judged;
 use crate::study::limit::How;
 use crate::study::measure::{Measure, Unit};
 use crate::study::price::{Price, prices, surely, told};
-use crate::study::read::{Point, Study};
+use crate::study::read::{StudyPoint, Study};
 use crate::study::record::of_reference;
 use crate::study::schedule::{Done, Results};
 use crate::study::words::{Grouped, list, name, names, seconds, several};
@@ -252,7 +252,7 @@ fn expected(points: &[Done<'_>], measure: Measure) -> Option<f64> {
         measure,
         Measure::End | Measure::Path | Measure::EnergyBalance
     );
-    let of = |point: &Point| match &point.loaded.task {
+    let of = |point: &StudyPoint| match &point.loaded.task {
         Task::Simulate(task) if task.tolerance.is_none() => match task.voltages {
             Voltages::Constant(_) => {
                 Some((task.step / point.size, task.solving.integrator.order()))

@@ -46,7 +46,7 @@ impl How {
 
 /// The limit of a sequence of values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Limit {
+pub struct SequenceLimit {
     /// The limit.
     pub value: Vec<f64>,
     /// How it was found.
@@ -60,7 +60,7 @@ pub struct Limit {
     pub rounding: f64,
 }
 
-impl Limit {
+impl SequenceLimit {
     /// Errors that are no larger say nothing about the values, as the limit itself is no better.
     pub fn floor(&self) -> f64 {
         let is_confirmed = matches!(self.orders.as_slice(), [.., Some(_), Some(_)]);
@@ -83,7 +83,7 @@ pub fn distance(a: &[f64], b: &[f64], width: usize) -> f64 {
 }
 
 /// The limit of values at falling sizes, coarsest first; none of no value.
-pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<Limit> {
+pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<SequenceLimit> {
     let finest = values.last()?;
     let largest = finest.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let rounding = ROUNDING * largest;
@@ -106,7 +106,7 @@ pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<Limit> 
         )
     };
     let Some(last) = each.len().checked_sub(1) else {
-        return Some(Limit {
+        return Some(SequenceLimit {
             uncertainty: match values {
                 [.., before, finest] => Some(distance(before, finest, width)),
                 _ => None,
@@ -122,7 +122,7 @@ pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<Limit> 
         Some(value) => {
             let before = last.checked_sub(1).and_then(extrapolated);
             let uncertainty = distance(&value, before.as_ref().unwrap_or(finest), width);
-            Limit {
+            SequenceLimit {
                 value,
                 how: How::Extrapolated,
                 orders,
@@ -130,7 +130,7 @@ pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<Limit> 
                 rounding,
             }
         }
-        None => Limit {
+        None => SequenceLimit {
             value: finest.clone(),
             how: match apart <= rounding {
                 true => How::Rounding,

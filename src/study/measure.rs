@@ -11,7 +11,7 @@ pub use crate::scene::spec_study::MeasureSpec as Measure;
 /// What the problems of a study ask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Asked {
+pub enum StudyTask {
     /// Optimal voltages.
     Control,
     /// A motion under given voltages.
@@ -20,7 +20,7 @@ pub enum Asked {
     Rest,
 }
 
-impl Asked {
+impl StudyTask {
     /// In messages.
     pub fn name(self) -> &'static str {
         match self {
@@ -142,7 +142,7 @@ impl Measure {
 /// What there is to measure of points: a violation needs constraints that are left open, an energy that stays the same
 /// needs constant voltages, a place a marker.
 pub fn available<'a>(
-    asked: Asked,
+    asked: StudyTask,
     points: impl Iterator<Item = &'a Loaded> + Clone,
 ) -> Vec<Measure> {
     let places = points.clone().all(|point| !point.system.markers.is_empty());
@@ -157,10 +157,10 @@ pub fn available<'a>(
         _ => false,
     });
     let is_there = |measure: &Measure| match measure {
-        Measure::End | Measure::Path => asked != Asked::Rest && places,
-        Measure::Place => asked == Asked::Rest && places,
-        Measure::ResimulatedEnd | Measure::ResimulatedPath => asked == Asked::Control && places,
-        Measure::Objective | Measure::Infeasibility => asked == Asked::Control,
+        Measure::End | Measure::Path => asked != StudyTask::Rest && places,
+        Measure::Place => asked == StudyTask::Rest && places,
+        Measure::ResimulatedEnd | Measure::ResimulatedPath => asked == StudyTask::Control && places,
+        Measure::Objective | Measure::Infeasibility => asked == StudyTask::Control,
         Measure::EnergyBalance | Measure::EnergyDrift => conserved,
         Measure::ConstraintViolation => open,
     };

@@ -31,10 +31,10 @@ use std::time::Instant;
 use crate::ipopt;
 use crate::report::atomic;
 use crate::report::origin::Origin;
-use crate::run::{RunError, Told, make_folder};
+use crate::run::{RunError, CommandOutput, make_folder};
 use crate::study::compare::{Judged, judge, moved_marker};
 use crate::study::conclusion::conclusion;
-use crate::study::measure::Asked;
+use crate::study::measure::StudyTask;
 use crate::study::read::{Study, read_study};
 use crate::study::schedule::{Results, bar, look, time};
 
@@ -42,7 +42,7 @@ use crate::study::schedule::{Results, bar, look, time};
 ///
 /// # Errors
 /// The study or one of its problems is wrong, or the results cannot be written.
-pub fn study(request: &StudyRequest) -> Result<Told, RunError> {
+pub fn study(request: &StudyRequest) -> Result<CommandOutput, RunError> {
     let began = Instant::now();
     let study = read_study(&request.input)?;
     let folder = request.folder();
@@ -83,8 +83,8 @@ fn write(
         input: request.input.display().to_string(),
         version: Origin::program(),
         ipopt: match study.asked {
-            Asked::Control => ipopt::VERSION.to_owned(),
-            Asked::Motion | Asked::Rest => String::new(),
+            StudyTask::Control => ipopt::VERSION.to_owned(),
+            StudyTask::Motion | StudyTask::Rest => String::new(),
         },
     };
     let put = |name: &str, text: &str| atomic::write(&folder.join(name), text.as_bytes());
@@ -107,7 +107,7 @@ fn write(
     Ok(text)
 }
 
-fn told(results: &Results<'_>, text: &str, folder: &Path, began: Instant) -> Told {
+fn told(results: &Results<'_>, text: &str, folder: &Path, began: Instant) -> CommandOutput {
     let points = || results.methods.iter().flatten();
     let solved = points().filter(|done| done.first.is_solved).count();
     let failed = points().filter(|done| !done.first.is_solved);
@@ -120,7 +120,7 @@ fn told(results: &Results<'_>, text: &str, folder: &Path, began: Instant) -> Tol
     if results.is_interrupted {
         notes.push("interrupted; the files hold the results up to then".to_owned());
     }
-    Told {
+    CommandOutput {
         is_solved: solved > 0 && !results.is_interrupted,
         result: format!(
             "{text}{solved} of {} points solved, {:.1} s, {}",

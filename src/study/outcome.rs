@@ -12,17 +12,17 @@ use crate::dynamics::{EquilibriumError, observations, simulate, stable_equilibri
 use crate::ipopt::interrupt;
 use crate::model::Model;
 use crate::run::{
-    Allowed, Cause, Iterate, Optimum, RunError, Simulated, integrate, optimise, trajectory,
+    SolveLimits, Cause, Iterate, Optimum, RunError, Simulated, integrate, optimise, trajectory,
 };
 use crate::study::measure::Measure;
-use crate::study::read::Point;
+use crate::study::read::StudyPoint;
 
 /// How much finer the grid is on which optimal voltages are put to the test.
 pub const FINER: usize = 16;
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ended {
+pub struct RunOutcome {
     /// A word: `solved`, `simulated`, `at_rest`, or why there is no answer.
     pub status: &'static str,
     /// The same in words, where there is no answer.
@@ -35,7 +35,7 @@ pub struct Ended {
 
 /// What is seen of an answer.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Seen {
+pub struct Observed {
     /// Instants as parts of the duration.
     pub instants: Vec<f64>,
     /// Places of the markers of the study at the instants, in mm.
@@ -54,7 +54,7 @@ pub struct Seen {
 pub const INTERRUPTED: &str = "interrupted";
 
 /// Runs a point once; what is seen of an answer is looked at where `markers` are named, after the clock has stopped.
-pub fn run(point: &Point, markers: Option<&[String]>) -> (Ended, Option<Seen>) {
+pub fn run(point: &StudyPoint, markers: Option<&[String]>) -> (RunOutcome, Option<Observed>) {
     let began = Instant::now();
     match &point.loaded.task {
         Task::Control(task) => control(point, task, markers, began),
@@ -64,11 +64,11 @@ pub fn run(point: &Point, markers: Option<&[String]>) -> (Ended, Option<Seen>) {
 }
 
 fn control(
-    point: &Point,
+    point: &StudyPoint,
     task: &Control,
     markers: Option<&[String]>,
     began: Instant,
-) -> (Ended, Option<Seen>) {
+) -> (RunOutcome, Option<Observed>) {
     let system = &point.loaded.system;
     let mut on = |_: &Iterate<'_>| ControlFlow::Continue(());
     let found = optimise(
@@ -76,7 +76,7 @@ fn control(
         system,
         task,
         None,
-        Allowed::default(),
+        SolveLimits::default(),
         &mut on,
     );
     let seconds = began.elapsed().as_secs_f64();
@@ -86,7 +86,7 @@ fn control(
     };
     let is_solved = optimum.is_solved();
     let none = || "the solver found no solution".to_owned();
-    let ended = Ended {
+    let ended = RunOutcome {
         status: optimum.word(),
         message: (!is_solved).then(|| optimum.cause().map_or_else(none, Cause::told)),
         // Putting voltages to the test is no part of finding them.
@@ -99,7 +99,7 @@ fn control(
     (ended, seen)
 }
 
-fn of_optimum(optimum: &Optimum, names: &[String]) -> Seen {
+fn of_optimum(optimum: &Optimum, names: &[String]) -> Observed {
     let Optimum {
         model,
         boundary,
@@ -110,9 +110,9 @@ fn of_optimum(optimum: &Optimum, names: &[String]) -> Seen {
     } = optimum;
     let n = motion.intervals();
     let h = motion.times[n] / n as f64;
-    let mut seen = Seen {
+    let mut seen = Observed {
         iterations: solution.iterations.len().saturating_sub(1),
-        ..Seen::of(model, &trajectory(model, motion), names)
+        ..Observed::of(model, &trajectory(model, motion), names)
     };
     let mut number = |measure, value| seen.numbers.insert(measure, value);
     number(Measure::Objective, solution.objective);
@@ -126,7 +126,7 @@ fn of_optimum(optimum: &Optimum, names: &[String]) -> Seen {
         ControlFlow::Continue(())
     });
     if failure.is_none() {
-        let again = Seen::of(model, &Trajectory::from_history(model, &history), names);
+        let again = Observed::of(model, &Trajectory::from_history(model, &history), names);
         let apart = |k: usize| furthest(&seen.places[k], &again.places[FINER * k]);
         let distances: Vec<f64> = (0..=n).map(apart).collect();
         let greatest = distances.iter().fold(0.0_f64, |m, d| m.max(*d));
@@ -137,11 +137,11 @@ fn of_optimum(optimum: &Optimum, names: &[String]) -> Seen {
 }
 
 fn motion(
-    point: &Point,
+    point: &StudyPoint,
     task: &Simulation,
     markers: Option<&[String]>,
     began: Instant,
-) -> (Ended, Option<Seen>) {
+) -> (RunOutcome, Option<Observed>) {
     let mut interrupted = false;
     let found = integrate(&point.problem, &point.loaded.system, task, |_, _| {
         interrupted = interrupt::requested();
@@ -156,7 +156,7 @@ fn motion(
         Err(error) => return (refused(&error, seconds), None),
     };
     let is_solved = simulated.failure.is_none() && !interrupted;
-    let ended = Ended {
+    let ended = RunOutcome {
         status: match &simulated.failure {
             Some(_) => "step_failed",
             None if interrupted => INTERRUPTED,
@@ -170,17 +170,17 @@ fn motion(
     (ended, markers.filter(|_| is_solved).map(look))
 }
 
-fn of_motion(simulated: &Simulated, task: &Simulation, names: &[String]) -> Seen {
+fn of_motion(simulated: &Simulated, task: &Simulation, names: &[String]) -> Observed {
     let Simulated { model, history, .. } = simulated;
     let conservative = matches!(task.voltages, Voltages::Constant(_));
-    let mut seen = Seen {
+    let mut seen = Observed {
         iterations: history.report.iterations,
         // Steps by a tolerance have the length that they need.
         halved: match task.tolerance {
             None => history.report.halved,
             Some(_) => 0,
         },
-        ..Seen::of(model, &Trajectory::from_history(model, history), names)
+        ..Observed::of(model, &Trajectory::from_history(model, history), names)
     };
     let observed = observations(model, history);
     if let Some(violations) = column(&observed, "constraint_violation") {
@@ -216,13 +216,13 @@ fn energy(observed: &Observations) -> Option<[f64; 2]> {
 }
 
 fn rest(
-    point: &Point,
+    point: &StudyPoint,
     task: &AtRest,
     markers: Option<&[String]>,
     began: Instant,
-) -> (Ended, Option<Seen>) {
+) -> (RunOutcome, Option<Observed>) {
     let system = point.loaded.system.clone();
-    let failed = |status, message, began: Instant| Ended {
+    let failed = |status, message, began: Instant| RunOutcome {
         status,
         message: Some(message),
         seconds: began.elapsed().as_secs_f64(),
@@ -248,18 +248,18 @@ fn rest(
             return (failed(status, error.to_string(), began), None);
         }
     };
-    let ended = Ended {
+    let ended = RunOutcome {
         status: "at_rest",
         message: None,
         seconds,
         is_solved: true,
     };
-    let look = |names: &[String]| Seen {
+    let look = |names: &[String]| Observed {
         instants: vec![0.0],
         places: vec![marks(&model, &found.z, names)],
         reference: marks(&model, &zero, names),
         iterations: found.iterations,
-        ..Seen::default()
+        ..Observed::default()
     };
     (ended, markers.map(look))
 }
@@ -267,8 +267,8 @@ fn rest(
 /// The status of a point whose model, start or goal does not exist.
 const REFUSED: &str = "refused";
 
-fn refused(error: &RunError, seconds: f64) -> Ended {
-    Ended {
+fn refused(error: &RunError, seconds: f64) -> RunOutcome {
+    RunOutcome {
         status: REFUSED,
         message: Some(error.to_string()),
         seconds,
@@ -276,7 +276,7 @@ fn refused(error: &RunError, seconds: f64) -> Ended {
     }
 }
 
-impl Seen {
+impl Observed {
     /// Instants and places of a motion.
     fn of(model: &Model, motion: &Trajectory, names: &[String]) -> Self {
         let duration = motion.times[motion.intervals()];

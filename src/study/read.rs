@@ -6,7 +6,7 @@ use crate::control::problem::{Duration, Task};
 use crate::scene::spec_study::{MethodSpec, ReferenceSpec, RefineSpec, StudySpec};
 use crate::scene::{Document, Loaded, SceneError, Scope, read_problem};
 use crate::study::changes::Changes;
-use crate::study::measure::{self, Asked, Measure};
+use crate::study::measure::{self, StudyTask, Measure};
 use crate::study::sizes::sizes;
 
 /// Fewest timed runs of a point.
@@ -22,7 +22,7 @@ pub struct Study {
     /// What is compared and why.
     pub about: Option<String>,
     /// What its problems ask.
-    pub asked: Asked,
+    pub asked: StudyTask,
     /// The methods that are compared, in their order.
     pub methods: Vec<Method>,
     /// What errors are measured against.
@@ -43,12 +43,12 @@ pub struct Method {
     /// What is refined.
     pub refined: String,
     /// The points, coarsest first.
-    pub points: Vec<Point>,
+    pub points: Vec<StudyPoint>,
 }
 
 /// A point: one problem.
 #[derive(Debug)]
-pub struct Point {
+pub struct StudyPoint {
     /// The value that is refined, as it is written.
     pub label: String,
     /// Length that goes to zero as the points are refined.
@@ -71,7 +71,7 @@ pub enum Reference {
         /// Index of the method.
         method: usize,
         /// Its points that are run for this alone; where there are none, its points in the study.
-        points: Vec<Point>,
+        points: Vec<StudyPoint>,
     },
 }
 
@@ -131,7 +131,7 @@ fn points(
     refine: &RefineSpec,
     place: &Scope<'_>,
     scope: &Scope<'_>,
-) -> Result<Vec<Point>, SceneError> {
+) -> Result<Vec<StudyPoint>, SceneError> {
     let MethodSpec { problem, set, .. } = &spec.methods[index];
     let own = scope.key("methods").index(index);
     let (written, at) = match problem {
@@ -153,7 +153,7 @@ fn points(
         }
         let loaded =
             read_problem(&file, &changes.words).map_err(|error| changes.at_fault(error, &file))?;
-        Ok(Point {
+        Ok(StudyPoint {
             label,
             size,
             problem: file.clone(),
@@ -198,7 +198,7 @@ fn same_question(
     methods: &[Method],
     reference: &Reference,
     scope: &Scope<'_>,
-) -> Result<Asked, SceneError> {
+) -> Result<StudyTask, SceneError> {
     let extra = match reference {
         Reference::Own => [].as_slice(),
         Reference::Of { points, .. } => points.as_slice(),
@@ -209,7 +209,7 @@ fn same_question(
     let all = each
         .map(|(i, point)| (key(i), point))
         .chain(extra.iter().map(|point| (scope.key("reference"), point)));
-    let mut first: Option<(Asked, Option<f64>)> = None;
+    let mut first: Option<(StudyTask, Option<f64>)> = None;
     for (place, point) in all {
         let (asked, duration) = question(&point.loaded.task);
         if let Task::Equilibrium(task) = &point.loaded.task
@@ -238,13 +238,13 @@ fn same_question(
 }
 
 /// The kind of a task, and its length in ms where that is given.
-fn question(task: &Task) -> (Asked, Option<f64>) {
+fn question(task: &Task) -> (StudyTask, Option<f64>) {
     match task {
-        Task::Simulate(task) => (Asked::Motion, Some(task.duration)),
-        Task::Equilibrium(_) => (Asked::Rest, None),
+        Task::Simulate(task) => (StudyTask::Motion, Some(task.duration)),
+        Task::Equilibrium(_) => (StudyTask::Rest, None),
         Task::Control(task) => match task.duration {
-            Duration::Given(duration) => (Asked::Control, Some(duration)),
-            Duration::Free { .. } => (Asked::Control, None),
+            Duration::Given(duration) => (StudyTask::Control, Some(duration)),
+            Duration::Free { .. } => (StudyTask::Control, None),
         },
     }
 }
@@ -255,7 +255,7 @@ fn markers(
     methods: &[Method],
     scope: &Scope<'_>,
 ) -> Result<Vec<String>, SceneError> {
-    let of = |point: &Point| -> Vec<String> {
+    let of = |point: &StudyPoint| -> Vec<String> {
         let markers = point.loaded.system.markers.iter();
         markers.map(|marker| marker.name.clone()).collect()
     };
@@ -281,7 +281,7 @@ fn markers(
 /// What is measured: what the study names, or what there is.
 fn measures(
     spec: &StudySpec,
-    asked: Asked,
+    asked: StudyTask,
     methods: &[Method],
     scope: &Scope<'_>,
 ) -> Result<Vec<Measure>, SceneError> {

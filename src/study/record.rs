@@ -9,10 +9,10 @@ use crate::report::atomic::{self, WriteError};
 use crate::report::origin::Origin;
 use crate::scene::lay_out;
 use crate::study::compare::{Judged, common};
-use crate::study::limit::{How, Limit};
-use crate::study::measure::{Asked, Measure};
+use crate::study::limit::{How, SequenceLimit};
+use crate::study::measure::{StudyTask, Measure};
 use crate::study::outcome::FINER;
-use crate::study::read::{Method, Point, Study};
+use crate::study::read::{Method, StudyPoint, Study};
 use crate::study::request::StudyRequest;
 use crate::study::schedule::{Done, Results};
 
@@ -22,7 +22,7 @@ struct Record<'a> {
     command: &'a str,
     study: String,
     title: &'a str,
-    asked: Asked,
+    asked: StudyTask,
     /// `complete` or `interrupted`.
     status: &'static str,
     /// What the results say, in words.
@@ -169,7 +169,7 @@ pub(super) fn write(
 fn of_measure(study: &Study, judged: &Judged) -> MeasureRecord {
     let measure = judged.measure;
     let limits = judged.limits.iter().enumerate();
-    let of = |(index, limit): (usize, &Option<Limit>)| {
+    let of = |(index, limit): (usize, &Option<SequenceLimit>)| {
         let limit = limit.as_ref()?;
         let si = |value: f64| measure.unit().to_si(value);
         Some(LimitRecord {
@@ -260,11 +260,11 @@ fn of_point<'a>(study: &Study, done: &'a Done<'a>) -> PointRecord<'a> {
 }
 
 /// What a user types to run a point alone.
-pub(super) fn command(asked: Asked, point: &Point) -> String {
+pub(super) fn command(asked: StudyTask, point: &StudyPoint) -> String {
     let word = match asked {
-        Asked::Control => "solve",
-        Asked::Motion => "simulate",
-        Asked::Rest => "equilibrium",
+        StudyTask::Control => "solve",
+        StudyTask::Motion => "simulate",
+        StudyTask::Rest => "equilibrium",
     };
     let mut command = format!(
         "proboscis {word} {}",

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::run::Shown;
+use crate::run::ProgressDisplay;
 
 /// A command on a study file.
 #[derive(Clone, Debug)]
@@ -16,7 +16,7 @@ pub struct StudyRequest {
     /// Timed runs of each point, in place of those of the file.
     pub runs: Option<usize>,
     /// Whether progress is shown.
-    pub progress: Shown,
+    pub progress: ProgressDisplay,
 }
 
 impl StudyRequest {

@@ -4,19 +4,19 @@
 use indicatif::ProgressBar;
 
 use crate::ipopt::interrupt;
-use crate::run::{Shown, progress_bar};
-use crate::study::outcome::{Ended, INTERRUPTED, Seen, run};
-use crate::study::read::{Point, Reference, Study};
+use crate::run::{ProgressDisplay, progress_bar};
+use crate::study::outcome::{RunOutcome, INTERRUPTED, Observed, run};
+use crate::study::read::{StudyPoint, Reference, Study};
 
 /// A point after its runs.
 #[derive(Debug)]
 pub struct Done<'a> {
     /// The point.
-    pub point: &'a Point,
+    pub point: &'a StudyPoint,
     /// How its first run ended, which is not timed.
-    pub first: Ended,
+    pub first: RunOutcome,
     /// What is seen of its answer.
-    pub seen: Option<Seen>,
+    pub seen: Option<Observed>,
     /// Seconds of its timed runs, ascending.
     pub seconds: Vec<f64>,
 }
@@ -33,7 +33,7 @@ pub struct Results<'a> {
 }
 
 /// A bar as long as all runs of a study.
-pub(super) fn bar(study: &Study, runs: usize, shown: Shown) -> ProgressBar {
+pub(super) fn bar(study: &Study, runs: usize, shown: ProgressDisplay) -> ProgressBar {
     let count: usize = study.methods.iter().map(|m| m.points.len()).sum();
     progress_bar(
         shown,
@@ -43,7 +43,7 @@ pub(super) fn bar(study: &Study, runs: usize, shown: Shown) -> ProgressBar {
 }
 
 /// Points that are run for the reference alone.
-fn extra(study: &Study) -> &[Point] {
+fn extra(study: &Study) -> &[StudyPoint] {
     match &study.reference {
         Reference::Own => &[],
         Reference::Of { points, .. } => points,
@@ -52,7 +52,7 @@ fn extra(study: &Study) -> &[Point] {
 
 /// Runs every point once and looks at its answer; what Ctrl-C leaves out is told as interrupted.
 pub(super) fn look<'a>(study: &'a Study, bar: &ProgressBar) -> Results<'a> {
-    let look = |name: &str, point: &'a Point| {
+    let look = |name: &str, point: &'a StudyPoint| {
         bar.set_message(format!("{name}, {}", point.label));
         let (first, seen) = match interrupt::requested() {
             true => (not_run(), None),
@@ -95,8 +95,8 @@ pub(super) fn time(study: &Study, results: &mut Results<'_>, runs: usize, bar: &
     results.is_interrupted = interrupt::requested();
 }
 
-fn not_run() -> Ended {
-    Ended {
+fn not_run() -> RunOutcome {
+    RunOutcome {
         status: INTERRUPTED,
         message: None,
         seconds: 0.0,

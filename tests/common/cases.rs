@@ -3,12 +3,12 @@
 use super::trunk;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proboscis::control::problem::{
-    Control, Duration, Guess, Limit, Objective, Rest, Side, Solver, State,
+    Control, Duration, Guess, PathConstraint, Objective, Rest, Side, Solver, BoundaryState,
 };
 use proboscis::mesh::grid::Grid;
 use proboscis::model::components::{Spring, Tendon};
 use proboscis::model::system::{
-    Attachment, Body, Discretisation, Electric, Electrode, ElementKind, Fidelity, Glue, Joint,
+    Attachment, Body, Discretisation, ElectricConstants, Electrode, ElementKind, Fidelity, Glue, Joint,
     JointKind, Marker, Material, Muscle, Potential, Shape, Solid, Support, System,
     VACUUM_PERMITTIVITY,
 };
@@ -69,8 +69,8 @@ pub fn tied(mut system: System) -> System {
 }
 
 /// The joint coordinates of a goal.
-pub fn joints(list: &[(usize, f64)]) -> State {
-    State::JointAngles {
+pub fn joints(list: &[(usize, f64)]) -> BoundaryState {
+    BoundaryState::JointAngles {
         angles: list.iter().copied().collect(),
         rates: BTreeMap::new(),
         velocities: Default::default(),
@@ -82,7 +82,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
     Control {
         duration: Duration::Given(10.0 * intervals as f64),
         intervals,
-        start: State::RestAtVoltages(vec![0.0; system.sources().len()]),
+        start: BoundaryState::RestAtVoltages(vec![0.0; system.sources().len()]),
         goal: joints(&[]),
         voltage_bounds: [0.0, 3000.0],
         given: BTreeMap::new(),
@@ -118,7 +118,7 @@ pub fn hold(segments: usize) -> Vec<f64> {
 pub fn rest_to_rest(segments: usize, intervals: usize, duration: f64) -> Control {
     Control {
         duration: Duration::Given(duration),
-        goal: State::RestAtVoltages(hold(segments)),
+        goal: BoundaryState::RestAtVoltages(hold(segments)),
         ..control(&trunk(segments), intervals)
     }
 }
@@ -158,7 +158,7 @@ pub fn branched() -> System {
         density: Some(1e-3),
         shear_modulus: 0.1,
         lame_lambda: None,
-        electric: Some(Electric {
+        electric: Some(ElectricConstants {
             c1: -2.0 * VACUUM_PERMITTIVITY,
             c2: VACUUM_PERMITTIVITY,
             permittivity: VACUUM_PERMITTIVITY,
@@ -166,7 +166,7 @@ pub fn branched() -> System {
         viscosity: Some(1.0),
     };
     let ideal = Material {
-        electric: Some(Electric {
+        electric: Some(ElectricConstants {
             c1: 0.0,
             c2: 0.0,
             permittivity: 3.0 * VACUUM_PERMITTIVITY,
@@ -311,7 +311,7 @@ pub fn satellite() -> System {
 pub const BRANCHED_VOLTAGES: [f64; 4] = [900.0, 900.0, 900.0, 0.0];
 
 /// Every kind of limit on the branched tree.
-pub fn all_limits() -> Vec<Limit> {
+pub fn all_limits() -> Vec<PathConstraint> {
     let near = |centre: [f64; 3], half: f64| Region::Box {
         min: Vector3::from(centre).add_scalar(-half),
         max: Vector3::from(centre).add_scalar(half),
@@ -320,37 +320,37 @@ pub fn all_limits() -> Vec<Limit> {
         centre: Vector3::from(centre),
         radius,
     };
-    let marker = |marker: usize, region: Region, side: Side| Limit::Marker {
+    let marker = |marker: usize, region: Region, side: Side| PathConstraint::Marker {
         marker,
         region,
         side,
     };
     vec![
-        Limit::JointAngle {
+        PathConstraint::JointAngle {
             joint: 0,
             min: -0.6,
             max: 0.7,
         },
-        Limit::JointAngle {
+        PathConstraint::JointAngle {
             joint: 1,
             min: f64::NEG_INFINITY,
             max: 9.0,
         },
-        Limit::Stretch {
+        PathConstraint::Stretch {
             muscle: 0,
             min: 0.7,
             max: 1.2,
         },
-        Limit::Stretch {
+        PathConstraint::Stretch {
             muscle: 3,
             min: 0.0,
             max: 1.5,
         },
-        Limit::ElectricField {
+        PathConstraint::ElectricField {
             muscle: 1,
             max: 5e4,
         },
-        Limit::ElectricField {
+        PathConstraint::ElectricField {
             muscle: 3,
             max: 5e4,
         },
@@ -443,8 +443,8 @@ pub fn blocks() -> System {
 }
 
 /// The marker of the block at a place, at rest, while the rest of the block may still move.
-fn corner_goal() -> State {
-    State::Markers {
+fn corner_goal() -> BoundaryState {
+    BoundaryState::Markers {
         places: BTreeMap::from([(1, Vector3::new(10.0, 60.0, 39.5))]),
         rest: Rest::Markers,
         hold: None,
@@ -452,8 +452,8 @@ fn corner_goal() -> State {
 }
 
 /// Nothing is asked of the nodes at the end: all their coordinates are free, and no balance closes the last instant.
-pub fn open_end() -> State {
-    State::Markers {
+pub fn open_end() -> BoundaryState {
+    BoundaryState::Markers {
         places: BTreeMap::new(),
         rest: Rest::Markers,
         hold: None,
@@ -492,11 +492,11 @@ pub fn cases() -> Vec<Case> {
     };
     vec![
         case("pair at rest", trunk(1), &|c| {
-            c.goal = State::RestAtVoltages(hold(1));
+            c.goal = BoundaryState::RestAtVoltages(hold(1));
         }),
         case("two segments", trunk(2), &|_| {}),
         case("three segments, smooth", trunk(3), &|c| {
-            c.goal = State::RestAtVoltages(hold(3));
+            c.goal = BoundaryState::RestAtVoltages(hold(3));
             c.objective = Objective {
                 rate: 0.3,
                 ..Objective::default()
@@ -524,7 +524,7 @@ pub fn cases() -> Vec<Case> {
                         &|m| {
                             m.density = None;
                             m.viscosity = None;
-                            m.electric = Some(Electric {
+                            m.electric = Some(ElectricConstants {
                                 c1: 0.0,
                                 c2: 0.0,
                                 permittivity: 5.0 * VACUUM_PERMITTIVITY,
@@ -547,13 +547,13 @@ pub fn cases() -> Vec<Case> {
         case("blocks, marker at rest, free time", blocks(), &|c| {
             c.duration = free;
             c.objective = every_objective;
-            let field = |block: usize, region: Option<usize>| Limit::BlockField {
+            let field = |block: usize, region: Option<usize>| PathConstraint::BlockField {
                 block,
                 region,
                 max: 1e4,
             };
             c.limits = vec![
-                Limit::Stretch {
+                PathConstraint::Stretch {
                     muscle: 0,
                     min: 0.7,
                     max: 1.2,
@@ -586,7 +586,7 @@ pub fn cases() -> Vec<Case> {
             c.objective = every_objective;
         }),
         case("branched tree to a marker", branched(), &|c| {
-            c.goal = State::Markers {
+            c.goal = BoundaryState::Markers {
                 places: BTreeMap::from([(0, Vector3::new(25.0, 128.0, 12.0))]),
                 rest: Rest::Everything,
                 hold: None,

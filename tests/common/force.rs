@@ -2,7 +2,7 @@
 
 use nalgebra::{SVector, Vector3};
 use proboscis::energy::Energy;
-use proboscis::functional::{Effect, Element, Group, Stencil, Sum, VectorArg};
+use proboscis::functional::{Term, Element, Group, Stencil, Functional, VectorArg};
 use proboscis::kinematics::MaterialVector;
 use proboscis::math::Jet;
 use proboscis::model::Model;
@@ -48,8 +48,8 @@ pub fn with_control<E: Energy<4> + 'static>(
         ..
     } = model.action;
     let mut effects = intervals.effects;
-    effects.push(Box::new(control) as Box<dyn Effect>);
-    let intervals = Sum::new(effects, intervals.measures, intervals.vectors, 1);
+    effects.push(Box::new(control) as Box<dyn Term>);
+    let intervals = Functional::new(effects, intervals.measures, intervals.vectors, 1);
     model.action = Reduced::new(motion, intervals, instants);
     model.voltages = vec![0];
     model

@@ -13,14 +13,14 @@ pub mod trunk;
 
 use nalgebra::{Matrix3, SVector, Vector3};
 use proboscis::dynamics::trajectory::{Observations, Trajectory};
-use proboscis::dynamics::{History, Start, simulate};
+use proboscis::dynamics::{DiscreteTrajectory, Start, simulate};
 use proboscis::kinematics::Pose;
 use proboscis::model::Model;
 use proboscis::model::system::{
-    Attachment, Body, Electric, Joint, JointKind, Marker, Material, Muscle, Shape, System,
+    Attachment, Body, ElectricConstants, Joint, JointKind, Marker, Material, Muscle, Shape, System,
     VACUUM_PERMITTIVITY,
 };
-use proboscis::reduction::Instant;
+use proboscis::reduction::Configuration;
 use serde_json::Value;
 use std::ops::ControlFlow;
 
@@ -49,7 +49,7 @@ pub(crate) fn trunk(segments: usize) -> System {
         density: Some(1e-3),
         shear_modulus: 0.1,
         lame_lambda: None,
-        electric: Some(Electric {
+        electric: Some(ElectricConstants {
             c1: -2.0 * VACUUM_PERMITTIVITY,
             c2: VACUUM_PERMITTIVITY,
             permittivity: VACUUM_PERMITTIVITY,
@@ -182,7 +182,7 @@ pub(crate) fn at_reference(model: &Model) -> Vec<f64> {
 }
 
 /// A placed instant.
-pub(crate) fn placed(model: &Model, z: &[f64]) -> Instant {
+pub(crate) fn placed(model: &Model, z: &[f64]) -> Configuration {
     let mut instant = model.action.motion.instant();
     instant.z.copy_from_slice(z);
     model.action.motion.place(&mut instant);
@@ -205,7 +205,7 @@ pub(crate) fn motion(
     h: f64,
     steps: usize,
     scalars: &[f64],
-) -> History {
+) -> DiscreteTrajectory {
     let (history, failure) = simulate(
         model,
         start,

@@ -7,7 +7,7 @@ use proboscis::mesh::Mesh;
 use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
 use proboscis::model::system::{
-    Electric, Electrode, ElementKind, Material, Potential, Solid, Support, System,
+    ElectricConstants, Electrode, ElementKind, Material, Potential, Solid, Support, System,
     VACUUM_PERMITTIVITY,
 };
 use serde_json::Value;
@@ -35,7 +35,7 @@ pub(crate) fn material(entry: &Value) -> Material {
         density: Some(number("rho") * 1e-6),
         shear_modulus: number("mu") * 1e-6,
         lame_lambda: Some(number("lam") * 1e-6),
-        electric: Some(Electric {
+        electric: Some(ElectricConstants {
             c1: number("c1"),
             c2: number("c2"),
             permittivity: number("eps0"),
@@ -146,7 +146,7 @@ pub(crate) fn stack(entry: &Value) -> System {
 }
 
 /// An elastic dielectric without density and viscosity.
-pub(crate) fn dielectric(shear_modulus: f64, lame_lambda: f64, electric: Electric) -> Material {
+pub(crate) fn dielectric(shear_modulus: f64, lame_lambda: f64, electric: ElectricConstants) -> Material {
     Material {
         density: None,
         shear_modulus,
@@ -158,7 +158,7 @@ pub(crate) fn dielectric(shear_modulus: f64, lame_lambda: f64, electric: Electri
 
 /// The published material set (2.5) of physics, with a viscosity in MPa ms.
 pub(crate) fn published(viscosity: Option<f64>) -> Material {
-    let electric = Electric {
+    let electric = ElectricConstants {
         c1: 5e-8,
         c2: 1e-9,
         permittivity: 8.854e-12,
@@ -175,7 +175,7 @@ pub(crate) fn placed(model: &Model, z: &[f64]) -> Vec<Vector3<f64>> {
     let mut instant = model.action.motion.instant();
     instant.z.copy_from_slice(z);
     model.action.motion.place(&mut instant);
-    model.continua[0].places(&instant.x)
+    model.solids[0].places(&instant.x)
 }
 
 /// Places of the nodes of the first block at rest under voltages, on the path from the reference.
@@ -190,7 +190,7 @@ pub(crate) fn at_rest(system: System, voltages: &[f64]) -> Vec<Vector3<f64>> {
 pub(crate) const VOLTAGE: f64 = 4.9e5;
 
 fn silicone(viscosity: Option<f64>) -> Material {
-    let electric = Electric {
+    let electric = ElectricConstants {
         c1: -2.0 * VACUUM_PERMITTIVITY,
         c2: VACUUM_PERMITTIVITY,
         permittivity: VACUUM_PERMITTIVITY,

@@ -5,17 +5,17 @@ use crate::common::force::{Force, with_control};
 use crate::common::{bare, body, joint};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::control::problem::{
-    Control, Duration, Guess, Objective, Simulation, Solver, State, Task, Voltages,
+    Control, Duration, Guess, Objective, Simulation, Solver, BoundaryState, Task, Voltages,
 };
-use proboscis::control::{Boundary, Transcription, guess};
-use proboscis::dynamics::{History, Solving};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::dynamics::{DiscreteTrajectory, Solving};
 use proboscis::ipopt::{self, Options};
 use proboscis::kinematics::MaterialVector;
 use proboscis::model::Model;
 use proboscis::model::system::{JointKind, System};
-use proboscis::run::accuracy::{Attempt, Refined, Wanted, refine};
-use proboscis::run::estimate::Sample;
-use proboscis::run::{Allowed, Iterate, integrate_to, optimise_to};
+use proboscis::run::accuracy::{Attempt, Refined, AccuracyTarget, refine};
+use proboscis::run::estimate::ErrorSample;
+use proboscis::run::{SolveLimits, Iterate, integrate_to, optimise_to};
 use proboscis::scene::read_problem;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -43,7 +43,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
         Vector3::zeros(),
     );
     let scene = bare(vec![slider], vec![rail], None);
-    let rest_at = |angle: f64| State::JointAngles {
+    let rest_at = |angle: f64| BoundaryState::JointAngles {
         angles: BTreeMap::from([(0, angle)]),
         rates: BTreeMap::new(),
         velocities: Default::default(),
@@ -71,9 +71,9 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
         },
     };
     let h = TIME / intervals as f64;
-    let (model, mut boundary) = Boundary::resolve(&scene, &problem, h).unwrap();
+    let (model, mut boundary) = BoundaryConditions::resolve(&scene, &problem, h).unwrap();
     let centre = MaterialVector::point(Some(0), &(axis * 2.0), model.reference());
-    let (plain, _) = Boundary::resolve(&scene, &problem, h).unwrap();
+    let (plain, _) = BoundaryConditions::resolve(&scene, &problem, h).unwrap();
     let model = with_control(model, Force { direction: axis }, &centre);
     boundary.rest = [Some(vec![0.0]), Some(vec![0.0])];
     let initial = guess(&model, &boundary, &problem, h, None);
@@ -90,9 +90,9 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
     let history = program.decode(&solution.x);
     Attempt {
         run: intervals,
-        sample: Sample {
+        sample: ErrorSample {
             objective: Some(solution.objective),
-            ..Sample::of_motion(&plain, &history)
+            ..ErrorSample::of_motion(&plain, &history)
         },
         intervals,
         iterations: solution.iterations.len() - 1,
@@ -105,7 +105,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
 fn refined(first: usize, error: f64) -> Refined<usize> {
     let nothing_stops = || None;
     let run = |times: usize, _: Option<&usize>| Ok(double_integrator(first * times));
-    refine(Wanted::Below(error), 1.0, nothing_stops, run).unwrap()
+    refine(AccuracyTarget::Below(error), 1.0, nothing_stops, run).unwrap()
 }
 
 /// Relative error of the least effort and greatest error of the optimal path (in lengths of the system) on a grid.
@@ -159,7 +159,7 @@ fn the_least_effort_of_a_double_integrator_is_as_accurate_as_asked_for() {
 #[test]
 fn one_refinement_tells_the_error_of_the_first_grid() {
     let run = |times: usize, _: Option<&usize>| Ok(double_integrator(10 * times));
-    let found = refine(Wanted::Estimate, 1.0, || None, run).unwrap();
+    let found = refine(AccuracyTarget::Estimate, 1.0, || None, run).unwrap();
     assert_eq!((found.run, found.times), (10, 1));
     assert_eq!(
         (found.accuracy.requested, found.accuracy.is_met),
@@ -177,10 +177,10 @@ fn one_refinement_tells_the_error_of_the_first_grid() {
 fn made_up(error: f64, is_complete: bool) -> Attempt<f64> {
     Attempt {
         run: error,
-        sample: Sample {
+        sample: ErrorSample {
             objective: Some(1.0 + error),
             path: vec![Vec::new(); 2],
-            ..Sample::default()
+            ..ErrorSample::default()
         },
         intervals: 1,
         iterations: 3,
@@ -196,7 +196,7 @@ fn made_up(error: f64, is_complete: bool) -> Attempt<f64> {
 
 fn series(request: f64, error: impl Fn(usize) -> f64) -> Refined<f64> {
     let run = |times: usize, _: Option<&f64>| Ok(made_up(error(times), true));
-    refine(Wanted::Below(request), 1.0, || None, run).unwrap()
+    refine(AccuracyTarget::Below(request), 1.0, || None, run).unwrap()
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn a_grid_that_fails_leaves_the_one_before() {
         assert_eq!(before.is_some(), times > 1);
         Ok(made_up(0.1 / (times * times) as f64, times < 8))
     };
-    let found = refine(Wanted::Below(1e-6), 1.0, || None, run).unwrap();
+    let found = refine(AccuracyTarget::Below(1e-6), 1.0, || None, run).unwrap();
     assert_eq!((found.times, found.run), (4, 0.1 / 16.0));
     assert_eq!(found.iterations, 9);
     assert_eq!(found.accuracy.is_met, Some(false));
@@ -252,12 +252,12 @@ fn a_grid_that_fails_leaves_the_one_before() {
     assert!(found.accuracy.estimate["objective"] > 1e-3);
 
     let run = |_: usize, _: Option<&f64>| Ok(made_up(0.1, false));
-    let found = refine(Wanted::Below(1e-6), 1.0, || None, run).unwrap();
+    let found = refine(AccuracyTarget::Below(1e-6), 1.0, || None, run).unwrap();
     assert!(found.accuracy.estimate.is_empty() && found.accuracy.levels.len() == 1);
     assert_eq!(found.accuracy.is_met, Some(false));
 
     let run = |times: usize, _: Option<&f64>| Ok(made_up(0.1 / times as f64, true));
-    let found = refine(Wanted::Below(1e-6), 1.0, || Some("time_limit"), run).unwrap();
+    let found = refine(AccuracyTarget::Below(1e-6), 1.0, || Some("time_limit"), run).unwrap();
     assert_eq!(found.times, 1);
     assert_eq!(found.accuracy.stopped.as_deref(), Some("time_limit"));
 }
@@ -275,7 +275,7 @@ fn swing(step: f64) -> Simulation {
         duration: 1.0,
         step,
         tolerance: None,
-        start: State::JointAngles {
+        start: BoundaryState::JointAngles {
             angles: BTreeMap::new(),
             rates: BTreeMap::new(),
             velocities: Default::default(),
@@ -295,7 +295,7 @@ fn a_pendulum_is_where_elliptic_functions_say_to_the_accuracy_asked_for() {
             Path::new("pendulum"),
             &pendulum(),
             &swing(0.05),
-            Wanted::Below(request),
+            AccuracyTarget::Below(request),
             None,
             &mut |_, _, _| ControlFlow::Continue(()),
         )
@@ -328,13 +328,13 @@ fn a_pendulum_is_where_elliptic_functions_say_to_the_accuracy_asked_for() {
 
 #[test]
 fn a_motion_stopped_on_a_finer_grid_is_kept_as_it_was_on_the_one_before() {
-    let stop_at_80 = &mut |steps: usize, _: &Model, history: &History| match steps == 80
+    let stop_at_80 = &mut |steps: usize, _: &Model, history: &DiscreteTrajectory| match steps == 80
         && history.intervals() == 7
     {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     };
-    let wanted = Wanted::Below(1e-7);
+    let wanted = AccuracyTarget::Below(1e-7);
     let task = swing(0.05);
     let found = integrate_to(
         Path::new("pendulum"),
@@ -365,8 +365,8 @@ fn an_optimum_stopped_on_a_finer_grid_is_kept_as_it_was_on_the_one_before() {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     };
-    let wanted = Wanted::Below(1e-4);
-    let allowed = Allowed::default();
+    let wanted = AccuracyTarget::Below(1e-4);
+    let allowed = SolveLimits::default();
     let found = optimise_to(&file, &loaded.system, &control, wanted, allowed, stop_at_80).unwrap();
     assert_eq!(found.run.motion.intervals(), 40);
     assert!(found.run.solution.status.is_solved());

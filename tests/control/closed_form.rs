@@ -6,8 +6,8 @@
 use crate::common::force::{Force, UNIT, with_control};
 use crate::common::{bare, body, joint};
 use nalgebra::{Matrix3, SVector, Vector3};
-use proboscis::control::problem::{Control, Duration, Guess, Objective, Solver, State};
-use proboscis::control::{Boundary, Transcription, guess};
+use proboscis::control::problem::{Control, Duration, Guess, Objective, Solver, BoundaryState};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::energy::Energy;
 use proboscis::ipopt::{self, Options};
 use proboscis::kinematics::MaterialVector;
@@ -42,7 +42,7 @@ fn optimum(
     intervals: usize,
     control: impl FnOnce(Model) -> Model,
 ) -> (f64, Vec<f64>) {
-    let rest_at = |angle: f64| State::JointAngles {
+    let rest_at = |angle: f64| BoundaryState::JointAngles {
         angles: BTreeMap::from([(0, angle)]),
         rates: BTreeMap::new(),
         velocities: Default::default(),
@@ -70,7 +70,7 @@ fn optimum(
         },
     };
     let h = time / intervals as f64;
-    let (model, mut boundary) = Boundary::resolve(scene, &problem, h).unwrap();
+    let (model, mut boundary) = BoundaryConditions::resolve(scene, &problem, h).unwrap();
     let model = control(model);
     boundary.rest = [Some(vec![0.0]), Some(vec![0.0])];
     let initial = guess(&model, &boundary, &problem, h, None);

@@ -6,8 +6,8 @@
 use crate::common::cases::{BRANCHED_VOLTAGES, blocks, branched, control, hold, joints};
 use crate::common::random::Random;
 use crate::common::trunk;
-use proboscis::control::problem::{Duration, State};
-use proboscis::control::{Boundary, Row, Transcription, guess};
+use proboscis::control::problem::{Duration, BoundaryState};
+use proboscis::control::{BoundaryConditions, Row, Transcription, guess};
 use proboscis::dynamics::{Start, simulate};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
@@ -26,7 +26,7 @@ fn law(
 ) {
     let mut control = control(system, INTERVALS);
     control.coordinates = Some(coordinates);
-    control.start = State::RestAtVoltages(vec![0.0; system.sources().len()]);
+    control.start = BoundaryState::RestAtVoltages(vec![0.0; system.sources().len()]);
     control.goal = joints(&[]);
     let duration = STEP * INTERVALS as f64;
     control.duration = if free {
@@ -38,7 +38,7 @@ fn law(
     } else {
         Duration::Given(duration)
     };
-    let (model, boundary) = Boundary::resolve(system, &control, STEP).unwrap();
+    let (model, boundary) = BoundaryConditions::resolve(system, &control, STEP).unwrap();
     let start = Start {
         rates: None,
         ..boundary.start.clone()
@@ -100,7 +100,7 @@ fn law(
 
 /// Scale of the rows of coordinate i: scaled over unscaled costates.
 fn momentum_scale(program: &mut Transcription<'_>, x: &[f64], i: usize) -> f64 {
-    let mut costates = proboscis::ipopt::Costates {
+    let mut costates = proboscis::ipopt::Multipliers {
         constraints: vec![0.0; program.unknowns().rows.len()],
         lower: vec![0.0; x.len()],
         upper: vec![0.0; x.len()],

@@ -4,8 +4,8 @@ use crate::common::random::Random;
 use crate::limits::{Ran, kept, run};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::control::problem::{Duration, Task};
-use proboscis::control::{Boundary, Transcription, guess};
-use proboscis::element::{FieldPoint, Shape};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::element::{FieldPoint, ElementGeometry};
 use proboscis::ipopt::{self, Options};
 use proboscis::mesh::CORNERS;
 use serde_json::{Value, json};
@@ -120,11 +120,11 @@ fn the_field_at_a_point_and_its_derivatives_are_those_of_the_naive_formula() {
     let reference = CORNERS.map(|c| Vector3::from(c).map(|v| v + 0.2 * random.unit()));
     let x = reference.map(|place| place.map(|v| 1.1 * v + 0.2 * random.unit()));
     let phi: [f64; 8] = std::array::from_fn(|_| 50.0 * random.unit());
-    let shape = Shape::new(&reference).unwrap();
+    let shape = ElementGeometry::new(&reference).unwrap();
     for (point, xi) in points() {
         let gradients = match point {
             Some(g) => shape.gradients_at(g),
-            None => Shape::central_gradients(&reference).unwrap(),
+            None => ElementGeometry::central_gradients(&reference).unwrap(),
         };
         let limit = 30.0;
         let at = FieldPoint { gradients, limit };
@@ -213,7 +213,7 @@ fn solved_field(problem: &Value) -> (f64, f64) {
         panic!("a given duration")
     };
     let h = t / control.intervals as f64;
-    let (model, boundary) = Boundary::resolve(&loaded.system, &control, h).unwrap();
+    let (model, boundary) = BoundaryConditions::resolve(&loaded.system, &control, h).unwrap();
     let initial = guess(&model, &boundary, &control, h, None);
     let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
     let start = program.start(&initial);
@@ -230,16 +230,16 @@ fn solved_field(problem: &Value) -> (f64, f64) {
             let mut instant = model.action.motion.instant();
             instant.z.copy_from_slice(z);
             model.action.motion.vectors(&mut instant);
-            model.continua[0].places(&instant.x)
+            model.solids[0].places(&instant.x)
         })
         .collect();
     let mut largest = 0.0_f64;
     for (k, scalars) in history.scalars.iter().enumerate() {
-        let phi = model.continua[0].potentials(scalars);
+        let phi = model.solids[0].potentials(scalars);
         let middle: Vec<_> = (0..phi.len())
             .map(|n| (places[k][n] + places[k + 1][n]) * 0.5)
             .collect();
-        for nodes in &model.continua[0].solid.mesh.hexahedra {
+        for nodes in &model.solids[0].solid.mesh.hexahedra {
             for x in [&places[k], &places[k + 1], &middle] {
                 for (_, xi) in points() {
                     let field = naive_field(&nodes.map(|n| x[n]), &nodes.map(|n| phi[n]), xi);

@@ -4,7 +4,7 @@ use crate::common::random_goals::{Goal, Goals, Kind, trunk};
 use proboscis::control::problem::Task;
 use proboscis::dynamics::simulate;
 use proboscis::ipopt::Status;
-use proboscis::run::{Allowed, Iterate, optimise};
+use proboscis::run::{SolveLimits, Iterate, optimise};
 use proboscis::scene::read_problem;
 use std::ops::ControlFlow;
 
@@ -27,7 +27,7 @@ fn solve(goal: &Goal, kind: Kind) -> bool {
         panic!("a problem of control");
     };
     let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
-    let allowed = Allowed {
+    let allowed = SolveLimits {
         iterations: Some(200),
         seconds: None,
     };
@@ -123,7 +123,7 @@ fn a_simulation_as_a_guess_saves_iterations() {
             };
             let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
             let system = &loaded.system;
-            let allowed = Allowed::default();
+            let allowed = SolveLimits::default();
             let optimum = optimise(&trunk(), system, &control, None, allowed, &mut go_on);
             let solution = optimum.expect("a reachable goal").solution;
             assert!(solution.status.is_solved(), "{goal}");

@@ -2,22 +2,22 @@
 
 use crate::verdicts::{control, kept, read, told};
 use proboscis::control::problem::{Control, Duration, Guess, Task};
-use proboscis::control::{Boundary, Initial, Solved, guess};
+use proboscis::control::{BoundaryConditions, InitialGuess, Solution, guess};
 use proboscis::model::{Coordinates, System};
-use proboscis::run::{Allowed, integrate, optimise, solved};
+use proboscis::run::{SolveLimits, integrate, optimise, solved};
 use proboscis::scene::read_problem;
 use std::ops::ControlFlow;
 use std::path::Path;
 use tempfile::tempdir;
 
 /// The optimum of a control problem.
-pub(crate) fn optimum(system: &System, control: &Control) -> Solved {
+pub(crate) fn optimum(system: &System, control: &Control) -> Solution {
     let found = optimise(
         Path::new("problem"),
         system,
         control,
         None,
-        Allowed::default(),
+        SolveLimits::default(),
         &mut |_| ControlFlow::Continue(()),
     );
     let found = found.unwrap();
@@ -29,10 +29,10 @@ pub(crate) fn optimum(system: &System, control: &Control) -> Solved {
 pub(crate) fn start(
     system: &System,
     control: &Control,
-    earlier: &Solved,
-) -> (Initial, Vec<Vec<f64>>) {
+    earlier: &Solution,
+) -> (InitialGuess, Vec<Vec<f64>>) {
     let h = control.duration.first() / control.intervals as f64;
-    let (model, boundary) = Boundary::resolve(system, control, h).unwrap();
+    let (model, boundary) = BoundaryConditions::resolve(system, control, h).unwrap();
     let initial = guess(&model, &boundary, control, h, Some(earlier));
     let joints = solved(&model, &initial.history, None).joints;
     (initial, joints)

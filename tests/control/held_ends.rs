@@ -1,8 +1,8 @@
 //! Ends that are held, and those that cannot be.
 
 use crate::verdicts::{control, kept, read, request, told, trust};
-use proboscis::control::Boundary;
-use proboscis::run::{Request, run, solution_file};
+use proboscis::control::BoundaryConditions;
+use proboscis::run::{CommandInput, run, solution_file};
 use std::fs;
 use std::path::Path;
 use tempfile::tempdir;
@@ -63,7 +63,7 @@ fn a_solution_holds_its_goal_after_its_end() {
         old.display().to_string()
     )];
     let (system, asked) = control("pair", &set);
-    let (model, _) = Boundary::resolve(&system, &asked, 10.0).unwrap();
+    let (model, _) = BoundaryConditions::resolve(&system, &asked, 10.0).unwrap();
     assert_eq!(solution_file::read(&old, &model).unwrap().hold, None);
     let held = solution_file::read(&path, &model).unwrap().hold.unwrap();
     assert_eq!(held.iter().copied().fold(0.0, f64::max), 1700.0);
@@ -73,7 +73,7 @@ fn a_solution_holds_its_goal_after_its_end() {
 fn an_end_that_cannot_be_kept_is_told_or_refused() {
     let folder = tempdir().unwrap();
     let refused = |name: &str| {
-        let request = Request {
+        let request = CommandInput {
             input: trust(name),
             set: vec!["control.hold=\"required\"".to_owned()],
             output: Some(folder.path().join("none")),
@@ -118,7 +118,7 @@ fn an_end_that_cannot_be_kept_is_told_or_refused() {
         stays.is_solved && stays.notes.iter().all(|note| !note.contains("kept")),
         "{stays:?}"
     );
-    let nothing = Request {
+    let nothing = CommandInput {
         input: pair.clone(),
         set: vec![
             required.to_owned(),
@@ -149,7 +149,7 @@ fn an_end_that_cannot_be_kept_is_told_or_refused() {
         "not_held"
     );
     // Nothing that is written goes by in silence.
-    let ignored = Request {
+    let ignored = CommandInput {
         input: pair,
         set: vec![
             "control.goal={\"joint_angles\":{\"joint1\":0.1},\"hold\":{\"muscle1\":1}}".to_owned(),

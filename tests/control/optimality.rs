@@ -4,9 +4,9 @@
 use crate::common::cases::{hold, rest_to_rest};
 use crate::common::{numbers, reference, trunk};
 use proboscis::control::problem::{Control, Duration, Objective};
-use proboscis::control::{Boundary, Costates, Row, Transcription, Variable, guess};
-use proboscis::dynamics::{History, simulate};
-use proboscis::ipopt::{self, Options, Solution, Start};
+use proboscis::control::{BoundaryConditions, Costates, Row, Transcription, Variable, guess};
+use proboscis::dynamics::{DiscreteTrajectory, simulate};
+use proboscis::ipopt::{self, Options, SolverResult, Start};
 use proboscis::model::system::System;
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::Nlp;
@@ -15,10 +15,10 @@ use std::ops::ControlFlow;
 /// What is known of a solved problem.
 pub(crate) struct Optimum {
     pub(crate) model: Model,
-    pub(crate) boundary: Boundary,
-    pub(crate) history: History,
+    pub(crate) boundary: BoundaryConditions,
+    pub(crate) history: DiscreteTrajectory,
     pub(crate) h: f64,
-    pub(crate) solution: Solution,
+    pub(crate) solution: SolverResult,
     pub(crate) costates: Costates,
     pub(crate) variables: Vec<Variable>,
     pub(crate) rows: Vec<Row>,
@@ -37,11 +37,11 @@ pub(crate) fn guessed_step(control: &Control) -> f64 {
 pub(crate) fn solve(
     system: &System,
     control: &Control,
-    from: Option<(&History, f64, Option<&Costates>)>,
+    from: Option<(&DiscreteTrajectory, f64, Option<&Costates>)>,
     start: Start,
 ) -> Optimum {
     // Multipliers of the motion are in units of the guessed step, whatever step they start from.
-    let (model, boundary) = Boundary::resolve(system, control, guessed_step(control)).unwrap();
+    let (model, boundary) = BoundaryConditions::resolve(system, control, guessed_step(control)).unwrap();
     let h = from.map_or(guessed_step(control), |(_, h, _)| h);
     let mut initial = guess(&model, &boundary, control, h, None);
     if let Some((history, _, costates)) = from {
@@ -85,7 +85,7 @@ pub(crate) fn solve(
 /// ∇f + ∇cᵀy − z_L + z_U, c, products of multipliers and distances, and multipliers of the wrong sign.
 fn karush_kuhn_tucker(
     program: &mut Transcription<'_>,
-    solution: &Solution,
+    solution: &SolverResult,
 ) -> ([f64; 4], [f64; 2]) {
     let x = &solution.x;
     let y = &solution.costates;
@@ -159,7 +159,7 @@ pub(crate) fn problem(name: &str) -> (System, Control) {
 const REFERENCES: [&str; 5] = ["pair", "pair_time", "trunk6", "trunk6_n80", "trunk6_rate"];
 
 /// Nodes and voltages of a reference solution, and its interval length in ms.
-fn reference_motion(name: &str) -> (History, f64) {
+fn reference_motion(name: &str) -> (DiscreteTrajectory, f64) {
     let file = reference(name);
     let rows = |key: &str, scale: f64| -> Vec<Vec<f64>> {
         let list = file["control"][key].as_array().unwrap();
@@ -167,10 +167,10 @@ fn reference_motion(name: &str) -> (History, f64) {
             .map(|row| numbers(row).iter().map(|v| v * scale).collect())
             .collect()
     };
-    let history = History {
+    let history = DiscreteTrajectory {
         z: rows("theta_rad", 1.0),
         scalars: rows("voltage_kV", 1e3),
-        ..History::default()
+        ..DiscreteTrajectory::default()
     };
     (history, 1e3 * file["control"]["h"].as_f64().unwrap())
 }

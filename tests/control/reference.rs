@@ -1,8 +1,8 @@
 //! Optimal control against the reference solutions.
 
 use crate::common::{numbers, reference, trunk};
-use proboscis::control::problem::{Control, Duration, Guess, Objective, Solver, State};
-use proboscis::control::{Boundary, Transcription, guess};
+use proboscis::control::problem::{Control, Duration, Guess, Objective, Solver, BoundaryState};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::ipopt::{self, Options, Start};
 use proboscis::model::Coordinates;
 use proboscis::nlp::differences;
@@ -31,8 +31,8 @@ fn problem(name: &str, coordinates: Coordinates) -> Control {
     Control {
         duration,
         intervals: control["intervals"].as_u64().unwrap() as usize,
-        start: State::RestAtVoltages(vec![0.0; hold.len()]),
-        goal: State::RestAtVoltages(hold),
+        start: BoundaryState::RestAtVoltages(vec![0.0; hold.len()]),
+        goal: BoundaryState::RestAtVoltages(hold),
         voltage_bounds: [0.0, 3000.0],
         given: BTreeMap::new(),
         hold: Default::default(),
@@ -54,7 +54,7 @@ fn solve(name: &str, segments: usize, coordinates: Coordinates) {
     let h = match control.duration {
         Duration::Given(t) | Duration::Free { guess: t, .. } => t / control.intervals as f64,
     };
-    let (model, boundary) = Boundary::resolve(&trunk(segments), &control, h).unwrap();
+    let (model, boundary) = BoundaryConditions::resolve(&trunk(segments), &control, h).unwrap();
     let initial = guess(&model, &boundary, &control, h, None);
     let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
     let start = program.start(&initial);

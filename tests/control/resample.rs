@@ -2,10 +2,10 @@
 
 use crate::common::cases::{joints, rest_to_rest};
 use crate::common::trunk;
-use proboscis::control::problem::{Control, Duration, Limit, Objective, Task};
-use proboscis::control::{Boundary, Costates, Initial, Row, Transcription, Variable, guess};
+use proboscis::control::problem::{Control, Duration, PathConstraint, Objective, Task};
+use proboscis::control::{BoundaryConditions, Costates, InitialGuess, Row, Transcription, Variable, guess};
 use proboscis::model::Coordinates;
-use proboscis::run::{Allowed, Iterate, Optimum, optimise};
+use proboscis::run::{SolveLimits, Iterate, Optimum, optimise};
 use proboscis::scene::read_problem;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -26,7 +26,7 @@ fn problem(coordinates: Coordinates, intervals: usize) -> Control {
             guess: 110.0,
         },
         voltage_bounds: [0.0, 1350.0],
-        limits: vec![Limit::ElectricField {
+        limits: vec![PathConstraint::ElectricField {
             muscle: 2,
             max: 2.6e4,
         }],
@@ -42,7 +42,7 @@ fn solve(control: &Control) -> Optimum {
         &trunk(2),
         control,
         None,
-        Allowed::default(),
+        SolveLimits::default(),
         &mut |_| ControlFlow::Continue(()),
     );
     let found = found.unwrap();
@@ -55,9 +55,9 @@ fn solve(control: &Control) -> Optimum {
 }
 
 /// The start that an earlier optimum gives, with the layout of the program.
-fn carried(control: &Control, from: &Optimum) -> (Initial, Vec<Variable>, Vec<Row>, usize) {
+fn carried(control: &Control, from: &Optimum) -> (InitialGuess, Vec<Variable>, Vec<Row>, usize) {
     let h = 110.0 / control.intervals as f64;
-    let (model, boundary) = Boundary::resolve(&trunk(2), control, h).unwrap();
+    let (model, boundary) = BoundaryConditions::resolve(&trunk(2), control, h).unwrap();
     let initial = guess(&model, &boundary, control, h, Some(&from.motion));
     let program = Transcription::new(&model, &boundary, control, &initial).unwrap();
     let unknowns = program.unknowns();
@@ -196,7 +196,7 @@ fn a_coarser_grid_and_one_that_fits_nowhere_are_reached_as_well() {
             &trunk(2),
             &control,
             Some(&solved.motion),
-            Allowed::default(),
+            SolveLimits::default(),
             &mut |_| ControlFlow::Continue(()),
         );
         let from = from.unwrap();
@@ -250,7 +250,7 @@ fn least_effort_is_found_from_other_grids_and_durations_sooner_and_as_good() {
         };
         let motion = from.map(|optimum| &optimum.motion);
         let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
-        let allowed = Allowed::default();
+        let allowed = SolveLimits::default();
         let found = optimise(&file, &loaded.system, &control, motion, allowed, &mut go_on);
         let found = found.unwrap();
         assert!(found.solution.status.is_solved());

@@ -4,7 +4,7 @@ use proboscis::control::problem::{Control, Task};
 use proboscis::math::random::Random;
 use proboscis::model::System;
 use proboscis::nlp::Bounds;
-use proboscis::run::{Allowed, Cause, Request, Shown, Told, integrate, optimise, run, solved};
+use proboscis::run::{SolveLimits, Cause, CommandInput, ProgressDisplay, CommandOutput, integrate, optimise, run, solved};
 use proboscis::scene::read_problem;
 use serde_json::Value;
 use std::fs;
@@ -18,8 +18,8 @@ pub(crate) fn kept(name: &str) -> PathBuf {
 }
 
 /// Runs a problem with changes into a folder.
-pub(crate) fn told(input: &Path, set: &[&str], output: &Path) -> Told {
-    let request = Request {
+pub(crate) fn told(input: &Path, set: &[&str], output: &Path) -> CommandOutput {
+    let request = CommandInput {
         input: input.to_owned(),
         set: set.iter().map(|&change| change.to_owned()).collect(),
         output: Some(output.to_owned()),
@@ -29,8 +29,8 @@ pub(crate) fn told(input: &Path, set: &[&str], output: &Path) -> Told {
 }
 
 /// A command without a problem.
-pub(crate) fn request() -> Request {
-    Request {
+pub(crate) fn request() -> CommandInput {
+    CommandInput {
         command: "proboscis solve".to_owned(),
         input: PathBuf::new(),
         set: Vec::new(),
@@ -38,7 +38,7 @@ pub(crate) fn request() -> Request {
         max_seconds: None,
         max_iterations: None,
         wanted: None,
-        progress: Shown::Never,
+        progress: ProgressDisplay::Never,
     }
 }
 
@@ -149,7 +149,7 @@ fn an_optimum_on_another_root_of_a_step_is_no_solution() {
         &system,
         &control,
         None,
-        Allowed::default(),
+        SolveLimits::default(),
         &mut |_| ControlFlow::Continue(()),
     );
     let found = found.unwrap();
@@ -210,7 +210,7 @@ fn what_is_called_solved_is_reproduced_with_finer_steps() {
         fs::create_dir(&place).unwrap();
         let file = place.join("problem.json");
         fs::write(&file, problem.to_string()).unwrap();
-        let request = Request {
+        let request = CommandInput {
             output: Some(place.clone()),
             input: file,
             ..request()

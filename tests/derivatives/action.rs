@@ -5,8 +5,8 @@ use crate::common::cases::{cases, control};
 use crate::common::random::Random;
 use crate::common::trunk;
 use proboscis::control::problem::Duration;
-use proboscis::control::{Boundary, Transcription, guess};
-use proboscis::functional::Level;
+use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::functional::Order;
 use proboscis::model::system::System;
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::{Bounds, Entries, Nlp, differences};
@@ -25,7 +25,7 @@ fn derivatives_are_differences() {
             control.coordinates = Some(coordinates);
             let (Duration::Given(t) | Duration::Free { guess: t, .. }) = control.duration;
             let h = t / control.intervals as f64;
-            let (model, boundary) = Boundary::resolve(&case.system, &control, h).unwrap();
+            let (model, boundary) = BoundaryConditions::resolve(&case.system, &control, h).unwrap();
             let initial = guess(&model, &boundary, &control, h, None);
             let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
             let mut random = Random(11);
@@ -111,8 +111,8 @@ fn dense(system: &System, coordinates: Coordinates) -> nalgebra::DMatrix<f64> {
     let scalars: Vec<f64> = scalars.collect();
     let layout = action.layout();
     let mut values = vec![0.0; layout.values(1)];
-    let mut scratch = action.scratch(Level::Hessian);
-    let level = Level::Hessian;
+    let mut scratch = action.scratch(Order::Hessian);
+    let level = Order::Hessian;
     let interval = Interval::given(&scalars, 10.0);
     action.evaluate_interval(level, [&mut a, &mut b], &interval, &mut scratch);
     action.pull_back_interval(level, [&a, &b], &interval, 0, &mut scratch, &mut values);
@@ -243,7 +243,7 @@ impl Nlp for Mistaken<'_, '_> {
 fn mistakes_are_caught() {
     let system = trunk(2);
     let control = control(&system, 3);
-    let (model, boundary) = Boundary::resolve(&system, &control, 10.0).unwrap();
+    let (model, boundary) = BoundaryConditions::resolve(&system, &control, 10.0).unwrap();
     let initial = guess(&model, &boundary, &control, 10.0, None);
     let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
     let mut random = Random(17);

@@ -1,7 +1,7 @@
 //! The checker of derivatives passes right ones and names wrong ones.
 
 use crate::common::programs::{Program, bounds, hs071, one_variable, rosenbrock};
-use proboscis::nlp::differences::{Matrix, Place, TOLERANCE, check};
+use proboscis::nlp::differences::{Matrix, EntryStatus, TOLERANCE, check};
 
 const POINT: [f64; 4] = [1.3, 4.2, 3.1, 1.7];
 
@@ -123,7 +123,7 @@ fn a_missing_entry_is_found() {
     let entry = &report.wrong[0];
     assert_eq!(
         (entry.row.as_str(), entry.column.as_str(), entry.place),
-        ("x[3]", "x[3]", Place::Missing)
+        ("x[3]", "x[3]", EntryStatus::Missing)
     );
     assert!(report.to_string().contains("no entry"));
 }
@@ -255,8 +255,8 @@ fn a_thousand_variables_are_checked() {
     assert_eq!(
         places,
         [
-            ("x[501]", "x[499]", Place::Stored),
-            ("x[501]", "x[500]", Place::Missing)
+            ("x[501]", "x[499]", EntryStatus::Stored),
+            ("x[501]", "x[500]", EntryStatus::Missing)
         ]
     );
 }

@@ -10,7 +10,7 @@ use nalgebra::{SMatrix, SVector};
 use num_dual::{Dual64, HyperDual};
 use proboscis::energy::{
     Angle, AngularDamper, Coincidence, CoordinateDamper, DielectricCell, ElasticCell, Energy,
-    Gravity, LinearDamper, LinearSpring, Orthogonality, OutsideBox, Place, Projection,
+    Gravity, LinearDamper, LinearSpring, Orthogonality, OutsideBox, PositionComponent, Projection,
     SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
 };
 use proboscis::math::{Jet, Vector};
@@ -271,7 +271,7 @@ fn jets_are_the_derivatives_of_naive_formulas() {
     law("projection", &Projection, 0.2, 1.0);
     law(
         "place",
-        &Place {
+        &PositionComponent {
             origin: Vector::new(0.1, 0.7, -0.3),
             normal: Vector::new(0.6, 0.0, 0.8),
         },

@@ -8,7 +8,7 @@
 use crate::common::random::Random;
 use crate::naive_hexahedron::{Naive, SIGNS, cube, gauss, state};
 use num_dual::{Dual, Dual64, HyperDual};
-use proboscis::element::{Dielectric, Elastomer, Field, Local, Passive, Shape, Viscosity, Volume};
+use proboscis::element::{Dielectric, Elastomer, Field, Local, Passive, ElementGeometry, Viscosity, Volume};
 use proboscis::math::{Matrix, Vector};
 
 /// Rounding of some thousands of operations at values of order one.
@@ -148,7 +148,7 @@ fn all_derivatives<F: Field>(
                 std::array::from_fn(|_| random.vector()),
                 std::array::from_fn(|_| random.unit()),
             );
-            let shape = Shape::new(&nodes).unwrap();
+            let shape = ElementGeometry::new(&nodes).unwrap();
             let naive = Naive {
                 mu: law.shear_modulus,
                 lambda: law.lame_lambda,
@@ -209,7 +209,7 @@ pub(crate) fn list(x: &[Vector; 8]) -> Vec<f64> {
 /// The forces, or the charges, of an element at a state.
 pub(crate) fn forces<F: Field>(
     law: &Elastomer<F>,
-    shape: &Shape,
+    shape: &ElementGeometry,
     x: &[Vector; 8],
     phi: &F::Potentials,
 ) -> Local<F> {
@@ -222,7 +222,7 @@ pub(crate) fn forces<F: Field>(
 fn weights_and_masses() {
     let mut random = Random(3);
     let (nodes, _, _) = state(&mut random);
-    let shape = Shape::new(&nodes).unwrap();
+    let shape = ElementGeometry::new(&nodes).unwrap();
     let volume: f64 = gauss(&nodes).iter().map(|(w, _)| w).sum();
     close("volume", &[shape.volume()], &[volume]);
     let mass = shape.mass(1.4);
@@ -236,7 +236,7 @@ fn weights_and_masses() {
 
     // The consistent mass of a box: ρV/216 · 8, 4, 2, 1 along an edge, a face diagonal, a space diagonal.
     let edges = Vector::new(1.3, 0.8, 1.1);
-    let brick = Shape::new(&cube().map(|x| x.component_mul(&edges))).unwrap();
+    let brick = ElementGeometry::new(&cube().map(|x| x.component_mul(&edges))).unwrap();
     let mass = brick.mass(1.4);
     for i in 0..8 {
         for j in 0..8 {
@@ -259,7 +259,7 @@ fn a_hexahedron_inside_out_is_refused() {
     nodes.swap(1, 5);
     nodes.swap(2, 6);
     nodes.swap(3, 7);
-    let error = Shape::new(&nodes).unwrap_err();
+    let error = ElementGeometry::new(&nodes).unwrap_err();
     assert!((error.determinant + 0.125).abs() < 1e-15, "{error}");
 }
 
@@ -270,7 +270,7 @@ fn rotations_cost_no_energy() {
     let shift = Vector::new(3.0, -1.0, 2.0);
     for volume in [Volume::Pointwise, Volume::Mean] {
         let (nodes, x, phi) = state(&mut random);
-        let shape = Shape::new(&nodes).unwrap();
+        let shape = ElementGeometry::new(&nodes).unwrap();
         let turned = |x: &[Vector; 8]| x.map(|x| rotation * x + shift);
 
         let passive = law(volume, Passive);
@@ -299,7 +299,7 @@ fn rotations_cost_no_energy() {
 fn both_volumes_agree_on_homogeneous_deformations() {
     let mut random = Random(13);
     let (nodes, _, phi) = state(&mut random);
-    let shape = Shape::new(&nodes).unwrap();
+    let shape = ElementGeometry::new(&nodes).unwrap();
     let map = Matrix::identity() + Matrix::from_fn(|_, _| 0.2 * random.unit());
     let x = nodes.map(|x| map * x);
     let [a, b] = [Volume::Pointwise, Volume::Mean].map(|volume| {
@@ -314,7 +314,7 @@ fn both_volumes_agree_on_homogeneous_deformations() {
 
     // A state that is not homogeneous tells them apart.
     let (nodes, x, _) = state(&mut random);
-    let shape = Shape::new(&nodes).unwrap();
+    let shape = ElementGeometry::new(&nodes).unwrap();
     let [a, b] = [Volume::Pointwise, Volume::Mean].map(|v| law(v, Passive).energy(&shape, &x, &()));
     assert!((a - b).abs() > 1e-4);
 }
@@ -322,7 +322,7 @@ fn both_volumes_agree_on_homogeneous_deformations() {
 #[test]
 fn an_inverted_state_is_nan_everywhere() {
     let nodes = cube();
-    let shape = Shape::new(&nodes).unwrap();
+    let shape = ElementGeometry::new(&nodes).unwrap();
     // One corner pushed through the opposite one: J < 0 at some points, the mean dilatation stays positive.
     let mut corner = nodes;
     corner[6] = Vector::new(-0.4, -0.4, -0.4);

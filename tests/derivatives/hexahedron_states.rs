@@ -4,7 +4,7 @@ use crate::common::random::Random;
 use crate::hexahedron::{DIELECTRIC, close, forces, largest, law, list};
 use crate::naive_hexahedron::{Naive, cube, gauss};
 use num_dual::Dual64;
-use proboscis::element::{Dielectric, Elastomer, Local, Shape, Viscosity, Volume};
+use proboscis::element::{Dielectric, Elastomer, Local, ElementGeometry, Viscosity, Volume};
 use proboscis::math::{Matrix, Vector};
 
 #[test]
@@ -12,7 +12,7 @@ fn fields_are_means_of_the_law() {
     // Stress and displacement by dual numbers of the energy density: a brick in a homogeneous state.
     let edges = Vector::new(1.3, 0.8, 1.1);
     let nodes = cube().map(|x| x.component_mul(&edges));
-    let shape = Shape::new(&nodes).unwrap();
+    let shape = ElementGeometry::new(&nodes).unwrap();
     let mut random = Random(21);
     let map = Matrix::identity() + Matrix::from_fn(|_, _| 0.2 * random.unit());
     let field = random.vector();
@@ -111,7 +111,7 @@ fn patch_test() {
         let mut stresses = Vec::new();
         for hexahedron in &hexahedra {
             let reference = hexahedron.map(|k| nodes[k]);
-            let shape = Shape::new(&reference).unwrap();
+            let shape = ElementGeometry::new(&reference).unwrap();
             total += shape.volume();
             let (x, phi) = (
                 reference.map(|x| map * x),
@@ -146,7 +146,7 @@ const FREE_BLOCK: [[f64; 4]; 5] = [
 #[test]
 fn a_free_block_contracts_in_its_field() {
     let nodes = cube().map(|x| x * 0.1);
-    let shape = Shape::new(&nodes).unwrap();
+    let shape = ElementGeometry::new(&nodes).unwrap();
     for volume in [Volume::Pointwise, Volume::Mean] {
         let law = Elastomer {
             shear_modulus: 233.0,

@@ -6,7 +6,7 @@ use crate::naive_hexahedron::{
     M, contracted, deformation, determinant, gauss, inverse, product, state, transposed,
 };
 use num_dual::{Dual64, DualNum};
-use proboscis::element::{Shape, Viscosity, ViscousContraction, ViscousLocal};
+use proboscis::element::{ElementGeometry, Viscosity, ViscousContraction, ViscousLocal};
 use proboscis::math::{Matrix, Vector};
 
 // Viscosity.
@@ -44,7 +44,7 @@ fn viscous_forces_and_their_derivatives() {
         let (nodes, x, _) = state(&mut random);
         let [v, y]: [[Vector; 8]; 2] =
             std::array::from_fn(|_| std::array::from_fn(|_| random.vector()));
-        let shape = Shape::new(&nodes).unwrap();
+        let shape = ElementGeometry::new(&nodes).unwrap();
         let points = gauss(&nodes);
 
         // All derivatives of y·f by (x, v); y is a direction, so the plain forces come from unit directions.
@@ -99,7 +99,7 @@ fn viscosity_is_objective_under_a_finite_rotation() {
     let mut random = Random(5);
     let law = Viscosity { viscosity: 1.7 };
     let (nodes, start, _) = state(&mut random);
-    let shape = Shape::new(&nodes).unwrap();
+    let shape = ElementGeometry::new(&nodes).unwrap();
     let rotation = *nalgebra::Rotation3::new(Vector::new(0.7, -0.5, 0.4)).matrix();
     let shift = Vector::new(3.0, -1.0, 2.0);
     let h = 0.1;

@@ -4,8 +4,8 @@
 use crate::common::cases::{BRANCHED_VOLTAGES, branched, cases};
 use crate::common::random::Random;
 use proboscis::control::problem::Duration;
-use proboscis::control::{Boundary, Transcription, guess};
-use proboscis::functional::{Frame, Horizon, Kind, Level, Sides};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::functional::{Sample, Horizon, Kind, Order, BlockMask};
 use proboscis::math::Vector;
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::Nlp;
@@ -70,7 +70,7 @@ fn a_free_horizon_at_its_guess_is_the_given_one() {
                 guess: t,
             };
             let h = t / given.intervals as f64;
-            let (model, boundary) = Boundary::resolve(&case.system, &given, h).unwrap();
+            let (model, boundary) = BoundaryConditions::resolve(&case.system, &given, h).unwrap();
             let initial = guess(&model, &boundary, &given, h, None);
             let mut plain = Transcription::new(&model, &boundary, &given, &initial).unwrap();
             let mut timed = Transcription::new(&model, &boundary, &free, &initial).unwrap();
@@ -123,15 +123,15 @@ impl Interval {
         }
     }
 
-    fn frame<'a>(&'a self, vectors: [&'a [Vector]; 2], h: f64, horizon: Horizon) -> Frame<'a> {
-        Frame {
+    fn frame<'a>(&'a self, vectors: [&'a [Vector]; 2], h: f64, horizon: Horizon) -> Sample<'a> {
+        Sample {
             vectors,
             along: vectors,
             scalars: &self.scalars,
             scalars_along: &[0.0; 3],
             h,
             horizon,
-            sides: Sides::ALL,
+            sides: BlockMask::ALL,
             weights: &[],
         }
     }
@@ -152,12 +152,12 @@ impl Interval {
     /// Forces at both instants, and their derivatives with h, of potentials and inertia alone.
     fn forces(&self, h: f64) -> ([Vec<Vector>; 2], [Vec<Vector>; 2], Vec<f64>) {
         let action = &self.model.action;
-        let mut out = action.intervals.output(Level::Hessian);
+        let mut out = action.intervals.output(Order::Hessian);
         let [a, b] = &self.vectors;
         let frame = self.frame([a, b], h, Horizon::Free);
         for (effect, slots) in action.intervals.terms() {
             if effect.kind() != Kind::VirtualWork {
-                effect.evaluate(Level::Hessian, &frame, slots, &mut out);
+                effect.evaluate(Order::Hessian, &frame, slots, &mut out);
             }
         }
         (

@@ -3,7 +3,7 @@
 use num_dual::{Dual, DualNum};
 use proboscis::energy::{
     Angle, AngularDamper, Coincidence, CoordinateDamper, DielectricCell, ElasticCell, Energy,
-    Gravity, LinearDamper, LinearSpring, Orthogonality, OutsideBox, Place, Projection,
+    Gravity, LinearDamper, LinearSpring, Orthogonality, OutsideBox, PositionComponent, Projection,
     SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
 };
 
@@ -172,7 +172,7 @@ impl Formula<6> for Projection {
     }
 }
 
-impl Formula<3> for Place {
+impl Formula<3> for PositionComponent {
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 3]) -> D {
         let normal = [self.normal.x, self.normal.y, self.normal.z].map(D::from);
         polarised(*p, normal) - self.origin.dot(&self.normal)

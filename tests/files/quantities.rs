@@ -1,18 +1,18 @@
 //! Numbers with units: every spelling, and conversions against another library.
 
 use proboscis::scene::quantity::{
-    Angle, Density, ElectricField, Length, Measure, Quantity, RotationalDamping, Time, Viscosity,
+    Angle, Density, ElectricField, Length, PhysicalQuantity, Quantity, RotationalDamping, Time, Viscosity,
     Voltage,
 };
 use proptest::prelude::*;
 
-pub(crate) fn value<M: Measure>(text: &str) -> f64 {
+pub(crate) fn value<M: PhysicalQuantity>(text: &str) -> f64 {
     Quantity::<M>::try_from_text(text)
         .unwrap_or_else(|found| panic!("found {found}"))
         .value()
 }
 
-fn refused<M: Measure>(text: &str) {
+fn refused<M: PhysicalQuantity>(text: &str) {
     assert!(
         Quantity::<M>::try_from_text(text).is_err(),
         "{text} was read"

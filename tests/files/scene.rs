@@ -1,6 +1,6 @@
 //! Scene and problem files: every mistake is answered with its place, what was found and what is expected.
 
-use proboscis::control::problem::{Duration, Limit, Task};
+use proboscis::control::problem::{Duration, PathConstraint, Task};
 use proboscis::model::system::{Discretisation, ElementKind, Fidelity};
 use proboscis::scene::{SceneError, new_trunk, read_problem, schema};
 use std::fs;
@@ -169,7 +169,7 @@ fn mistakes_in_a_muscle_of_finite_elements_name_place_found_and_expected() {
     let Task::Control(control) = &loaded.task else {
         panic!("a control problem")
     };
-    let expected = Limit::BlockField {
+    let expected = PathConstraint::BlockField {
         block: 0,
         region: None,
         max: 80_000.0,

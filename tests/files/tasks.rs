@@ -1,7 +1,7 @@
 //! What a problem asks: methods, tables, solutions, given voltages.
 
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
-use proboscis::control::problem::{Afterwards, State, Task, Voltages};
+use proboscis::control::problem::{Afterwards, BoundaryState, Task, Voltages};
 use proboscis::dynamics::Integrator;
 use proboscis::scene::read_problem;
 use std::fs;
@@ -70,7 +70,7 @@ fn simulation_and_solution_are_checked() {
             solution: Some(folder.path().join("solution.json")),
         }
     );
-    let State::JointAngles { angles, rates, .. } = simulation.start else {
+    let BoundaryState::JointAngles { angles, rates, .. } = simulation.start else {
         panic!("joint angles")
     };
     assert!(angles.is_empty());

@@ -4,10 +4,10 @@ use crate::common::{bare, motion, placed, trunk};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::dynamics::{Start, energies, observations};
 use proboscis::energy::LinearSpring;
-use proboscis::functional::{Element, Level};
+use proboscis::functional::{Element, Order};
 use proboscis::model::components::{Other, Spring, Tendon};
 use proboscis::model::system::{Attachment, Body, Joint, JointKind, Shape, System};
-use proboscis::model::{Component, Coordinates, Model, Question, Stirred, Terms, mid};
+use proboscis::model::{Component, Coordinates, Model, Analysis, InitiallyMoving, Terms, mid};
 use proboscis::reduction::Interval;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -63,7 +63,7 @@ fn oscillator(damping: Option<f64>) -> System {
 
 pub(crate) fn column(
     model: &Model,
-    history: &proboscis::dynamics::History,
+    history: &proboscis::dynamics::DiscreteTrajectory,
     name: &str,
 ) -> Vec<f64> {
     let observed = observations(model, history);
@@ -180,12 +180,12 @@ fn around_an_eye() -> System {
 #[test]
 fn a_tendon_ties_bodies_around_an_eye_of_the_ground() {
     // The far mass is thrown outwards: the near one follows, though no term has both without the eye.
-    let question = |body: Option<usize>| Question {
-        stirred: Some(Stirred {
+    let question = |body: Option<usize>| Analysis {
+        stirred: Some(InitiallyMoving {
             bodies: body.into_iter().collect(),
-            ..Stirred::default()
+            ..InitiallyMoving::default()
         }),
-        ..Question::of_motion(0.5)
+        ..Analysis::of_motion(0.5)
     };
     let model = Model::answering(around_an_eye(), question(Some(1))).unwrap();
     assert_eq!(model.coordinate_count(), 2);
@@ -243,7 +243,7 @@ fn forces_of_a_path_are_those_of_its_length() {
     assert_eq!(told.len(), 1);
     assert!((told[0] - energy(&z)).abs() < 1e-12 * told[0] && told[0] > 1.0);
     // The forces of an interval of 1 ms that stands, half of them at either end.
-    let mut scratch = model.action.scratch(Level::Gradient);
+    let mut scratch = model.action.scratch(Order::Gradient);
     let (mut a, mut b) = (here.clone(), here.clone());
     for instant in [&mut a, &mut b] {
         instant.forces.fill(Vector3::zeros());
@@ -252,7 +252,7 @@ fn forces_of_a_path_are_those_of_its_length() {
     let ends = [&mut a, &mut b];
     model
         .action
-        .evaluate_interval(Level::Gradient, ends, &interval, &mut scratch);
+        .evaluate_interval(Order::Gradient, ends, &interval, &mut scratch);
     let mut forces = [0.0; 3];
     for instant in [&mut a, &mut b] {
         model.action.motion.tangent(instant);

@@ -2,7 +2,7 @@
 
 use crate::common::{at_reference, bare, body, columns, joint, placed, spin, trunk};
 use nalgebra::{Matrix3, Vector3};
-use proboscis::dynamics::{History, Integrator, Solving, Start, observations, simulate_by};
+use proboscis::dynamics::{DiscreteTrajectory, Integrator, Solving, Start, observations, simulate_by};
 use proboscis::model::system::{JointKind, System};
 use proboscis::model::{Coordinates, Model};
 use std::ops::ControlFlow;
@@ -22,7 +22,7 @@ fn run(
     h: f64,
     steps: usize,
     scalars: &[f64],
-) -> History {
+) -> DiscreteTrajectory {
     let solving = Solving {
         integrator,
         ..Solving::default()

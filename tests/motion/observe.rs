@@ -3,7 +3,7 @@
 use crate::common::{at_reference, bare, body, column, columns, joint, motion, placed, trunk};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::dynamics::trajectory::Trajectory;
-use proboscis::dynamics::{History, Start, observations};
+use proboscis::dynamics::{DiscreteTrajectory, Start, observations};
 use proboscis::model::system::{JointKind, VACUUM_PERMITTIVITY};
 use proboscis::model::{Coordinates, Model};
 use std::f64::consts::TAU;
@@ -100,7 +100,7 @@ fn the_first_row_is_the_start() {
         );
 
         // Without recorded momenta, as after an optimisation, the first interval tells them.
-        let bare = History {
+        let bare = DiscreteTrajectory {
             momenta: Vec::new(),
             ..history.clone()
         };

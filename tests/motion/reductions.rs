@@ -18,7 +18,7 @@ fn run(
     h: f64,
     steps: usize,
     voltages: &[f64],
-) -> (Model, proboscis::dynamics::History) {
+) -> (Model, proboscis::dynamics::DiscreteTrajectory) {
     let model = Model::new(system.clone(), Some(coordinates), h, &[]).unwrap();
     let z = model.coordinates_at(joints);
     let rates = match coordinates {
@@ -232,7 +232,7 @@ fn of_segments_with_blocks() {
         let (model, history) = run(&system, coordinates, &joints, &rates, 2.0, 20, &voltages);
         let nodes = |z: &Vec<f64>| -> Vec<Vector3<f64>> {
             let instant = placed(&model, z);
-            let places = model.continua.iter().map(|c| c.places(&instant.x));
+            let places = model.solids.iter().map(|c| c.places(&instant.x));
             places.flatten().collect()
         };
         let potentials: Vec<Vec<f64>> = history.scalars.clone();

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use proboscis::control::problem::{Simulation, Task};
 use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::dynamics::{
-    History, Integrator, LocalError, Solving, Start, local_error, observations, simulate_by,
+    DiscreteTrajectory, Integrator, LocalError, Solving, Start, local_error, observations, simulate_by,
 };
 use proboscis::model::system::JointKind;
 use proboscis::model::{Coordinates, Model};
@@ -202,7 +202,7 @@ fn what_is_simulated_without_a_word_is_right() {
 }
 
 /// A mass on a slide between two muscles without viscosity, pushed at the start.
-fn slider(h: f64, integrator: Integrator, steps: usize) -> (Model, History) {
+fn slider(h: f64, integrator: Integrator, steps: usize) -> (Model, DiscreteTrajectory) {
     let slide = joint(
         "slide",
         JointKind::Prismatic { axis: Vector3::y() },

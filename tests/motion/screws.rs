@@ -7,13 +7,13 @@ use crate::common::{
 };
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use proboscis::control::problem::Duration;
-use proboscis::control::{Boundary, Transcription, guess};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::dynamics::trajectory::Trajectory;
-use proboscis::dynamics::{History, Integrator, Solving, Start, observations, simulate_by};
+use proboscis::dynamics::{DiscreteTrajectory, Integrator, Solving, Start, observations, simulate_by};
 use proboscis::model::system::{JointKind, System};
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::differences;
-use proboscis::run::{Allowed, Iterate, optimise};
+use proboscis::run::{SolveLimits, Iterate, optimise};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -102,7 +102,7 @@ fn derivatives_far_from_charts_are_differences() {
     for system in [ball(), satellite()] {
         let mut control = control(&system, 3);
         control.start = joints(&[]);
-        let (model, boundary) = Boundary::resolve(&system, &control, 10.0).unwrap();
+        let (model, boundary) = BoundaryConditions::resolve(&system, &control, 10.0).unwrap();
         let mut initial = guess(&model, &boundary, &control, 10.0, None);
         let mut random = Random(7);
         // Each instant has charts of its own.
@@ -127,7 +127,7 @@ fn both(
     h: f64,
     steps: usize,
     voltages: &[f64],
-) -> ([(Model, History); 2], f64) {
+) -> ([(Model, DiscreteTrajectory); 2], f64) {
     let runs = BOTH.map(|coordinates| {
         let model = Model::new(system.clone(), Some(coordinates), h, &[]).unwrap();
         let start = Start::with_velocities(&model, at_reference(&model), velocities);
@@ -253,7 +253,7 @@ fn a_satellite_turns_by_bending_its_trunk_in_both_coordinates() {
         let nothing = &mut |_: &Iterate<'_>| ControlFlow::Continue(());
         let file = Path::new("p.json");
         let before = earlier.as_ref();
-        let found = optimise(file, &system, &problem, before, Allowed::default(), nothing);
+        let found = optimise(file, &system, &problem, before, SolveLimits::default(), nothing);
         let found = found.unwrap();
         assert!(found.solution.status.is_solved(), "{}", found.word());
         let ends = [0, intervals].map(|k| found.motion.poses[k][0].directors);
@@ -262,7 +262,7 @@ fn a_satellite_turns_by_bending_its_trunk_in_both_coordinates() {
         // A solution starts a solve in either coordinates.
         for other in BOTH {
             problem.coordinates = Some(other);
-            let (model, boundary) = Boundary::resolve(&system, &problem, 25.0).unwrap();
+            let (model, boundary) = BoundaryConditions::resolve(&system, &problem, 25.0).unwrap();
             let initial = guess(&model, &boundary, &problem, 25.0, Some(&found.motion));
             let track = Trajectory::from_history(&model, &initial.history);
             for (a, b) in track

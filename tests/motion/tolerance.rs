@@ -3,7 +3,7 @@
 use crate::common::{at_reference, trunk};
 use assert_cmd::Command;
 use proboscis::dynamics::{
-    History, Solving, Start, StepControl, StepError, simulate_by, simulate_within,
+    DiscreteTrajectory, Solving, Start, StepControl, StepError, simulate_by, simulate_within,
 };
 use proboscis::model::{Coordinates, Model};
 use serde_json::Value;
@@ -20,7 +20,7 @@ fn steps_by_a_tolerance_keep_it() {
         let on = if middle < 150.0 { 2000.0 } else { 500.0 };
         model.scalars(&[on, 0.0, 0.0, 1500.0, on, 0.0])
     };
-    let run = |tolerance: f64| -> (History, Option<StepError>) {
+    let run = |tolerance: f64| -> (DiscreteTrajectory, Option<StepError>) {
         let control = StepControl {
             duration: 400.0,
             first: 4.0,

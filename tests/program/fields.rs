@@ -5,7 +5,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use nalgebra::Vector3;
 use proboscis::model::VACUUM_PERMITTIVITY;
-use proboscis::run::{Request, Shown, Told, run};
+use proboscis::run::{CommandInput, ProgressDisplay, CommandOutput, run};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::fs;
@@ -65,8 +65,8 @@ impl Fields {
     }
 }
 
-fn request(input: PathBuf, output: &Path, set: &[&str]) -> Request {
-    Request {
+fn request(input: PathBuf, output: &Path, set: &[&str]) -> CommandInput {
+    CommandInput {
         command: "proboscis".to_owned(),
         input,
         set: set.iter().map(|&s| s.to_owned()).collect(),
@@ -74,18 +74,18 @@ fn request(input: PathBuf, output: &Path, set: &[&str]) -> Request {
         max_seconds: None,
         max_iterations: None,
         wanted: None,
-        progress: Shown::Never,
+        progress: ProgressDisplay::Never,
     }
 }
 
 /// A kept problem, with overrides.
-fn kept(name: &str, output: &Path, set: &[&str]) -> Told {
+fn kept(name: &str, output: &Path, set: &[&str]) -> CommandOutput {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems");
     run(&request(folder.join(name), output, set)).unwrap()
 }
 
 /// A problem of a cube between two electrodes on rollers.
-fn cube(folder: &Path, fixed: Value, task: &Value) -> Told {
+fn cube(folder: &Path, fixed: Value, task: &Value) -> CommandOutput {
     let scene = json!({
         "name": "cube",
         "materials": { "gel": {

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use proboscis::mesh::grid::Grid as Planes;
 use proboscis::report::origin::Origin;
-use proboscis::report::paraview::{Field, Grid, Series, pvd, vtu};
+use proboscis::report::paraview::{Field, UnstructuredGrid, Series, pvd, vtu};
 use proptest::prelude::*;
 use std::borrow::Cow;
 use std::fs;
@@ -114,7 +114,7 @@ fn a_solid_reads_back_as_it_was() {
         field("electric field [V/m]", 3, numbers(3 * cells)),
         field("stress [Pa]", 9, numbers(9 * cells)),
     ];
-    let grid = Grid {
+    let grid = UnstructuredGrid {
         points: &mesh.nodes,
         hexahedra: &mesh.hexahedra,
         point_data: &point_data,
@@ -158,13 +158,13 @@ fn solids_stand_one_after_the_other() {
     let potential = [field("potential", 1, (0..8).map(f64::from).collect())];
     let stretch = [field("stretch", 3, vec![1.0, 2.0, 3.0])];
     let grids = [
-        Grid {
+        UnstructuredGrid {
             points: &mesh.nodes,
             hexahedra: &mesh.hexahedra,
             point_data: &potential,
             cell_data: &[],
         },
-        Grid {
+        UnstructuredGrid {
             points: &apart.nodes,
             hexahedra: &apart.hexahedra,
             point_data: &[],
@@ -198,10 +198,10 @@ fn a_series_lists_what_it_wrote() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path().join("deep").join("motion");
     let mesh = Planes::uniform(Vector3::zeros(), Vector3::repeat(1.0), [1, 1, 1]).mesh();
-    let grids = [Grid {
+    let grids = [UnstructuredGrid {
         points: &mesh.nodes,
         hexahedra: &mesh.hexahedra,
-        ..Grid::default()
+        ..UnstructuredGrid::default()
     }];
     let origin = origin();
     let mut series = Series::build(&folder, "trajectory", &origin).unwrap();
@@ -230,9 +230,9 @@ fn no_solid_and_no_instant_are_files_too() {
 #[test]
 #[should_panic(expected = "a cell has point 7 of 0")]
 fn a_cell_without_its_points_is_a_mistake() {
-    let grid = Grid {
+    let grid = UnstructuredGrid {
         hexahedra: &[[7; 8]],
-        ..Grid::default()
+        ..UnstructuredGrid::default()
     };
     vtu(&[grid], &Origin::default());
 }
@@ -241,9 +241,9 @@ fn a_cell_without_its_points_is_a_mistake() {
 #[should_panic(expected = "number of values of the field \"stress\"")]
 fn a_field_of_the_wrong_length_is_a_mistake() {
     let data = [field("stress", 9, vec![0.0; 8])];
-    let grid = Grid {
+    let grid = UnstructuredGrid {
         point_data: &data,
-        ..Grid::default()
+        ..UnstructuredGrid::default()
     };
     vtu(&[grid], &Origin::default());
 }
@@ -255,7 +255,7 @@ proptest! {
         let values = bits.iter().copied().map(f64::from_bits).collect();
         let name: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
         let data = [field(&name, 1, values)];
-        let grid = Grid { points: &points, point_data: &data, ..Grid::default() };
+        let grid = UnstructuredGrid { points: &points, point_data: &data, ..UnstructuredGrid::default() };
         let text = String::from_utf8(vtu(&[grid], &Origin::default())).unwrap();
         assert_reads(between(&text, "<Piece", "</Piece>")[0], "PointData", &data[0]);
     }

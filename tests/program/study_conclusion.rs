@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use proboscis::study::compare::judge;
 use proboscis::study::conclusion::conclusion;
-use proboscis::study::outcome::{Ended, Seen};
+use proboscis::study::outcome::{RunOutcome, Observed};
 use proboscis::study::read::{Study, read_study};
 use proboscis::study::schedule::{Done, Results};
 use serde_json::json;
@@ -60,15 +60,15 @@ fn study(methods: &[&str]) -> (TempDir, Study) {
 fn said(study: &Study, points: &[[(f64, f64); 4]], change: impl Fn(&mut Results<'_>)) -> String {
     let done = |m: usize, k: usize| {
         let (error, milliseconds) = points[m][k];
-        let seen = Seen {
+        let seen = Observed {
             instants: vec![0.0, 1.0],
             places: vec![vec![Vector3::zeros()], vec![Vector3::new(WAY, error, 0.0)]],
             reference: vec![Vector3::zeros()],
-            ..Seen::default()
+            ..Observed::default()
         };
         Done {
             point: &study.methods[m].points[k],
-            first: Ended {
+            first: RunOutcome {
                 status: "simulated",
                 message: None,
                 seconds: 1e-3 * milliseconds,

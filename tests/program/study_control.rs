@@ -3,7 +3,7 @@
 use crate::study::{numbers, of, results, steps, wheel};
 use proboscis::control::problem::Task;
 use proboscis::dynamics::simulate;
-use proboscis::run::{Allowed, Iterate, optimise, trajectory};
+use proboscis::run::{SolveLimits, Iterate, optimise, trajectory};
 use proboscis::scene::read_problem;
 use serde_json::json;
 use std::fs;
@@ -52,7 +52,7 @@ fn optimal_voltages_are_put_to_the_test_on_a_finer_grid() {
         &loaded.system,
         task,
         None,
-        Allowed::default(),
+        SolveLimits::default(),
         &mut on,
     )
     .unwrap();

@@ -3,9 +3,9 @@
 use crate::common::programs::{HS071_START, Program, hs071, one_variable};
 use crate::runs::{problem, read, run};
 use proboscis::control::problem::Task;
-use proboscis::control::{Boundary, Transcription, guess};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::dynamics::{Start, simulate};
-use proboscis::ipopt::{Options, Point, Status, interrupt, solve};
+use proboscis::ipopt::{Options, StartingPoint, Status, interrupt, solve};
 use proboscis::model::Model;
 use proboscis::nlp::Nlp;
 use proboscis::nlp::differences::{Along, TOLERANCE, check_along};
@@ -67,7 +67,7 @@ fn a_solve_is_stopped_at_the_next_question() {
         });
         program
     };
-    let start = Point {
+    let start = StartingPoint {
         x: HS071_START.to_vec(),
         costates: None,
     };
@@ -91,7 +91,7 @@ fn a_program_that_was_stopped_is_evaluated_anew() {
         panic!("a control problem");
     };
     let h = control.duration.first() / control.intervals as f64;
-    let (model, boundary) = Boundary::resolve(&loaded.system, control, h).unwrap();
+    let (model, boundary) = BoundaryConditions::resolve(&loaded.system, control, h).unwrap();
     let initial = guess(&model, &boundary, control, h, None);
     let program = || Transcription::new(&model, &boundary, control, &initial).unwrap();
     let (mut fresh, mut stopped) = (program(), program());

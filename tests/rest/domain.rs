@@ -1,8 +1,8 @@
 //! Where the domain of the first-order dielectric ends, and how that is told.
 
 use crate::stable::{file, model, reference, run, scene, summary};
-use proboscis::dynamics::{History, largest_stretch, out_of_domain};
-use proboscis::model::system::Electric;
+use proboscis::dynamics::{DiscreteTrajectory, largest_stretch, out_of_domain};
+use proboscis::model::system::ElectricConstants;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use std::path::Path;
 #[test]
 fn the_domain_ends_where_the_permittivity_vanishes() {
     let vacuum = 8.854e-12;
-    let electric = Electric {
+    let electric = ElectricConstants {
         c1: -4.0 * vacuum,
         c2: 2.0 * vacuum,
         permittivity: vacuum,
@@ -22,7 +22,7 @@ fn the_domain_ends_where_the_permittivity_vanishes() {
         let permittivity = |l: f64| 4.0 * (2.0 - l * l) + volume / (l * l);
         assert!(permittivity(0.999 * limit) > 1e-3 && permittivity(1.001 * limit) < -1e-3);
     }
-    let ideal = Electric {
+    let ideal = ElectricConstants {
         c1: 0.0,
         c2: 0.0,
         permittivity: 5.0 * vacuum,
@@ -56,11 +56,11 @@ fn a_block_outside_the_domain_is_told_with_its_instants() {
         axes.map(|(&(_, axis), x)| if axis == 2 { l * x } else { x / l.sqrt() })
             .collect()
     };
-    let motion = |voltage: f64| History {
+    let motion = |voltage: f64| DiscreteTrajectory {
         times: vec![0.0, 1.0, 2.0, 3.0],
         z: [1.0, 1.46, 1.6, 1.5].map(stretched).to_vec(),
         scalars: vec![[vec![voltage], vec![0.5 * voltage; model.potentials]].concat(); 3],
-        ..History::default()
+        ..DiscreteTrajectory::default()
     };
     assert_eq!(out_of_domain(&model, &motion(0.0)), Vec::new());
     let outside = out_of_domain(&model, &motion(1e3));

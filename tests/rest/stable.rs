@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use proboscis::dynamics::{
     Equilibrium, EquilibriumError, Route, Softening, equilibrium, stable_equilibrium,
 };
-use proboscis::model::system::{Electric, System};
+use proboscis::model::system::{ElectricConstants, System};
 use proboscis::model::{Coordinates, Model};
 use proboscis::scene::{driven_voltages, read_system};
 use serde_json::{Value, json};
@@ -127,7 +127,7 @@ fn energy(system: &System, model: &Model, z: &[f64], voltages: &[f64]) -> f64 {
         let stretch = (ends[1] - ends[0]).norm() / length;
         let volume = length * muscle.cross_section[0] * muscle.cross_section[1];
         let field = voltage / muscle.layer_thickness;
-        let Electric {
+        let ElectricConstants {
             c1,
             c2,
             permittivity,

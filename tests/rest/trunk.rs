@@ -5,7 +5,7 @@
 use nalgebra::{Matrix3, Vector3};
 use proboscis::dynamics::{EquilibriumError, equilibrium};
 use proboscis::model::system::{
-    Attachment, Body, Electric, Joint, JointKind, Material, Muscle, Shape, System,
+    Attachment, Body, ElectricConstants, Joint, JointKind, Material, Muscle, Shape, System,
 };
 use proboscis::model::{Coordinates, Model};
 
@@ -16,7 +16,7 @@ const LENGTH: f64 = 30.0;
 /// Layer thickness in mm.
 const LAYER: f64 = 0.05;
 
-fn single(shear_modulus: f64, electric: Electric) -> System {
+fn single(shear_modulus: f64, electric: ElectricConstants) -> System {
     let axis = Vector3::z();
     let end = |z: f64, body| Attachment { body, at: axis * z };
     System {
@@ -84,8 +84,8 @@ fn agrees(system: &System, field: f64, expected: f64) {
 }
 
 /// First-order ideal dielectric of relative permittivity ε_r.
-fn default_signs(relative: f64) -> Electric {
-    Electric {
+fn default_signs(relative: f64) -> ElectricConstants {
+    ElectricConstants {
         c1: -(relative - 1.0) * EPS,
         c2: 0.5 * (relative - 1.0) * EPS,
         permittivity: EPS,
@@ -97,7 +97,7 @@ fn published_material_contracts_as_tabulated() {
     // physics.md 3.4, set of THREAD-3-2/elec_mech_beam: μ = 233 MPa, c2 = 1e-9 N/V².
     let system = single(
         233.0,
-        Electric {
+        ElectricConstants {
             c1: 5e-8,
             c2: 1e-9,
             permittivity: EPS,
@@ -116,7 +116,7 @@ fn published_material_contracts_as_tabulated() {
     // Without the vacuum term: Λ = (1 + 2c₂E²/μ)^(−1/3).
     let system = single(
         233.0,
-        Electric {
+        ElectricConstants {
             c1: 5e-8,
             c2: 1e-9,
             permittivity: 0.0,
@@ -156,7 +156,7 @@ fn default_material_contracts_as_tabulated() {
 #[test]
 fn pull_in_is_refused_where_the_path_ends() {
     let shear_modulus = 0.3;
-    let ideal = Electric {
+    let ideal = ElectricConstants {
         c1: 0.0,
         c2: 0.0,
         permittivity: 5.0 * EPS,

@@ -2,8 +2,8 @@
 
 use crate::common::solid::{block, material, mesh, numbers, reference, stack, system};
 use nalgebra::Vector3;
-use proboscis::dynamics::{History, Newton, Solving, Start, observations, simulate, simulate_by};
-use proboscis::functional::Level;
+use proboscis::dynamics::{DiscreteTrajectory, Newton, Solving, Start, observations, simulate, simulate_by};
+use proboscis::functional::Order;
 use proboscis::model::Model;
 use proboscis::model::system::System;
 use proboscis::reduction::Interval;
@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::ops::ControlFlow;
 
 /// Steps of `h` ms under one voltage from rest or from the velocities of the blocks.
-fn run(system: System, h: f64, steps: usize, voltages: &[f64]) -> (Model, History) {
+fn run(system: System, h: f64, steps: usize, voltages: &[f64]) -> (Model, DiscreteTrajectory) {
     let model = Model::new(system, None, h, &[]).unwrap();
     let z = model.coordinates_at(&[]);
     let start = match model.node_rates() {
@@ -28,15 +28,15 @@ fn run(system: System, h: f64, steps: usize, voltages: &[f64]) -> (Model, Histor
 }
 
 /// Places of the nodes of the first block at instant k.
-fn places(model: &Model, history: &History, k: usize) -> Vec<Vector3<f64>> {
+fn places(model: &Model, history: &DiscreteTrajectory, k: usize) -> Vec<Vector3<f64>> {
     let mut instant = model.action.motion.instant();
     instant.z.copy_from_slice(&history.z[k]);
     model.action.motion.place(&mut instant);
-    model.continua[0].places(&instant.x)
+    model.solids[0].places(&instant.x)
 }
 
 /// Compares the probes of all instants; `scale` is the size of the motion in mm.
-fn compare(entry: &Value, model: &Model, history: &History, scale: f64) -> f64 {
+fn compare(entry: &Value, model: &Model, history: &DiscreteTrajectory, scale: f64) -> f64 {
     let nodes = numbers(&entry["probe_nodes"]);
     let histories = entry["probe_u"].as_array().unwrap();
     let mut worst = 0.0_f64;
@@ -45,7 +45,7 @@ fn compare(entry: &Value, model: &Model, history: &History, scale: f64) -> f64 {
         let places = places(model, history, k);
         for (node, expected) in nodes.iter().zip(row.as_array().unwrap()) {
             let node = *node as usize;
-            let moved = places[node] - model.continua[0].solid.mesh.nodes[node];
+            let moved = places[node] - model.solids[0].solid.mesh.nodes[node];
             let expected = Vector3::from_vec(numbers(expected)) * 1e3;
             worst = worst.max((moved - expected).amax() / scale);
             largest = largest.max(expected.amax() / scale);
@@ -126,7 +126,7 @@ fn gauss_holds_in_every_interval_and_the_balance_closes() {
     let h = 0.5;
     let (model, history) = run(stack(entry), h, 60, &[3e5]);
     let (mut a, mut b) = (model.action.motion.instant(), model.action.motion.instant());
-    let mut scratch = model.action.scratch(Level::Gradient);
+    let mut scratch = model.action.scratch(Order::Gradient);
     for k in 0..60 {
         for (instant, z) in [(&mut a, &history.z[k]), (&mut b, &history.z[k + 1])] {
             instant.z.copy_from_slice(z);
@@ -135,7 +135,7 @@ fn gauss_holds_in_every_interval_and_the_balance_closes() {
         let interval = Interval::given(&history.scalars[k], h);
         model
             .action
-            .evaluate_interval(Level::Gradient, [&mut a, &mut b], &interval, &mut scratch);
+            .evaluate_interval(Order::Gradient, [&mut a, &mut b], &interval, &mut scratch);
         let rows = &scratch.interval.plain.rows;
         // The charge on the electrodes in the units of the free rows.
         let charge = rows[0].abs() * model.potential_unit;

@@ -2,13 +2,13 @@
 
 use crate::common::solid::{VOLTAGE, clamped, crooked, placed, system};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
-use proboscis::dynamics::{History, Start, Stepper, energies, observations, simulate};
+use proboscis::dynamics::{DiscreteTrajectory, Start, Stepper, energies, observations, simulate};
 use proboscis::mesh::Mesh;
 use proboscis::model::Model;
-use proboscis::model::system::{Electric, Electrode, Solid};
+use proboscis::model::system::{ElectricConstants, Electrode, Solid};
 use std::ops::ControlFlow;
 
-fn run(solid: Solid, h: f64, steps: usize, voltage: f64) -> (Model, History) {
+fn run(solid: Solid, h: f64, steps: usize, voltage: f64) -> (Model, DiscreteTrajectory) {
     let model = Model::new(system(vec![solid]), None, h, &[]).unwrap();
     let z = model.coordinates_at(&[]);
     let start = match model.node_rates() {
@@ -83,7 +83,7 @@ fn loads(
 ) -> (Vec<Vector3<f64>>, Vec<f64>, Vec<Vector3<f64>>) {
     let material = &solid.materials[0];
     let (mu, lambda) = (material.shear_modulus, material.lame_lambda.unwrap());
-    let Electric {
+    let ElectricConstants {
         c1,
         c2,
         permittivity: eps,
@@ -121,7 +121,7 @@ fn loads(
 }
 
 /// Midpoint and rate of two instants.
-fn interval(model: &Model, history: &History, k: usize, h: f64) -> [Vec<Vector3<f64>>; 2] {
+fn interval(model: &Model, history: &DiscreteTrajectory, k: usize, h: f64) -> [Vec<Vector3<f64>>; 2] {
     let [a, b] = [k, k + 1].map(|k| placed(model, &history.z[k]));
     let pairs = || a.iter().zip(&b);
     let middle = pairs().map(|(a, b)| (a + b) * 0.5).collect();
@@ -160,7 +160,7 @@ fn the_balance_of_energy_closes_in_every_step() {
     let column = |name: &str| &seen.iter().find(|c| c.name == name).unwrap().values;
     for k in 0..steps {
         let [middle, rates] = interval(&model, &history, k, h);
-        let phi = model.continua[0].potentials(&history.scalars[k]);
+        let phi = model.solids[0].potentials(&history.scalars[k]);
         let (slopes, _, viscous) = loads(&solid, &middle, &phi, &rates);
         let work = |forces: &[Vector3<f64>]| -> f64 {
             h * forces
@@ -197,7 +197,7 @@ fn gauss_holds_in_every_interval() {
     let mut before = None;
     for k in 0..steps {
         let [middle, rates] = interval(&model, &history, k, h);
-        let phi = model.continua[0].potentials(&history.scalars[k]);
+        let phi = model.solids[0].potentials(&history.scalars[k]);
         let (_, charges, _) = loads(&solid, &middle, &phi, &rates);
         let of = |e: &Electrode| e.nodes.iter().map(|&n| charges[n]).sum::<f64>();
         let [bottom, floating, top] = [0, 1, 2].map(|e| of(&solid.electrodes[e]));

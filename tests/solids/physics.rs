@@ -4,11 +4,11 @@ use crate::common::solid::{
     DRIVEN, at_rest, block, dielectric, electrode, held, placed, published, system,
 };
 use nalgebra::Vector3;
-use proboscis::dynamics::{History, Start, energies, simulate};
+use proboscis::dynamics::{DiscreteTrajectory, Start, energies, simulate};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
 use proboscis::model::system::{
-    Electric, ElementKind, Material, Potential, System, VACUUM_PERMITTIVITY,
+    ElectricConstants, ElementKind, Material, Potential, System, VACUUM_PERMITTIVITY,
 };
 use std::ops::ControlFlow;
 
@@ -44,7 +44,7 @@ fn a_bar_contracts_at_rest() {
 }
 
 /// The motion of the bar, of which the first interval sees another voltage.
-fn contraction(viscosity: Option<f64>, first: f64) -> (Model, History) {
+fn contraction(viscosity: Option<f64>, first: f64) -> (Model, DiscreteTrajectory) {
     let model = Model::new(bar(viscosity), None, STEP, &[]).unwrap();
     let start = Start::at_rest(&model, model.coordinates_at(&[]));
     let voltage = |from: f64, _: f64| vec![if from == 0.0 { first } else { 2e4 }];
@@ -218,7 +218,7 @@ fn a_free_block_takes_its_homogeneous_state() {
 
 /// An ideal dielectric in which a field of one V/mm is one unit √(μ/ε).
 fn ideal(lame_lambda: f64) -> Material {
-    let electric = Electric {
+    let electric = ElectricConstants {
         c1: 0.0,
         c2: 0.0,
         permittivity: 1.0,
@@ -286,7 +286,7 @@ fn a_bilayer_bends() {
 
 /// The default dielectric of relative permittivity 3.
 pub(crate) fn silicone(lame_lambda: f64) -> Material {
-    let electric = Electric {
+    let electric = ElectricConstants {
         c1: -2.0 * VACUUM_PERMITTIVITY,
         c2: VACUUM_PERMITTIVITY,
         permittivity: VACUUM_PERMITTIVITY,

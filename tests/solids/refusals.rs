@@ -3,15 +3,15 @@
 use crate::common::solid::{DRIVEN, block, dielectric, electrode, held, placed, system};
 use nalgebra::Vector3;
 use proboscis::dynamics::{
-    EquilibriumError, History, Instability, Start, StepError, continuation, equilibrium, simulate,
+    EquilibriumError, DiscreteTrajectory, Instability, Start, StepError, continuation, equilibrium, simulate,
 };
 use proboscis::mesh::grid::Grid;
-use proboscis::model::system::{Electric, Material, Potential, Solid, System, VACUUM_PERMITTIVITY};
+use proboscis::model::system::{ElectricConstants, Material, Potential, Solid, System, VACUUM_PERMITTIVITY};
 use proboscis::model::{Model, ModelError};
 use std::ops::ControlFlow;
 
 fn silicone() -> Material {
-    let electric = Electric {
+    let electric = ElectricConstants {
         c1: -2.0 * VACUUM_PERMITTIVITY,
         c2: VACUUM_PERMITTIVITY,
         permittivity: VACUUM_PERMITTIVITY,
@@ -184,7 +184,7 @@ fn the_stack_pulls_in() {
 }
 
 /// Steps under a voltage, from a motion that makes the stack shorter by `speed` in mm/ms.
-fn steps(h: f64, count: usize, voltage: f64, speed: f64) -> (Model, History, Option<StepError>) {
+fn steps(h: f64, count: usize, voltage: f64, speed: f64) -> (Model, DiscreteTrajectory, Option<StepError>) {
     let model = Model::new(stack(), None, h, &[]).unwrap();
     let z = model.coordinates_at(&[]);
     let of_nodes = &model.action.motion.of_nodes;

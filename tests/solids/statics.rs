@@ -13,7 +13,7 @@ fn solve(system: System, voltage: f64) -> (Model, Vec<[f64; 3]>, Vec<f64>) {
     let mut instant = model.action.motion.instant();
     instant.z.copy_from_slice(&found.z);
     model.action.motion.place(&mut instant);
-    let block = &model.continua[0];
+    let block = &model.solids[0];
     let places = block.places(&instant.x);
     let moved = places.iter().zip(&block.solid.mesh.nodes);
     let moved = moved.map(|(x, at)| (x - at).into()).collect();

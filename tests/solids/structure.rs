@@ -4,8 +4,8 @@ use crate::common::cases::{GRAVITY, blocks, control, open_end};
 use crate::common::random::Random;
 use crate::common::solid::{DRIVEN, block, electrode, held, system};
 use nalgebra::Vector3;
-use proboscis::control::{Boundary, Transcription, guess};
-use proboscis::functional::{Kind, Level};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::functional::{Kind, Order};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::system::{Electrode, Fidelity, Material, Potential, Solid, System};
 use proboscis::model::{Coordinates, Model};
@@ -68,7 +68,7 @@ struct Counts {
 fn counts(system: &System, intervals: usize) -> Counts {
     let mut control = control(system, intervals);
     control.goal = open_end();
-    let (model, boundary) = Boundary::resolve(system, &control, 10.0).unwrap();
+    let (model, boundary) = BoundaryConditions::resolve(system, &control, 10.0).unwrap();
     let initial = guess(&model, &boundary, &control, 10.0, None);
     let program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
     Counts {
@@ -292,11 +292,11 @@ fn numbers(model: &Model, n: usize) -> Vec<(usize, usize, f64)> {
         .collect();
     let interval = Interval::given(&scalars, 2.0);
     let (action, layout) = (&model.action, model.action.layout());
-    let mut scratch = action.scratch(Level::Hessian);
+    let mut scratch = action.scratch(Order::Hessian);
     let mut values = vec![0.0; layout.values(1)];
-    action.evaluate_interval(Level::Hessian, [&mut a, &mut b], &interval, &mut scratch);
+    action.evaluate_interval(Order::Hessian, [&mut a, &mut b], &interval, &mut scratch);
     action.pull_back_interval(
-        Level::Hessian,
+        Order::Hessian,
         [&a, &b],
         &interval,
         0,

@@ -5,7 +5,7 @@
 use crate::common::cases::{branched, control, rest_to_rest};
 use crate::common::trunk;
 use proboscis::control::problem::{Control, Objective};
-use proboscis::control::{Boundary, Transcription, guess};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::ipopt::{self, OptionValue, Options, Start};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
@@ -62,7 +62,7 @@ impl Nlp for Program<'_> {
 }
 
 fn check(system: &System, control: &Control, factor: f64) {
-    let (model, boundary) = Boundary::resolve(system, control, 10.0).unwrap();
+    let (model, boundary) = BoundaryConditions::resolve(system, control, 10.0).unwrap();
     let initial = guess(&model, &boundary, control, 10.0, None);
     let of = Transcription::new(&model, &boundary, control, &initial).unwrap();
     let start = of.start(&initial);

@@ -3,10 +3,10 @@
 use crate::common::cases::rest_to_rest;
 use crate::common::{at_reference, trunk};
 use proboscis::control::problem::Control;
-use proboscis::control::{Boundary, Initial, Transcription, guess};
-use proboscis::dynamics::{History, Start, StepError, simulate};
-use proboscis::functional::{Couplings, Effect, Frame, Kind, Level, Output};
-use proboscis::ipopt::{self, Iteration, Options, Point, Solution, Status};
+use proboscis::control::{BoundaryConditions, InitialGuess, Transcription, guess};
+use proboscis::dynamics::{DiscreteTrajectory, Start, StepError, simulate};
+use proboscis::functional::{Couplings, Term, Sample, Kind, Order, Output};
+use proboscis::ipopt::{self, Iteration, Options, StartingPoint, SolverResult, Status};
 use proboscis::math::Vector;
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::{Bounds, Entries, Nlp};
@@ -141,13 +141,13 @@ impl<N: Nlp> Nlp for Faulty<'_, N> {
 }
 
 /// The pair steered from rest to rest in 20 intervals of 10 ms.
-fn pair() -> (Control, Model, Boundary) {
+fn pair() -> (Control, Model, BoundaryConditions) {
     let control = rest_to_rest(1, 20, 200.0);
-    let (model, boundary) = Boundary::resolve(&trunk(1), &control, 10.0).unwrap();
+    let (model, boundary) = BoundaryConditions::resolve(&trunk(1), &control, 10.0).unwrap();
     (control, model, boundary)
 }
 
-fn solve(program: &mut Transcription<'_>, start: &Point, faults: &Faults) -> Solution {
+fn solve(program: &mut Transcription<'_>, start: &StartingPoint, faults: &Faults) -> SolverResult {
     let mut faulty = Faulty { program, faults };
     let options = Options {
         tolerance: 1e-10,
@@ -171,7 +171,7 @@ fn silence_injected_panics() {
     }));
 }
 
-fn is_finite(solution: &Solution) -> bool {
+fn is_finite(solution: &SolverResult) -> bool {
     let costates = &solution.costates;
     let lists = [
         &solution.x,
@@ -185,7 +185,7 @@ fn is_finite(solution: &Solution) -> bool {
 }
 
 /// All that the bits of a solve show in.
-fn bits(solution: &Solution) -> Vec<u64> {
+fn bits(solution: &SolverResult) -> Vec<u64> {
     let values = solution.x.iter().chain(&solution.costates.constraints);
     values.map(|value| value.to_bits()).collect()
 }
@@ -194,7 +194,7 @@ fn bits(solution: &Solution) -> Vec<u64> {
 fn every_call_of_a_solve_may_fail() {
     silence_injected_panics();
     let (control, model, boundary) = pair();
-    let initial: Initial = guess(&model, &boundary, &control, 10.0, None);
+    let initial: InitialGuess = guess(&model, &boundary, &control, 10.0, None);
     let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
     let start = program.start(&initial);
     let counted = Faults::default();
@@ -248,14 +248,14 @@ fn every_call_of_a_solve_may_fail() {
 /// An effect whose derivatives do not exist in some of its evaluations.
 #[derive(Debug)]
 struct Failing {
-    effect: Box<dyn Effect>,
+    effect: Box<dyn Term>,
     calls: Arc<AtomicUsize>,
     /// First call that fails, and the first one after it that does not.
     from: usize,
     until: usize,
 }
 
-impl Effect for Failing {
+impl Term for Failing {
     fn name(&self) -> &str {
         self.effect.name()
     }
@@ -272,7 +272,7 @@ impl Effect for Failing {
         self.effect.kind()
     }
 
-    fn energy(&self, frame: &Frame<'_>) -> f64 {
+    fn energy(&self, frame: &Sample<'_>) -> f64 {
         self.effect.energy(frame)
     }
 
@@ -280,7 +280,7 @@ impl Effect for Failing {
         self.effect.momentum(x, v, out);
     }
 
-    fn evaluate(&self, level: Level, frame: &Frame<'_>, slots: &[u32], out: &mut Output) {
+    fn evaluate(&self, level: Order, frame: &Sample<'_>, slots: &[u32], out: &mut Output) {
         self.effect.evaluate(level, frame, slots, out);
         let call = 1 + self.calls.fetch_add(1, Ordering::SeqCst);
         if (self.from..self.until).contains(&call) {
@@ -298,7 +298,7 @@ fn swing(
     coordinates: Coordinates,
     from: usize,
     until: usize,
-) -> (History, Option<StepError>, usize) {
+) -> (DiscreteTrajectory, Option<StepError>, usize) {
     let mut model = Model::new(trunk(1), Some(coordinates), 10.0, &[]).unwrap();
     let start = Start::at_rest(&model, at_reference(&model));
     let calls = Arc::new(AtomicUsize::new(0));
@@ -318,7 +318,7 @@ fn swing(
     (history, failure, calls.load(Ordering::SeqCst))
 }
 
-fn all_finite(history: &History) -> bool {
+fn all_finite(history: &DiscreteTrajectory) -> bool {
     let mut rows = history.z.iter().chain(&history.momenta);
     rows.all(|row| row.iter().all(|value| value.is_finite()))
 }

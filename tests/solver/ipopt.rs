@@ -8,12 +8,12 @@ use crate::common::programs::{
     HS071_OPTIMUM, HS071_START, bounds, hs071, one_variable, rosenbrock,
 };
 use proboscis::ipopt::{
-    Costates, IpoptError, Iteration, OptionValue, Options, Point, Solution, Start, Status, solve,
+    Multipliers, IpoptError, Iteration, OptionValue, Options, StartingPoint, SolverResult, Start, Status, solve,
 };
 use proboscis::nlp::{Bounds, Nlp};
 
-pub(crate) fn from(x: &[f64]) -> Point {
-    Point {
+pub(crate) fn from(x: &[f64]) -> StartingPoint {
+    StartingPoint {
         x: x.to_vec(),
         costates: None,
     }
@@ -34,12 +34,12 @@ fn go_on(_: &Iteration, _: &[f64]) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-pub(crate) fn run(nlp: &mut dyn Nlp, x: &[f64], options: &Options) -> Solution {
+pub(crate) fn run(nlp: &mut dyn Nlp, x: &[f64], options: &Options) -> SolverResult {
     solve(nlp, &from(x), options, &mut go_on).expect("Ipopt can be called")
 }
 
 /// ∇f + ∇gᵀ y − z_L + z_U, from the program itself.
-fn stationarity(nlp: &mut dyn Nlp, x: &[f64], costates: &Costates) -> Vec<f64> {
+fn stationarity(nlp: &mut dyn Nlp, x: &[f64], costates: &Multipliers) -> Vec<f64> {
     let places = nlp.jacobian_structure();
     let mut sum = vec![0.0; x.len()];
     nlp.gradient(x, &mut sum);
@@ -314,7 +314,7 @@ fn programs_without_variables_are_errors() {
 
 #[test]
 fn warm_starts_take_fewer_iterations() {
-    let steps = |solution: &Solution| solution.iterations.len() - 1;
+    let steps = |solution: &SolverResult| solution.iterations.len() - 1;
     let cold = run(&mut hs071(), &HS071_START, &Options::default());
     let primal = Options {
         start: Start::PRIMAL,
@@ -355,9 +355,9 @@ fn a_centred_start_lies_on_the_path_of_the_barrier() {
         ("from above", upper, above, 1.0, 1e-4),
         ("from afar below", upper, above, 0.5, 3e-4),
     ] {
-        let point = Point {
+        let point = StartingPoint {
             x: vec![x],
-            costates: Some(Costates {
+            costates: Some(Multipliers {
                 constraints: vec![],
                 lower: vec![7.0],
                 upper: vec![7.0],

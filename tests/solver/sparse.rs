@@ -9,7 +9,7 @@ use std::{fs, thread};
 
 use crate::common::programs::{HS071_OPTIMUM, HS071_START, hs071};
 use nalgebra::DVector;
-use proboscis::ipopt::{self, Options, Point};
+use proboscis::ipopt::{self, Options, StartingPoint};
 use proboscis::sparse::{Backend, Direct, Symmetry};
 
 use Symmetry::{Symmetric, Unsymmetric};
@@ -301,7 +301,7 @@ fn ipopt_calls_mumps() -> usize {
         calls.fetch_add(1, Ordering::Relaxed);
         objective(x)
     });
-    let start = Point {
+    let start = StartingPoint {
         x: HS071_START.to_vec(),
         costates: None,
     };

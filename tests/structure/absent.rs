@@ -3,8 +3,8 @@
 use crate::common::cases::{GRAVITY, branched, control};
 use crate::common::random::Random;
 use crate::trace::with_program;
-use proboscis::control::Boundary;
-use proboscis::control::problem::{Control, Limit, State};
+use proboscis::control::BoundaryConditions;
+use proboscis::control::problem::{Control, PathConstraint, BoundaryState};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
 use proboscis::nlp::Nlp;
@@ -86,7 +86,7 @@ fn absent_effects_change_no_bit() {
             s.joints[3].damping = Some(5.0);
         });
         same("the field of a passive muscle", &|_, c| {
-            c.limits = vec![Limit::ElectricField {
+            c.limits = vec![PathConstraint::ElectricField {
                 muscle: 3,
                 max: 1e4,
             }];
@@ -106,8 +106,8 @@ fn absent_effects_change_no_bit() {
             // A state of rest that names a voltage of it keeps its electric term.
             let mut volts = vec![0.0; 4];
             volts[muscle] = 300.0;
-            silent.start = State::RestAtVoltages(volts);
-            let (model, _) = Boundary::resolve(&system, &silent, 10.0).unwrap();
+            silent.start = BoundaryState::RestAtVoltages(volts);
+            let (model, _) = BoundaryConditions::resolve(&system, &silent, 10.0).unwrap();
             assert_eq!(model.voltages, vec![0, 1, 2]);
         }
         if coordinates == Coordinates::Reduced {

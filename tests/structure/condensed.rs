@@ -6,14 +6,14 @@ use crate::common::solid::{DRIVEN, block, electrode, held};
 use crate::common::{at_reference, motion, placed, trunk};
 use crate::welded::cuboid;
 use nalgebra::Vector3;
-use proboscis::control::problem::{AtRest, Simulation, State, Voltages};
-use proboscis::control::{Boundary, resolve_start};
-use proboscis::dynamics::{History, Solving, Start, equilibrium, simulate};
-use proboscis::functional::{Effect, Kind};
+use proboscis::control::problem::{AtRest, Simulation, BoundaryState, Voltages};
+use proboscis::control::{BoundaryConditions, resolve_start};
+use proboscis::dynamics::{DiscreteTrajectory, Solving, Start, equilibrium, simulate};
+use proboscis::functional::{Term, Kind};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::plan::TERMS;
 use proboscis::model::system::{Potential, System};
-use proboscis::model::{Coordinates, Model, Question};
+use proboscis::model::{Coordinates, Model, Analysis};
 use proboscis::run::Plan;
 use proboscis::sparse::Symmetry;
 use std::collections::BTreeSet;
@@ -35,7 +35,7 @@ pub(crate) fn under(voltages: Vec<f64>, coordinates: Coordinates) -> Simulation 
 }
 
 /// The model of a simulation and its motion.
-pub(crate) fn moved(system: &System, task: &Simulation) -> (Model, History) {
+pub(crate) fn moved(system: &System, task: &Simulation) -> (Model, DiscreteTrajectory) {
     let question = task.question(system, task.step);
     let model = Model::answering(system.clone(), question).unwrap();
     let start = resolve_start(&model, &task.start, "start").unwrap();
@@ -60,7 +60,7 @@ pub(crate) fn names(model: &Model) -> BTreeSet<String> {
     let sums = [&model.action.intervals, &model.action.instants];
     let effects = sums.into_iter().flat_map(|sum| &sum.effects);
     effects
-        .map(|e| Effect::name(e.as_ref()).to_owned())
+        .map(|e| Term::name(e.as_ref()).to_owned())
         .collect()
 }
 
@@ -136,9 +136,9 @@ fn at_rest_there_is_neither_inertia_nor_friction() {
                 coordinates: Some(coordinates),
                 path: None,
             };
-            let of_motion = Question {
+            let of_motion = Analysis {
                 coordinates: Some(coordinates),
-                ..Question::of_motion(1.0)
+                ..Analysis::of_motion(1.0)
             };
             let still = Model::answering(system.clone(), task.question(&system)).unwrap();
             let moving = Model::answering(system.clone(), of_motion).unwrap();
@@ -225,7 +225,7 @@ fn what_nothing_moves_is_not_solved_for() {
             change(&mut system, &mut task);
             let question = task.question(&system, task.step);
             let model = Model::answering(system, question).unwrap();
-            model.condensed.system.joints.len()
+            model.presolved.system.joints.len()
         };
         assert_eq!(count(&|_, _| {}), 2);
         assert_eq!(count(&|s, _| s.gravity = Some(GRAVITY)), 5);
@@ -238,7 +238,7 @@ fn what_nothing_moves_is_not_solved_for() {
         assert_eq!(count(&|_, t| t.start = joints(&[(4, 0.1)])), 5);
         assert_eq!(count(&|_, t| t.start = joints(&[(4, 0.0)])), 2);
         let rates = |_: &mut System, t: &mut Simulation| {
-            t.start = State::JointAngles {
+            t.start = BoundaryState::JointAngles {
                 angles: Default::default(),
                 rates: [(4, 1e-3)].into(),
                 velocities: Default::default(),
@@ -251,8 +251,8 @@ fn what_nothing_moves_is_not_solved_for() {
     task.given = (4..10).map(|s| (s, 0.0)).collect();
     task.goal = joints(&[(0, 0.05)]);
     let joints_of = |task: &proboscis::control::problem::Control| {
-        let (model, _) = Boundary::resolve(&both, task, 10.0).unwrap();
-        model.condensed.system.joints.len()
+        let (model, _) = BoundaryConditions::resolve(&both, task, 10.0).unwrap();
+        model.presolved.system.joints.len()
     };
     assert_eq!(joints_of(&task), 2);
     task.goal = joints(&[(3, 0.0)]);
@@ -302,7 +302,7 @@ fn each_effect_is_in_the_plan_once_with_its_reason() {
         for coordinates in BOTH {
             let mut control = case.control.clone();
             control.coordinates = Some(coordinates);
-            let (model, _) = Boundary::resolve(&case.system, &control, 10.0).unwrap();
+            let (model, _) = BoundaryConditions::resolve(&case.system, &control, 10.0).unwrap();
             let plan = Plan::of(&model, Some(&control), 0.0);
             for effect in &plan.effects {
                 assert!(TERMS.contains(&effect.name.as_str()), "{}", effect.name);
@@ -334,7 +334,7 @@ fn entries_of_the_program_are_those_of_its_effects() {
     let system = trunk(1);
     let mut task = control(&system, 4);
     let plan = |task: &proboscis::control::problem::Control| {
-        let (model, _) = Boundary::resolve(&system, task, 10.0).unwrap();
+        let (model, _) = BoundaryConditions::resolve(&system, task, 10.0).unwrap();
         let plan = Plan::of(&model, Some(task), 0.0);
         let named = |name: &str| {
             let effect = plan.effects.iter().find(|e| e.name == name).unwrap();

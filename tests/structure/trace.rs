@@ -4,8 +4,8 @@
 use crate::common::cases::{GRAVITY, branched, control, rest_to_rest};
 use crate::common::random::Random;
 use crate::common::trunk;
-use proboscis::control::problem::{Control, Duration, Limit, Objective, State};
-use proboscis::control::{Boundary, Transcription, guess};
+use proboscis::control::problem::{Control, Duration, PathConstraint, Objective, BoundaryState};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::model::Coordinates;
 use proboscis::model::system::{JointKind, System};
 use proboscis::nlp::Nlp;
@@ -26,7 +26,7 @@ pub(crate) fn with_program<T>(
 ) -> T {
     let (Duration::Given(t) | Duration::Free { guess: t, .. }) = control.duration;
     let h = t / control.intervals as f64;
-    let (model, boundary) = Boundary::resolve(system, control, h).unwrap();
+    let (model, boundary) = BoundaryConditions::resolve(system, control, h).unwrap();
     let initial = guess(&model, &boundary, control, h, None);
     let mut program = Transcription::new(&model, &boundary, control, &initial).unwrap();
     let x = program.start(&initial).x;
@@ -198,7 +198,7 @@ fn effects_cost_what_they_add() {
         jacobian: plain.jacobian + 3 * inner,
         ..plain
     };
-    let limit = Limit::Stretch {
+    let limit = PathConstraint::Stretch {
         muscle: 4,
         min: 0.5,
         max: 1.5,
@@ -210,13 +210,13 @@ fn effects_cost_what_they_add() {
         jacobian: plain.jacobian + 2 * inner * 2 + 2 * inner * 2 + 3 * intervals,
         ..plain
     };
-    let limit = Limit::ElectricField {
+    let limit = PathConstraint::ElectricField {
         muscle: 2,
         max: 1e5,
     };
     assert_eq!(change(&|_, c| c.limits = vec![limit.clone()]), field);
     // Joint limits are bounds of variables.
-    let limit = Limit::JointAngle {
+    let limit = PathConstraint::JointAngle {
         joint: 1,
         min: -1.0,
         max: 1.0,
@@ -228,20 +228,20 @@ fn effects_cost_what_they_add() {
 fn a_limit_has_rows_where_something_is_open() {
     let (n, intervals) = (3, 6);
     let (system, mut base) = (trunk(n), rest_to_rest(n, intervals, 100.0));
-    let limited = |base: &Control, limit: Limit| {
+    let limited = |base: &Control, limit: PathConstraint| {
         let mut control = base.clone();
         control.limits = vec![limit];
         let (all, plain) = (counts(&system, &control), counts(&system, base));
         (all.rows - plain.rows, all.jacobian - plain.jacobian)
     };
     // A goal that leaves the last joint open: a muscle there is limited at the end too, one before it is not.
-    let given = |joints: &[usize]| State::JointAngles {
+    let given = |joints: &[usize]| BoundaryState::JointAngles {
         angles: joints.iter().map(|&j| (j, 0.01)).collect(),
         rates: std::collections::BTreeMap::new(),
         velocities: Default::default(),
     };
     base.goal = given(&[0, 1]);
-    let stretch = |muscle: usize| Limit::Stretch {
+    let stretch = |muscle: usize| PathConstraint::Stretch {
         muscle,
         min: 0.5,
         max: 1.5,
@@ -252,7 +252,7 @@ fn a_limit_has_rows_where_something_is_open() {
     // A voltage that is given leaves no row where start and goal give the places.
     base.goal = given(&[0, 1, 2]);
     base.given.insert(2, 300.0);
-    let field = Limit::ElectricField {
+    let field = PathConstraint::ElectricField {
         muscle: 2,
         max: 1e5,
     };

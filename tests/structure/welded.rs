@@ -5,7 +5,7 @@ use crate::common::{bare, body, joint, placed, trunk};
 use crate::condensed::{BOTH, moved, names, under};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::model::system::{Body, JointKind};
-use proboscis::model::{Coordinates, Model, Place, Question};
+use proboscis::model::{Coordinates, Model, BodyLocation, Analysis};
 
 /// A box of edges along the axes.
 pub(crate) fn cuboid(name: &str, mass: f64, size: [f64; 3], centre: Vector3<f64>) -> Body {
@@ -79,16 +79,16 @@ fn two_welded_halves_move_like_the_whole() {
 #[test]
 fn welded_and_fixed_bodies_have_no_unknown() {
     // The cap of the branched tree sits on its slider: three bodies, two revolute joints and a slider of 5 constraints each.
-    let redundant = Question {
+    let redundant = Analysis {
         coordinates: Some(Coordinates::Redundant),
-        ..Question::of_motion(1.0)
+        ..Analysis::of_motion(1.0)
     };
     let model = Model::answering(branched(), redundant.clone()).unwrap();
     assert_eq!(model.coordinate_count(), 3 * 12);
     assert_eq!(model.multiplier_names.len(), 3 * 6 + 3 * 5);
     assert!(matches!(
-        model.condensed.places[3],
-        Place::Welded { to: 1, .. }
+        model.presolved.bodies[3],
+        BodyLocation::Welded { to: 1, .. }
     ));
     let there = names(&model);
     assert!(there.contains("joint points") && there.contains("rigid bodies"));
@@ -121,7 +121,7 @@ fn welded_and_fixed_bodies_have_no_unknown() {
                 (moved(&fixed, &task), moved(&expected, &task));
             assert_eq!(model.coordinate_count(), other.coordinate_count());
             assert_eq!(model.multiplier_names.len(), other.multiplier_names.len());
-            assert_eq!(model.condensed.places[0], Place::Ground);
+            assert_eq!(model.presolved.bodies[0], BodyLocation::Ground);
             if !flipped {
                 assert_eq!(found.z, by_hand.z);
             } else {

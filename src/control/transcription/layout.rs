@@ -2,17 +2,17 @@
 
 use std::ops::Range;
 
-use crate::control::conditions::Boundary;
-use crate::control::limits::Place;
+use crate::control::conditions::BoundaryConditions;
+use crate::control::limits::When;
 use crate::control::problem::{Control, Duration};
 use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};
-use crate::control::unknowns::{Counts, Row, Unknowns};
+use crate::control::unknowns::{Counts, Row, Numbering};
 use crate::model::Model;
 
 /// Which variables and rows the program of a control problem has on a number of intervals.
 #[derive(Clone, Debug)]
 pub(in crate::control) struct Layout {
-    pub(in crate::control) unknowns: Unknowns,
+    pub(in crate::control) unknowns: Numbering,
     pub(super) limits: Vec<LimitRow>,
     /// Limit, and instant or interval, of each row behind the equations.
     pub(super) limit_rows: Vec<(usize, usize)>,
@@ -22,7 +22,7 @@ impl Layout {
     /// The layout on `intervals` intervals, whatever number the problem names.
     pub(in crate::control) fn new(
         model: &Model,
-        boundary: &Boundary,
+        boundary: &BoundaryConditions,
         control: &Control,
         intervals: usize,
     ) -> Self {
@@ -51,7 +51,7 @@ impl Layout {
             let source = model.voltages.get(s);
             source.is_some_and(|source| control.given.contains_key(source))
         };
-        let mut unknowns = Unknowns::new(counts, free, given, balanced, prescribed);
+        let mut unknowns = Numbering::new(counts, free, given, balanced, prescribed);
         let limits = limit_rows(model, &boundary.limits.list, intervals, &unknowns);
         let mut limit_rows = Vec::new();
         for (index, limit) in limits.iter().enumerate() {
@@ -71,7 +71,7 @@ impl Layout {
     pub(in crate::control) fn limit(&self, index: usize) -> LimitSite {
         let limit = &self.limits[index];
         LimitSite {
-            is_goal: limit.bounded.place == Place::Goal,
+            is_goal: limit.bounded.when == When::Goal,
             is_of_intervals: limit.site == Site::Intervals,
             at: limit.at.clone(),
             first: self.unknowns.rows.len() - self.limit_rows.len() + limit.first,

@@ -1,7 +1,7 @@
 //! Limits and goals as rows behind the equations of motion.
 
-use crate::control::limits::{Bounded, Place};
-use crate::control::unknowns::Unknowns;
+use crate::control::limits::{BoundedQuantity, When};
+use crate::control::unknowns::Numbering;
 use crate::functional::Measure;
 use crate::model::{Model, Quantity};
 use std::ops::Range;
@@ -19,7 +19,7 @@ pub(in crate::control) enum Site {
 /// A limit or goal on its way to rows.
 #[derive(Clone, Debug)]
 pub(super) struct LimitRow {
-    pub(super) bounded: Bounded,
+    pub(super) bounded: BoundedQuantity,
     /// Index among the measures of its site.
     pub(super) measure: usize,
     pub(super) site: Site,
@@ -38,13 +38,13 @@ pub(super) struct LimitRow {
 /// or goal give all that it reads: there it is looked at before.
 pub(super) fn limit_rows(
     model: &Model,
-    list: &[Bounded],
+    list: &[BoundedQuantity],
     intervals: usize,
-    unknowns: &Unknowns,
+    unknowns: &Numbering,
 ) -> Vec<LimitRow> {
     let motion = &model.action.motion;
     let mut first = 0;
-    let row = |(bounded, measure): (&Bounded, &Option<usize>)| {
+    let row = |(bounded, measure): (&BoundedQuantity, &Option<usize>)| {
         let measure = (*measure)?;
         let site = Site::of(&bounded.quantity);
         let reads = site.measure(model, measure);
@@ -62,10 +62,10 @@ pub(super) fn limit_rows(
         if site == Site::Intervals {
             entries.extend(reads.scalars().into_iter().map(|s| (SCALAR, s)));
         }
-        let at = match (bounded.place, site) {
-            (Place::Goal, Site::Instants) => intervals..intervals + 1,
-            (Place::Goal, Site::Intervals) => intervals - 1..intervals,
-            (Place::Everywhere, _) => {
+        let at = match (bounded.when, site) {
+            (When::Goal, Site::Instants) => intervals..intervals + 1,
+            (When::Goal, Site::Intervals) => intervals - 1..intervals,
+            (When::Everywhere, _) => {
                 let mut all = 0..intervals + 2 - site.sides();
                 let is_open = |k: usize| {
                     entries.iter().any(|&(side, i)| match side {

@@ -19,21 +19,21 @@ mod structure;
 mod sweep;
 
 use crate::control::BoundaryError;
-use crate::control::conditions::Boundary;
-use crate::control::guess::Initial;
-use crate::control::limits::{Bounded, Place};
+use crate::control::conditions::BoundaryConditions;
+use crate::control::guess::InitialGuess;
+use crate::control::limits::{BoundedQuantity, When};
 use crate::control::objective::{Cost, objective_scale};
 use crate::control::problem::{Control, Duration};
-use crate::control::unknowns::{Row, Unknowns, Variable};
+use crate::control::unknowns::{Row, Numbering, Variable};
 use crate::functional::{Horizon, Part};
 use crate::model::Model;
 use crate::nlp::{Bounds, Entries, Nlp};
-use crate::reduction::Instant;
+use crate::reduction::Configuration;
 pub(super) use layout::Layout;
 use limit_rows::LimitRow;
 pub(super) use limit_rows::Site;
 use placed::Placed;
-use stretch::Bench;
+use stretch::Workspace;
 
 /// V in a kV, the unit of voltages in objectives.
 const KILOVOLT: f64 = 1000.0;
@@ -45,7 +45,7 @@ const TWO_STRETCHES: usize = 32;
 
 /// An entry of a matrix of the program: where its value is found, and its scale.
 #[derive(Clone, Copy, Debug)]
-struct Kept {
+struct Gather {
     place: usize,
     scale: f64,
 }
@@ -55,7 +55,7 @@ pub struct Transcription<'m> {
     model: &'m Model,
     intervals: usize,
     horizon: Horizon,
-    unknowns: Unknowns,
+    unknowns: Numbering,
     limits: Vec<LimitRow>,
     /// First row, instant or interval, of each stretch of limit rows.
     limit_rows: Vec<(usize, usize)>,
@@ -67,7 +67,7 @@ pub struct Transcription<'m> {
     bounds: Bounds,
     // The point.
     point: Vec<f64>,
-    instants: Vec<Instant>,
+    instants: Vec<Configuration>,
     placed: Placed,
     scalars: Vec<f64>,
     /// Costates of Gauss's laws, scalar by scalar.
@@ -78,17 +78,17 @@ pub struct Transcription<'m> {
     variable_scales: Vec<f64>,
     row_scales: Vec<f64>,
     // Values and what is kept of them.
-    benches: [Bench; 2],
+    benches: [Workspace; 2],
     /// Where a long horizon is cut in two, and a copy of that instant.
     middle: Option<usize>,
-    ghost: Instant,
+    halo: Configuration,
     measured: Part,
     /// Step by step the rows of an instant and those of the potentials, then costates of the limits.
     rows: Vec<f64>,
     values: Vec<f64>,
-    jacobian: Vec<Kept>,
+    jacobian: Vec<Gather>,
     jacobian_entries: Entries,
-    hessian: Vec<Kept>,
+    hessian: Vec<Gather>,
     hessian_entries: Entries,
     /// Slot of the second derivative of each voltage with itself.
     voltage_slots: Vec<usize>,
@@ -101,9 +101,9 @@ impl<'m> Transcription<'m> {
     /// There are more equations than unknowns.
     pub fn new(
         model: &'m Model,
-        boundary: &Boundary,
+        boundary: &BoundaryConditions,
         control: &Control,
-        initial: &Initial,
+        initial: &InitialGuess,
     ) -> Result<Self, BoundaryError> {
         let program = Self::of_any(model, boundary, control, initial);
         program.count(&boundary.limits.list)?;
@@ -113,9 +113,9 @@ impl<'m> Transcription<'m> {
     /// Transcribes like [`new`](Self::new), also where there are more equations than unknowns: derivatives exist all the same.
     pub fn of_any(
         model: &'m Model,
-        boundary: &Boundary,
+        boundary: &BoundaryConditions,
         control: &Control,
-        initial: &Initial,
+        initial: &InitialGuess,
     ) -> Self {
         let motion = &model.action.motion;
         let (n, unknown_count) = (motion.coordinates, motion.unknowns());
@@ -198,10 +198,10 @@ impl<'m> Transcription<'m> {
             h: initial.h,
             variable_scales,
             row_scales: vec![1.0; unknowns.rows.len()],
-            benches: [Bench::new(&model.action), Bench::new(&model.action)],
+            benches: [Workspace::new(&model.action), Workspace::new(&model.action)],
             middle: (horizon == Horizon::Given && intervals >= TWO_STRETCHES)
                 .then_some(intervals / 2),
-            ghost: motion.instant(),
+            halo: motion.instant(),
             measured: Part::new(motion.vectors.len(), scalar_count, None),
             rows: vec![0.0; (intervals + 1) * (unknown_count + model.potentials) + limit_count],
             values: vec![0.0; layout.values(intervals) + extra],
@@ -227,8 +227,8 @@ impl<'m> Transcription<'m> {
         out
     }
 
-    fn count(&self, limits: &[Bounded]) -> Result<(), BoundaryError> {
-        let goals = limits.iter().filter(|l| l.place == Place::Goal).count();
+    fn count(&self, limits: &[BoundedQuantity]) -> Result<(), BoundaryError> {
+        let goals = limits.iter().filter(|l| l.when == When::Goal).count();
         let given = self.instants.len().saturating_sub(1);
         let equations = self
             .unknowns
@@ -257,12 +257,12 @@ impl<'m> Transcription<'m> {
     }
 
     /// Variables and equations.
-    pub fn unknowns(&self) -> &Unknowns {
+    pub fn unknowns(&self) -> &Numbering {
         &self.unknowns
     }
 
     /// The limit or goal of a row.
-    pub fn limit(&self, index: usize) -> &Bounded {
+    pub fn limit(&self, index: usize) -> &BoundedQuantity {
         &self.limits[index].bounded
     }
 

@@ -1,12 +1,12 @@
 //! Between motions and points of the program.
 
-use crate::control::guess::Initial;
+use crate::control::guess::InitialGuess;
 use crate::control::solution::Costates;
 use crate::control::transcription::{KILOVOLT, Placed, Transcription};
 use crate::control::unknowns::Variable;
-use crate::dynamics::History;
+use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt;
-use crate::reduction::Instant;
+use crate::reduction::Configuration;
 
 /// Tells the motion of a point: what is given with what the variables are.
 #[derive(Clone, Debug)]
@@ -20,7 +20,7 @@ pub struct Decoder {
 
 impl Decoder {
     /// The motion of a point of the program.
-    pub fn decode(&self, x: &[f64]) -> History {
+    pub fn decode(&self, x: &[f64]) -> DiscreteTrajectory {
         let (mut z, mut scalars, mut h) = (self.z.clone(), self.scalars.clone(), self.h);
         for ((variable, scale), x) in self.variables.iter().zip(&self.scales).zip(x) {
             let value = scale * x;
@@ -30,20 +30,20 @@ impl Decoder {
                 Variable::Horizon => h = value,
             }
         }
-        History {
+        DiscreteTrajectory {
             times: (0..z.len()).map(|k| k as f64 * h).collect(),
             z,
             scalars,
-            ..History::default()
+            ..DiscreteTrajectory::default()
         }
     }
 }
 
 impl Transcription<'_> {
     /// The variables of a motion with interval length h (ms).
-    pub fn encode(&self, history: &History, h: f64) -> Vec<f64> {
+    pub fn encode(&self, history: &DiscreteTrajectory, h: f64) -> Vec<f64> {
         let motion = &self.model.action.motion;
-        let here = |(z, instant): (&Vec<f64>, &Instant)| {
+        let here = |(z, instant): (&Vec<f64>, &Configuration)| {
             let mut z = z.clone();
             motion.take_charts(&instant.z, &mut z);
             z
@@ -63,7 +63,7 @@ impl Transcription<'_> {
     }
 
     /// The motion of a point of the program.
-    pub fn decode(&self, x: &[f64]) -> History {
+    pub fn decode(&self, x: &[f64]) -> DiscreteTrajectory {
         self.decoder().decode(x)
     }
 
@@ -86,7 +86,7 @@ impl Transcription<'_> {
     }
 
     /// A start of the solver from a guess.
-    pub fn start(&self, initial: &Initial) -> ipopt::Point {
+    pub fn start(&self, initial: &InitialGuess) -> ipopt::StartingPoint {
         let x = self.encode(&initial.history, initial.h);
         let fits = |c: &&Costates| {
             c.rows.len() == self.unknowns.rows.len()
@@ -97,16 +97,16 @@ impl Transcription<'_> {
             .costates
             .as_ref()
             .filter(fits)
-            .map(|c| ipopt::Costates {
+            .map(|c| ipopt::Multipliers {
                 constraints: divide(&c.rows, &self.row_scales),
                 lower: times(&c.lower, &self.variable_scales),
                 upper: times(&c.upper, &self.variable_scales),
             });
-        ipopt::Point { x, costates }
+        ipopt::StartingPoint { x, costates }
     }
 
     /// Unscaled costates of a solution.
-    pub fn costates(&self, costates: &ipopt::Costates) -> Costates {
+    pub fn costates(&self, costates: &ipopt::Multipliers) -> Costates {
         Costates {
             rows: times(&costates.constraints, &self.row_scales),
             lower: divide(&costates.lower, &self.variable_scales),

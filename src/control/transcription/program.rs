@@ -1,9 +1,9 @@
 //! What the solver asks.
 
-use crate::control::limits::{Bounded, Place};
+use crate::control::limits::{BoundedQuantity, When};
 use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
 use crate::control::unknowns::{Row, Variable};
-use crate::functional::Level;
+use crate::functional::Order;
 use crate::nlp::{Bounds, Entries, Nlp};
 
 impl Nlp for Transcription<'_> {
@@ -66,7 +66,7 @@ impl Nlp for Transcription<'_> {
 
     fn constraint(&mut self, x: &[f64], g: &mut [f64]) {
         self.load(x);
-        self.sweep(Level::Gradient);
+        self.sweep(Order::Gradient);
         let stride = self.stride();
         let (count, driven) = (
             self.model.action.motion.unknowns(),
@@ -94,7 +94,7 @@ impl Nlp for Transcription<'_> {
 
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) {
         self.load(x);
-        self.sweep(Level::Hessian);
+        self.sweep(Order::Hessian);
         self.limit_gradients();
         for (value, kept) in values.iter_mut().zip(&self.jacobian) {
             *value = kept.scale * self.values[kept.place];
@@ -119,7 +119,7 @@ impl Nlp for Transcription<'_> {
                 Row::Limit { .. } => self.rows[total + r - first] = y,
             }
         }
-        self.sweep(Level::Third);
+        self.sweep(Order::Third);
         self.objective_curvature(sigma);
         let tau = self.h * MILLISECOND;
         let (own, coupling) = values.split_at_mut(self.hessian.len());
@@ -164,15 +164,15 @@ impl Nlp for Transcription<'_> {
                 self.model.potential_names[s - self.model.voltages.len()]
             ),
             Row::Limit { limit, k } => {
-                let Bounded {
+                let BoundedQuantity {
                     name,
                     quantity,
-                    place,
+                    when: place,
                     ..
                 } = self.limit(limit);
                 match place {
-                    Place::Goal => name.clone(),
-                    Place::Everywhere => format!("{name} {} {k}", quantity.when()),
+                    When::Goal => name.clone(),
+                    When::Everywhere => format!("{name} {} {k}", quantity.when()),
                 }
             }
         }

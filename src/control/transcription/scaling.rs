@@ -1,15 +1,15 @@
 //! Scales of rows and variables, and bounds.
 
-use crate::control::problem::{Control, Duration, Limit};
+use crate::control::problem::{Control, Duration, PathConstraint};
 use crate::control::transcription::Transcription;
 use crate::control::unknowns::{Row, Variable};
-use crate::dynamics::History;
+use crate::dynamics::DiscreteTrajectory;
 use crate::model::Coordinates;
 use crate::nlp::{Bounds, Nlp};
 
 impl Transcription<'_> {
     /// Scales rows and multipliers by the largest entries of the Jacobian at the guess, kind by kind.
-    pub(super) fn set_scales(&mut self, history: &History, h: f64) {
+    pub(super) fn set_scales(&mut self, history: &DiscreteTrajectory, h: f64) {
         let n = self.model.coordinate_count();
         let count = self.model.action.motion.unknowns();
         let x = self.encode(history, h);
@@ -103,7 +103,7 @@ impl Transcription<'_> {
         let mut upper = vec![f64::INFINITY; n];
         if self.model.coordinates == Coordinates::Reduced {
             for limit in &control.limits {
-                if let Limit::JointAngle { joint, min, max } = *limit
+                if let PathConstraint::JointAngle { joint, min, max } = *limit
                     && let Some(c) = self.model.gauges[joint].coordinate
                 {
                     (lower[c], upper[c]) = (lower[c].max(min), upper[c].min(max));

@@ -6,10 +6,10 @@
 
 use crate::control::transcription::limit_rows::{LimitRow, Site, fill_weights};
 use crate::control::transcription::placed::Placed;
-use crate::functional::{Horizon, Level, Sides};
-use crate::ipopt::interrupt::Limit;
+use crate::functional::{Horizon, Order, BlockMask};
+use crate::ipopt::interrupt::TimeLimit;
 use crate::math::Vector;
-use crate::reduction::{Instant, Interval, Reduced, Scratch};
+use crate::reduction::{Configuration, Interval, Reduced, Scratch};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::cell::OnceCell;
 use std::thread::available_parallelism;
@@ -30,14 +30,14 @@ pub(super) struct Shared<'a> {
     pub(super) h: f64,
     pub(super) horizon: Horizon,
     pub(super) placed: Placed,
-    pub(super) level: Level,
+    pub(super) level: Order,
     /// Until when intervals are evaluated.
-    pub(super) limit: Option<Limit>,
+    pub(super) limit: Option<TimeLimit>,
 }
 
 /// Storage of one thread.
 #[derive(Clone, Debug)]
-pub(super) struct Bench {
+pub(super) struct Workspace {
     pub(super) scratch: Scratch,
     /// Weights of the measures of instants and intervals.
     weights: [Vec<f64>; 2],
@@ -45,13 +45,13 @@ pub(super) struct Bench {
 
 /// The intervals from `first` on, one for each of the instants.
 #[derive(Debug)]
-pub(super) struct Stretch<'a> {
+pub(super) struct Segment<'a> {
     pub(super) shared: Shared<'a>,
     pub(super) first: usize,
-    pub(super) instants: &'a mut [Instant],
+    pub(super) instants: &'a mut [Configuration],
     /// The instant after the last interval.
-    pub(super) end: &'a mut Instant,
-    pub(super) bench: &'a mut Bench,
+    pub(super) end: &'a mut Configuration,
+    pub(super) bench: &'a mut Workspace,
     /// Values of the steps from `first` on.
     pub(super) values: &'a mut [f64],
     /// Rows of the steps from `first` on.
@@ -59,18 +59,18 @@ pub(super) struct Stretch<'a> {
 }
 
 /// What a level needs of an instant.
-pub(super) fn needed(level: Level) -> Placed {
+pub(super) fn needed(level: Order) -> Placed {
     match level {
-        Level::Gradient => Placed::Vectors,
-        Level::Hessian | Level::Third => Placed::Columns,
+        Order::Gradient => Placed::Vectors,
+        Order::Hessian | Order::Third => Placed::Columns,
     }
 }
 
-impl Bench {
+impl Workspace {
     pub(super) fn new(action: &Reduced) -> Self {
         let weights = |measures: usize| vec![0.0; measures];
         Self {
-            scratch: action.scratch(Level::Third),
+            scratch: action.scratch(Order::Third),
             weights: [
                 weights(action.instants.measures.len()),
                 weights(action.intervals.measures.len()),
@@ -79,7 +79,7 @@ impl Bench {
     }
 }
 
-impl Stretch<'_> {
+impl Segment<'_> {
     /// Forces of the intervals, and second derivatives into the values; instants too, but the first where another
     /// stretch comes before. Returns ∂²/∂h² along the costates.
     pub(super) fn run(mut self) -> f64 {
@@ -88,7 +88,7 @@ impl Stretch<'_> {
         let mut square = 0.0;
         for j in 0..self.instants.len() {
             // What is not evaluated any more is not used either.
-            if self.shared.limit.and_then(Limit::reached).is_some() {
+            if self.shared.limit.and_then(TimeLimit::reached).is_some() {
                 break;
             }
             self.prepare(j + 1);
@@ -118,7 +118,7 @@ impl Stretch<'_> {
             ..
         } = self.shared;
         let segment = action.layout().same_at(j)..action.layout().same_at(j + 1);
-        if level >= Level::Hessian && segment.end <= self.values.len() {
+        if level >= Order::Hessian && segment.end <= self.values.len() {
             self.values[segment].fill(0.0);
         }
         let motion = &action.motion;
@@ -130,7 +130,7 @@ impl Stretch<'_> {
             motion.tangent(instant);
         }
         instant.forces.fill(Vector::zeros());
-        if level == Level::Third {
+        if level == Order::Third {
             instant.contracted.fill(Vector::zeros());
             motion.along(instant);
         }
@@ -150,7 +150,7 @@ impl Stretch<'_> {
         let k = self.first + j;
         let count = action.intervals.scalars;
         let of_step = k * count..(k + 1) * count;
-        let Bench {
+        let Workspace {
             scratch,
             weights: [_, weights],
         } = &mut *self.bench;
@@ -166,18 +166,18 @@ impl Stretch<'_> {
             along: &self.shared.along[of_step],
             h,
             horizon,
-            sides: Sides::ALL,
+            sides: BlockMask::ALL,
             weights,
         };
         action.evaluate_interval(level, [a, b], &interval, scratch);
-        if level == Level::Gradient {
+        if level == Order::Gradient {
             let gauss = &mut self.rows[j * stride + action.motion.unknowns()..(j + 1) * stride];
             let rows = &scratch.interval.plain.rows;
             gauss.copy_from_slice(&rows[rows.len() - gauss.len()..]);
         }
         scratch.carry(level);
         let carried = Interval {
-            sides: Sides::CARRIED,
+            sides: BlockMask::CARRIED,
             ..interval
         };
         action.pull_back_interval(level, [a, b], &carried, j, scratch, self.values);
@@ -188,21 +188,21 @@ impl Stretch<'_> {
 /// Instant k, whose forces are complete; its values and rows are those of step j.
 pub(super) fn instant_of(
     shared: Shared<'_>,
-    instant: &mut Instant,
+    instant: &mut Configuration,
     [k, j]: [usize; 2],
-    bench: &mut Bench,
+    bench: &mut Workspace,
     values: &mut [f64],
     rows: &mut [f64],
 ) {
     let Shared { action, level, .. } = shared;
-    let Bench {
+    let Workspace {
         scratch,
         weights: [weights, _],
     } = bench;
     fill_weights(weights, shared.limits, Site::Instants, k, shared.costates);
     action.evaluate_instant(level, instant, weights, scratch);
     action.pull_back_instant(level, instant, j, scratch, values);
-    if level == Level::Gradient {
+    if level == Order::Gradient {
         let count = action.motion.unknowns();
         let rows = &mut rows[j * shared.stride..j * shared.stride + count];
         rows.fill(0.0);

@@ -1,7 +1,7 @@
 //! Which entries of the periodic values the Jacobian and the Hessian keep.
 
 use crate::control::transcription::limit_rows::SCALAR;
-use crate::control::transcription::{Kept, Transcription};
+use crate::control::transcription::{Gather, Transcription};
 use crate::control::unknowns::Row;
 use crate::nlp::Entries;
 
@@ -87,7 +87,7 @@ impl Transcription<'_> {
         for (row, col, place) in list {
             self.jacobian_entries.rows.push(row as u32);
             self.jacobian_entries.cols.push(col as u32);
-            self.jacobian.push(Kept { place, scale: 1.0 });
+            self.jacobian.push(Gather { place, scale: 1.0 });
         }
     }
 
@@ -151,7 +151,7 @@ impl Transcription<'_> {
             entries.rows.push(row.max(col) as u32);
             entries.cols.push(row.min(col) as u32);
             let scale = self.variable_scales[row] * self.variable_scales[col];
-            self.hessian.push(Kept { place, scale });
+            self.hessian.push(Gather { place, scale });
         }
         if self.cost.couples_intervals() {
             for k in 1..self.intervals {

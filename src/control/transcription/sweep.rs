@@ -2,9 +2,9 @@
 
 use crate::control::transcription::limit_rows::{LimitRow, Site};
 use crate::control::transcription::placed::Placed;
-use crate::control::transcription::stretch::{Shared, Stretch, instant_of, join, needed};
+use crate::control::transcription::stretch::{Shared, Segment, instant_of, join, needed};
 use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
-use crate::functional::{Frame, Horizon, Level, Measure, Sides};
+use crate::functional::{Sample, Horizon, Order, Measure, BlockMask};
 use crate::ipopt::interrupt;
 use crate::math::Vector;
 
@@ -16,7 +16,7 @@ impl<'m> Transcription<'m> {
 
     /// Instant by instant and interval by interval, each while it is in the cache: forces, and second derivatives into
     /// the values. Contracted derivatives are taken along the costates in the instants.
-    pub(super) fn sweep(&mut self, level: Level) {
+    pub(super) fn sweep(&mut self, level: Order) {
         let (action, last) = (&self.model.action, self.intervals);
         let (layout, stride) = (action.layout(), self.stride());
         let (rows, costates) = self.rows.split_at_mut((last + 1) * stride);
@@ -37,14 +37,14 @@ impl<'m> Transcription<'m> {
         let values = &mut self.values;
         let mut square = 0.0;
         if let Some(middle) = self.middle {
-            let ghost = &mut self.ghost;
+            let ghost = &mut self.halo;
             ghost.z.copy_from_slice(&self.instants[middle].z);
             ghost.l.copy_from_slice(&self.instants[middle].l);
             let (left, right) = self.instants.split_at_mut(middle);
             let (end, right) = right.split_last_mut().expect("a stretch has an end");
             let (values_left, values_right) = values.split_at_mut(layout.same_at(middle));
             let (rows_left, rows_right) = rows.split_at_mut(middle * stride);
-            let left = Stretch {
+            let left = Segment {
                 shared,
                 first: 0,
                 instants: left,
@@ -53,7 +53,7 @@ impl<'m> Transcription<'m> {
                 values: values_left,
                 rows: rows_left,
             };
-            let right = Stretch {
+            let right = Segment {
                 shared,
                 first: middle,
                 instants: right,
@@ -67,8 +67,8 @@ impl<'m> Transcription<'m> {
             let both = |sum: &mut [Vector], list: &[Vector]| {
                 sum.iter_mut().zip(list).for_each(|(s, v)| *s += v);
             };
-            both(&mut instant.forces, &self.ghost.forces);
-            both(&mut instant.contracted, &self.ghost.contracted);
+            both(&mut instant.forces, &self.halo.forces);
+            both(&mut instant.contracted, &self.halo.contracted);
             action.pull_back_last(level, instant, middle, &mut self.benches[0].scratch, values);
             instant_of(
                 shared,
@@ -83,7 +83,7 @@ impl<'m> Transcription<'m> {
                 .instants
                 .split_last_mut()
                 .expect("a horizon has instants");
-            square = Stretch {
+            square = Segment {
                 shared,
                 first: 0,
                 instants,
@@ -110,7 +110,7 @@ impl<'m> Transcription<'m> {
             values,
             rows,
         );
-        if level == Level::Third && self.horizon == Horizon::Free {
+        if level == Order::Third && self.horizon == Horizon::Free {
             values[layout.horizon_square_at(last)] = square;
         }
         // A sweep that was stopped has placed some instants only.
@@ -121,10 +121,10 @@ impl<'m> Transcription<'m> {
     }
 
     /// The frame in which a measure is read at instant or interval k.
-    fn frame(&self, site: Site, k: usize) -> Frame<'_> {
+    fn frame(&self, site: Site, k: usize) -> Sample<'_> {
         let scalar_count = self.model.action.layout().interval_scalars;
         let next = k + site.sides() - 1;
-        Frame {
+        Sample {
             vectors: [&self.instants[k].x, &self.instants[next].x],
             along: [&self.instants[k].w, &self.instants[next].w],
             scalars: if site == Site::Intervals {
@@ -135,7 +135,7 @@ impl<'m> Transcription<'m> {
             scalars_along: &[],
             h: self.h,
             horizon: Horizon::Given,
-            sides: Sides::ALL,
+            sides: BlockMask::ALL,
             weights: &[],
         }
     }

@@ -17,10 +17,10 @@ use crate::dynamics::observe::{rates, vector_momenta};
 use crate::dynamics::simulate::Start;
 use crate::dynamics::solving::{Integrator, Solving};
 use crate::dynamics::stepper::{Equations, Steps};
-use crate::functional::{Blocks, Frame, Horizon, Kind, Level, Output, Part, Sides};
+use crate::functional::{Blocks, Sample, Horizon, Kind, Order, Output, Part, BlockMask};
 use crate::math::Vector;
 use crate::model::Model;
-use crate::reduction::{Instant, Scratch};
+use crate::reduction::{Configuration, Scratch};
 use crate::sparse::Symmetry;
 use lobatto::{Lobatto, lagrange};
 use places::Places;
@@ -31,7 +31,7 @@ const FIRST: f64 = 0.01;
 
 /// One sample of the sum over an interval.
 #[derive(Debug)]
-struct Sample {
+struct StagePoint {
     weights: Weights,
     /// x_a and x_b.
     x: [Vec<Vector>; 2],
@@ -46,8 +46,8 @@ pub struct Stages<'m> {
     model: &'m Model,
     rule: Rule,
     /// The start of the step and its points.
-    points: Vec<Instant>,
-    samples: Vec<Sample>,
+    points: Vec<Configuration>,
+    samples: Vec<StagePoint>,
     momentum: Vec<f64>,
     /// Coordinates of the last points with their times, for the first guess.
     trail: Vec<(f64, Vec<f64>)>,
@@ -106,16 +106,16 @@ impl<'m> Steps<Stages<'m>> {
         let mut points = vec![motion.instant(); degree + 1];
         points[0].z.copy_from_slice(&start.z);
         motion.place(&mut points[0]);
-        let sample = |weights: Weights| Sample {
+        let sample = |weights: Weights| StagePoint {
             x: [points[0].x.clone(), points[0].x.clone()],
-            out: action.intervals.output(Level::Hessian),
+            out: action.intervals.output(Order::Hessian),
             scalars: vec![0.0; action.intervals.scalars],
             weights,
         };
-        let samples: Vec<Sample> = rule.samples().into_iter().map(sample).collect();
+        let samples: Vec<StagePoint> = rule.samples().into_iter().map(sample).collect();
         let rows: Vec<usize> = (1..=degree).map(|point| rule.row(point)).collect();
         let (places, entries) = Places::new(model, &rows, samples.len());
-        let combined = action.intervals.output(Level::Hessian).plain;
+        let combined = action.intervals.output(Order::Hessian).plain;
         let n = motion.coordinates;
         let multipliers = vec![start.z[n..motion.unknowns()].to_vec(); degree];
         let mut effects = action.intervals.effects.iter();
@@ -124,7 +124,7 @@ impl<'m> Steps<Stages<'m>> {
             trail: vec![(0.0, start.z[..n].to_vec())],
             momentum: start.momentum.clone(),
             time: 0.0,
-            scratch: action.scratch(Level::Hessian),
+            scratch: action.scratch(Order::Hessian),
             values: vec![0.0; places.values],
             masses: masses(model, &points[0].x),
             accelerations: vec![Vector::zeros(); points[0].x.len()],
@@ -164,22 +164,22 @@ fn moving(model: &Model, start: &Start) -> (Vec<Vector>, Vec<Vector>) {
 }
 
 /// What effects read of an interval of given length.
-fn frame<'a>(vectors: [&'a [Vector]; 2], scalars: &'a [f64], h: f64) -> Frame<'a> {
-    Frame {
+fn frame<'a>(vectors: [&'a [Vector]; 2], scalars: &'a [f64], h: f64) -> Sample<'a> {
+    Sample {
         vectors,
         along: vectors,
         scalars,
         scalars_along: &[],
         h,
         horizon: Horizon::Given,
-        sides: Sides::ALL,
+        sides: BlockMask::ALL,
         weights: &[],
     }
 }
 
 impl Stages<'_> {
     /// Places the points and evaluates the samples.
-    fn sample(&mut self, level: Level, h: f64) {
+    fn sample(&mut self, level: Order, h: f64) {
         let Self {
             model,
             rule,
@@ -214,7 +214,7 @@ impl Stages<'_> {
     fn forces(&mut self, point: usize) {
         let forces = &mut self.points[point].forces;
         forces.fill(Vector::zeros());
-        for Sample { weights, out, .. } in &self.samples {
+        for StagePoint { weights, out, .. } in &self.samples {
             for (give, side) in weights.give.iter().zip(&out.plain.forces) {
                 let weight = weights.quadrature * give[point];
                 if weight != 0.0 {
@@ -280,14 +280,14 @@ impl Equations for Stages<'_> {
         }
     }
 
-    fn evaluate(&mut self, level: Level, h: f64, residual: &mut [f64]) {
+    fn evaluate(&mut self, level: Order, h: f64, residual: &mut [f64]) {
         self.sample(level, h);
         let model = self.model;
         let action = &model.action;
         let motion = &action.motion;
         let (n, m) = (motion.coordinates, motion.unknowns());
         residual.fill(0.0);
-        if level >= Level::Hessian {
+        if level >= Order::Hessian {
             self.values.fill(0.0);
         }
         let last = self.points.len() - 1;
@@ -323,7 +323,7 @@ impl Equations for Stages<'_> {
         for (rows, sample) in gauss.zip(&self.samples) {
             rows.copy_from_slice(&sample.out.plain.rows[driven..]);
         }
-        if level >= Level::Hessian {
+        if level >= Order::Hessian {
             self.tangent_of_points(h);
             if model.potentials > 0 {
                 self.tangent_of_potentials();
@@ -374,12 +374,12 @@ impl Equations for Stages<'_> {
         }
     }
 
-    fn ends(&self) -> [&Instant; 2] {
+    fn ends(&self) -> [&Configuration; 2] {
         [&self.points[0], &self.points[self.points.len() - 1]]
     }
 
     fn accept(&mut self, h: f64) -> bool {
-        self.sample(Level::Gradient, h);
+        self.sample(Order::Gradient, h);
         let model = self.model;
         let last = self.points.len() - 1;
         let forces = self
@@ -393,7 +393,7 @@ impl Equations for Stages<'_> {
         if self.dissipates {
             let effects = model.action.intervals.effects.iter();
             let forces: Vec<_> = effects.filter(|e| e.kind() == Kind::VirtualWork).collect();
-            let work = |sample: &Sample| {
+            let work = |sample: &StagePoint| {
                 let [a, b] = &sample.x;
                 let frame = frame([a, b], &sample.scalars, h);
                 let work: f64 = forces.iter().map(|e| e.energy(&frame)).sum();

@@ -1,6 +1,6 @@
 //! Where the derivatives of the equations of a step with several points lie.
 
-use crate::dynamics::tangent::Entries;
+use crate::dynamics::tangent::EntryList;
 use crate::model::Model;
 
 /// Segments of the values: one of instants for each point, one for each pair of rows and points, those of each sample.
@@ -19,7 +19,7 @@ pub(super) struct Places {
 
 impl Places {
     /// Lays the segments down, and the entries of the matrix that take them.
-    pub(super) fn new(model: &Model, rows: &[usize], samples: usize) -> (Self, Entries) {
+    pub(super) fn new(model: &Model, rows: &[usize], samples: usize) -> (Self, EntryList) {
         let layout = model.action.layout();
         let motion = &model.action.motion;
         let has_potentials = model.potentials > 0;
@@ -40,7 +40,7 @@ impl Places {
         };
         places.values = places.scalars(samples);
         let (n, m) = (motion.coordinates, motion.unknowns());
-        let mut entries = Entries::default();
+        let mut entries = EntryList::default();
         let block = |point: usize| (point - 1) * m;
         for row in 1..=degree {
             for point in 1..=degree {
@@ -73,7 +73,7 @@ impl Places {
     }
 
     /// Potentials of each sample against the points, and against each other.
-    fn add_potentials(&self, model: &Model, samples: usize, entries: &mut Entries) {
+    fn add_potentials(&self, model: &Model, samples: usize, entries: &mut EntryList) {
         let layout = model.action.layout();
         let (m, driven) = (model.action.motion.unknowns(), model.voltages.len());
         for sample in 0..samples {

@@ -1,10 +1,10 @@
 //! Derivatives of the equations of a step with several points, point by point and sample by sample.
 
 use crate::dynamics::stages::rule::Rule;
-use crate::dynamics::stages::{Sample, Stages};
-use crate::functional::Sides;
+use crate::dynamics::stages::{StagePoint, Stages};
+use crate::functional::BlockMask;
 use crate::math::Matrix;
-use crate::reduction::Target;
+use crate::reduction::Destination;
 
 impl Stages<'_> {
     /// Sums the blocks of all samples between the rows of one point and the vectors of another into one of the four blocks.
@@ -12,7 +12,7 @@ impl Stages<'_> {
         let combined = &mut self.combined.blocks;
         combined.full.fill([Matrix::zeros(); 4]);
         combined.isotropic.fill([0.0; 4]);
-        for Sample { weights, out, .. } in &self.samples {
+        for StagePoint { weights, out, .. } in &self.samples {
             let blocks = &out.plain.blocks;
             for side in 0..4 {
                 let weight = weights.quadrature
@@ -43,11 +43,11 @@ impl Stages<'_> {
             for point in 1..self.points.len() {
                 let at = self.rule.row(row);
                 let (block, sides) = match at == point {
-                    true => (0, Sides::HERE),
-                    false => (1, Sides::FORWARD),
+                    true => (0, BlockMask::HERE),
+                    false => (1, BlockMask::FORWARD),
                 };
                 self.combine(at, point, block, h);
-                let target = Target {
+                let target = Destination {
                     blocks: [self.places.pair(row, point); 4],
                     mixed: [usize::MAX; 2],
                     scalars: usize::MAX,
@@ -67,7 +67,7 @@ impl Stages<'_> {
 
     /// Writes the derivatives by the potentials, and those of Gauss's laws.
     pub(super) fn tangent_of_potentials(&mut self) {
-        let none = Sides { blocks: [false; 4] };
+        let none = BlockMask { blocks: [false; 4] };
         for (i, sample) in self.samples.iter().enumerate() {
             let weights = &sample.weights;
             let mixed = &sample.out.plain.blocks.mixed;
@@ -81,7 +81,7 @@ impl Stages<'_> {
                     sum[0] = of(&weights.give, at) * weights.quadrature;
                     sum[1] = of(&weights.take, point);
                 }
-                let target = Target {
+                let target = Destination {
                     blocks: [usize::MAX; 4],
                     mixed: self.places.mixed(i, point),
                     scalars: usize::MAX,
@@ -96,7 +96,7 @@ impl Stages<'_> {
                     &mut self.values,
                 );
             }
-            let target = Target {
+            let target = Destination {
                 blocks: [usize::MAX; 4],
                 mixed: [usize::MAX; 2],
                 scalars: self.places.scalars(i),

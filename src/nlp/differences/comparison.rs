@@ -1,6 +1,6 @@
 //! One sparse matrix beside its differences.
 
-use super::report::{Matrix, Place, WrongEntry};
+use super::report::{Matrix, EntryStatus, WrongEntry};
 use crate::nlp::{Entries, Nlp};
 
 /// Relative error above which an entry is taken for wrong.
@@ -24,7 +24,7 @@ pub(super) struct Comparison {
 struct Pair {
     row: usize,
     column: usize,
-    place: Place,
+    place: EntryStatus,
     analytic: f64,
     difference: f64,
     /// Difference of a shorter step, where the first one is far away.
@@ -85,11 +85,11 @@ impl Comparison {
         );
         for row in first..self.terms.len() {
             let (place, analytic) = match stored.next_if(|&(stored_row, _)| stored_row == row) {
-                Some((_, value)) => (Place::Stored, value),
-                None => (Place::Missing, 0.0),
+                Some((_, value)) => (EntryStatus::Stored, value),
+                None => (EntryStatus::Missing, 0.0),
             };
             let difference = difference(row);
-            if place == Place::Stored || difference != 0.0 {
+            if place == EntryStatus::Stored || difference != 0.0 {
                 self.largest[row] = self.largest[row].max(analytic.abs()).max(difference.abs());
                 self.pairs.push(Pair {
                     row,

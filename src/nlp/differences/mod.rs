@@ -29,7 +29,7 @@ use crate::nlp::{Entries, Nlp};
 
 use comparison::Comparison;
 pub use comparison::TOLERANCE;
-pub use report::{Matrix, Place, Report, WrongEntry};
+pub use report::{Matrix, EntryStatus, Report, WrongEntry};
 
 /// The first step of a difference over the second one.
 const SHORTER: f64 = 8.0;
@@ -89,7 +89,7 @@ pub fn check_along(
         costates,
         jacobian: nlp.jacobian_structure(),
     };
-    let here = Sample::at(nlp, &lagrangian, x);
+    let here = DirectionSample::at(nlp, &lagrangian, x);
     let mut hessian = vec![0.0; nlp.hessian_structure().rows.len()];
     nlp.hessian(x, lagrangian.sigma, &lagrangian.costates, &mut hessian);
 
@@ -187,7 +187,7 @@ impl Lagrangian {
     }
 
     /// Sum of the sizes of the terms in each entry of its gradient.
-    fn term_sizes(&self, here: &Sample) -> Vec<f64> {
+    fn term_sizes(&self, here: &DirectionSample) -> Vec<f64> {
         let mut sum: Vec<f64> = here
             .gradient
             .iter()
@@ -207,7 +207,7 @@ impl Lagrangian {
 }
 
 /// All values at one point.
-struct Sample {
+struct DirectionSample {
     objective: f64,
     gradient: Vec<f64>,
     constraints: Vec<f64>,
@@ -215,7 +215,7 @@ struct Sample {
     lagrangian: Vec<f64>,
 }
 
-impl Sample {
+impl DirectionSample {
     fn at(nlp: &mut dyn Nlp, lagrangian: &Lagrangian, x: &[f64]) -> Self {
         let objective = nlp.objective(x);
         let mut gradient = vec![0.0; x.len()];
@@ -246,8 +246,8 @@ impl Sample {
 
 /// Central differences along one variable.
 struct Slope {
-    ahead: Sample,
-    behind: Sample,
+    ahead: DirectionSample,
+    behind: DirectionSample,
     width: f64,
 }
 
@@ -262,9 +262,9 @@ impl Slope {
     ) -> Option<Self> {
         let mut moved = x.to_vec();
         moved[j] = x[j] + step;
-        let (end, ahead) = (moved[j], Sample::at(nlp, lagrangian, &moved));
+        let (end, ahead) = (moved[j], DirectionSample::at(nlp, lagrangian, &moved));
         moved[j] = x[j] - step;
-        let behind = Sample::at(nlp, lagrangian, &moved);
+        let behind = DirectionSample::at(nlp, lagrangian, &moved);
         let width = end - moved[j];
         (ahead.exists() && behind.exists()).then_some(Self {
             ahead,

@@ -15,7 +15,7 @@ pub enum Matrix {
 
 /// Whether an entry has a place in the structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum EntryStatus {
     /// It has.
     Stored,
     /// It has none, so that its analytic value is zero.
@@ -32,7 +32,7 @@ pub struct WrongEntry {
     /// The variable of the column.
     pub column: String,
     /// Whether the structure has this entry.
-    pub place: Place,
+    pub place: EntryStatus,
     /// Value given by the program.
     pub analytic: f64,
     /// Value from differences.
@@ -91,8 +91,8 @@ impl fmt::Display for Report {
         } in &self.wrong
         {
             let value = match place {
-                Place::Stored => format!("{analytic:.9e}"),
-                Place::Missing => "no entry".to_owned(),
+                EntryStatus::Stored => format!("{analytic:.9e}"),
+                EntryStatus::Missing => "no entry".to_owned(),
             };
             writeln!(
                 f,

@@ -3,11 +3,11 @@
 //! Vectors with the same support (all vectors of one body, all spans between two) share one small local matrix, which is
 //! scattered once; so the cost of scattering does not grow with the number of effects.
 
-use crate::functional::Sides;
+use crate::functional::BlockMask;
 use crate::math::Matrix;
-use crate::reduction::pattern::{Layout, Pattern};
-use crate::reduction::pull_back::{Site, Target};
-use crate::reduction::tree::{LANES, Packed};
+use crate::reduction::pattern::{StepPattern, BlockPattern};
+use crate::reduction::pull_back::{Site, Destination};
+use crate::reduction::tree::{LANES, TangentColumns};
 use std::collections::BTreeMap;
 use wide::f64x4;
 
@@ -57,8 +57,8 @@ pub(super) struct Ends<'a> {
 
 /// Where blocks go, and the storage on the way.
 #[derive(Debug)]
-pub(super) struct Place<'a> {
-    pub(super) target: &'a Target,
+pub(super) struct BlockDestination<'a> {
+    pub(super) target: &'a Destination,
     /// Local matrix of one group.
     pub(super) local: &'a mut [f64],
     pub(super) values: &'a mut [f64],
@@ -69,8 +69,8 @@ impl Groups {
     pub(super) fn add(
         &mut self,
         pair: Pair,
-        [a, b]: [&Packed; 2],
-        layout: &mut Layout,
+        [a, b]: [&TangentColumns; 2],
+        layout: &mut StepPattern,
         site: Site,
     ) {
         if a.support.is_empty() || b.support.is_empty() {
@@ -98,8 +98,8 @@ impl Groups {
         &self,
         ends: Ends<'_>,
         blocks: &[[Matrix; 4]],
-        sides: Sides,
-        place: Place<'_>,
+        sides: BlockMask,
+        place: BlockDestination<'_>,
     ) {
         let add = |group: &Articulated, side, out: &mut [f64]| {
             group.add_full(ends.of(side), side, blocks, out);
@@ -113,12 +113,12 @@ impl Groups {
         &self,
         ends: Ends<'_>,
         blocks: &[[f64; 4]],
-        sides: Sides,
-        place: Place<'_>,
+        sides: BlockMask,
+        place: BlockDestination<'_>,
     ) {
         let mirrored = sides.blocks[1] && sides.blocks[2];
         let [same, above, below, next] = sides.blocks;
-        let upper = Sides {
+        let upper = BlockMask {
             blocks: [same, above, below && !mirrored, next],
         };
         let add = |group: &Articulated, side, out: &mut [f64]| {
@@ -134,8 +134,8 @@ impl Groups {
         &self,
         ends: Ends<'_>,
         blocks: [&[[Matrix; 4]]; 2],
-        sides: Sides,
-        place: Place<'_>,
+        sides: BlockMask,
+        place: BlockDestination<'_>,
     ) {
         let add = |group: &Articulated, side, out: &mut [f64]| {
             group.add_full_along(ends.along(side), side, blocks[0], blocks[1], out);
@@ -148,8 +148,8 @@ impl Groups {
         &self,
         ends: Ends<'_>,
         blocks: [&[[f64; 4]]; 2],
-        sides: Sides,
-        place: Place<'_>,
+        sides: BlockMask,
+        place: BlockDestination<'_>,
     ) {
         let add = |group: &Articulated, side, out: &mut [f64]| {
             group.add_isotropic_along(ends.along(side), side, blocks[0], blocks[1], out);
@@ -163,12 +163,12 @@ impl Groups {
     #[inline]
     fn each(
         &self,
-        sides: Sides,
-        place: Place<'_>,
+        sides: BlockMask,
+        place: BlockDestination<'_>,
         add: impl Fn(&Articulated, usize, &mut [f64]),
         twin: impl Fn(usize) -> Option<usize>,
     ) {
-        let Place {
+        let BlockDestination {
             target,
             local,
             values,
@@ -239,8 +239,8 @@ fn sum(a: &Lanes, b: &Lanes) -> Lanes {
 }
 
 impl Articulated {
-    fn new([a, b]: [&Packed; 2], layout: &mut Layout, site: Site) -> Self {
-        let places = |pattern: &mut Pattern| {
+    fn new([a, b]: [&TangentColumns; 2], layout: &mut StepPattern, site: Site) -> Self {
+        let places = |pattern: &mut BlockPattern| {
             let mut list = Vec::new();
             for (i, &row) in a.support.iter().enumerate() {
                 for (j, &col) in b.support.iter().enumerate() {

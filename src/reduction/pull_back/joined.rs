@@ -1,12 +1,12 @@
 //! Pairs of a vector on the tree and a linear one: where an elastic block is glued to a body.
 
-use crate::functional::Sides;
+use crate::functional::BlockMask;
 use crate::math::{Matrix, Vector};
 use crate::reduction::motion::LinearPart;
-use crate::reduction::pattern::Layout;
+use crate::reduction::pattern::StepPattern;
 use crate::reduction::pull_back::articulated::Ends;
-use crate::reduction::pull_back::{Site, Target};
-use crate::reduction::tree::Packed;
+use crate::reduction::pull_back::{Site, Destination};
+use crate::reduction::tree::TangentColumns;
 
 /// One entry: a column of the articulated vector against one coordinate of the linear vector.
 #[derive(Clone, Copy, Debug)]
@@ -44,9 +44,9 @@ impl Joined {
         &mut self,
         block: Block,
         [slot, transposed]: [usize; 2],
-        (packed, parts): (&Packed, &[LinearPart]),
+        (packed, parts): (&TangentColumns, &[LinearPart]),
         row_is_articulated: bool,
-        layout: &mut Layout,
+        layout: &mut StepPattern,
         site: Site,
     ) {
         for (i, &moving) in packed.support.iter().enumerate() {
@@ -85,8 +85,8 @@ impl Joined {
         ends: Ends<'_>,
         full: &[[Matrix; 4]],
         isotropic: &[[f64; 4]],
-        sides: Sides,
-        target: &Target,
+        sides: BlockMask,
+        target: &Destination,
         values: &mut [f64],
     ) {
         each(&self.full, sides, target, values, |e, side, instant| {
@@ -109,8 +109,8 @@ impl Joined {
         ends: Ends<'_>,
         full: [&[[Matrix; 4]]; 2],
         isotropic: [&[[f64; 4]]; 2],
-        sides: Sides,
-        target: &Target,
+        sides: BlockMask,
+        target: &Destination,
         values: &mut [f64],
     ) {
         each(&self.full, sides, target, values, |e, side, instant| {
@@ -155,8 +155,8 @@ fn dot(columns: &[f64], e: &Entry, v: &Vector) -> f64 {
 /// Adds `value(entry, side, instant of the articulated vector)` for all sides that are asked for.
 fn each(
     list: &[Entry],
-    sides: Sides,
-    target: &Target,
+    sides: BlockMask,
+    target: &Destination,
     values: &mut [f64],
     value: impl Fn(&Entry, usize, usize) -> f64,
 ) {

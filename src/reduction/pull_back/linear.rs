@@ -1,10 +1,10 @@
 //! Pairs of linear vectors: constant coefficients, entry by entry.
 
-use crate::functional::Sides;
+use crate::functional::BlockMask;
 use crate::math::Matrix;
 use crate::reduction::motion::LinearPart;
-use crate::reduction::pattern::Layout;
-use crate::reduction::pull_back::{Site, Target};
+use crate::reduction::pattern::StepPattern;
+use crate::reduction::pull_back::{Site, Destination};
 
 /// One scalar entry c · block[i, j] of a pair of linear vectors; compact, since a mesh has millions.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,7 @@ impl Linear {
         &mut self,
         slot: usize,
         parts: [&[LinearPart]; 2],
-        layout: &mut Layout,
+        layout: &mut StepPattern,
         site: Site,
     ) {
         add(&mut self.full, slot, parts, layout, site, |_, _| true);
@@ -40,7 +40,7 @@ impl Linear {
         &mut self,
         slot: usize,
         parts: [&[LinearPart]; 2],
-        layout: &mut Layout,
+        layout: &mut StepPattern,
         site: Site,
     ) {
         add(&mut self.isotropic, slot, parts, layout, site, |i, j| {
@@ -53,8 +53,8 @@ impl Linear {
         &self,
         full: &[[Matrix; 4]],
         isotropic: &[[f64; 4]],
-        sides: Sides,
-        target: &Target,
+        sides: BlockMask,
+        target: &Destination,
         values: &mut [f64],
     ) {
         for side in (0..4).filter(|&s| sides.blocks[s]) {
@@ -76,7 +76,7 @@ fn add(
     list: &mut Vec<Entry>,
     slot: usize,
     [s, t]: [&[LinearPart]; 2],
-    layout: &mut Layout,
+    layout: &mut StepPattern,
     site: Site,
     couples: impl Fn(usize, usize) -> bool,
 ) {

@@ -2,9 +2,9 @@
 
 use crate::functional::Part;
 use crate::math::Vector;
-use crate::reduction::motion::{Dependence, Motion};
-use crate::reduction::pattern::Layout;
-use crate::reduction::pull_back::{Site, Target};
+use crate::reduction::motion::{Dependence, CoordinateMap};
+use crate::reduction::pattern::StepPattern;
+use crate::reduction::pull_back::{Site, Destination};
 
 /// One entry of a vector against a scalar.
 #[derive(Clone, Copy, Debug)]
@@ -36,8 +36,8 @@ impl Mixed {
         slot: usize,
         vector: usize,
         s: usize,
-        motion: &Motion,
-        layout: &mut Layout,
+        motion: &CoordinateMap,
+        layout: &mut StepPattern,
         site: Site,
     ) {
         match &motion.vectors[vector] {
@@ -74,7 +74,7 @@ impl Mixed {
         &self,
         columns: [&[f64]; 2],
         part: &Part,
-        target: &Target,
+        target: &Destination,
         values: &mut [f64],
     ) {
         self.each(target, values, |entry, side| match *entry {
@@ -104,7 +104,7 @@ impl Mixed {
         columns: [&[f64]; 2],
         columns_l: [&[f64]; 2],
         [plain, contracted]: [&Part; 2],
-        target: &Target,
+        target: &Destination,
         values: &mut [f64],
     ) {
         self.each(target, values, |entry, side| match *entry {
@@ -135,7 +135,7 @@ impl Mixed {
         });
     }
 
-    fn each(&self, target: &Target, values: &mut [f64], value: impl Fn(&Entry, usize) -> f64) {
+    fn each(&self, target: &Destination, values: &mut [f64], value: impl Fn(&Entry, usize) -> f64) {
         for side in (0..2).filter(|&side| target.mixed[side] != usize::MAX) {
             for entry in &self.list {
                 let (Entry::Articulated { place, .. } | Entry::Linear { place, .. }) = *entry;

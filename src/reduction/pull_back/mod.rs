@@ -5,11 +5,11 @@ mod joined;
 mod linear;
 mod mixed;
 
-use crate::functional::{Couplings, Part, Sides};
-use crate::reduction::instant::Instant;
-use crate::reduction::motion::{Dependence, Motion};
-use crate::reduction::pattern::Layout;
-use articulated::{Ends, Groups, Pair, Place};
+use crate::functional::{Couplings, Part, BlockMask};
+use crate::reduction::instant::Configuration;
+use crate::reduction::motion::{Dependence, CoordinateMap};
+use crate::reduction::pattern::StepPattern;
+use articulated::{Ends, Groups, Pair, BlockDestination};
 use joined::{Block, Joined};
 use linear::Linear;
 use mixed::Mixed;
@@ -29,7 +29,7 @@ pub(super) struct PullBack {
 /// Where the blocks of one interval go in the values: places of the four blocks, of both mixed blocks and of scalars;
 /// mixed blocks and scalars without a place (`usize::MAX`) go nowhere.
 #[derive(Clone, Copy, Debug)]
-pub struct Target {
+pub struct Destination {
     /// (k, k), (k, k+1), (k+1, k), (k+1, k+1).
     pub blocks: [usize; 4],
     /// (z_k, s), (z_{k+1}, s).
@@ -42,8 +42,8 @@ impl PullBack {
     /// Plans the pull-back of a site; entries join the layout. Scalars of an instant are its multipliers.
     pub(super) fn new(
         couplings: &Couplings,
-        motion: &Motion,
-        layout: &mut Layout,
+        motion: &CoordinateMap,
+        layout: &mut StepPattern,
         site: Site,
     ) -> Self {
         let mut plan = Self::default();
@@ -72,8 +72,8 @@ impl PullBack {
         block: Block,
         slots: [usize; 2],
         (a, b): (usize, usize),
-        motion: &Motion,
-        layout: &mut Layout,
+        motion: &CoordinateMap,
+        layout: &mut StepPattern,
         site: Site,
     ) {
         use Dependence::{Articulated, Linear};
@@ -114,10 +114,10 @@ impl PullBack {
     /// Adds Pᵀ H P.
     pub(super) fn hessian(
         &self,
-        ends: [&Instant; 2],
+        ends: [&Configuration; 2],
         part: &Part,
-        sides: Sides,
-        target: &Target,
+        sides: BlockMask,
+        target: &Destination,
         local: &mut [f64],
         values: &mut [f64],
     ) {
@@ -127,7 +127,7 @@ impl PullBack {
             ends,
             &blocks.full,
             sides,
-            Place {
+            BlockDestination {
                 target,
                 local,
                 values,
@@ -137,7 +137,7 @@ impl PullBack {
             ends,
             &blocks.isotropic,
             sides,
-            Place {
+            BlockDestination {
                 target,
                 local,
                 values,
@@ -158,15 +158,15 @@ impl PullBack {
     /// Adds the lower blocks of `Pᵀ H_w P + P′_lᵀ H P + Pᵀ Hᵀ P′_l`.
     pub(super) fn third(
         &self,
-        ends: [&Instant; 2],
+        ends: [&Configuration; 2],
         [plain, contracted]: [&Part; 2],
-        sides: Sides,
-        target: &Target,
+        sides: BlockMask,
+        target: &Destination,
         local: &mut [f64],
         values: &mut [f64],
     ) {
         let (columns, columns_l) = columns(ends);
-        let lower = Sides {
+        let lower = BlockMask {
             blocks: [sides.blocks[0], false, sides.blocks[2], sides.blocks[3]],
         };
         let (ends, h, hw) = (
@@ -178,7 +178,7 @@ impl PullBack {
             ends,
             [&h.full, &hw.full],
             lower,
-            Place {
+            BlockDestination {
                 target,
                 local,
                 values,
@@ -188,7 +188,7 @@ impl PullBack {
             ends,
             [&h.isotropic, &hw.isotropic],
             lower,
-            Place {
+            BlockDestination {
                 target,
                 local,
                 values,
@@ -213,7 +213,7 @@ impl PullBack {
 }
 
 /// Columns of both instants, and their derivatives along l.
-fn columns(ends: [&Instant; 2]) -> ([&[f64]; 2], [&[f64]; 2]) {
+fn columns(ends: [&Configuration; 2]) -> ([&[f64]; 2], [&[f64]; 2]) {
     (
         ends.map(|e| e.columns.as_slice()),
         ends.map(|e| e.columns_l.as_slice()),
@@ -232,7 +232,7 @@ pub(super) enum Site {
 impl Site {
     /// Places of the coupling of coordinate `row` and scalar `s`: a block of its own for an interval, both triangles of
     /// (z, z) for an instant.
-    fn mixed(self, layout: &mut Layout, motion: &Motion, row: usize, s: usize) -> Vec<usize> {
+    fn mixed(self, layout: &mut StepPattern, motion: &CoordinateMap, row: usize, s: usize) -> Vec<usize> {
         match self {
             Self::Intervals => vec![layout.mixed.slot(row, s)],
             Self::Instants => {

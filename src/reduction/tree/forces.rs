@@ -1,7 +1,7 @@
 //! Forces on vectors, pulled back to joint coordinates: rows, curvature, and its derivative along a direction.
 
 use crate::math::Vector;
-use crate::reduction::instant::{Instant, Moments, TreeState};
+use crate::reduction::instant::{Configuration, Moments, TreeState};
 use crate::reduction::tree::{LinkKind, Tree};
 
 impl Tree {
@@ -34,8 +34,8 @@ impl Tree {
 
     /// Moments of the forces R on all vectors, gathered from the leaves to the root; with rates along l where `rates`
     /// holds the contracted forces.
-    fn gather(&self, instant: &mut Instant, rates: bool) {
-        let Instant {
+    fn gather(&self, instant: &mut Configuration, rates: bool) {
+        let Configuration {
             forces,
             contracted,
             tree,
@@ -66,7 +66,7 @@ impl Tree {
     }
 
     /// Adds R·P′ at the slots of `curvature_entries`, both orders: `slots[e]` is (i, k), (k, i).
-    pub fn curvature(&self, instant: &mut Instant, slots: &[[usize; 2]], values: &mut [f64]) {
+    pub fn curvature(&self, instant: &mut Configuration, slots: &[[usize; 2]], values: &mut [f64]) {
         self.gather(instant, false);
         let tree = &instant.tree;
         let mut of = usize::MAX;
@@ -93,7 +93,7 @@ impl Tree {
     }
 
     /// Adds (Hᵀw)·P′ + R·P″_l at the slots of `curvature_entries`, both orders.
-    pub fn curvature_along(&self, instant: &mut Instant, slots: &[[usize; 2]], values: &mut [f64]) {
+    pub fn curvature_along(&self, instant: &mut Configuration, slots: &[[usize; 2]], values: &mut [f64]) {
         self.gather(instant, true);
         let tree = &instant.tree;
         let mut of = usize::MAX;

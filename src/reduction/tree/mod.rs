@@ -20,7 +20,7 @@ mod charts;
 mod forces;
 mod motion;
 
-use crate::kinematics::{Carrier, MaterialVector, Pose, Term};
+use crate::kinematics::{Carrier, MaterialVector, Pose, VectorTerm};
 use crate::math::{Matrix, Vector};
 use crate::reduction::instant::{Moments, TreeState};
 
@@ -75,7 +75,7 @@ struct Column {
 
 /// A sum of terms of one vector that the same links move.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Arm {
+struct MovedPart {
     /// The first term, and the number of terms: those that a link moves are neighbours.
     first: usize,
     count: usize,
@@ -94,7 +94,7 @@ struct FlatTerm {
 
 /// The columns of one vector: three rows of `stride` numbers from `first`, one number for each coordinate, then zeros.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Packed {
+pub struct TangentColumns {
     /// First number.
     pub first: usize,
     /// Numbers a row: the coordinates, rounded up to [`LANES`].
@@ -103,7 +103,7 @@ pub struct Packed {
     pub support: Vec<usize>,
 }
 
-impl Packed {
+impl TangentColumns {
     /// The three rows of the vector's columns.
     #[inline]
     pub fn rows<'c>(&self, columns: &'c [f64]) -> [&'c [f64]; 3] {
@@ -131,9 +131,9 @@ pub struct Tree {
     /// Constant part of each vector.
     constants: Vec<Vector>,
     terms: Vec<FlatTerm>,
-    arms: Vec<Arm>,
+    moved_parts: Vec<MovedPart>,
     columns: Vec<Column>,
-    packed: Vec<Packed>,
+    packed: Vec<TangentColumns>,
     size: usize,
     /// Pairs of links (i, k) on one path, i not behind k.
     paths: Vec<(usize, usize)>,
@@ -164,7 +164,7 @@ impl Tree {
             before,
             constants: Vec::new(),
             terms: Vec::new(),
-            arms: Vec::new(),
+            moved_parts: Vec::new(),
             columns: Vec::new(),
             packed: Vec::new(),
             size: 0,
@@ -175,7 +175,7 @@ impl Tree {
                 tree.lay_vector(index, vector);
             } else {
                 tree.constants.push(Vector::zeros());
-                tree.packed.push(Packed::default());
+                tree.packed.push(TangentColumns::default());
             }
         }
         tree.lay_paths();
@@ -193,7 +193,7 @@ impl Tree {
         for term in &vector.terms {
             match term.carrier {
                 Carrier::Body(body) => {
-                    let Term {
+                    let VectorTerm {
                         centre, directors, ..
                     } = *term;
                     self.terms.push(FlatTerm {
@@ -229,7 +229,7 @@ impl Tree {
             moved.push((
                 j,
                 coordinate,
-                Arm {
+                MovedPart {
                     first,
                     count: terms.len(),
                     centre,
@@ -239,16 +239,16 @@ impl Tree {
         let (first, stride) = (self.size, moved.len().next_multiple_of(LANES));
         self.size += 3 * stride;
         let support = moved.iter().map(|&(_, coordinate, _)| coordinate).collect();
-        self.packed.push(Packed {
+        self.packed.push(TangentColumns {
             first,
             stride,
             support,
         });
         for (place, (link, _, arm)) in moved.into_iter().enumerate() {
-            let known = self.arms.iter().rposition(|a| *a == arm);
+            let known = self.moved_parts.iter().rposition(|a| *a == arm);
             let arm = known.unwrap_or_else(|| {
-                self.arms.push(arm);
-                self.arms.len() - 1
+                self.moved_parts.push(arm);
+                self.moved_parts.len() - 1
             });
             self.columns.push(Column {
                 link,
@@ -293,7 +293,7 @@ impl Tree {
     }
 
     /// Columns of each vector: the structure of P.
-    pub fn packed(&self) -> &[Packed] {
+    pub fn packed(&self) -> &[TangentColumns] {
         &self.packed
     }
 
@@ -323,8 +323,8 @@ impl Tree {
             wrenches: vec![[Vector::zeros(); 2]; links],
             terms: vec![Vector::zeros(); self.terms.len()],
             terms_l: vec![Vector::zeros(); self.terms.len()],
-            arms: vec![Vector::zeros(); self.arms.len()],
-            arms_l: vec![Vector::zeros(); self.arms.len()],
+            arms: vec![Vector::zeros(); self.moved_parts.len()],
+            arms_l: vec![Vector::zeros(); self.moved_parts.len()],
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::kinematics::Pose;
 use crate::math::Vector;
-use crate::reduction::instant::{Instant, TreeState};
+use crate::reduction::instant::{Configuration, TreeState};
 use crate::reduction::tree::charts::rotation;
 use crate::reduction::tree::{CHART, Column, LinkKind, Tree};
 use nalgebra::{Rotation3, Unit};
@@ -50,12 +50,12 @@ impl Tree {
 
     /// Columns of P.
     pub fn tangent(&self, state: &mut TreeState, columns: &mut [f64]) {
-        for (arm, value) in self.arms.iter().zip(&mut state.arms) {
+        for (arm, value) in self.moved_parts.iter().zip(&mut state.arms) {
             *value = sum(&state.terms[arm.first..arm.first + arm.count]);
         }
         for column in &self.columns {
             let axis = state.axes[column.link];
-            let centre = self.arms[column.arm].centre;
+            let centre = self.moved_parts[column.arm].centre;
             let value = match self.links[column.link].kind {
                 LinkKind::Turn => {
                     axis.cross(&(state.arms[column.arm] - state.points[column.link] * centre))
@@ -67,8 +67,8 @@ impl Tree {
     }
 
     /// Twists along l, derivatives of axes, points and columns along l, and w = P l.
-    pub fn along(&self, instant: &mut Instant) {
-        let Instant {
+    pub fn along(&self, instant: &mut Configuration) {
+        let Configuration {
             l,
             w,
             columns_l,
@@ -93,12 +93,12 @@ impl Tree {
             *rate = origin * term.centre + omega.cross(value);
             w[term.vector] += *rate;
         }
-        for (arm, rate) in self.arms.iter().zip(&mut tree.arms_l) {
+        for (arm, rate) in self.moved_parts.iter().zip(&mut tree.arms_l) {
             *rate = sum(&tree.terms_l[arm.first..arm.first + arm.count]);
         }
         for column in &self.columns {
             let (j, arm) = (column.link, column.arm);
-            let centre = self.arms[arm].centre;
+            let centre = self.moved_parts[arm].centre;
             let value = match self.links[j].kind {
                 LinkKind::Turn => {
                     let reach = tree.arms[arm] - tree.points[j] * centre;

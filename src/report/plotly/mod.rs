@@ -17,7 +17,7 @@ pub struct Figure {
     pub layout: Value,
     /// States of the animation.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub frames: Vec<Frame>,
+    pub frames: Vec<AnimationFrame>,
     config: Value,
 }
 
@@ -50,7 +50,7 @@ pub struct Trace {
 
 /// A state of an animation: these traces replace those of the figure.
 #[derive(Debug, Serialize)]
-pub struct Frame {
+pub struct AnimationFrame {
     /// Name that slider and buttons use.
     pub name: String,
     /// Places of the traces in the figure.
@@ -71,7 +71,7 @@ impl Figure {
     }
 
     /// The figure with the states of an animation.
-    pub fn animated(self, frames: Vec<Frame>) -> Self {
+    pub fn animated(self, frames: Vec<AnimationFrame>) -> Self {
         Self { frames, ..self }
     }
 

@@ -60,7 +60,7 @@ pub(super) struct Seconds {
 
 /// What is read of the solution of a start.
 #[derive(Deserialize)]
-pub(super) struct Solution {
+pub(super) struct SolutionRecord {
     pub(super) voltages: BTreeMap<String, Vec<f64>>,
 }
 
@@ -117,7 +117,7 @@ impl Ended {
         };
         let is_solved = status.success();
         let solution = match is_solved {
-            true => parsed::<Solution>(&path.join("solution.json")),
+            true => parsed::<SolutionRecord>(&path.join("solution.json")),
             false => None,
         };
         let voltages = solution.map_or_else(Vec::new, |solution| {

@@ -7,7 +7,7 @@ use crate::report::atomic::{self, WriteError};
 use crate::report::table::aligned;
 use crate::run::error::RunError;
 use crate::run::folder::make_folder;
-use crate::run::request::{Request, Told};
+use crate::run::request::{CommandInput, CommandOutput};
 use crate::scene::lay_out;
 use serde::Serialize;
 use std::fs::{self};
@@ -30,12 +30,12 @@ pub(super) struct Section<'a> {
 
 /// Writes the files of the best start and the table of all, and tells of them.
 pub(super) fn write(
-    request: &Request,
+    request: &CommandInput,
     folder: &Path,
     ended: &[Ended],
     distinct: usize,
     began: Instant,
-) -> Result<Told, RunError> {
+) -> Result<CommandOutput, RunError> {
     let origin = request.origin(true);
     let csv = format!("# {}\n{}", origin.line(), csv(ended));
     atomic::write(&folder.join("starts.csv"), csv.as_bytes())?;
@@ -71,7 +71,7 @@ pub(super) fn write(
     if interrupt::requested() {
         notes.push("interrupted; the files hold the best start that had ended".to_owned());
     }
-    Ok(Told {
+    Ok(CommandOutput {
         is_solved,
         result: format!("{head}\n{}", aligned(&rows(ended))),
         notes,

@@ -1,6 +1,6 @@
 //! The process of one start.
 
-use crate::run::request::Request;
+use crate::run::request::CommandInput;
 use std::fs::File;
 use std::io::{self};
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ pub(super) struct Running {
 
 /// Starts the process of one start.
 pub(super) fn launch(
-    request: &Request,
+    request: &CommandInput,
     folder: &Path,
     start: usize,
     seed: Option<u64>,

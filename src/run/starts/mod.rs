@@ -17,7 +17,7 @@ use crate::run::error::RunError;
 use crate::run::folder::make_folder;
 use crate::run::memory;
 use crate::run::optimise::resolve;
-use crate::run::request::{Request, Told};
+use crate::run::request::{CommandInput, CommandOutput};
 use crate::run::words::key;
 use crate::scene::read_problem;
 use ended::number_optima;
@@ -33,7 +33,7 @@ const MOST: usize = 1000;
 ///
 /// # Errors
 /// The input is wrong, or the results cannot be written. A start that fails is no error as long as one succeeds.
-pub fn solve_from_starts(request: &Request, starts: usize, seed: u64) -> Result<Told, RunError> {
+pub fn solve_from_starts(request: &CommandInput, starts: usize, seed: u64) -> Result<CommandOutput, RunError> {
     let began = Instant::now();
     if !(1..MOST).contains(&starts) {
         let reason = format!(

@@ -6,7 +6,7 @@ use crate::ipopt::interrupt;
 use crate::report::atomic::WriteError;
 use crate::run::error::RunError;
 use crate::run::progress::Progress;
-use crate::run::request::Request;
+use crate::run::request::CommandInput;
 use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -31,7 +31,7 @@ impl Drop for All {
 
 /// Runs the starts of a plan and tells how each ended, in the order of their numbers.
 pub(super) fn run_all(
-    request: &Request,
+    request: &CommandInput,
     folder: &Path,
     plan: Vec<(usize, Option<u64>)>,
     began: Instant,

@@ -4,7 +4,7 @@ use crate::model::components::Spring;
 use crate::scene::error::SceneError;
 use crate::scene::names::attachment;
 use crate::scene::point::PointSpec;
-use crate::scene::quantity::{Damping, Length, Measure, Quantity, Stiffness};
+use crate::scene::quantity::{Damping, Length, PhysicalQuantity, Quantity, Stiffness};
 use crate::scene::scope::Scope;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -76,7 +76,7 @@ pub(crate) fn spring(
 }
 
 /// A value that is not negative; zero leaves no trace.
-fn not_negative<M: Measure>(
+fn not_negative<M: PhysicalQuantity>(
     quantity: Option<&Quantity<M>>,
     scope: &Scope<'_>,
 ) -> Result<Option<f64>, SceneError> {
