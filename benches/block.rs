@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 use proboscis::dynamics::{Newton, Solving, Start, Stepper};
-use proboscis::element::{Dielectric, Elastomer, Local, Passive, ElementGeometry, Volume};
+use proboscis::element::{Dielectric, Elastomer, ElementGeometry, Local, Passive, Volume};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
 use proboscis::model::system::{

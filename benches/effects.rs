@@ -6,11 +6,12 @@
 mod trunk;
 
 use nalgebra::Vector3;
-use proboscis::control::problem::{Simulation, BoundaryState, Voltages};
+use proboscis::control::problem::{BoundaryState, Simulation, Voltages};
 use proboscis::control::resolve_start;
+use proboscis::coordinates::Reduced;
 use proboscis::dynamics::{Solving, Start, Stepper};
 use proboscis::energy::DielectricCell;
-use proboscis::functional::{Term, Element, Group, Inertia, Mass, Stencil, Functional, VectorArg};
+use proboscis::functional::{Element, Functional, Group, Inertia, Mass, Stencil, Term, VectorArg};
 use proboscis::kinematics::MaterialVector;
 use proboscis::mesh::grid::Grid;
 use proboscis::model::system::{
@@ -18,7 +19,6 @@ use proboscis::model::system::{
     Potential, Solid, Support, System, VACUUM_PERMITTIVITY,
 };
 use proboscis::model::{Coordinates, Model};
-use proboscis::reduction::Reduced;
 use proboscis::sparse::Symmetry;
 use std::collections::BTreeMap;
 use std::fmt::Write;

@@ -2,7 +2,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use proboscis::element::{
-    Dielectric, Elastomer, Field, Local, Passive, ElementGeometry, Viscosity, ViscousContraction,
+    Dielectric, Elastomer, ElementGeometry, Field, Local, Passive, Viscosity, ViscousContraction,
     ViscousLocal, Volume,
 };
 use proboscis::math::Vector;

@@ -39,9 +39,11 @@
 //! | [`run`], [`study`] | what the commands do with one problem, and with many variants of it |
 
 pub mod control;
+pub mod coordinates;
 pub mod dynamics;
 pub mod element;
 pub mod energy;
+pub mod files;
 pub mod functional;
 pub mod ipopt;
 pub mod kinematics;
@@ -49,9 +51,7 @@ pub mod math;
 pub mod mesh;
 pub mod model;
 pub mod nlp;
-pub mod reduction;
 pub mod report;
 pub mod run;
-pub mod scene;
 pub mod sparse;
 pub mod study;

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
+use proboscis::files::printable;
 use proboscis::ipopt::interrupt;
 use proboscis::run::accuracy::AccuracyTarget;
-use proboscis::run::{self, CommandInput, RunError, ProgressDisplay, CommandOutput};
-use proboscis::scene::printable;
+use proboscis::run::{self, CommandInput, CommandOutput, ProgressDisplay, RunError};
 use proboscis::study::{StudyRequest, study};
 use tracing_subscriber::EnvFilter;
 

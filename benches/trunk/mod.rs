@@ -1,14 +1,14 @@
 //! The elephant trunk of `problems/elephant_trunk_effort.json` on any grid, in both coordinates.
 #![allow(dead_code, reason = "each bench uses a part")]
 
-use proboscis::control::problem::{Control, Duration, BoundaryState, Task};
+use proboscis::control::problem::{BoundaryState, Control, Duration, Task};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::dynamics::{Start, Stepper, StepperReport};
+use proboscis::files::read_problem;
 use proboscis::ipopt::StartingPoint;
 use proboscis::model::system::System;
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::Nlp;
-use proboscis::scene::read_problem;
 use std::hint::black_box;
 use std::path::Path;
 
@@ -38,7 +38,8 @@ pub(crate) fn with_program<T>(
         panic!("the trunk problem has a given duration");
     };
     let h = duration / intervals as f64;
-    let (model, boundary) = BoundaryConditions::resolve(&system, &control, h).expect("states of rest exist");
+    let (model, boundary) =
+        BoundaryConditions::resolve(&system, &control, h).expect("states of rest exist");
     let initial = guess(&model, &boundary, &control, h, None);
     let mut program = Transcription::new(&model, &boundary, &control, &initial)
         .expect("there are enough unknowns");

@@ -4,10 +4,10 @@ use crate::control::conditions::{BoundaryConditions, TerminalState};
 use crate::control::ends;
 use crate::control::error::BoundaryError;
 use crate::control::limits::Limits;
-use crate::control::problem::{Control, Rest, BoundaryState};
+use crate::control::problem::{BoundaryState, Control, Rest};
 use crate::dynamics::{Equilibrium, Start, muscle_without_length, stable_equilibrium};
 use crate::functional::Order;
-use crate::model::{Presolved, Coordinates, Graph, Model, Quantity, Analysis, System};
+use crate::model::{Analysis, Coordinates, Graph, Model, Presolved, Quantity, System};
 
 impl BoundaryConditions {
     /// Builds the model of a control problem and resolves its start and goal.
@@ -167,7 +167,9 @@ pub fn resolve_start(
     place: &'static str,
 ) -> Result<Start, BoundaryError> {
     match state {
-        BoundaryState::RestAtVoltages(voltages) => Ok(at_rest(model, rest_at(model, voltages, place)?.z)),
+        BoundaryState::RestAtVoltages(voltages) => {
+            Ok(at_rest(model, rest_at(model, voltages, place)?.z))
+        }
         BoundaryState::JointAngles {
             angles,
             rates,

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::control::problem::{AtRest, Control, PathConstraint, Simulation, BoundaryState};
+use crate::control::problem::{AtRest, BoundaryState, Control, PathConstraint, Simulation};
 use crate::model::system::{Attachment, System};
 use crate::model::{Analysis, InitiallyMoving};
 
@@ -105,7 +105,9 @@ impl<'a> Spoken<'a> {
     fn of_goal(&mut self, state: &BoundaryState) {
         match state {
             BoundaryState::RestAtVoltages(_) => {}
-            BoundaryState::JointAngles { angles, .. } => angles.keys().for_each(|&j| self.of_joint(j)),
+            BoundaryState::JointAngles { angles, .. } => {
+                angles.keys().for_each(|&j| self.of_joint(j))
+            }
             BoundaryState::Markers { places, .. } => places.keys().for_each(|&m| self.of_marker(m)),
         }
     }

@@ -7,13 +7,13 @@ use nalgebra::Vector3;
 use crate::control::conditions::BoundaryConditions;
 use crate::control::error::BoundaryError;
 use crate::control::limits::{BoundedQuantity, When};
-use crate::control::problem::{Control, PathConstraint, BoundaryState};
+use crate::control::problem::{BoundaryState, Control, PathConstraint};
 use crate::control::transcription::Site;
+use crate::coordinates::Configuration;
 use crate::energy::{Energy, OutsideBox, SquaredDistance};
 use crate::functional::Sample;
 use crate::math::significant;
 use crate::model::{Coordinates, Model, Quantity, Region};
-use crate::reduction::Configuration;
 
 /// Refuses limits that contradict each other, and a start or goal of which it is known that it breaks a limit. `scalars` are voltages and potentials of states of
 /// rest at start and goal.
@@ -168,7 +168,11 @@ fn of_joint(joint: usize, lower: f64, upper: f64, model: &Model) -> BoundedQuant
 }
 
 /// Two limits of one quantity that leave it no value.
-fn contradiction(model: &Model, boundary: &BoundaryConditions, control: &Control) -> Option<String> {
+fn contradiction(
+    model: &Model,
+    boundary: &BoundaryConditions,
+    control: &Control,
+) -> Option<String> {
     let joints = control.limits.iter().filter_map(|limit| match *limit {
         PathConstraint::JointAngle { joint, min, max } => Some(of_joint(joint, min, max, model)),
         _ => None,
@@ -179,8 +183,9 @@ fn contradiction(model: &Model, boundary: &BoundaryConditions, control: &Control
     let others = boundary.limits.list.iter().filter(is_path).cloned();
     let all: Vec<BoundedQuantity> = joints.chain(others).collect();
     let below = all.iter().filter(|bounded| bounded.lower.is_finite());
-    let crossed =
-        |low: &&BoundedQuantity, high: &&BoundedQuantity| low.quantity == high.quantity && low.lower > high.upper;
+    let crossed = |low: &&BoundedQuantity, high: &&BoundedQuantity| {
+        low.quantity == high.quantity && low.lower > high.upper
+    };
     let mut pairs = below.flat_map(|low| all.iter().map(move |high| (low, high)));
     let (low, high) = pairs.find(|(low, high)| crossed(low, high))?;
     let told = |bounded: &BoundedQuantity, bound: f64| {

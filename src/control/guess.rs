@@ -74,7 +74,12 @@ pub fn guess(
 }
 
 /// 3s² − 2s³ between start and goal; rest voltages of the goal lifted a little.
-fn interpolate(model: &Model, boundary: &BoundaryConditions, control: &Control, h: f64) -> InitialGuess {
+fn interpolate(
+    model: &Model,
+    boundary: &BoundaryConditions,
+    control: &Control,
+    h: f64,
+) -> InitialGuess {
     let intervals = control.intervals;
     let lift = LIFT * control.voltage_unit(&model.system);
     let n = model.coordinate_count();

@@ -5,12 +5,12 @@
 //! of path limits and of bounds. A finer grid has more and smaller ones.
 
 use crate::control::conditions::BoundaryConditions;
+use crate::control::numbering::{Row, Variable};
 use crate::control::problem::Control;
 use crate::control::solution::{Costates, Solution};
 use crate::control::transcription::Layout;
-use crate::control::unknowns::{Row, Variable};
+use crate::coordinates::CoordinateMap;
 use crate::model::Model;
-use crate::reduction::CoordinateMap;
 
 /// Instants of the old grid that a curve is led through.
 const THROUGH: usize = 4;

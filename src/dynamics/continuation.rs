@@ -9,7 +9,7 @@ use crate::dynamics::equilibrium::{Equilibrium, Route};
 use crate::dynamics::instability::Instability;
 use crate::dynamics::ramp::{Load, Ramp};
 use crate::dynamics::spans::shortest;
-use crate::dynamics::statics::{NewtonOutcome, UpdateRange, RestState, Statics};
+use crate::dynamics::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
 use crate::ipopt::interrupt;
 use crate::model::Model;
 
@@ -270,7 +270,9 @@ pub(super) fn crossings(
             };
             let mut state = nearest.state.clone();
             let all = ramp.apply(path.statics, 1.0);
-            if let Ok(NewtonOutcome::Converged) = path.statics.newton(&mut state, &all, UpdateRange::Near) {
+            if let Ok(NewtonOutcome::Converged) =
+                path.statics.newton(&mut state, &all, UpdateRange::Near)
+            {
                 let is_stable = path.statics.unstable() == Some(0);
                 found.push(state);
                 if is_stable {

@@ -12,7 +12,7 @@
 use crate::dynamics::DiscreteTrajectory;
 use crate::math::{Matrix, Vector};
 use crate::model::system::{ElectricConstants, Fidelity};
-use crate::model::{SolidBlock, Model};
+use crate::model::{Model, SolidBlock};
 use nalgebra::SymmetricEigen;
 
 /// A muscle or block that leaves the domain under voltage.

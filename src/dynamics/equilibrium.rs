@@ -3,7 +3,7 @@
 
 use crate::dynamics::ramp::{Load, Ramp};
 use crate::dynamics::softest::{Mode, softest, stiffness};
-use crate::dynamics::statics::{NewtonOutcome, UpdateRange, RestState, Statics};
+use crate::dynamics::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
 use crate::dynamics::{EquilibriumError, Instability, LimitPoint, limit_point};
 use crate::model::{Floating, Model};
 

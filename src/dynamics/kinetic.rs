@@ -8,11 +8,11 @@
 //!
 //! so that they meet the constraints; without constraints this is M v = p.
 
+use crate::coordinates::{Configuration, Destination, Scratch};
 use crate::dynamics::tangent::{EntryList, Tangent};
-use crate::functional::{Blocks, Sample, Kind, Order, Part, BlockMask};
+use crate::functional::{BlockMask, Blocks, Kind, Order, Part, Sample};
 use crate::math::Vector;
 use crate::model::Model;
-use crate::reduction::{Configuration, Scratch, Destination};
 use crate::sparse::Symmetry;
 
 /// Storage of the bordered mass matrix.
@@ -47,7 +47,11 @@ impl<'m> Kinetic<'m> {
     }
 
     /// Rates of the coordinates of a placed instant; nothing where masses are missing or constraints are redundant.
-    pub(super) fn rates(&mut self, instant: &mut Configuration, momentum: &[f64]) -> Option<Vec<f64>> {
+    pub(super) fn rates(
+        &mut self,
+        instant: &mut Configuration,
+        momentum: &[f64],
+    ) -> Option<Vec<f64>> {
         let action = &self.model.action;
         self.values.fill(0.0);
         // The gradients of the constraints alone: neither forces nor multipliers bend them.

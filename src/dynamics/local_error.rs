@@ -50,7 +50,11 @@ impl LocalError {
 }
 
 /// Estimates the error of a motion by a method of an order; nothing where it has fewer than order + 1 steps.
-pub fn local_error(model: &Model, history: &DiscreteTrajectory, order: usize) -> Option<LocalError> {
+pub fn local_error(
+    model: &Model,
+    history: &DiscreteTrajectory,
+    order: usize,
+) -> Option<LocalError> {
     let (steps, window) = (history.intervals(), order + 1);
     if steps < window {
         return None;

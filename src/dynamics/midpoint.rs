@@ -8,14 +8,14 @@
 //!
 //! with the potentials φ of the interval, which have no inertia, by Gauss's law.
 
+use crate::coordinates::{Configuration as Place, Interval, Scratch};
 use crate::dynamics::resolution::{Balance, typical_energy};
 use crate::dynamics::solving::Solving;
 use crate::dynamics::stepper::{Equations, Steps};
 use crate::dynamics::tangent::EntryList;
-use crate::functional::{Order, BlockMask};
+use crate::functional::{BlockMask, Order};
 use crate::math::Vector;
 use crate::model::Model;
-use crate::reduction::{Configuration as Place, Interval, Scratch};
 
 /// Steps of the midpoint rule.
 pub type Stepper<'m> = Steps<Midpoint<'m>>;

@@ -22,7 +22,11 @@ const HALVINGS: usize = 30;
 const COLLAPSED: f64 = 0.03;
 
 /// A state of least potential energy downhill from another; `None` where the energy falls without end.
-pub(super) fn minimise(statics: &mut Statics<'_>, from: &[f64], voltages: &[f64]) -> Option<RestState> {
+pub(super) fn minimise(
+    statics: &mut Statics<'_>,
+    from: &[f64],
+    voltages: &[f64],
+) -> Option<RestState> {
     statics.weight = 1.0;
     let model = statics.model;
     let n = model.action.motion.coordinates;

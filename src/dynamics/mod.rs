@@ -10,10 +10,10 @@
 
 mod anderson;
 mod continuation;
+mod discrete_trajectory;
 mod domain;
 mod equilibrium;
 mod error;
-mod history;
 mod instability;
 mod kinetic;
 mod local_error;
@@ -37,10 +37,10 @@ pub mod trajectory;
 use continuation::{LimitPoint, limit_point};
 
 pub use continuation::{Continuation, continuation};
+pub use discrete_trajectory::{DiscreteTrajectory, Reading};
 pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
-pub use equilibrium::{Equilibrium, StabilityLoss, Route, equilibrium};
+pub use equilibrium::{Equilibrium, Route, StabilityLoss, equilibrium};
 pub use error::{EquilibriumError, StepError};
-pub use history::{DiscreteTrajectory, Reading};
 pub use instability::Instability;
 pub use local_error::{LocalError, local_error};
 pub use midpoint::{Midpoint, Stepper};

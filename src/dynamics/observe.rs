@@ -7,14 +7,14 @@
 //! like row 0. The momenta are the momentum maps of p⁺ = D₂L_d + f⁺, which an invariant motion conserves exactly; reactions of
 //! joints enter with the next interval.
 
-use crate::dynamics::history::{DiscreteTrajectory, Reading};
+use crate::coordinates::{Configuration, Interval, Scratch};
+use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::kinetic::Kinetic;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Kind, Order};
 use crate::kinematics::{Carrier, MaterialVector, Pose};
 use crate::math::Vector;
-use crate::model::{SolidBlock, Model};
-use crate::reduction::{Configuration, Interval, Scratch};
+use crate::model::{Model, SolidBlock};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use std::ops::Range;
 
@@ -40,7 +40,13 @@ impl Energies {
 }
 
 /// Energies of the interval of `h` ms between two placed instants under voltages by scalar.
-pub fn energies(model: &Model, a: &Configuration, b: &Configuration, scalars: &[f64], h: f64) -> Energies {
+pub fn energies(
+    model: &Model,
+    a: &Configuration,
+    b: &Configuration,
+    scalars: &[f64],
+    h: f64,
+) -> Energies {
     let interval = Interval::given(scalars, h);
     let frame = interval.frame([a, b]);
     let mut energies = Energies::default();

@@ -7,11 +7,11 @@
 //! is quadratic, however fast the oscillation. Voltages are constant within a step and supply nothing there; dissipation
 //! takes as much as it does work.
 
+use crate::coordinates::{Configuration, Interval};
 use crate::dynamics::StepError;
 use crate::functional::Kind;
 use crate::math::Vector;
 use crate::model::Model;
-use crate::reduction::{Configuration, Interval};
 use std::f64::consts::PI;
 
 /// Part of the energy exchanged in a step that may be made or lost in it.
@@ -124,7 +124,11 @@ pub(super) fn typical_energy(model: &Model) -> f64 {
 
 /// The first joint that a step turns by more than half a turn, or body that it turns by more than a right angle in space,
 /// between two placed instants; with the angle in rad.
-pub(super) fn turned(model: &Model, start: &Configuration, end: &Configuration) -> Option<(String, f64)> {
+pub(super) fn turned(
+    model: &Model,
+    start: &Configuration,
+    end: &Configuration,
+) -> Option<(String, f64)> {
     let motion = &model.action.motion;
     let of_joints = motion.tree.as_ref().map_or(0, |tree| tree.coordinates());
     let turns = |&i: &usize| {

@@ -1,9 +1,9 @@
 //! Energy of states of rest, and the way onto the constraints and to Gauss's law.
 
+use crate::coordinates::{Configuration, Interval};
 use crate::dynamics::statics::{ITERATIONS, RestState, Statics};
 use crate::functional::{Kind, Order};
 use crate::math::Vector;
-use crate::reduction::{Configuration, Interval};
 
 /// Size of the last correction, relative to angles of one radian and the length of the system.
 const UPDATE: f64 = 1e-12;

@@ -1,6 +1,6 @@
 //! Simulation: step after step, recorded.
 
-use crate::dynamics::history::{DiscreteTrajectory, Reading};
+use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::observe::vector_momenta;
 use crate::dynamics::solving::{Integrator, Solving};
 use crate::dynamics::stepper::{Equations, Steps};

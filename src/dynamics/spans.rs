@@ -4,11 +4,11 @@
 //! Forces are those at the middle of a step, which says nothing of its end: a span that turns by a right angle or more within
 //! a step may have passed through zero, and an element that is sound in the middle may be crushed.
 
+use crate::coordinates::{Configuration, Interval};
 use crate::dynamics::DiscreteTrajectory;
 use crate::functional::Kind;
 use crate::model::Model;
 use crate::model::system::Fidelity;
-use crate::reduction::{Configuration, Interval};
 
 /// Below this stretch a muscle is named where a step fails; pull-in of an ideal dielectric is at 0.63.
 const SHORT: f64 = 0.5;
@@ -25,7 +25,11 @@ fn lumped(model: &Model) -> impl Iterator<Item = (usize, usize)> + '_ {
 }
 
 /// The first lumped muscle whose span turns by a right angle or more from one placed instant to another.
-pub(super) fn reversed(model: &Model, before: &Configuration, after: &Configuration) -> Option<usize> {
+pub(super) fn reversed(
+    model: &Model,
+    before: &Configuration,
+    after: &Configuration,
+) -> Option<usize> {
     let turns = |span: usize| before.x[span].dot(&after.x[span]) <= 0.0;
     lumped(model)
         .find(|&(_, span)| turns(span))

@@ -8,11 +8,11 @@
 //! The first stable one is the answer.
 
 use crate::dynamics::continuation::crossings;
-use crate::dynamics::equilibrium::{Grown, StabilityLoss, Route, at_limit, begin, grow, unloaded};
+use crate::dynamics::equilibrium::{Grown, Route, StabilityLoss, at_limit, begin, grow, unloaded};
 use crate::dynamics::minimum::minimise;
 use crate::dynamics::ramp::{Load, Ramp};
 use crate::dynamics::softest::softest;
-use crate::dynamics::statics::{NewtonOutcome, UpdateRange, RestState, Statics};
+use crate::dynamics::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
 use crate::dynamics::{Equilibrium, EquilibriumError, LimitPoint, limit_point};
 use crate::ipopt::interrupt;
 use crate::model::{Coordinates, Model};

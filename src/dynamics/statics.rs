@@ -6,13 +6,13 @@
 //! Weights are constant forces on the vectors, so that a part of them is a part of these forces. A stiffness σ on every
 //! coordinate may be added to the tangent, which makes any state's tangent that of a minimum.
 
+use crate::coordinates::{Configuration, Interval, Scratch};
 use crate::dynamics::EquilibriumError;
 use crate::dynamics::tangent::{EntryList, Tangent};
 use crate::functional::Order;
 use crate::ipopt::interrupt;
 use crate::math::Vector;
 use crate::model::Model;
-use crate::reduction::{Configuration, Interval, Scratch};
 use crate::sparse::{Singular, Symmetry};
 
 /// Limit of Newton iterations for one load.

@@ -1,5 +1,6 @@
 //! One step forward: Newton on the equations of a method, and halves of the step where it fails.
 
+use crate::coordinates::Configuration as Place;
 use crate::dynamics::StepError;
 use crate::dynamics::anderson::Anderson;
 use crate::dynamics::resolution::{Balance, turned};
@@ -9,7 +10,6 @@ use crate::dynamics::tangent::Tangent;
 use crate::functional::Order;
 use crate::ipopt::interrupt;
 use crate::model::Model;
-use crate::reduction::Configuration as Place;
 use std::time::Instant;
 
 /// Limit of Newton iterations in one step.

@@ -2,8 +2,8 @@
 //!
 //! Unknowns are the coordinates and multipliers of an instant, then the potentials of an interval.
 
+use crate::coordinates::StepPattern;
 use crate::model::Model;
-use crate::reduction::StepPattern;
 use crate::sparse::{Backend, Direct, Singular, Symmetry};
 
 /// Places in the values of the action, summed into the entries of a matrix.

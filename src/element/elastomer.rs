@@ -2,10 +2,10 @@
 
 use super::dispatch::{Task, dispatch};
 use super::dual::Dual;
+use super::geometry::ElementGeometry;
 use super::lanes::Lanes;
 use super::law::{Field, Volume};
 use super::local::{Local, Output, Pair};
-use super::shape::ElementGeometry;
 use super::state::ElementState;
 use super::variations::Variations;
 use crate::math::Vector;
@@ -34,7 +34,12 @@ pub struct Elastomer<F> {
 
 impl<F: Field> Elastomer<F> {
     /// Energy W in mJ of the hexahedron `shape` with nodes at `x` in mm and their potentials in V.
-    pub fn energy(&self, shape: &ElementGeometry, x: &[Vector; 8], potentials: &F::Potentials) -> f64 {
+    pub fn energy(
+        &self,
+        shape: &ElementGeometry,
+        x: &[Vector; 8],
+        potentials: &F::Potentials,
+    ) -> f64 {
         let mut energy = 0.0;
         dispatch(Plain::<_, _, 0> {
             law: self,

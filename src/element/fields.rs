@@ -1,8 +1,8 @@
 //! What is shown of a hexahedron: means over its reference volume of deformation, fields and stress.
 
 use super::elastomer::Elastomer;
+use super::geometry::ElementGeometry;
 use super::law::{Field, Volume};
-use super::shape::ElementGeometry;
 use super::viscosity::Viscosity;
 use crate::math::{Matrix, Vector};
 
@@ -35,7 +35,12 @@ impl Fields {
 impl<F: Field> Elastomer<F> {
     /// Fields of the hexahedron `shape` with nodes at `x` in mm and their potentials in V; add
     /// [`Viscosity::stress`] to the stress of a moving one.
-    pub fn fields(&self, shape: &ElementGeometry, x: &[Vector; 8], potentials: &F::Potentials) -> Fields {
+    pub fn fields(
+        &self,
+        shape: &ElementGeometry,
+        x: &[Vector; 8],
+        potentials: &F::Potentials,
+    ) -> Fields {
         let one = Matrix::identity();
         let (mu, lambda) = (self.shear_modulus, self.lame_lambda);
         let electric = self.field.constants(potentials);

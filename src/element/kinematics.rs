@@ -1,8 +1,8 @@
 //! Deformation at the Gauss points.
 
 use super::algebra::{Nine, Three, cofactor, dot, scale_all};
+use super::geometry::ElementGeometry;
 use super::number::Points;
-use super::shape::ElementGeometry;
 
 /// Deformation gradient, its inverse transpose and its determinant, with the weights of the points.
 #[expect(non_snake_case, reason = "notation of the law")]
@@ -20,7 +20,11 @@ pub(super) struct Kinematics<N: Points> {
 #[expect(non_snake_case, reason = "notation of the law")]
 impl<N: Points> Kinematics<N> {
     #[inline(always)]
-    pub(super) fn new(token: N::Token, shape: &ElementGeometry, x: &[Three<N::Uniform>; 8]) -> Self {
+    pub(super) fn new(
+        token: N::Token,
+        shape: &ElementGeometry,
+        x: &[Three<N::Uniform>; 8],
+    ) -> Self {
         let F = gradient_of::<N>(token, shape, x);
         let H = cofactor(&F);
         let J = dot(F[0], H[0]).positive();

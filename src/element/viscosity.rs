@@ -22,10 +22,10 @@ use super::algebra::{
     transpose,
 };
 use super::dispatch::{Task, dispatch};
+use super::geometry::ElementGeometry;
 use super::kinematics::{Kinematics, gradient_of, load};
 use super::lanes::Lanes;
 use super::number::{Points, Real};
-use super::shape::ElementGeometry;
 use super::viscous_local::{ViscousContraction, ViscousLocal};
 use crate::math::{Matrix, Vector};
 use pulp::Simd;

@@ -1,7 +1,7 @@
 //! The true electric field at a point of a finite element as a measure of the intervals.
 
 use crate::element::{FieldPoint, SpatialField};
-use crate::functional::{Couplings, Sample, Measure, Part, Stencil, ScalarArg};
+use crate::functional::{Couplings, Measure, Part, Sample, ScalarArg, Stencil};
 use crate::math::Vector;
 
 /// |e|²/E² at a point of an element, with the nodes at one time of an interval and the potentials of the interval.

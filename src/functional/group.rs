@@ -10,7 +10,7 @@
 
 use crate::energy::Energy;
 use crate::functional::slots::{NONE, Slots};
-use crate::functional::{Couplings, Sample, Horizon, Order, Output, Part, Stencil, VectorArg};
+use crate::functional::{Couplings, Horizon, Order, Output, Part, Sample, Stencil, VectorArg};
 use crate::math::{Jet, Matrix, Vector};
 use nalgebra::SVector;
 use std::fmt;

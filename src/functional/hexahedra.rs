@@ -3,9 +3,9 @@
 //! Nodes are read at the midpoint of an interval, potentials are scalars of the interval: `−h W(x̄, φ)`. A large mesh is
 //! evaluated on all cores.
 
-use crate::element::{Dielectric, Elastomer, Field, Local, Passive, ElementGeometry};
-use crate::functional::stretches::Batches;
-use crate::functional::{Couplings, Term, Sample, Horizon, Kind, Order, Output, Part};
+use crate::element::{Dielectric, Elastomer, ElementGeometry, Field, Local, Passive};
+use crate::functional::batches::Batches;
+use crate::functional::{Couplings, Horizon, Kind, Order, Output, Part, Sample, Term};
 use crate::math::Vector;
 use std::fmt;
 

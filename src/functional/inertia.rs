@@ -1,6 +1,6 @@
 //! Kinetic energy of constant masses: the one effect whose second derivative never changes.
 
-use crate::functional::{Couplings, Term, Sample, Horizon, Kind, Order, Output};
+use crate::functional::{Couplings, Horizon, Kind, Order, Output, Sample, Term};
 use crate::math::Vector;
 
 /// A mass m on a material vector, ½ m |ẋ|², or between two, m ẋ·ẏ.

@@ -10,25 +10,25 @@
 //! sum on one interval: its forces ∂Ŝ/∂x, the blocks of ∂²Ŝ/∂x², and both contracted with a direction. How vectors
 //! follow from coordinates is none of its business.
 
+mod batches;
 mod couplings;
-mod effect;
 mod element_field;
 mod group;
-mod group_effect;
+mod group_term;
 mod hexahedra;
 mod inertia;
 mod paths;
 mod slots;
 mod stencil;
-mod stretches;
+mod term;
 mod viscous_hexahedra;
 
-pub use couplings::{Blocks, Couplings, Part, BlockMask};
-pub use effect::{Term, Sample, Horizon, Kind, Order, Measure, Output, Functional};
+pub use couplings::{BlockMask, Blocks, Couplings, Part};
 pub use element_field::ElementField;
 pub use group::{Element, Group};
-pub use hexahedra::{Hexahedra, Hexahedron, ScalarArg, Electrical};
+pub use hexahedra::{Electrical, Hexahedra, Hexahedron, ScalarArg};
 pub use inertia::{Inertia, Mass};
 pub use paths::{Path, Paths};
 pub use stencil::{Stencil, VectorArg};
+pub use term::{Functional, Horizon, Kind, Measure, Order, Output, Sample, Term};
 pub use viscous_hexahedra::{ViscousHexahedra, ViscousHexahedron};

@@ -13,7 +13,7 @@
 //! ```
 
 use crate::energy::Cable;
-use crate::functional::{Couplings, Term, Sample, Horizon, Kind, Order, Output, Part};
+use crate::functional::{Couplings, Horizon, Kind, Order, Output, Part, Sample, Term};
 use crate::math::{Matrix, Vector};
 
 /// A path and the energy of its length.

@@ -4,9 +4,9 @@
 //! derive by it.
 
 use crate::element::{ElementGeometry, Viscosity, ViscousContraction, ViscousLocal};
+use crate::functional::batches::Batches;
 use crate::functional::hexahedra::middle;
-use crate::functional::stretches::Batches;
-use crate::functional::{Couplings, Term, Sample, Kind, Order, Output};
+use crate::functional::{Couplings, Kind, Order, Output, Sample, Term};
 use crate::math::{Matrix, Vector};
 
 /// One viscous hexahedron.

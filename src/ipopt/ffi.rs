@@ -16,7 +16,7 @@ use std::slice;
 
 use crate::ipopt::evaluation::Evaluator;
 use crate::ipopt::options::OptionValue;
-use crate::ipopt::solution::{Multipliers, Iteration};
+use crate::ipopt::solution::{Iteration, Multipliers};
 use crate::nlp::{Bounds, Entries};
 use crate::sparse::mumps::{self, Exclusive};
 

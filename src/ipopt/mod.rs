@@ -20,7 +20,7 @@ use crate::nlp::{Bounds, Entries, Nlp};
 use centre::{Structures, centre};
 use evaluation::Evaluator;
 pub use options::{MUMPS_ORDERING, OptionValue, Options, Start};
-pub use solution::{Multipliers, Evaluations, Iteration, StartingPoint, Seconds, SolverResult};
+pub use solution::{Evaluations, Iteration, Multipliers, Seconds, SolverResult, StartingPoint};
 pub use status::Status;
 
 /// Version of the Ipopt that the program was built with.

@@ -2,8 +2,8 @@
 
 use crate::math::Matrix;
 use crate::mesh::grid::Grid;
-use crate::model::condensed::{Presolved, hold};
 use crate::model::joints::triad;
+use crate::model::presolved::{Presolved, hold};
 use crate::model::system::{Discretisation, Electrode, Fidelity, Glue, Muscle, Potential, Solid};
 use nalgebra::Vector3;
 

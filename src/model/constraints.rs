@@ -1,12 +1,12 @@
 //! Constraints that redundant coordinates leave open: rigid bodies and joints, times their multipliers.
 
 use crate::energy::{Coincidence, Energy, Orthogonality};
-use crate::functional::{Term, Element, Group, Stencil, VectorArg};
+use crate::functional::{Element, Group, Stencil, Term, VectorArg};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
-use crate::model::continua::Solids;
 use crate::model::joints::triad;
 use crate::model::plan::{self, LeftOut, Present};
+use crate::model::solids::Solids;
 use crate::model::system::{Glue, Joint, JointKind, System};
 
 /// Terms of constraints.

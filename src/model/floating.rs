@@ -1,9 +1,9 @@
 //! Rigid motions of elastic blocks that nothing holds.
 
+use crate::coordinates::NodePlace;
 use crate::kinematics::{Carrier, MaterialVector, VectorTerm};
 use crate::math::Vector;
 use crate::model::SolidBlock;
-use crate::reduction::NodePlace;
 
 /// A part of a block that can move without resistance: its name and the motion.
 #[derive(Clone, Debug, PartialEq)]

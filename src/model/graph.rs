@@ -1,11 +1,11 @@
 //! The joint graph: a spanning tree from the ground, and the joints that close loops.
 
+use crate::coordinates::{Configuration, CoordinateMap, Link, LinkKind, Tree};
 use crate::kinematics::{Carrier, MaterialVector, Pose, VectorTerm};
 use crate::math::{Matrix, Vector};
 use crate::model::ModelError;
 use crate::model::joints::Screw;
 use crate::model::system::{JointKind, System};
-use crate::reduction::{Configuration, Link, LinkKind, CoordinateMap, Tree};
 
 /// Joints in an order from the ground outwards, those that close loops, and bodies that nothing holds.
 #[derive(Clone, Debug)]
@@ -168,7 +168,8 @@ impl Graph {
                 terms: vec![term(b, i)],
             })
             .collect();
-        let motion = CoordinateMap::articulated(self.tree(system, reference, &vectors), &vectors, &[], 0);
+        let motion =
+            CoordinateMap::articulated(self.tree(system, reference, &vectors), &vectors, &[], 0);
         let mut instant = motion.placed(&self.coordinates(system, joints));
         instant.l.copy_from_slice(&self.coordinates(system, rates));
         motion.along(&mut instant);

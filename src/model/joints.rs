@@ -139,7 +139,9 @@ impl JointReading {
                 let angle = b.dot(&c).atan2(a.dot(&c));
                 angle + ((near - angle) / std::f64::consts::TAU).round() * std::f64::consts::TAU
             }
-            JointCoordinate::Displacement { axis, span } => axis.at(poses, &[]).dot(&span.at(poses, &[])),
+            JointCoordinate::Displacement { axis, span } => {
+                axis.at(poses, &[]).dot(&span.at(poses, &[]))
+            }
             JointCoordinate::None => 0.0,
         }
     }

@@ -1,12 +1,14 @@
 //! Measures of quantities: what they read, and their formulas.
 
 use crate::element::FieldPoint;
-use crate::energy::{Angle, Energy, OutsideBox, PositionComponent, Projection, SquaredDistance, SquaredField};
+use crate::energy::{
+    Angle, Energy, OutsideBox, PositionComponent, Projection, SquaredDistance, SquaredField,
+};
 use crate::functional::{Element, ElementField, Group, Measure, Stencil, VectorArg};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
-use crate::model::joints::{JointReading, JointCoordinate as Gauge};
-use crate::model::{Presolved, SolidBlock, FieldPlace, Quantity, Region};
+use crate::model::joints::{JointCoordinate as Gauge, JointReading};
+use crate::model::{FieldPlace, Presolved, Quantity, Region, SolidBlock};
 
 /// Measures by site, in the order of the quantities.
 #[derive(Debug, Default)]

@@ -1,53 +1,53 @@
 //! Where physics meets indices: from a checked system to sums of effects over its coordinates.
 
+mod analysis;
 mod attachment;
 mod block_terms;
 mod blocks;
 mod component;
 pub mod components;
-mod condensed;
 mod constraints;
-mod continua;
-mod continuum;
 mod dampers;
 mod error;
+mod field_extent;
 mod floating;
 mod graph;
+mod immobile;
 mod joints;
 mod measures;
 mod named;
 pub mod plan;
+mod presolved;
 mod quantity;
-mod question;
-mod reach;
 mod redundancy;
+mod solid_block;
+mod solids;
 mod states;
-mod still;
 pub mod system;
 mod terms;
 
+pub use analysis::{Analysis, InitiallyMoving};
 pub use component::Component;
-pub use condensed::{Presolved, BodyLocation};
-pub use continuum::SolidBlock;
 pub use error::ModelError;
 pub use floating::Floating;
 pub use graph::Graph;
+pub use immobile::Immobile;
 pub use joints::{JointReading, Screw};
 pub use named::Freedom;
 pub use plan::{LeftOut, Present};
+pub use presolved::{BodyLocation, Presolved};
 pub use quantity::{FieldPlace, Quantity, Region, joint_unit};
-pub use question::{Analysis, InitiallyMoving};
-pub use still::Immobile;
+pub use solid_block::SolidBlock;
 pub use system::{System, VACUUM_PERMITTIVITY};
 pub use terms::{Terms, mid, rate};
 
-use crate::functional::{Kind, Functional};
+use crate::coordinates::{Configuration, CoordinateMap, NodePlace, Reduced};
+use crate::functional::{Functional, Kind};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
-use crate::reduction::{Configuration, CoordinateMap, NodePlace, Reduced};
 use crate::sparse::Symmetry;
-use continua::Solids;
 use measures::Measures;
+use solids::Solids;
 use std::collections::BTreeSet;
 use system::{Attachment, Muscle, Source};
 
@@ -156,7 +156,7 @@ impl Model {
         let graph = Graph::new(rest);
         let reference: Vec<Pose> = rest.bodies.iter().map(system::Body::pose).collect();
         let mut vectors = Vectors::default();
-        let voltages = reach::voltages(rest, &solids);
+        let voltages = field_extent::voltages(rest, &solids);
         let reached = match question.zero_voltage.is_empty() {
             true => voltages.clone(),
             false => Self::reached(&system, &question),
@@ -273,7 +273,7 @@ impl Model {
         };
         let mut whole = Presolved::new(system, &question);
         let solids = blocks::blocks(&mut whole);
-        reach::voltages(&whole.system, &solids)
+        field_extent::voltages(&whole.system, &solids)
     }
 
     /// How the coordinates of the joints of the scene are read from the poses of its bodies.

@@ -1,9 +1,9 @@
 //! Coordinates and rates of states that are given by joints, poses and velocities of bodies.
 
+use crate::coordinates::Configuration;
 use crate::kinematics::Pose;
 use crate::math::Vector;
 use crate::model::{Coordinates, Model};
-use crate::reduction::Configuration;
 use std::collections::BTreeMap;
 
 impl Model {

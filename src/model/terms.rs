@@ -3,13 +3,13 @@
 
 use crate::energy::{Energy, Gravity};
 use crate::functional::{
-    Term, Element, Group, Hexahedra, Hexahedron, Inertia, Mass, Path, Paths, Stencil, VectorArg,
-    ViscousHexahedra, ViscousHexahedron, Electrical,
+    Electrical, Element, Group, Hexahedra, Hexahedron, Inertia, Mass, Path, Paths, Stencil, Term,
+    VectorArg, ViscousHexahedra, ViscousHexahedron,
 };
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::model::attachment::Attachment;
-use crate::model::condensed::Presolved;
 use crate::model::plan::{self, LeftOut, Present};
+use crate::model::presolved::Presolved;
 use std::any::Any;
 use std::fmt;
 

@@ -140,7 +140,11 @@ impl<'a> Series<'a> {
     }
 
     /// Writes the solids at a time in s as the next file; its path.
-    pub fn add(&mut self, time: f64, grids: &[UnstructuredGrid<'_>]) -> Result<PathBuf, WriteError> {
+    pub fn add(
+        &mut self,
+        time: f64,
+        grids: &[UnstructuredGrid<'_>],
+    ) -> Result<PathBuf, WriteError> {
         let number = self.instants.len();
         let file = match &self.within {
             Some(folder) => format!("{folder}/{number:04}.vtu"),

@@ -347,7 +347,10 @@ impl Drawing<'_> {
         match last {
             0 => {
                 if has_blocks {
-                    rows.push(("reference".to_owned(), LegendSymbol::Swatch(style::REFERENCE)));
+                    rows.push((
+                        "reference".to_owned(),
+                        LegendSymbol::Swatch(style::REFERENCE),
+                    ));
                 }
                 rows.push(("at rest".to_owned(), LegendSymbol::Swatch(now)));
             }

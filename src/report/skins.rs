@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use crate::dynamics::DiscreteTrajectory;
 use crate::model::system::Fidelity;
-use crate::model::{SolidBlock, Model};
+use crate::model::{Model, SolidBlock};
 
 /// Most instants that an animation shows.
 const FRAMES: usize = 80;

@@ -44,7 +44,10 @@ impl View {
     }
 
     /// Places of many points.
-    pub fn places<'a>(&self, points: impl IntoIterator<Item = &'a Vector3<f64>>) -> Vec<CanvasPoint> {
+    pub fn places<'a>(
+        &self,
+        points: impl IntoIterator<Item = &'a Vector3<f64>>,
+    ) -> Vec<CanvasPoint> {
         points.into_iter().map(|p| self.place(p)).collect()
     }
 

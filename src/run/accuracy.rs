@@ -5,7 +5,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::run::error::RunError;
-use crate::run::estimate::{Convergence, Measures, ErrorSample, greatest};
+use crate::run::estimate::{Convergence, ErrorSample, Measures, greatest};
 
 /// No grid has more than so many times the intervals of the first.
 const FINEST: usize = 1 << 10;

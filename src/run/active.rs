@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::control::problem::{Control, Duration, PathConstraint};
-use crate::control::{When, Row, Transcription, Variable};
+use crate::control::{Row, Transcription, Variable, When};
 use crate::math::significant;
 use crate::model::{JointReading, Model, joint_unit};
 use crate::nlp::Nlp;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::dynamics::trajectory::Observations;
 use crate::kinematics::Carrier;
-use crate::model::{SolidBlock, Model};
+use crate::model::{Model, SolidBlock};
 
 /// A block, or a muscle of finite elements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]

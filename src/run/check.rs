@@ -4,9 +4,10 @@ use std::collections::{BTreeMap, HashMap};
 use std::time::Instant;
 
 use crate::control::problem::{
-    Control, Duration, Guess, Objective, Simulation, Solver, BoundaryState, Task, Voltages,
+    BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, Task, Voltages,
 };
 use crate::control::{Row, Transcription, Variable};
+use crate::files::read_problem;
 use crate::ipopt::interrupt::TimeLimit;
 use crate::mesh::Mesh;
 use crate::model::{Coordinates, Model, System};
@@ -17,7 +18,6 @@ use crate::run::error::RunError;
 use crate::run::memory;
 use crate::run::optimise::{Counted, Prepared, prepare, resolve};
 use crate::run::request::{CommandInput, CommandOutput};
-use crate::scene::read_problem;
 
 /// Noise on each variable, relative to its size.
 const NOISE: f64 = 1e-2;

@@ -8,7 +8,7 @@ use crate::control::problem::Control;
 use crate::ipopt::interrupt;
 use crate::model::System;
 use crate::run::error::RunError;
-use crate::run::optimise::{SolveLimits, Iterate, Optimum, optimise};
+use crate::run::optimise::{Iterate, Optimum, SolveLimits, optimise};
 
 /// How many times the intervals of the problem are tried.
 const TIMES: [usize; 3] = [2, 4, 8];

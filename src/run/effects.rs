@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use crate::control::problem::Control;
-use crate::functional::{Couplings, Term, Kind};
+use crate::coordinates::CoordinateMap;
+use crate::functional::{Couplings, Kind, Term};
 use crate::model::Model;
-use crate::reduction::CoordinateMap;
 use crate::run::reasons::{self, Absent, absent};
 use crate::run::stopwatch;
 

@@ -6,10 +6,10 @@ use thiserror::Error;
 
 use crate::control::BoundaryError;
 use crate::dynamics::EquilibriumError;
+use crate::files::SceneError;
 use crate::ipopt::{IpoptError, Status};
 use crate::report::atomic::WriteError;
 use crate::run::solution_file::SolutionError;
-use crate::scene::SceneError;
 
 /// How a robot that nothing holds starts.
 const FLOATS: &str =

@@ -7,14 +7,14 @@
 use std::fs;
 use std::path::Path;
 
+use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::element::{Fields, Viscosity};
 use crate::math::{Matrix, Vector};
-use crate::model::{SolidBlock, Model};
-use crate::reduction::Configuration;
+use crate::model::{Model, SolidBlock};
 use crate::report::atomic::WriteError;
 use crate::report::origin::Origin;
-use crate::report::paraview::{Field, UnstructuredGrid, Series};
+use crate::report::paraview::{Field, Series, UnstructuredGrid};
 
 /// Instants that are written at most.
 const MOST: usize = 200;
@@ -45,7 +45,11 @@ pub(super) fn write(
 }
 
 /// Largest reference field −∂φ/∂X of an element in V/m at an instant; `None` where there is none.
-pub(super) fn largest_nominal_field(model: &Model, history: &DiscreteTrajectory, k: usize) -> Option<f64> {
+pub(super) fn largest_nominal_field(
+    model: &Model,
+    history: &DiscreteTrajectory,
+    k: usize,
+) -> Option<f64> {
     let mut states = SolidStates::new(model, history);
     let state = states.place(k);
     let each = model.solids.iter().flat_map(|continuum| {

@@ -8,12 +8,12 @@ use crate::control::problem::{Control, Duration, Simulation, Voltages};
 use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
-use crate::run::accuracy::{Attempt, Refined, AccuracyTarget, refine};
+use crate::run::accuracy::{AccuracyTarget, Attempt, Refined, refine};
 use crate::run::error::RunError;
 use crate::run::estimate::ErrorSample;
 use crate::run::integrate::{Simulated, grid, integrate};
 use crate::run::motion;
-use crate::run::optimise::{SolveLimits, Iterate, Optimum, optimise};
+use crate::run::optimise::{Iterate, Optimum, SolveLimits, optimise};
 
 /// The solver's tolerance as a part of the accuracy asked for, where the problem names no smaller one.
 const SOLVER: f64 = 1e-2;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::control::BoundaryConditions;
-use crate::control::problem::{Control, Hold, BoundaryState};
+use crate::control::problem::{BoundaryState, Control, Hold};
 use crate::model::Model;
 use crate::run::error::RunError;
 use crate::run::resimulate::Resimulation;

@@ -4,12 +4,12 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use crate::control::BoundaryConditions;
-use crate::control::problem::{Control, Duration, Objective, BoundaryState};
+use crate::control::problem::{BoundaryState, Control, Duration, Objective};
+use crate::coordinates::Configuration;
 use crate::dynamics::simulate;
 use crate::math::{Vector, significant};
 use crate::model::{Model, System, joint_unit};
-use crate::reduction::Configuration;
-use crate::run::optimise::{SolveLimits, Iterate, Optimum, optimise};
+use crate::run::optimise::{Iterate, Optimum, SolveLimits, optimise};
 use crate::run::second_start::is_infeasible;
 
 /// Bounds told at most.

@@ -1,6 +1,7 @@
 //! What a problem consists of, before it is solved.
 
 use crate::control::problem::{Control, Task};
+use crate::files::read_problem;
 use crate::model::{Model, System};
 use crate::nlp::Nlp;
 use crate::report::atomic;
@@ -13,9 +14,8 @@ use crate::run::folder::make_folder;
 use crate::run::memory;
 use crate::run::optimise::{Counted, Prepared, prepare, resolve};
 use crate::run::request::{CommandInput, CommandOutput};
-use crate::run::spy;
+use crate::run::sparsity;
 use crate::run::words::key;
-use crate::scene::read_problem;
 use crate::sparse::Symmetry;
 
 /// The plan: effects in numbers, what calls for them, and what is not there; with sizes; with a folder also pictures of Jacobian and Hessian.
@@ -152,7 +152,11 @@ fn listed<'a>(heading: &str, lines: impl Iterator<Item = (&'a String, &'a String
     text
 }
 
-fn of_control(request: &CommandInput, system: &System, control: &Control) -> Result<String, RunError> {
+fn of_control(
+    request: &CommandInput,
+    system: &System,
+    control: &Control,
+) -> Result<String, RunError> {
     let (model, boundary) = resolve(&request.input, system, control)?;
     let Prepared { program, start, .. } = prepare(
         &request.input,
@@ -195,12 +199,12 @@ fn of_control(request: &CommandInput, system: &System, control: &Control) -> Res
             ("hessian.svg", "Hessian", variables, &hessian),
         ];
         for (file, name, rows, entries) in pictures {
-            let shape = spy::MatrixSize {
+            let shape = sparsity::MatrixSize {
                 name,
                 rows,
                 columns: variables,
             };
-            let svg = spy::svg(shape, entries, &origin);
+            let svg = sparsity::svg(shape, entries, &origin);
             atomic::write(&folder.join(file), svg.as_bytes())?;
         }
     }

@@ -57,7 +57,7 @@ pub struct Optimum {
     /// The motion: the optimal one, or the last iterate.
     pub motion: Solution,
     /// What the solver returned.
-    pub solution: Solution,
+    pub solution: SolverResult,
     /// Interval in which the span of a muscle turns by a right angle or more, and the muscle: the discrete equations hold, but
     /// describe no motion.
     pub reversed: Option<(usize, usize)>,
@@ -177,19 +177,20 @@ pub fn optimise(
     };
     phase("ordering and first factorisation");
     tracing::info!(?start, variables = point.x.len(), "solve");
-    let mut solve = |program: &mut Transcription<'_>, point: &ipopt::StartingPoint, options: &Options| {
-        let decoder = program.decoder();
-        let mut observer = |report: &Iteration, x: &[f64]| {
-            let motion = || solved(&model, &decoder.decode(x), None);
-            observer(&Iterate {
-                report,
-                model: &model,
-                motion: &motion,
-            })
+    let mut solve =
+        |program: &mut Transcription<'_>, point: &ipopt::StartingPoint, options: &Options| {
+            let decoder = program.decoder();
+            let mut observer = |report: &Iteration, x: &[f64]| {
+                let motion = || solved(&model, &decoder.decode(x), None);
+                observer(&Iterate {
+                    report,
+                    model: &model,
+                    motion: &motion,
+                })
+            };
+            ipopt::solve(program, point, options, &mut observer)
+                .map_err(|error| RunError::ipopt(file, &error))
         };
-        ipopt::solve(program, point, options, &mut observer)
-            .map_err(|error| RunError::ipopt(file, &error))
-    };
     let mut solution = solve(&mut program, &point, &options)?;
     let mut restarted = None;
     if is_infeasible(solution.status) && matches!(start, Start::Cold | Start::Simulated) {

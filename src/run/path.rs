@@ -5,7 +5,8 @@ use std::time::Instant;
 use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
-    Continuation, Equilibrium, DiscreteTrajectory, Instability, continuation, observations, out_of_domain,
+    Continuation, DiscreteTrajectory, Equilibrium, Instability, continuation, observations,
+    out_of_domain,
 };
 use crate::ipopt::{Status, interrupt};
 use crate::model::{Model, System};
@@ -195,7 +196,12 @@ fn observed(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory) -> 
 
 /// `path.svg`: fraction of the voltages over the way of each marker, or of the coordinate that moves most; where stability is
 /// lost it is marked.
-fn figure(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory, origin: &Origin) -> String {
+fn figure(
+    model: &Model,
+    stops: &[Stop<'_>],
+    history: &DiscreteTrajectory,
+    origin: &Origin,
+) -> String {
     let marks = Trajectory::from_history(model, history).marks;
     let reference = &model.coordinates_at(&vec![0.0; model.gauges.len()]);
     let way = |m: usize, k: usize| (marks[k + 1][m] - marks[0][m]).norm();

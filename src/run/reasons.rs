@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::control::problem::{Control, Duration};
 use crate::model::system::JointKind;
-use crate::model::{Model, BodyLocation};
+use crate::model::{BodyLocation, Model};
 
 /// Something that a scene or a problem could call for and does not.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

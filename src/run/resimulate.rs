@@ -180,7 +180,12 @@ pub(super) fn resimulate(
 
 impl Resimulation {
     /// Holds the voltages of the goal, where they are known and the motion came to its end.
-    pub(super) fn hold(&mut self, model: &Model, boundary: &BoundaryConditions, optimal: &Solution) {
+    pub(super) fn hold(
+        &mut self,
+        model: &Model,
+        boundary: &BoundaryConditions,
+        optimal: &Solution,
+    ) {
         let (Some(end), Some(rest)) = (&self.end, &boundary.rest[1]) else {
             return;
         };

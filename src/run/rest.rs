@@ -5,8 +5,10 @@ use std::time::Instant;
 use crate::control::problem::{AtRest, Task};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
-    EquilibriumError, DiscreteTrajectory, StabilityLoss, observations, out_of_domain, stable_equilibrium,
+    DiscreteTrajectory, EquilibriumError, StabilityLoss, observations, out_of_domain,
+    stable_equilibrium,
 };
+use crate::files::{driven_voltages, read_problem, read_system};
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::report::skins::Skins;
@@ -26,7 +28,6 @@ use crate::run::rest_refused::refused;
 use crate::run::rest_words::{describe, lost, rows, status, text};
 use crate::run::summary::{MEASURED, Seconds, Summary};
 use crate::run::words::key;
-use crate::scene::{driven_voltages, read_problem, read_system};
 
 /// The equilibrium that a problem asks for; under voltages such as `muscle2=1.7kV` that of a scene, or of the scene of any
 /// problem.

@@ -6,7 +6,9 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::dynamics::trajectory::{Observations, Trajectory};
-use crate::dynamics::{Equilibrium, DiscreteTrajectory, Instability, Load, StabilityLoss, Route, Softening};
+use crate::dynamics::{
+    DiscreteTrajectory, Equilibrium, Instability, Load, Route, Softening, StabilityLoss,
+};
 use crate::model::Model;
 use crate::model::system::{Joint, JointKind};
 use crate::report::table;

@@ -14,7 +14,11 @@ pub(super) fn is_infeasible(status: Status) -> bool {
 
 /// The problem with another guess: the motion under the voltages of the goal, or half of the largest ones; interpolated where it
 /// was simulated.
-pub(super) fn displaced(control: &Control, boundary: &BoundaryConditions, sources: usize) -> Control {
+pub(super) fn displaced(
+    control: &Control,
+    boundary: &BoundaryConditions,
+    sources: usize,
+) -> Control {
     let [low, high] = control.voltage_bounds;
     let guess = match (&control.guess, &boundary.rest[1]) {
         (Guess::Simulate(_), _) => Guess::Interpolate,

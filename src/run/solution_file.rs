@@ -14,12 +14,12 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::control::{Costates, Solution};
+use crate::files::lay_out;
 use crate::kinematics::Pose;
 use crate::math::Matrix;
 use crate::model::system::{Joint, JointKind, Source, System};
 use crate::model::{Coordinates, Model};
 use crate::report::atomic::{self, WriteError};
-use crate::scene::lay_out;
 
 /// ms in a s.
 const SECOND: f64 = 1e3;

@@ -25,7 +25,7 @@ use crate::run::grids::optimise_to;
 use crate::run::holding;
 use crate::run::infeasible::explain;
 use crate::run::motion::{history, solved, trajectory};
-use crate::run::optimise::{SolveLimits, Iterate, Optimum};
+use crate::run::optimise::{Iterate, Optimum, SolveLimits};
 use crate::run::progress::Progress;
 use crate::run::request::{CommandInput, CommandOutput};
 use crate::run::resimulate::{Cause, Resimulation, under_constant_voltages};

@@ -3,9 +3,9 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use crate::functional::{Term, Sample, Order, Output};
+use crate::coordinates::Interval;
+use crate::functional::{Order, Output, Sample, Term};
 use crate::model::Model;
-use crate::reduction::Interval;
 
 /// Most evaluations of one effect.
 const MOST: u32 = 10_000;

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::control::problem;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
+use crate::files::lay_out;
 use crate::report::atomic::{self, WriteError};
 use crate::run::accuracy::Accuracy;
 use crate::run::blocks::BlockSizes;
@@ -17,7 +18,6 @@ use crate::run::request::CommandInput;
 use crate::run::resimulate::Resimulation;
 use crate::run::rest_words::Rest;
 use crate::run::violations::Violation;
-use crate::scene::lay_out;
 
 /// Time in s that goes into measuring each effect for it.
 pub(super) const MEASURED: f64 = 2e-4;

@@ -3,13 +3,13 @@
 use std::time::Instant;
 
 use crate::control::problem::Task;
+use crate::files::read_problem;
 use crate::run::accuracy::AccuracyTarget;
 use crate::run::error::RunError;
 use crate::run::memory;
 use crate::run::progress::{Progress, phase};
 use crate::run::request::{CommandInput, CommandOutput};
 use crate::run::{forward, rest, solve};
-use crate::scene::read_problem;
 
 /// Reads a problem and does what it asks: optimal control, simulation or equilibrium.
 ///

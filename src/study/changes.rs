@@ -1,7 +1,7 @@
 //! Overrides of a study, with the places that they are from.
 
-use crate::scene::spec_study::ChangesSpec;
-use crate::scene::{JsonPath, SceneError, Scope};
+use crate::files::spec_study::ChangesSpec;
+use crate::files::{JsonPath, SceneError, Scope};
 use serde_json::Value;
 use std::path::Path;
 

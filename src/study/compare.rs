@@ -1,7 +1,7 @@
 //! Errors of all points: values against the limit of a reference, and what is an error by itself.
 
 use crate::study::limit::{SequenceLimit, distance, limit, observed_order};
-use crate::study::measure::Measure;
+use crate::study::measure::StudyMeasure;
 use crate::study::outcome::Observed;
 use crate::study::read::{Reference, Study};
 use crate::study::schedule::{Done, Results};
@@ -13,7 +13,7 @@ const SAME: f64 = 1e-9;
 #[derive(Debug)]
 pub struct Judged {
     /// What is measured.
-    pub measure: Measure,
+    pub measure: StudyMeasure,
     /// The limits of the methods, or that of the reference alone; none where nothing was solved, or nothing is compared.
     pub limits: Vec<Option<SequenceLimit>>,
     /// Whether all methods have the one limit.
@@ -73,15 +73,15 @@ fn index(instants: &[f64], wanted: f64) -> Option<usize> {
 }
 
 /// The value of a measure that is compared.
-fn value(seen: &Observed, measure: Measure, instants: &[f64]) -> Option<Vec<f64>> {
+fn value(seen: &Observed, measure: StudyMeasure, instants: &[f64]) -> Option<Vec<f64>> {
     let flat = |row: &Vec<nalgebra::Vector3<f64>>| -> Vec<f64> {
         row.iter()
             .flat_map(|place| [place.x, place.y, place.z])
             .collect()
     };
     match measure {
-        Measure::End | Measure::Place => seen.places.last().map(flat),
-        Measure::Path => {
+        StudyMeasure::End | StudyMeasure::Place => seen.places.last().map(flat),
+        StudyMeasure::Path => {
             let row = |&t: &f64| index(&seen.instants, t).map(|k| flat(&seen.places[k]));
             let rows: Option<Vec<_>> = instants.iter().map(row).collect();
             rows.map(|rows| rows.concat())
@@ -90,7 +90,12 @@ fn value(seen: &Observed, measure: Measure, instants: &[f64]) -> Option<Vec<f64>
     }
 }
 
-fn against(study: &Study, results: &Results<'_>, measure: Measure, instants: &[f64]) -> Judged {
+fn against(
+    study: &Study,
+    results: &Results<'_>,
+    measure: StudyMeasure,
+    instants: &[f64],
+) -> Judged {
     let width = measure.width();
     let of = |done: &Done<'_>| value(done.seen.as_ref()?, measure, instants);
     let values: Vec<Vec<_>> = (results.methods.iter())
@@ -134,7 +139,7 @@ fn against(study: &Study, results: &Results<'_>, measure: Measure, instants: &[f
     for (index, points) in results.methods.iter().enumerate() {
         let limit = judged.limit_of(index);
         let relative = match (measure, limit) {
-            (Measure::Objective, Some(limit)) => limit.value[0].abs(),
+            (StudyMeasure::Objective, Some(limit)) => limit.value[0].abs(),
             _ => 1.0,
         };
         let error = |value: &Option<Vec<f64>>| {
@@ -151,7 +156,7 @@ fn against(study: &Study, results: &Results<'_>, measure: Measure, instants: &[f
 }
 
 /// A measure that is an error by itself.
-fn alone(results: &Results<'_>, measure: Measure) -> Judged {
+fn alone(results: &Results<'_>, measure: StudyMeasure) -> Judged {
     let error = |done: &Done<'_>| done.seen.as_ref()?.numbers.get(&measure).copied();
     let errors: Vec<Vec<_>> = (results.methods.iter())
         .map(|points| points.iter().map(error).collect())
@@ -184,7 +189,7 @@ fn order(points: &[Done<'_>], errors: &[Option<f64>], floor: f64) -> Option<f64>
 
 /// The way of the markers, as far as any of them gets from its start, or at rest from the reference configuration, in mm; 1
 /// for what is relative.
-fn scale(results: &Results<'_>, measure: Measure) -> f64 {
+fn scale(results: &Results<'_>, measure: StudyMeasure) -> f64 {
     let seen = || {
         results
             .methods
@@ -194,7 +199,7 @@ fn scale(results: &Results<'_>, measure: Measure) -> f64 {
     };
     let way = |seen: &Observed| {
         let from = match measure {
-            Measure::Place => &seen.reference,
+            StudyMeasure::Place => &seen.reference,
             _ => &seen.places[0],
         };
         let apart = |row: &Vec<nalgebra::Vector3<f64>>| {
@@ -204,11 +209,11 @@ fn scale(results: &Results<'_>, measure: Measure) -> f64 {
         seen.places.iter().map(apart).fold(0.0, f64::max)
     };
     match measure {
-        Measure::End
-        | Measure::Path
-        | Measure::Place
-        | Measure::ResimulatedEnd
-        | Measure::ResimulatedPath => match seen().map(way).fold(0.0, f64::max) {
+        StudyMeasure::End
+        | StudyMeasure::Path
+        | StudyMeasure::Place
+        | StudyMeasure::ResimulatedEnd
+        | StudyMeasure::ResimulatedPath => match seen().map(way).fold(0.0, f64::max) {
             way if way > 0.0 => way,
             _ => 1.0,
         },

@@ -4,9 +4,9 @@ use crate::control::problem::{Task, Voltages};
 use crate::math::significant;
 use crate::study::compare::Judged;
 use crate::study::limit::How;
-use crate::study::measure::{Measure, Unit};
+use crate::study::measure::{StudyMeasure, Unit};
 use crate::study::price::{Price, prices, surely, told};
-use crate::study::read::{StudyPoint, Study};
+use crate::study::read::{Study, StudyPoint};
 use crate::study::record::of_reference;
 use crate::study::schedule::{Done, Results};
 use crate::study::words::{Grouped, list, name, names, seconds, several};
@@ -15,11 +15,11 @@ use crate::study::words::{Grouped, list, name, names, seconds, several};
 const CLEAR: f64 = 1.2;
 /// Measures that tell most, the first one first; where a study has none of them, the costs of all that fall with refinement
 /// are told, and the orders of the first of these.
-const FIRST: [Measure; 4] = [
-    Measure::Path,
-    Measure::End,
-    Measure::Place,
-    Measure::Objective,
+const FIRST: [StudyMeasure; 4] = [
+    StudyMeasure::Path,
+    StudyMeasure::End,
+    StudyMeasure::Place,
+    StudyMeasure::Objective,
 ];
 /// An order that is further from the one of the method is told so.
 const FAR: f64 = 0.4;
@@ -53,7 +53,7 @@ pub fn conclusion(study: &Study, results: &Results<'_>, judged: &[Judged]) -> St
 
 /// The measures that are told.
 fn chosen(judged: &[Judged]) -> Vec<&Judged> {
-    let of = |measure: Measure| judged.iter().find(|judged| judged.measure == measure);
+    let of = |measure: StudyMeasure| judged.iter().find(|judged| judged.measure == measure);
     match FIRST.into_iter().find_map(of) {
         Some(one) => vec![one],
         None => judged
@@ -247,10 +247,10 @@ fn slope(pair: &[(&str, [f64; 2])]) -> f64 {
 }
 
 /// The order of the method, where it is the step of a motion under constant voltages that is refined.
-fn expected(points: &[Done<'_>], measure: Measure) -> Option<f64> {
+fn expected(points: &[Done<'_>], measure: StudyMeasure) -> Option<f64> {
     let has = matches!(
         measure,
-        Measure::End | Measure::Path | Measure::EnergyBalance
+        StudyMeasure::End | StudyMeasure::Path | StudyMeasure::EnergyBalance
     );
     let of = |point: &StudyPoint| match &point.loaded.task {
         Task::Simulate(task) if task.tolerance.is_none() => match task.voltages {

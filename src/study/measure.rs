@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use crate::control::problem::{Task, Voltages};
+use crate::files::Loaded;
 use crate::model::{Coordinates, Model};
-use crate::scene::Loaded;
 
-pub use crate::scene::spec_study::MeasureSpec as Measure;
+pub use crate::files::spec_study::MeasureSpec as StudyMeasure;
 
 /// What the problems of a study ask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -58,7 +58,7 @@ impl Unit {
     }
 }
 
-impl Measure {
+impl StudyMeasure {
     /// All of them, in the order of tables and pages.
     pub const ALL: [Self; 10] = [
         Self::End,
@@ -144,7 +144,7 @@ impl Measure {
 pub fn available<'a>(
     asked: StudyTask,
     points: impl Iterator<Item = &'a Loaded> + Clone,
-) -> Vec<Measure> {
+) -> Vec<StudyMeasure> {
     let places = points.clone().all(|point| !point.system.markers.is_empty());
     let conserved = points.clone().all(|point| match &point.task {
         Task::Simulate(task) => matches!(task.voltages, Voltages::Constant(_)),
@@ -156,13 +156,15 @@ pub fn available<'a>(
         }
         _ => false,
     });
-    let is_there = |measure: &Measure| match measure {
-        Measure::End | Measure::Path => asked != StudyTask::Rest && places,
-        Measure::Place => asked == StudyTask::Rest && places,
-        Measure::ResimulatedEnd | Measure::ResimulatedPath => asked == StudyTask::Control && places,
-        Measure::Objective | Measure::Infeasibility => asked == StudyTask::Control,
-        Measure::EnergyBalance | Measure::EnergyDrift => conserved,
-        Measure::ConstraintViolation => open,
+    let is_there = |measure: &StudyMeasure| match measure {
+        StudyMeasure::End | StudyMeasure::Path => asked != StudyTask::Rest && places,
+        StudyMeasure::Place => asked == StudyTask::Rest && places,
+        StudyMeasure::ResimulatedEnd | StudyMeasure::ResimulatedPath => {
+            asked == StudyTask::Control && places
+        }
+        StudyMeasure::Objective | StudyMeasure::Infeasibility => asked == StudyTask::Control,
+        StudyMeasure::EnergyBalance | StudyMeasure::EnergyDrift => conserved,
+        StudyMeasure::ConstraintViolation => open,
     };
-    Measure::ALL.into_iter().filter(is_there).collect()
+    StudyMeasure::ALL.into_iter().filter(is_there).collect()
 }

@@ -31,7 +31,7 @@ use std::time::Instant;
 use crate::ipopt;
 use crate::report::atomic;
 use crate::report::origin::Origin;
-use crate::run::{RunError, CommandOutput, make_folder};
+use crate::run::{CommandOutput, RunError, make_folder};
 use crate::study::compare::{Judged, judge, moved_marker};
 use crate::study::conclusion::conclusion;
 use crate::study::measure::StudyTask;

@@ -12,9 +12,9 @@ use crate::dynamics::{EquilibriumError, observations, simulate, stable_equilibri
 use crate::ipopt::interrupt;
 use crate::model::Model;
 use crate::run::{
-    SolveLimits, Cause, Iterate, Optimum, RunError, Simulated, integrate, optimise, trajectory,
+    Cause, Iterate, Optimum, RunError, Simulated, SolveLimits, integrate, optimise, trajectory,
 };
-use crate::study::measure::Measure;
+use crate::study::measure::StudyMeasure;
 use crate::study::read::StudyPoint;
 
 /// How much finer the grid is on which optimal voltages are put to the test.
@@ -43,7 +43,7 @@ pub struct Observed {
     /// Where the markers are in the reference configuration, in mm.
     pub reference: Vec<Vector3<f64>>,
     /// What is one number: the objective, and errors that need no reference.
-    pub numbers: BTreeMap<Measure, f64>,
+    pub numbers: BTreeMap<StudyMeasure, f64>,
     /// Iterations of the solver, or of Newton's method over all steps.
     pub iterations: usize,
     /// Equal steps that had to be halved: the motion is then one of finer steps in part.
@@ -115,8 +115,8 @@ fn of_optimum(optimum: &Optimum, names: &[String]) -> Observed {
         ..Observed::of(model, &trajectory(model, motion), names)
     };
     let mut number = |measure, value| seen.numbers.insert(measure, value);
-    number(Measure::Objective, solution.objective);
-    number(Measure::Infeasibility, *infeasibility);
+    number(StudyMeasure::Objective, solution.objective);
+    number(StudyMeasure::Infeasibility, *infeasibility);
     let fine = h / FINER as f64;
     let scalars = |from: f64, to: f64| {
         let k = (0.5 * (from + to) / h) as usize;
@@ -130,8 +130,9 @@ fn of_optimum(optimum: &Optimum, names: &[String]) -> Observed {
         let apart = |k: usize| furthest(&seen.places[k], &again.places[FINER * k]);
         let distances: Vec<f64> = (0..=n).map(apart).collect();
         let greatest = distances.iter().fold(0.0_f64, |m, d| m.max(*d));
-        seen.numbers.insert(Measure::ResimulatedEnd, distances[n]);
-        seen.numbers.insert(Measure::ResimulatedPath, greatest);
+        seen.numbers
+            .insert(StudyMeasure::ResimulatedEnd, distances[n]);
+        seen.numbers.insert(StudyMeasure::ResimulatedPath, greatest);
     }
     seen
 }
@@ -185,11 +186,12 @@ fn of_motion(simulated: &Simulated, task: &Simulation, names: &[String]) -> Obse
     let observed = observations(model, history);
     if let Some(violations) = column(&observed, "constraint_violation") {
         let greatest = violations.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        seen.numbers.insert(Measure::ConstraintViolation, greatest);
+        seen.numbers
+            .insert(StudyMeasure::ConstraintViolation, greatest);
     }
     if let Some([balance, drift]) = energy(&observed).filter(|_| conservative) {
-        seen.numbers.insert(Measure::EnergyBalance, balance);
-        seen.numbers.insert(Measure::EnergyDrift, drift);
+        seen.numbers.insert(StudyMeasure::EnergyBalance, balance);
+        seen.numbers.insert(StudyMeasure::EnergyDrift, drift);
     }
     seen
 }

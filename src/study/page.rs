@@ -6,7 +6,7 @@ use crate::math::significant;
 use crate::report::origin::Origin;
 use crate::study::compare::{Judged, common};
 use crate::study::limit::How;
-use crate::study::measure::{Measure, Unit};
+use crate::study::measure::{StudyMeasure, Unit};
 use crate::study::price;
 use crate::study::read::Study;
 use crate::study::record::{command, machine, of_reference};
@@ -37,7 +37,7 @@ pub(super) fn markdown(
     }
     for (judged, figure) in judged.iter().zip(figures) {
         add(section(study, judged, figure.as_deref()));
-        if judged.measure == Measure::Path {
+        if judged.measure == StudyMeasure::Path {
             let count = common(results).len();
             add(format!(
                 "Compared at the {count} instants that all points have."

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use crate::control::problem::{Duration, Task};
-use crate::scene::spec_study::{MethodSpec, ReferenceSpec, RefineSpec, StudySpec};
-use crate::scene::{Document, Loaded, SceneError, Scope, read_problem};
+use crate::files::spec_study::{MethodSpec, ReferenceSpec, RefineSpec, StudySpec};
+use crate::files::{Document, Loaded, SceneError, Scope, read_problem};
 use crate::study::changes::Changes;
-use crate::study::measure::{self, StudyTask, Measure};
+use crate::study::measure::{self, StudyMeasure, StudyTask};
 use crate::study::sizes::sizes;
 
 /// Fewest timed runs of a point.
@@ -30,7 +30,7 @@ pub struct Study {
     /// Names of the markers whose places are compared.
     pub markers: Vec<String>,
     /// What is measured.
-    pub measures: Vec<Measure>,
+    pub measures: Vec<StudyMeasure>,
     /// How often each point is timed.
     pub runs: usize,
 }
@@ -284,7 +284,7 @@ fn measures(
     asked: StudyTask,
     methods: &[Method],
     scope: &Scope<'_>,
-) -> Result<Vec<Measure>, SceneError> {
+) -> Result<Vec<StudyMeasure>, SceneError> {
     let points = || methods.iter().flat_map(|method| &method.points);
     let all = measure::available(asked, points().map(|point| &point.loaded));
     let Some(named) = &spec.measures else {

@@ -4,15 +4,15 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use crate::files::lay_out;
 use crate::ipopt;
 use crate::report::atomic::{self, WriteError};
 use crate::report::origin::Origin;
-use crate::scene::lay_out;
 use crate::study::compare::{Judged, common};
 use crate::study::limit::{How, SequenceLimit};
-use crate::study::measure::{StudyTask, Measure};
+use crate::study::measure::{StudyMeasure, StudyTask};
 use crate::study::outcome::FINER;
-use crate::study::read::{Method, StudyPoint, Study};
+use crate::study::read::{Method, Study, StudyPoint};
 use crate::study::request::StudyRequest;
 use crate::study::schedule::{Done, Results};
 
@@ -45,7 +45,7 @@ struct Record<'a> {
 /// What is measured, and against what.
 #[derive(Debug, Serialize)]
 struct MeasureRecord {
-    measure: Measure,
+    measure: StudyMeasure,
     unit: &'static str,
     /// What an error is small against.
     scale: f64,
@@ -71,7 +71,7 @@ struct MethodRecord<'a> {
     name: &'a str,
     refined: &'a str,
     /// Order that the errors of each measure show.
-    orders: BTreeMap<Measure, f64>,
+    orders: BTreeMap<StudyMeasure, f64>,
     points: Vec<PointRecord<'a>>,
 }
 
@@ -93,8 +93,8 @@ struct PointRecord<'a> {
     /// Steps that had to be halved: the point is then none of its step, and enters neither limit nor order.
     #[serde(skip_serializing_if = "Option::is_none")]
     halved_steps: Option<usize>,
-    values: BTreeMap<Measure, Vec<f64>>,
-    errors: BTreeMap<Measure, f64>,
+    values: BTreeMap<StudyMeasure, Vec<f64>>,
+    errors: BTreeMap<StudyMeasure, f64>,
 }
 
 /// Wall time of a solution with its set-up, without reading the files and measuring.

@@ -5,8 +5,8 @@ use indicatif::ProgressBar;
 
 use crate::ipopt::interrupt;
 use crate::run::{ProgressDisplay, progress_bar};
-use crate::study::outcome::{RunOutcome, INTERRUPTED, Observed, run};
-use crate::study::read::{StudyPoint, Reference, Study};
+use crate::study::outcome::{INTERRUPTED, Observed, RunOutcome, run};
+use crate::study::read::{Reference, Study, StudyPoint};
 
 /// A point after its runs.
 #[derive(Debug)]

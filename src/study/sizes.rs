@@ -1,7 +1,7 @@
 //! How fine the points of a refinement are, and what they are called.
 
-use crate::scene::spec_study::RefineSpec;
-use crate::scene::{SceneError, Scope};
+use crate::files::spec_study::RefineSpec;
+use crate::files::{SceneError, Scope};
 use serde_json::Value;
 
 /// What the points of a refinement are called, and lengths that fall towards zero.

@@ -3,13 +3,13 @@
 use super::trunk;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proboscis::control::problem::{
-    Control, Duration, Guess, PathConstraint, Objective, Rest, Side, Solver, BoundaryState,
+    BoundaryState, Control, Duration, Guess, Objective, PathConstraint, Rest, Side, Solver,
 };
 use proboscis::mesh::grid::Grid;
 use proboscis::model::components::{Spring, Tendon};
 use proboscis::model::system::{
-    Attachment, Body, Discretisation, ElectricConstants, Electrode, ElementKind, Fidelity, Glue, Joint,
-    JointKind, Marker, Material, Muscle, Potential, Shape, Solid, Support, System,
+    Attachment, Body, Discretisation, ElectricConstants, Electrode, ElementKind, Fidelity, Glue,
+    Joint, JointKind, Marker, Material, Muscle, Potential, Shape, Solid, Support, System,
     VACUUM_PERMITTIVITY,
 };
 use proboscis::model::{Coordinates, Region};

@@ -1,12 +1,12 @@
 //! A control that is a force or whatever else reads one vector: its optimum is known in closed form.
 
 use nalgebra::{SVector, Vector3};
+use proboscis::coordinates::Reduced;
 use proboscis::energy::Energy;
-use proboscis::functional::{Term, Element, Group, Stencil, Functional, VectorArg};
+use proboscis::functional::{Element, Functional, Group, Stencil, Term, VectorArg};
 use proboscis::kinematics::MaterialVector;
 use proboscis::math::Jet;
 use proboscis::model::Model;
-use proboscis::reduction::Reduced;
 
 /// Scalars of a program are in kV: one unit of force is a thousand units of the scalar.
 pub const UNIT: f64 = 1e-3;

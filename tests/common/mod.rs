@@ -12,6 +12,7 @@ pub mod solid;
 pub mod trunk;
 
 use nalgebra::{Matrix3, SVector, Vector3};
+use proboscis::coordinates::Configuration;
 use proboscis::dynamics::trajectory::{Observations, Trajectory};
 use proboscis::dynamics::{DiscreteTrajectory, Start, simulate};
 use proboscis::kinematics::Pose;
@@ -20,7 +21,6 @@ use proboscis::model::system::{
     Attachment, Body, ElectricConstants, Joint, JointKind, Marker, Material, Muscle, Shape, System,
     VACUUM_PERMITTIVITY,
 };
-use proboscis::reduction::Configuration;
 use serde_json::Value;
 use std::ops::ControlFlow;
 

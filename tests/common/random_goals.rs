@@ -4,9 +4,9 @@
 
 use nalgebra::Vector3;
 use proboscis::dynamics::equilibrium;
+use proboscis::files::read_problem;
 use proboscis::math::random::Random;
 use proboscis::model::{Coordinates, Model};
-use proboscis::scene::read_problem;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 

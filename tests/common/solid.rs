@@ -146,7 +146,11 @@ pub(crate) fn stack(entry: &Value) -> System {
 }
 
 /// An elastic dielectric without density and viscosity.
-pub(crate) fn dielectric(shear_modulus: f64, lame_lambda: f64, electric: ElectricConstants) -> Material {
+pub(crate) fn dielectric(
+    shear_modulus: f64,
+    lame_lambda: f64,
+    electric: ElectricConstants,
+) -> Material {
     Material {
         density: None,
         shear_modulus,

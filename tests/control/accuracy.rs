@@ -5,18 +5,18 @@ use crate::common::force::{Force, with_control};
 use crate::common::{bare, body, joint};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::control::problem::{
-    Control, Duration, Guess, Objective, Simulation, Solver, BoundaryState, Task, Voltages,
+    BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, Task, Voltages,
 };
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::dynamics::{DiscreteTrajectory, Solving};
+use proboscis::files::read_problem;
 use proboscis::ipopt::{self, Options};
 use proboscis::kinematics::MaterialVector;
 use proboscis::model::Model;
 use proboscis::model::system::{JointKind, System};
-use proboscis::run::accuracy::{Attempt, Refined, AccuracyTarget, refine};
+use proboscis::run::accuracy::{AccuracyTarget, Attempt, Refined, refine};
 use proboscis::run::estimate::ErrorSample;
-use proboscis::run::{SolveLimits, Iterate, integrate_to, optimise_to};
-use proboscis::scene::read_problem;
+use proboscis::run::{Iterate, SolveLimits, integrate_to, optimise_to};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;

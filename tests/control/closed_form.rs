@@ -6,7 +6,7 @@
 use crate::common::force::{Force, UNIT, with_control};
 use crate::common::{bare, body, joint};
 use nalgebra::{Matrix3, SVector, Vector3};
-use proboscis::control::problem::{Control, Duration, Guess, Objective, Solver, BoundaryState};
+use proboscis::control::problem::{BoundaryState, Control, Duration, Guess, Objective, Solver};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::energy::Energy;
 use proboscis::ipopt::{self, Options};

@@ -6,7 +6,7 @@
 use crate::common::cases::{BRANCHED_VOLTAGES, blocks, branched, control, hold, joints};
 use crate::common::random::Random;
 use crate::common::trunk;
-use proboscis::control::problem::{Duration, BoundaryState};
+use proboscis::control::problem::{BoundaryState, Duration};
 use proboscis::control::{BoundaryConditions, Row, Transcription, guess};
 use proboscis::dynamics::{Start, simulate};
 use proboscis::model::Coordinates;

@@ -5,7 +5,7 @@ use crate::limits::{Ran, kept, run};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::control::problem::{Duration, Task};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
-use proboscis::element::{FieldPoint, ElementGeometry};
+use proboscis::element::{ElementGeometry, FieldPoint};
 use proboscis::ipopt::{self, Options};
 use proboscis::mesh::CORNERS;
 use serde_json::{Value, json};
@@ -17,7 +17,7 @@ use std::ops::ControlFlow;
 fn largest_field(ran: &Ran) -> [f64; 2] {
     let solution = ran.read("solution.json");
     let scene = ran.folder.path().join("p.json");
-    let system = proboscis::scene::read_problem(&scene, &[]).unwrap().system;
+    let system = proboscis::files::read_problem(&scene, &[]).unwrap().system;
     let model = proboscis::model::Model::new(system, None, 1.0, &[]).unwrap();
     let rows = |value: &Value| -> Vec<f64> {
         let list = value.as_array().unwrap();
@@ -205,7 +205,7 @@ fn solved_field(problem: &Value) -> (f64, f64) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("p.json");
     fs::write(&path, problem.to_string()).unwrap();
-    let loaded = proboscis::scene::read_problem(&path, &[]).unwrap();
+    let loaded = proboscis::files::read_problem(&path, &[]).unwrap();
     let Task::Control(control) = loaded.task else {
         panic!("a control problem")
     };

@@ -3,9 +3,9 @@
 use crate::common::random_goals::{Goal, Goals, Kind, trunk};
 use proboscis::control::problem::Task;
 use proboscis::dynamics::simulate;
+use proboscis::files::read_problem;
 use proboscis::ipopt::Status;
-use proboscis::run::{SolveLimits, Iterate, optimise};
-use proboscis::scene::read_problem;
+use proboscis::run::{Iterate, SolveLimits, optimise};
 use std::ops::ControlFlow;
 
 /// What a solve of a well-posed problem may end with.

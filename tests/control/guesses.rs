@@ -3,9 +3,9 @@
 use crate::verdicts::{control, kept, read, told};
 use proboscis::control::problem::{Control, Duration, Guess, Task};
 use proboscis::control::{BoundaryConditions, InitialGuess, Solution, guess};
+use proboscis::files::read_problem;
 use proboscis::model::{Coordinates, System};
 use proboscis::run::{SolveLimits, integrate, optimise, solved};
-use proboscis::scene::read_problem;
 use std::ops::ControlFlow;
 use std::path::Path;
 use tempfile::tempdir;

@@ -41,7 +41,8 @@ pub(crate) fn solve(
     start: Start,
 ) -> Optimum {
     // Multipliers of the motion are in units of the guessed step, whatever step they start from.
-    let (model, boundary) = BoundaryConditions::resolve(system, control, guessed_step(control)).unwrap();
+    let (model, boundary) =
+        BoundaryConditions::resolve(system, control, guessed_step(control)).unwrap();
     let h = from.map_or(guessed_step(control), |(_, h, _)| h);
     let mut initial = guess(&model, &boundary, control, h, None);
     if let Some((history, _, costates)) = from {

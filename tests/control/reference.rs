@@ -1,7 +1,7 @@
 //! Optimal control against the reference solutions.
 
 use crate::common::{numbers, reference, trunk};
-use proboscis::control::problem::{Control, Duration, Guess, Objective, Solver, BoundaryState};
+use proboscis::control::problem::{BoundaryState, Control, Duration, Guess, Objective, Solver};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::ipopt::{self, Options, Start};
 use proboscis::model::Coordinates;

@@ -2,11 +2,13 @@
 
 use crate::common::cases::{joints, rest_to_rest};
 use crate::common::trunk;
-use proboscis::control::problem::{Control, Duration, PathConstraint, Objective, Task};
-use proboscis::control::{BoundaryConditions, Costates, InitialGuess, Row, Transcription, Variable, guess};
+use proboscis::control::problem::{Control, Duration, Objective, PathConstraint, Task};
+use proboscis::control::{
+    BoundaryConditions, Costates, InitialGuess, Row, Transcription, Variable, guess,
+};
+use proboscis::files::read_problem;
 use proboscis::model::Coordinates;
-use proboscis::run::{SolveLimits, Iterate, Optimum, optimise};
-use proboscis::scene::read_problem;
+use proboscis::run::{Iterate, Optimum, SolveLimits, optimise};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;

@@ -1,11 +1,14 @@
 //! What an optimum is worth: guesses that change nothing that is asked, violations that are numbers, voltages that hold.
 
 use proboscis::control::problem::{Control, Task};
+use proboscis::files::read_problem;
 use proboscis::math::random::Random;
 use proboscis::model::System;
 use proboscis::nlp::Bounds;
-use proboscis::run::{SolveLimits, Cause, CommandInput, ProgressDisplay, CommandOutput, integrate, optimise, run, solved};
-use proboscis::scene::read_problem;
+use proboscis::run::{
+    Cause, CommandInput, CommandOutput, ProgressDisplay, SolveLimits, integrate, optimise, run,
+    solved,
+};
 use serde_json::Value;
 use std::fs;
 use std::ops::ControlFlow;

@@ -6,11 +6,11 @@ use crate::common::random::Random;
 use crate::common::trunk;
 use proboscis::control::problem::Duration;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::coordinates::Interval;
 use proboscis::functional::Order;
 use proboscis::model::system::System;
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::{Bounds, Entries, Nlp, differences};
-use proboscis::reduction::Interval;
 
 /// Noise on the variables of a guess, all of which are scaled to about one.
 const NOISE: f64 = 0.07;

@@ -1,7 +1,7 @@
 //! The checker of derivatives passes right ones and names wrong ones.
 
 use crate::common::programs::{Program, bounds, hs071, one_variable, rosenbrock};
-use proboscis::nlp::differences::{Matrix, EntryStatus, TOLERANCE, check};
+use proboscis::nlp::differences::{EntryStatus, Matrix, TOLERANCE, check};
 
 const POINT: [f64; 4] = [1.3, 4.2, 3.1, 1.7];
 

@@ -8,7 +8,9 @@
 use crate::common::random::Random;
 use crate::naive_hexahedron::{Naive, SIGNS, cube, gauss, state};
 use num_dual::{Dual, Dual64, HyperDual};
-use proboscis::element::{Dielectric, Elastomer, Field, Local, Passive, ElementGeometry, Viscosity, Volume};
+use proboscis::element::{
+    Dielectric, Elastomer, ElementGeometry, Field, Local, Passive, Viscosity, Volume,
+};
 use proboscis::math::{Matrix, Vector};
 
 /// Rounding of some thousands of operations at values of order one.

@@ -4,7 +4,7 @@ use crate::common::random::Random;
 use crate::hexahedron::{DIELECTRIC, close, forces, largest, law, list};
 use crate::naive_hexahedron::{Naive, cube, gauss};
 use num_dual::Dual64;
-use proboscis::element::{Dielectric, Elastomer, Local, ElementGeometry, Viscosity, Volume};
+use proboscis::element::{Dielectric, Elastomer, ElementGeometry, Local, Viscosity, Volume};
 use proboscis::math::{Matrix, Vector};
 
 #[test]

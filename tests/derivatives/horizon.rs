@@ -5,7 +5,7 @@ use crate::common::cases::{BRANCHED_VOLTAGES, branched, cases};
 use crate::common::random::Random;
 use proboscis::control::problem::Duration;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
-use proboscis::functional::{Sample, Horizon, Kind, Order, BlockMask};
+use proboscis::functional::{BlockMask, Horizon, Kind, Order, Sample};
 use proboscis::math::Vector;
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::Nlp;

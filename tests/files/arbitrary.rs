@@ -1,7 +1,7 @@
 //! Bytes, changes and overrides of any kind are answered without a panic.
 
 use crate::scene::{PROBLEM, SCENE, folder};
-use proboscis::scene::read_problem;
+use proboscis::files::read_problem;
 use proptest::prelude::*;
 use std::fs;
 

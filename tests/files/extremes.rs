@@ -1,8 +1,8 @@
 //! Files that are deep, long or ask for what no memory holds.
 
 use crate::fuzz_reader::{beside_scenes, is_refused, kept};
+use proboscis::files::read_problem;
 use proboscis::run::RunError;
-use proboscis::scene::read_problem;
 use std::path::Path;
 
 #[test]

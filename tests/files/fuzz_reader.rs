@@ -3,8 +3,8 @@
 //! `make fuzz` holds each property for as long as one likes (`FUZZ_SECONDS`), and `PROPTEST_CASES` says how often it is held
 //! here; `fuzz/` does the same with random bytes.
 
+use proboscis::files::{SceneError, read_problem, read_scene};
 use proboscis::run::RunError;
-use proboscis::scene::{SceneError, read_problem, read_scene};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest::test_runner::TestRunner;

@@ -1,9 +1,9 @@
 //! What a scene means, chains written out included.
 
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
-use proboscis::control::problem::{PathConstraint, BoundaryState, Task};
+use proboscis::control::problem::{BoundaryState, PathConstraint, Task};
+use proboscis::files::{expand, read_problem, read_scene};
 use proboscis::model::system::{JointKind, Shape, System, VACUUM_PERMITTIVITY};
-use proboscis::scene::{expand, read_problem, read_scene};
 use std::fs;
 use std::path::Path;
 
@@ -60,7 +60,10 @@ fn a_scene_means_what_is_written() {
     let Task::Control(control) = &loaded.task else {
         panic!("a control problem")
     };
-    assert_eq!(control.goal, BoundaryState::RestAtVoltages(vec![1700.0, 0.0]));
+    assert_eq!(
+        control.goal,
+        BoundaryState::RestAtVoltages(vec![1700.0, 0.0])
+    );
     assert_eq!(
         control.limits[1..],
         [PathConstraint::ElectricField {

@@ -1,8 +1,8 @@
 //! Numbers with units: every spelling, and conversions against another library.
 
-use proboscis::scene::quantity::{
-    Angle, Density, ElectricField, Length, PhysicalQuantity, Quantity, RotationalDamping, Time, Viscosity,
-    Voltage,
+use proboscis::files::quantity::{
+    Angle, Density, ElectricField, Length, PhysicalQuantity, Quantity, RotationalDamping, Time,
+    Viscosity, Voltage,
 };
 use proptest::prelude::*;
 

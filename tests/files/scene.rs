@@ -1,8 +1,8 @@
 //! Scene and problem files: every mistake is answered with its place, what was found and what is expected.
 
 use proboscis::control::problem::{Duration, PathConstraint, Task};
+use proboscis::files::{SceneError, new_trunk, read_problem, schema};
 use proboscis::model::system::{Discretisation, ElementKind, Fidelity};
-use proboscis::scene::{SceneError, new_trunk, read_problem, schema};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -317,7 +317,7 @@ fn every_kept_problem_is_right() {
 #[test]
 fn kept_schemas_are_current() {
     let (scene, problem) = schema();
-    let study = proboscis::scene::study_schema();
+    let study = proboscis::files::study_schema();
     for (name, schema) in [("scene", scene), ("problem", problem), ("study", study)] {
         let path = format!("problems/{name}.schema.json");
         let text = serde_json::to_string_pretty(&schema).expect("a schema is JSON") + "\n";

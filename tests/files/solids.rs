@@ -2,8 +2,8 @@
 
 use crate::scene::{Case, check, folder, mistake};
 use proboscis::control::problem::Task;
+use proboscis::files::{expand, read_problem, read_scene};
 use proboscis::model::system::{ElementKind, Potential};
-use proboscis::scene::{expand, read_problem, read_scene};
 use std::fs;
 
 const BLOCK: &str = r#"{

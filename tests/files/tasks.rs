@@ -3,7 +3,7 @@
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
 use proboscis::control::problem::{Afterwards, BoundaryState, Task, Voltages};
 use proboscis::dynamics::Integrator;
-use proboscis::scene::read_problem;
+use proboscis::files::read_problem;
 use std::fs;
 
 #[test]

@@ -2,9 +2,9 @@
 
 use crate::components::column;
 use proboscis::control::problem::Task;
+use proboscis::files::{read_problem, read_system};
 use proboscis::model::system::System;
 use proboscis::run::integrate;
-use proboscis::scene::{read_problem, read_system};
 use std::ops::ControlFlow;
 use std::path::Path;
 

@@ -2,13 +2,13 @@
 
 use crate::common::{bare, motion, placed, trunk};
 use nalgebra::{Matrix3, Vector3};
+use proboscis::coordinates::Interval;
 use proboscis::dynamics::{Start, energies, observations};
 use proboscis::energy::LinearSpring;
 use proboscis::functional::{Element, Order};
 use proboscis::model::components::{Other, Spring, Tendon};
 use proboscis::model::system::{Attachment, Body, Joint, JointKind, Shape, System};
-use proboscis::model::{Component, Coordinates, Model, Analysis, InitiallyMoving, Terms, mid};
-use proboscis::reduction::Interval;
+use proboscis::model::{Analysis, Component, Coordinates, InitiallyMoving, Model, Terms, mid};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 

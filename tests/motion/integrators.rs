@@ -2,7 +2,9 @@
 
 use crate::common::{at_reference, bare, body, columns, joint, placed, spin, trunk};
 use nalgebra::{Matrix3, Vector3};
-use proboscis::dynamics::{DiscreteTrajectory, Integrator, Solving, Start, observations, simulate_by};
+use proboscis::dynamics::{
+    DiscreteTrajectory, Integrator, Solving, Start, observations, simulate_by,
+};
 use proboscis::model::system::{JointKind, System};
 use proboscis::model::{Coordinates, Model};
 use std::ops::ControlFlow;

@@ -6,12 +6,13 @@ use nalgebra::{Matrix3, Vector3};
 use proboscis::control::problem::{Simulation, Task};
 use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::dynamics::{
-    DiscreteTrajectory, Integrator, LocalError, Solving, Start, local_error, observations, simulate_by,
+    DiscreteTrajectory, Integrator, LocalError, Solving, Start, local_error, observations,
+    simulate_by,
 };
+use proboscis::files::read_problem;
 use proboscis::model::system::JointKind;
 use proboscis::model::{Coordinates, Model};
 use proboscis::run::{Simulated, integrate};
-use proboscis::scene::read_problem;
 use serde_json::{Value, json};
 use std::fs;
 use std::ops::ControlFlow;

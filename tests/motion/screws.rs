@@ -9,11 +9,13 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use proboscis::control::problem::Duration;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::dynamics::trajectory::Trajectory;
-use proboscis::dynamics::{DiscreteTrajectory, Integrator, Solving, Start, observations, simulate_by};
+use proboscis::dynamics::{
+    DiscreteTrajectory, Integrator, Solving, Start, observations, simulate_by,
+};
 use proboscis::model::system::{JointKind, System};
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::differences;
-use proboscis::run::{SolveLimits, Iterate, optimise};
+use proboscis::run::{Iterate, SolveLimits, optimise};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -253,7 +255,14 @@ fn a_satellite_turns_by_bending_its_trunk_in_both_coordinates() {
         let nothing = &mut |_: &Iterate<'_>| ControlFlow::Continue(());
         let file = Path::new("p.json");
         let before = earlier.as_ref();
-        let found = optimise(file, &system, &problem, before, SolveLimits::default(), nothing);
+        let found = optimise(
+            file,
+            &system,
+            &problem,
+            before,
+            SolveLimits::default(),
+            nothing,
+        );
         let found = found.unwrap();
         assert!(found.solution.status.is_solved(), "{}", found.word());
         let ends = [0, intervals].map(|k| found.motion.poses[k][0].directors);

@@ -5,7 +5,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use nalgebra::Vector3;
 use proboscis::model::VACUUM_PERMITTIVITY;
-use proboscis::run::{CommandInput, ProgressDisplay, CommandOutput, run};
+use proboscis::run::{CommandInput, CommandOutput, ProgressDisplay, run};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::fs;

@@ -1,8 +1,8 @@
 //! Problems and schemas that are kept beside the program.
 
 use crate::runs::{read, run, workshop};
+use proboscis::files::read_problem;
 use proboscis::model::system::Fidelity;
-use proboscis::scene::read_problem;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;

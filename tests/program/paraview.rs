@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use proboscis::mesh::grid::Grid as Planes;
 use proboscis::report::origin::Origin;
-use proboscis::report::paraview::{Field, UnstructuredGrid, Series, pvd, vtu};
+use proboscis::report::paraview::{Field, Series, UnstructuredGrid, pvd, vtu};
 use proptest::prelude::*;
 use std::borrow::Cow;
 use std::fs;

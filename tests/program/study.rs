@@ -2,8 +2,8 @@
 
 use crate::runs::run;
 use proboscis::control::problem::Task;
+use proboscis::files::read_problem;
 use proboscis::run::{integrate, trajectory};
-use proboscis::scene::read_problem;
 use serde_json::{Value, json};
 use std::fs;
 use std::ops::ControlFlow;

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use proboscis::study::compare::judge;
 use proboscis::study::conclusion::conclusion;
-use proboscis::study::outcome::{RunOutcome, Observed};
+use proboscis::study::outcome::{Observed, RunOutcome};
 use proboscis::study::read::{Study, read_study};
 use proboscis::study::schedule::{Done, Results};
 use serde_json::json;

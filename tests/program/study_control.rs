@@ -3,8 +3,8 @@
 use crate::study::{numbers, of, results, steps, wheel};
 use proboscis::control::problem::Task;
 use proboscis::dynamics::simulate;
-use proboscis::run::{SolveLimits, Iterate, optimise, trajectory};
-use proboscis::scene::read_problem;
+use proboscis::files::read_problem;
+use proboscis::run::{Iterate, SolveLimits, optimise, trajectory};
 use serde_json::json;
 use std::fs;
 use std::ops::ControlFlow;

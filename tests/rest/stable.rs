@@ -6,9 +6,9 @@ use nalgebra::Vector3;
 use proboscis::dynamics::{
     Equilibrium, EquilibriumError, Route, Softening, equilibrium, stable_equilibrium,
 };
+use proboscis::files::{driven_voltages, read_system};
 use proboscis::model::system::{ElectricConstants, System};
 use proboscis::model::{Coordinates, Model};
-use proboscis::scene::{driven_voltages, read_system};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::Command;

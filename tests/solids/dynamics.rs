@@ -2,11 +2,13 @@
 
 use crate::common::solid::{block, material, mesh, numbers, reference, stack, system};
 use nalgebra::Vector3;
-use proboscis::dynamics::{DiscreteTrajectory, Newton, Solving, Start, observations, simulate, simulate_by};
+use proboscis::coordinates::Interval;
+use proboscis::dynamics::{
+    DiscreteTrajectory, Newton, Solving, Start, observations, simulate, simulate_by,
+};
 use proboscis::functional::Order;
 use proboscis::model::Model;
 use proboscis::model::system::System;
-use proboscis::reduction::Interval;
 use proboscis::sparse::Backend;
 use serde_json::Value;
 use std::ops::ControlFlow;

@@ -121,7 +121,12 @@ fn loads(
 }
 
 /// Midpoint and rate of two instants.
-fn interval(model: &Model, history: &DiscreteTrajectory, k: usize, h: f64) -> [Vec<Vector3<f64>>; 2] {
+fn interval(
+    model: &Model,
+    history: &DiscreteTrajectory,
+    k: usize,
+    h: f64,
+) -> [Vec<Vector3<f64>>; 2] {
     let [a, b] = [k, k + 1].map(|k| placed(model, &history.z[k]));
     let pairs = || a.iter().zip(&b);
     let middle = pairs().map(|(a, b)| (a + b) * 0.5).collect();

@@ -3,10 +3,13 @@
 use crate::common::solid::{DRIVEN, block, dielectric, electrode, held, placed, system};
 use nalgebra::Vector3;
 use proboscis::dynamics::{
-    EquilibriumError, DiscreteTrajectory, Instability, Start, StepError, continuation, equilibrium, simulate,
+    DiscreteTrajectory, EquilibriumError, Instability, Start, StepError, continuation, equilibrium,
+    simulate,
 };
 use proboscis::mesh::grid::Grid;
-use proboscis::model::system::{ElectricConstants, Material, Potential, Solid, System, VACUUM_PERMITTIVITY};
+use proboscis::model::system::{
+    ElectricConstants, Material, Potential, Solid, System, VACUUM_PERMITTIVITY,
+};
 use proboscis::model::{Model, ModelError};
 use std::ops::ControlFlow;
 
@@ -184,7 +187,12 @@ fn the_stack_pulls_in() {
 }
 
 /// Steps under a voltage, from a motion that makes the stack shorter by `speed` in mm/ms.
-fn steps(h: f64, count: usize, voltage: f64, speed: f64) -> (Model, DiscreteTrajectory, Option<StepError>) {
+fn steps(
+    h: f64,
+    count: usize,
+    voltage: f64,
+    speed: f64,
+) -> (Model, DiscreteTrajectory, Option<StepError>) {
     let model = Model::new(stack(), None, h, &[]).unwrap();
     let z = model.coordinates_at(&[]);
     let of_nodes = &model.action.motion.of_nodes;

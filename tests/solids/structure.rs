@@ -5,12 +5,12 @@ use crate::common::random::Random;
 use crate::common::solid::{DRIVEN, block, electrode, held, system};
 use nalgebra::Vector3;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::coordinates::Interval;
 use proboscis::functional::{Kind, Order};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::system::{Electrode, Fidelity, Material, Potential, Solid, System};
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::Nlp;
-use proboscis::reduction::Interval;
 use std::collections::BTreeSet;
 
 fn rubber() -> Material {

@@ -8,7 +8,8 @@ use crate::common::programs::{
     HS071_OPTIMUM, HS071_START, bounds, hs071, one_variable, rosenbrock,
 };
 use proboscis::ipopt::{
-    Multipliers, IpoptError, Iteration, OptionValue, Options, StartingPoint, SolverResult, Start, Status, solve,
+    IpoptError, Iteration, Multipliers, OptionValue, Options, SolverResult, Start, StartingPoint,
+    Status, solve,
 };
 use proboscis::nlp::{Bounds, Nlp};
 

@@ -4,7 +4,7 @@ use crate::common::cases::{GRAVITY, branched, control};
 use crate::common::random::Random;
 use crate::trace::with_program;
 use proboscis::control::BoundaryConditions;
-use proboscis::control::problem::{Control, PathConstraint, BoundaryState};
+use proboscis::control::problem::{BoundaryState, Control, PathConstraint};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
 use proboscis::nlp::Nlp;

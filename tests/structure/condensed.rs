@@ -6,14 +6,14 @@ use crate::common::solid::{DRIVEN, block, electrode, held};
 use crate::common::{at_reference, motion, placed, trunk};
 use crate::welded::cuboid;
 use nalgebra::Vector3;
-use proboscis::control::problem::{AtRest, Simulation, BoundaryState, Voltages};
+use proboscis::control::problem::{AtRest, BoundaryState, Simulation, Voltages};
 use proboscis::control::{BoundaryConditions, resolve_start};
 use proboscis::dynamics::{DiscreteTrajectory, Solving, Start, equilibrium, simulate};
-use proboscis::functional::{Term, Kind};
+use proboscis::functional::{Kind, Term};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::plan::TERMS;
 use proboscis::model::system::{Potential, System};
-use proboscis::model::{Coordinates, Model, Analysis};
+use proboscis::model::{Analysis, Coordinates, Model};
 use proboscis::run::Plan;
 use proboscis::sparse::Symmetry;
 use std::collections::BTreeSet;
@@ -59,9 +59,7 @@ pub(crate) fn moved(system: &System, task: &Simulation) -> (Model, DiscreteTraje
 pub(crate) fn names(model: &Model) -> BTreeSet<String> {
     let sums = [&model.action.intervals, &model.action.instants];
     let effects = sums.into_iter().flat_map(|sum| &sum.effects);
-    effects
-        .map(|e| Term::name(e.as_ref()).to_owned())
-        .collect()
+    effects.map(|e| Term::name(e.as_ref()).to_owned()).collect()
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use crate::common::cases::{GRAVITY, branched, control, rest_to_rest};
 use crate::common::random::Random;
 use crate::common::trunk;
-use proboscis::control::problem::{Control, Duration, PathConstraint, Objective, BoundaryState};
+use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, PathConstraint};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::model::Coordinates;
 use proboscis::model::system::{JointKind, System};

@@ -5,7 +5,7 @@ use crate::common::{bare, body, joint, placed, trunk};
 use crate::condensed::{BOTH, moved, names, under};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::model::system::{Body, JointKind};
-use proboscis::model::{Coordinates, Model, BodyLocation, Analysis};
+use proboscis::model::{Analysis, BodyLocation, Coordinates, Model};
 
 /// A box of edges along the axes.
 pub(crate) fn cuboid(name: &str, mass: f64, size: [f64; 3], centre: Vector3<f64>) -> Body {

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use crate::control::conditions::BoundaryConditions;
 use crate::control::limits::When;
+use crate::control::numbering::{Counts, Numbering, Row};
 use crate::control::problem::{Control, Duration};
 use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};
-use crate::control::unknowns::{Counts, Row, Numbering};
 use crate::model::Model;
 
 /// Which variables and rows the program of a control problem has on a number of intervals.

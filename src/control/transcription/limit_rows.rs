@@ -1,7 +1,7 @@
 //! Limits and goals as rows behind the equations of motion.
 
 use crate::control::limits::{BoundedQuantity, When};
-use crate::control::unknowns::Numbering;
+use crate::control::numbering::Numbering;
 use crate::functional::Measure;
 use crate::model::{Model, Quantity};
 use std::ops::Range;

@@ -14,7 +14,7 @@ mod placed;
 mod point;
 mod program;
 mod scaling;
-mod stretch;
+mod segment;
 mod structure;
 mod sweep;
 
@@ -22,18 +22,18 @@ use crate::control::BoundaryError;
 use crate::control::conditions::BoundaryConditions;
 use crate::control::guess::InitialGuess;
 use crate::control::limits::{BoundedQuantity, When};
+use crate::control::numbering::{Numbering, Row, Variable};
 use crate::control::objective::{Cost, objective_scale};
 use crate::control::problem::{Control, Duration};
-use crate::control::unknowns::{Row, Numbering, Variable};
+use crate::coordinates::Configuration;
 use crate::functional::{Horizon, Part};
 use crate::model::Model;
 use crate::nlp::{Bounds, Entries, Nlp};
-use crate::reduction::Configuration;
 pub(super) use layout::Layout;
 use limit_rows::LimitRow;
 pub(super) use limit_rows::Site;
 use placed::Placed;
-use stretch::Workspace;
+use segment::Workspace;
 
 /// V in a kV, the unit of voltages in objectives.
 const KILOVOLT: f64 = 1000.0;

@@ -1,12 +1,12 @@
 //! Between motions and points of the program.
 
 use crate::control::guess::InitialGuess;
+use crate::control::numbering::Variable;
 use crate::control::solution::Costates;
 use crate::control::transcription::{KILOVOLT, Placed, Transcription};
-use crate::control::unknowns::Variable;
+use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt;
-use crate::reduction::Configuration;
 
 /// Tells the motion of a point: what is given with what the variables are.
 #[derive(Clone, Debug)]

@@ -1,8 +1,8 @@
 //! What the solver asks.
 
 use crate::control::limits::{BoundedQuantity, When};
+use crate::control::numbering::{Row, Variable};
 use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
-use crate::control::unknowns::{Row, Variable};
 use crate::functional::Order;
 use crate::nlp::{Bounds, Entries, Nlp};
 

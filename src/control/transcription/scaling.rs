@@ -1,8 +1,8 @@
 //! Scales of rows and variables, and bounds.
 
+use crate::control::numbering::{Row, Variable};
 use crate::control::problem::{Control, Duration, PathConstraint};
 use crate::control::transcription::Transcription;
-use crate::control::unknowns::{Row, Variable};
 use crate::dynamics::DiscreteTrajectory;
 use crate::model::Coordinates;
 use crate::nlp::{Bounds, Nlp};

@@ -1,8 +1,8 @@
 //! Which entries of the periodic values the Jacobian and the Hessian keep.
 
+use crate::control::numbering::Row;
 use crate::control::transcription::limit_rows::SCALAR;
 use crate::control::transcription::{Gather, Transcription};
-use crate::control::unknowns::Row;
 use crate::nlp::Entries;
 
 impl Transcription<'_> {

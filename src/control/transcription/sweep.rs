@@ -2,9 +2,9 @@
 
 use crate::control::transcription::limit_rows::{LimitRow, Site};
 use crate::control::transcription::placed::Placed;
-use crate::control::transcription::stretch::{Shared, Segment, instant_of, join, needed};
+use crate::control::transcription::segment::{Segment, Shared, instant_of, join, needed};
 use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
-use crate::functional::{Sample, Horizon, Order, Measure, BlockMask};
+use crate::functional::{BlockMask, Horizon, Measure, Order, Sample};
 use crate::ipopt::interrupt;
 use crate::math::Vector;
 

@@ -1,10 +1,10 @@
 //! Derivatives of the equations of a step with several points, point by point and sample by sample.
 
+use crate::coordinates::Destination;
 use crate::dynamics::stages::rule::Rule;
 use crate::dynamics::stages::{StagePoint, Stages};
 use crate::functional::BlockMask;
 use crate::math::Matrix;
-use crate::reduction::Destination;
 
 impl Stages<'_> {
     /// Sums the blocks of all samples between the rows of one point and the vectors of another into one of the four blocks.

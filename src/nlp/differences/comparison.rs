@@ -1,6 +1,6 @@
 //! One sparse matrix beside its differences.
 
-use super::report::{Matrix, EntryStatus, WrongEntry};
+use super::report::{EntryStatus, Matrix, WrongEntry};
 use crate::nlp::{Entries, Nlp};
 
 /// Relative error above which an entry is taken for wrong.

@@ -29,7 +29,7 @@ use crate::nlp::{Entries, Nlp};
 
 use comparison::Comparison;
 pub use comparison::TOLERANCE;
-pub use report::{Matrix, EntryStatus, Report, WrongEntry};
+pub use report::{EntryStatus, Matrix, Report, WrongEntry};
 
 /// The first step of a difference over the second one.
 const SHORTER: f64 = 8.0;

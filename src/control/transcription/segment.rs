@@ -1,0 +1,234 @@
+//! A stretch of the horizon: neighbouring intervals that one thread evaluates.
+//!
+//! A stretch owns its instants up to the last, which begins the next stretch; of that it has a copy, whose forces and
+//! carried blocks are added when both are done. Where stretches meet depends on the number of intervals only, so results
+//! are the same for any number of threads.
+
+use crate::control::transcription::limit_rows::{LimitRow, Site, fill_weights};
+use crate::control::transcription::placed::Placed;
+use crate::coordinates::{Configuration, Interval, Reduced, Scratch};
+use crate::functional::{BlockMask, Horizon, Order};
+use crate::ipopt::interrupt::TimeLimit;
+use crate::math::Vector;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::cell::OnceCell;
+use std::thread::available_parallelism;
+
+/// What all stretches read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shared<'a> {
+    pub(super) action: &'a Reduced,
+    pub(super) limits: &'a [LimitRow],
+    /// Costates of the limits.
+    pub(super) costates: &'a [f64],
+    /// Scalars of all intervals.
+    pub(super) scalars: &'a [f64],
+    /// Costates of Gauss's laws of all intervals.
+    pub(super) along: &'a [f64],
+    /// Rows of one step: of the instant, then of the potentials.
+    pub(super) stride: usize,
+    pub(super) h: f64,
+    pub(super) horizon: Horizon,
+    pub(super) placed: Placed,
+    pub(super) level: Order,
+    /// Until when intervals are evaluated.
+    pub(super) limit: Option<TimeLimit>,
+}
+
+/// Storage of one thread.
+#[derive(Clone, Debug)]
+pub(super) struct Workspace {
+    pub(super) scratch: Scratch,
+    /// Weights of the measures of instants and intervals.
+    weights: [Vec<f64>; 2],
+}
+
+/// The intervals from `first` on, one for each of the instants.
+#[derive(Debug)]
+pub(super) struct Segment<'a> {
+    pub(super) shared: Shared<'a>,
+    pub(super) first: usize,
+    pub(super) instants: &'a mut [Configuration],
+    /// The instant after the last interval.
+    pub(super) end: &'a mut Configuration,
+    pub(super) bench: &'a mut Workspace,
+    /// Values of the steps from `first` on.
+    pub(super) values: &'a mut [f64],
+    /// Rows of the steps from `first` on.
+    pub(super) rows: &'a mut [f64],
+}
+
+/// What a level needs of an instant.
+pub(super) fn needed(level: Order) -> Placed {
+    match level {
+        Order::Gradient => Placed::Vectors,
+        Order::Hessian | Order::Third => Placed::Columns,
+    }
+}
+
+impl Workspace {
+    pub(super) fn new(action: &Reduced) -> Self {
+        let weights = |measures: usize| vec![0.0; measures];
+        Self {
+            scratch: action.scratch(Order::Third),
+            weights: [
+                weights(action.instants.measures.len()),
+                weights(action.intervals.measures.len()),
+            ],
+        }
+    }
+}
+
+impl Segment<'_> {
+    /// Forces of the intervals, and second derivatives into the values; instants too, but the first where another
+    /// stretch comes before. Returns ∂²/∂h² along the costates.
+    pub(super) fn run(mut self) -> f64 {
+        self.bench.scratch.start();
+        self.prepare(0);
+        let mut square = 0.0;
+        for j in 0..self.instants.len() {
+            // What is not evaluated any more is not used either.
+            if self.shared.limit.and_then(TimeLimit::reached).is_some() {
+                break;
+            }
+            self.prepare(j + 1);
+            square += self.interval(j);
+            if self.first + j > 0 && j == 0 {
+                continue;
+            }
+            let (instant, k) = (&mut self.instants[j], self.first + j);
+            instant_of(
+                self.shared,
+                instant,
+                [k, j],
+                self.bench,
+                self.values,
+                self.rows,
+            );
+        }
+        square
+    }
+
+    /// Places an instant as far as the level needs it, and clears what is added to.
+    fn prepare(&mut self, j: usize) {
+        let Shared {
+            action,
+            level,
+            placed,
+            ..
+        } = self.shared;
+        let segment = action.layout().same_at(j)..action.layout().same_at(j + 1);
+        if level >= Order::Hessian && segment.end <= self.values.len() {
+            self.values[segment].fill(0.0);
+        }
+        let motion = &action.motion;
+        let instant = self.instants.get_mut(j).unwrap_or(self.end);
+        if placed < Placed::Vectors {
+            motion.vectors(instant);
+        }
+        if placed < needed(level) && needed(level) == Placed::Columns {
+            motion.tangent(instant);
+        }
+        instant.forces.fill(Vector::zeros());
+        if level == Order::Third {
+            instant.contracted.fill(Vector::zeros());
+            motion.along(instant);
+        }
+    }
+
+    fn interval(&mut self, j: usize) -> f64 {
+        let Shared {
+            action,
+            level,
+            horizon,
+            h,
+            stride,
+            ..
+        } = self.shared;
+        let (left, right) = self.instants.split_at_mut(j + 1);
+        let (a, b) = (&mut left[j], right.first_mut().unwrap_or(self.end));
+        let k = self.first + j;
+        let count = action.intervals.scalars;
+        let of_step = k * count..(k + 1) * count;
+        let Workspace {
+            scratch,
+            weights: [_, weights],
+        } = &mut *self.bench;
+        fill_weights(
+            weights,
+            self.shared.limits,
+            Site::Intervals,
+            k,
+            self.shared.costates,
+        );
+        let interval = Interval {
+            scalars: &self.shared.scalars[of_step.clone()],
+            along: &self.shared.along[of_step],
+            h,
+            horizon,
+            sides: BlockMask::ALL,
+            weights,
+        };
+        action.evaluate_interval(level, [a, b], &interval, scratch);
+        if level == Order::Gradient {
+            let gauss = &mut self.rows[j * stride + action.motion.unknowns()..(j + 1) * stride];
+            let rows = &scratch.interval.plain.rows;
+            gauss.copy_from_slice(&rows[rows.len() - gauss.len()..]);
+        }
+        scratch.carry(level);
+        let carried = Interval {
+            sides: BlockMask::CARRIED,
+            ..interval
+        };
+        action.pull_back_interval(level, [a, b], &carried, j, scratch, self.values);
+        scratch.interval.contracted.horizon
+    }
+}
+
+/// Instant k, whose forces are complete; its values and rows are those of step j.
+pub(super) fn instant_of(
+    shared: Shared<'_>,
+    instant: &mut Configuration,
+    [k, j]: [usize; 2],
+    bench: &mut Workspace,
+    values: &mut [f64],
+    rows: &mut [f64],
+) {
+    let Shared { action, level, .. } = shared;
+    let Workspace {
+        scratch,
+        weights: [weights, _],
+    } = bench;
+    fill_weights(weights, shared.limits, Site::Instants, k, shared.costates);
+    action.evaluate_instant(level, instant, weights, scratch);
+    action.pull_back_instant(level, instant, j, scratch, values);
+    if level == Order::Gradient {
+        let count = action.motion.unknowns();
+        let rows = &mut rows[j * shared.stride..j * shared.stride + count];
+        rows.fill(0.0);
+        action.rows(instant, scratch, rows);
+    }
+}
+
+thread_local! {
+    /// This thread and one helper, where the machine has two cores.
+    static PAIR: OnceCell<Option<ThreadPool>> = const { OnceCell::new() };
+}
+
+/// Runs both, at once where there is a second core.
+pub(super) fn join<A: Send, B: Send>(
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    PAIR.with(|pair| {
+        let pool = pair.get_or_init(|| {
+            let several = available_parallelism().is_ok_and(|n| n.get() > 1);
+            let builder = ThreadPoolBuilder::new().num_threads(2).use_current_thread();
+            several.then(|| builder.build().ok()).flatten()
+        });
+        match pool {
+            Some(pool) => pool.join(a, b),
+            None => (a(), b()),
+        }
+    })
+}

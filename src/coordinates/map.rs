@@ -1,0 +1,348 @@
+//! How vectors follow from the coordinates of an instant: on a kinematic tree, or linearly from directors and nodes.
+
+use crate::coordinates::configuration::Configuration;
+use crate::coordinates::tree::{TangentColumns, Tree};
+use crate::kinematics::{Carrier, MaterialVector, Pose};
+use crate::math::{Matrix, Vector};
+
+/// How one vector depends on the coordinates.
+#[derive(Clone, Debug)]
+pub enum Dependence {
+    /// A constant plus Σ c u e over the parts.
+    Linear {
+        /// The constant.
+        constant: Vector,
+        /// The parts.
+        parts: Vec<LinearPart>,
+    },
+    /// Columns of a tree.
+    Articulated(TangentColumns),
+}
+
+/// Factor c times one coordinate along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearPart {
+    /// The coordinate.
+    pub coordinate: usize,
+    /// The axis: 0, 1 or 2.
+    pub axis: usize,
+    /// The factor.
+    pub factor: f64,
+}
+
+/// A node: where it is, and in which directions it has a coordinate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodePlace {
+    /// Reference place in mm, kept in the directions without a coordinate.
+    pub reference: Vector,
+    /// Whether x, y, z are coordinates.
+    pub free: [bool; 3],
+}
+
+/// Coordinates of an instant and the vectors that follow from them.
+///
+/// Coordinates of the bodies (of a tree, or directors) come first, then those of the nodes.
+#[derive(Clone, Debug)]
+pub struct CoordinateMap {
+    /// Number of coordinates u.
+    pub coordinates: usize,
+    /// Number of multipliers λ.
+    pub multipliers: usize,
+    /// Dependence of each vector.
+    pub vectors: Vec<Dependence>,
+    /// The tree, for joint coordinates.
+    pub tree: Option<Tree>,
+    /// Number of coordinates of the bodies.
+    pub of_bodies: usize,
+    /// Node and axis of each coordinate of the nodes.
+    pub of_nodes: Vec<(usize, usize)>,
+    /// Vectors with linear dependence.
+    linear: Vec<usize>,
+}
+
+/// First coordinate of the four vectors φ, d₁, d₂, d₃ of a body in director coordinates.
+pub(super) fn body_offset(body: usize) -> usize {
+    12 * body
+}
+
+impl CoordinateMap {
+    /// Joint coordinates of a tree, and coordinates of nodes.
+    pub fn articulated(
+        tree: Tree,
+        vectors: &[MaterialVector],
+        nodes: &[NodePlace],
+        multipliers: usize,
+    ) -> Self {
+        let parts = parts_of_nodes(tree.coordinates(), nodes);
+        let dependence = |(vector, packed): (&MaterialVector, &TangentColumns)| {
+            if vector.is_of_bodies() {
+                Dependence::Articulated(packed.clone())
+            } else {
+                linear(vector, nodes, &parts)
+            }
+        };
+        let of_bodies = tree.coordinates();
+        let vectors = vectors.iter().zip(tree.packed()).map(dependence).collect();
+        Self::new(vectors, Some(tree), of_bodies, nodes, multipliers)
+    }
+
+    /// Director coordinates of `bodies` bodies, and coordinates of nodes.
+    pub fn redundant(
+        bodies: usize,
+        vectors: &[MaterialVector],
+        nodes: &[NodePlace],
+        multipliers: usize,
+    ) -> Self {
+        let parts = parts_of_nodes(12 * bodies, nodes);
+        let vectors = vectors.iter().map(|v| linear(v, nodes, &parts)).collect();
+        Self::new(vectors, None, 12 * bodies, nodes, multipliers)
+    }
+
+    fn new(
+        vectors: Vec<Dependence>,
+        tree: Option<Tree>,
+        of_bodies: usize,
+        nodes: &[NodePlace],
+        multipliers: usize,
+    ) -> Self {
+        let axes = |(node, place): (usize, &NodePlace)| {
+            let free = place.free;
+            (0..3)
+                .filter(move |&axis| free[axis])
+                .map(move |axis| (node, axis))
+        };
+        let of_nodes: Vec<_> = nodes.iter().enumerate().flat_map(axes).collect();
+        let is_linear = |&v: &usize| matches!(vectors[v], Dependence::Linear { .. });
+        Self {
+            coordinates: of_bodies + of_nodes.len(),
+            multipliers,
+            linear: (0..vectors.len()).filter(is_linear).collect(),
+            vectors,
+            tree,
+            of_bodies,
+            of_nodes,
+        }
+    }
+
+    /// Storage for an instant.
+    pub fn instant(&self) -> Configuration {
+        let zeros = || vec![Vector::zeros(); self.vectors.len()];
+        let columns = vec![0.0; self.tree.as_ref().map_or(0, Tree::size)];
+        let mut z = vec![0.0; self.unknowns()];
+        for _ in 0..self.charts() {
+            z.extend([1.0, 0.0, 0.0, 0.0]);
+        }
+        Configuration {
+            z,
+            l: vec![0.0; self.unknowns()],
+            x: zeros(),
+            w: zeros(),
+            columns: columns.clone(),
+            columns_l: columns,
+            forces: zeros(),
+            contracted: zeros(),
+            tree: self.tree.as_ref().map(Tree::state).unwrap_or_default(),
+        }
+    }
+
+    /// Coordinates and multipliers of an instant.
+    pub fn unknowns(&self) -> usize {
+        self.coordinates + self.multipliers
+    }
+
+    /// Number of charts, whose quaternions follow the unknowns in the list of an instant.
+    pub(super) fn charts(&self) -> usize {
+        self.tree.as_ref().map_or(0, Tree::charts)
+    }
+
+    /// An instant placed at coordinates, and multipliers and charts where they are given.
+    pub fn placed(&self, z: &[f64]) -> Configuration {
+        let mut instant = self.instant();
+        instant.z[..z.len()].copy_from_slice(z);
+        self.place(&mut instant);
+        instant
+    }
+
+    /// x = F(u) and the columns of P.
+    pub fn place(&self, instant: &mut Configuration) {
+        self.vectors(instant);
+        self.tangent(instant);
+    }
+
+    /// x = F(u).
+    pub fn vectors(&self, instant: &mut Configuration) {
+        let Configuration {
+            z, x, tree: state, ..
+        } = instant;
+        if let Some(tree) = &self.tree {
+            let (unknowns, charts) = z.split_at(self.unknowns());
+            tree.place(unknowns, charts, state);
+            tree.vectors(state, x);
+        }
+        for &v in &self.linear {
+            x[v] = self.sum_of_parts(v, z, true);
+        }
+    }
+
+    /// The columns of P, once the vectors are known; linear vectors need none.
+    pub fn tangent(&self, instant: &mut Configuration) {
+        if let Some(tree) = &self.tree {
+            tree.tangent(&mut instant.tree, &mut instant.columns);
+        }
+    }
+
+    fn sum_of_parts(&self, vector: usize, z: &[f64], constant: bool) -> Vector {
+        let Dependence::Linear {
+            constant: offset,
+            parts,
+        } = &self.vectors[vector]
+        else {
+            unreachable!("the list holds linear vectors")
+        };
+        let mut sum = if constant { *offset } else { Vector::zeros() };
+        for part in parts {
+            sum[part.axis] += z[part.coordinate] * part.factor;
+        }
+        sum
+    }
+
+    /// w = P l and, for a tree, the derivatives of the columns along l.
+    pub fn along(&self, instant: &mut Configuration) {
+        if let Some(tree) = &self.tree {
+            tree.along(instant);
+        }
+        for &v in &self.linear {
+            instant.w[v] = self.sum_of_parts(v, &instant.l, false);
+        }
+    }
+
+    /// Adds Pᵀ R of the forces on an instant to the rows of the coordinates; needs no columns.
+    pub fn rows(&self, instant: &mut Configuration, rows: &mut [f64]) {
+        if let Some(tree) = &self.tree {
+            tree.pull_back(&mut instant.tree, &instant.forces, rows);
+        }
+        for &v in &self.linear {
+            self.pull_back_one(v, &[], &instant.forces[v], rows);
+        }
+    }
+
+    /// Adds Pᵀ R to the rows of the coordinates.
+    pub fn pull_back(&self, columns: &[f64], forces: &[Vector], rows: &mut [f64]) {
+        for (vector, force) in forces.iter().enumerate() {
+            self.pull_back_one(vector, columns, force, rows);
+        }
+    }
+
+    /// Adds the derivative P′_lᵀ R, which only vectors on a tree have.
+    pub fn pull_back_along(&self, columns_l: &[f64], forces: &[Vector], rows: &mut [f64]) {
+        for (vector, force) in forces.iter().enumerate() {
+            if let Dependence::Articulated(_) = self.vectors[vector] {
+                self.pull_back_one(vector, columns_l, force, rows);
+            }
+        }
+    }
+
+    /// Adds Pᵀ f for a force on one vector.
+    pub fn pull_back_one(&self, vector: usize, columns: &[f64], force: &Vector, rows: &mut [f64]) {
+        match &self.vectors[vector] {
+            Dependence::Articulated(packed) => {
+                let [x, y, z] = packed.rows(columns);
+                for (i, &row) in packed.support.iter().enumerate() {
+                    rows[row] += x[i] * force.x + y[i] * force.y + z[i] * force.z;
+                }
+            }
+            Dependence::Linear { parts, .. } => {
+                for part in parts {
+                    rows[part.coordinate] += part.factor * force[part.axis];
+                }
+            }
+        }
+    }
+
+    /// Coordinates that move a vector.
+    pub fn support(&self, vector: usize) -> Vec<usize> {
+        match &self.vectors[vector] {
+            Dependence::Articulated(packed) => packed.support.clone(),
+            Dependence::Linear { parts, .. } => parts.iter().map(|p| p.coordinate).collect(),
+        }
+    }
+
+    /// Poses of the bodies at an instant.
+    pub fn poses(&self, instant: &Configuration, bodies: usize) -> Vec<Pose> {
+        if self.tree.is_some() {
+            return instant.tree.poses[..bodies].to_vec();
+        }
+        let pose = |body: usize| {
+            let q = &instant.z[body_offset(body)..];
+            Pose {
+                centre: Vector::new(q[0], q[1], q[2]),
+                directors: self.directors(instant, body),
+            }
+        };
+        (0..bodies).map(pose).collect()
+    }
+
+    /// Directors of a body at a placed instant.
+    pub fn directors(&self, instant: &Configuration, body: usize) -> Matrix {
+        match self.tree {
+            Some(_) => instant.tree.poses[body].directors,
+            None => Matrix::from_column_slice(&instant.z[body_offset(body) + 3..][..9]),
+        }
+    }
+}
+
+/// Parts of each node; its coordinates follow those of the nodes before.
+fn parts_of_nodes(first: usize, nodes: &[NodePlace]) -> Vec<Vec<LinearPart>> {
+    let mut next = first;
+    let parts = |node: &NodePlace| {
+        let free = (0..3).filter(|&axis| node.free[axis]);
+        let part = |(i, axis)| LinearPart {
+            coordinate: next + i,
+            axis,
+            factor: 1.0,
+        };
+        let parts: Vec<LinearPart> = free.enumerate().map(part).collect();
+        next += parts.len();
+        parts
+    };
+    nodes.iter().map(parts).collect()
+}
+
+/// The linear dependence of a vector on directors, nodes and coordinates of joints.
+fn linear(vector: &MaterialVector, nodes: &[NodePlace], of_node: &[Vec<LinearPart>]) -> Dependence {
+    let mut constant = Vector::zeros();
+    let mut parts = Vec::new();
+    for term in &vector.terms {
+        match term.carrier {
+            Carrier::Ground => constant += term.at(&Pose::GROUND),
+            Carrier::Body(body) => {
+                let d = &term.directors;
+                for (i, factor) in [term.centre, d.x, d.y, d.z].into_iter().enumerate() {
+                    if factor != 0.0 {
+                        parts.extend((0..3).map(|axis| LinearPart {
+                            coordinate: body_offset(body) + 3 * i + axis,
+                            axis,
+                            factor,
+                        }));
+                    }
+                }
+            }
+            Carrier::Joint(coordinate) => parts.push(LinearPart {
+                coordinate,
+                axis: 0,
+                factor: term.centre,
+            }),
+            Carrier::Node(node) => {
+                let NodePlace { reference, free } = nodes[node];
+                for axis in (0..3).filter(|&axis| !free[axis]) {
+                    constant[axis] += term.centre * reference[axis];
+                }
+                parts.extend(of_node[node].iter().map(|part| LinearPart {
+                    factor: part.factor * term.centre,
+                    ..*part
+                }));
+            }
+        }
+    }
+    Dependence::Linear { constant, parts }
+}

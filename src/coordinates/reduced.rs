@@ -1,0 +1,437 @@
+//! A functional seen through coordinates.
+
+use crate::coordinates::configuration::Configuration;
+use crate::coordinates::map::CoordinateMap;
+use crate::coordinates::pattern::StepPattern;
+use crate::coordinates::pull_back::{Destination, PullBack, Site};
+use crate::functional::{BlockMask, Blocks, Functional, Horizon, Order, Output, Part, Sample};
+use crate::math::{Matrix, Vector};
+
+/// Sums over intervals and instants as functions of the coordinates z of the instants and the scalars of the intervals.
+#[derive(Debug)]
+pub struct Reduced {
+    /// Coordinates and the vectors that follow from them.
+    pub motion: CoordinateMap,
+    /// Sum over intervals; its scalars are voltages.
+    pub intervals: Functional,
+    /// Sum over instants; its scalars are multipliers.
+    pub instants: Functional,
+    interval_plan: PullBack,
+    instant_plan: PullBack,
+    curvature: Vec<[usize; 2]>,
+    layout: StepPattern,
+}
+
+/// What an interval is asked with, besides its two instants.
+#[derive(Clone, Copy, Debug)]
+pub struct Interval<'a> {
+    /// Scalars: voltages, then potentials.
+    pub scalars: &'a [f64],
+    /// Their rates along the direction; read at level `Third` only.
+    pub along: &'a [f64],
+    /// Length in ms.
+    pub h: f64,
+    /// Whether the length is an argument.
+    pub horizon: Horizon,
+    /// Which blocks are asked for.
+    pub sides: BlockMask,
+    /// Weights of the measures of the site.
+    pub weights: &'a [f64],
+}
+
+impl<'a> Interval<'a> {
+    /// A given interval, all blocks.
+    pub fn given(scalars: &'a [f64], h: f64) -> Self {
+        Self {
+            scalars,
+            along: &[],
+            h,
+            horizon: Horizon::Given,
+            sides: BlockMask::ALL,
+            weights: &[],
+        }
+    }
+
+    /// What effects read of it.
+    pub fn frame(&self, [a, b]: [&'a Configuration; 2]) -> Sample<'a> {
+        Sample {
+            vectors: [&a.x, &b.x],
+            along: [&a.w, &b.w],
+            scalars: self.scalars,
+            scalars_along: self.along,
+            h: self.h,
+            horizon: self.horizon,
+            sides: self.sides,
+            weights: self.weights,
+        }
+    }
+}
+
+/// Storage that one evaluation needs, allocated once for each thread.
+///
+/// In a sweep over a horizon the blocks of an instant are summed over both neighbouring intervals before they are pulled
+/// back: [`Scratch::carry`] after each interval, and [`Reduced::pull_back_last`] at the end.
+#[derive(Clone, Debug)]
+pub struct Scratch {
+    /// Derivatives of the last interval.
+    pub interval: Output,
+    /// Derivatives of the last instant.
+    pub instant: Output,
+    carried: [Carried; 2],
+    local: Vec<f64>,
+}
+
+/// Blocks (k+1, k+1) of the interval before.
+#[derive(Clone, Debug)]
+struct Carried {
+    full: Vec<Matrix>,
+    isotropic: Vec<f64>,
+}
+
+impl Carried {
+    fn new(blocks: &Blocks) -> Self {
+        Self {
+            full: vec![Matrix::zeros(); blocks.full.len()],
+            isotropic: vec![0.0; blocks.isotropic.len()],
+        }
+    }
+
+    /// Adds the carried blocks to those of the first instant, and takes those of the second.
+    fn exchange(&mut self, blocks: &mut Blocks) {
+        for (carried, block) in self.full.iter_mut().zip(&mut blocks.full) {
+            block[0] += std::mem::replace(carried, block[3]);
+        }
+        for (carried, block) in self.isotropic.iter_mut().zip(&mut blocks.isotropic) {
+            block[0] += std::mem::replace(carried, block[3]);
+        }
+    }
+}
+
+impl Scratch {
+    /// Forgets carried blocks, before a sweep.
+    pub fn start(&mut self) {
+        for carried in &mut self.carried {
+            carried.full.fill(Matrix::zeros());
+            carried.isotropic.fill(0.0);
+        }
+    }
+
+    /// Moves the blocks of the second instant of the interval evaluated last to the next interval.
+    pub fn carry(&mut self, level: Order) {
+        if level >= Order::Hessian {
+            self.carried[0].exchange(&mut self.interval.plain.blocks);
+        }
+        if level == Order::Third {
+            self.carried[1].exchange(&mut self.interval.contracted.blocks);
+        }
+    }
+}
+
+impl Reduced {
+    /// Lays down the structure.
+    pub fn new(motion: CoordinateMap, intervals: Functional, instants: Functional) -> Self {
+        let mut layout = StepPattern {
+            unknowns: motion.unknowns(),
+            interval_scalars: intervals.scalars,
+            ..StepPattern::default()
+        };
+        let interval_plan =
+            PullBack::new(&intervals.couplings, &motion, &mut layout, Site::Intervals);
+        let instant_plan = PullBack::new(&instants.couplings, &motion, &mut layout, Site::Instants);
+        let entries = motion.tree.iter().flat_map(|tree| tree.curvature_entries());
+        let curvature = entries
+            .map(|(i, k)| [layout.same.slot(i, k), layout.same.slot(k, i)])
+            .collect();
+        Self {
+            motion,
+            intervals,
+            instants,
+            interval_plan,
+            instant_plan,
+            curvature,
+            layout,
+        }
+    }
+
+    /// Where entries lie.
+    pub fn layout(&self) -> &StepPattern {
+        &self.layout
+    }
+
+    /// Storage for evaluations up to a level; sweeps, which carry blocks on, need `Third`.
+    pub fn scratch(&self, level: Order) -> Scratch {
+        let interval = self.intervals.output(level);
+        let carried = if level == Order::Third {
+            Carried::new(&interval.plain.blocks)
+        } else {
+            Carried::new(&Blocks::default())
+        };
+        Scratch {
+            carried: [carried.clone(), carried],
+            interval,
+            instant: self.instants.output(level),
+            local: vec![0.0; self.interval_plan.local().max(self.instant_plan.local())],
+        }
+    }
+
+    /// Evaluates the interval between two instants and adds its forces to theirs; at level `Third` along their
+    /// directions, with contracted forces and the measures of the site by their weights.
+    pub fn evaluate_interval(
+        &self,
+        level: Order,
+        [a, b]: [&mut Configuration; 2],
+        interval: &Interval<'_>,
+        scratch: &mut Scratch,
+    ) {
+        let frame = interval.frame([&*a, &*b]);
+        self.intervals
+            .evaluate(level, &frame, &mut scratch.interval);
+        let out = &scratch.interval;
+        add(&mut a.forces, &out.plain.forces[0]);
+        add(&mut b.forces, &out.plain.forces[1]);
+        if level == Order::Third {
+            add(&mut a.contracted, &out.contracted.forces[0]);
+            add(&mut b.contracted, &out.contracted.forces[1]);
+        }
+    }
+
+    /// Adds the second derivatives of the interval evaluated last to the values of step k: ∇² at level `Hessian`, the
+    /// lower triangle of ∇³ along the directions at level `Third`.
+    pub fn pull_back_interval(
+        &self,
+        level: Order,
+        [a, b]: [&Configuration; 2],
+        &Interval { horizon, sides, .. }: &Interval<'_>,
+        k: usize,
+        scratch: &mut Scratch,
+        values: &mut [f64],
+    ) {
+        let layout = &self.layout;
+        let target = Destination {
+            blocks: [
+                layout.same_at(k),
+                layout.upper_at(k),
+                layout.lower_at(k),
+                layout.same_at(k + 1),
+            ],
+            mixed: [layout.mixed_at(k, 0), layout.mixed_at(k, 1)],
+            scalars: layout.scalars_at(k),
+        };
+        let Scratch {
+            interval, local, ..
+        } = scratch;
+        let (plain, contracted) = (&interval.plain, &interval.contracted);
+        match level {
+            Order::Gradient => return,
+            Order::Hessian => {
+                self.interval_plan
+                    .hessian([a, b], plain, sides, &target, local, values);
+            }
+            Order::Third => {
+                self.interval_plan.third(
+                    [a, b],
+                    [plain, contracted],
+                    sides,
+                    &target,
+                    local,
+                    values,
+                );
+            }
+        }
+        if horizon == Horizon::Free {
+            let part = if level == Order::Third {
+                contracted
+            } else {
+                plain
+            };
+            for (side, instant) in [a, b].into_iter().enumerate() {
+                let at = layout.horizon_at(k + side);
+                let rows = &mut values[at..at + layout.unknowns];
+                self.motion
+                    .pull_back(&instant.columns, &part.horizon_forces[side], rows);
+                if level == Order::Third {
+                    let forces = &plain.horizon_forces[side];
+                    self.motion
+                        .pull_back_along(&instant.columns_l, forces, rows);
+                }
+            }
+            let at = layout.horizon_scalars_at(k);
+            for (value, row) in values[at..at + layout.interval_scalars]
+                .iter_mut()
+                .zip(&part.horizon_rows)
+            {
+                *value += row;
+            }
+        }
+    }
+
+    /// Adds Pᵀ B P of the blocks of any part of the sum over intervals, between two instants, to the values at the places
+    /// of a target.
+    pub fn pull_back_part(
+        &self,
+        ends: [&Configuration; 2],
+        part: &Part,
+        sides: BlockMask,
+        target: &Destination,
+        scratch: &mut Scratch,
+        values: &mut [f64],
+    ) {
+        let local = &mut scratch.local;
+        self.interval_plan
+            .hessian(ends, part, sides, target, local, values);
+    }
+
+    /// Pulls back the blocks that the last interval of a sweep carried on to the final instant k.
+    pub fn pull_back_last(
+        &self,
+        level: Order,
+        last: &Configuration,
+        k: usize,
+        scratch: &mut Scratch,
+        values: &mut [f64],
+    ) {
+        if level == Order::Gradient {
+            return;
+        }
+        scratch.interval.plain.clear(true);
+        scratch.interval.contracted.clear(true);
+        scratch.carry(level);
+        let same = self.layout.same_at(k);
+        let target = Destination {
+            blocks: [same; 4],
+            mixed: [usize::MAX; 2],
+            scalars: self.layout.scalars_at(k),
+        };
+        let Scratch {
+            interval, local, ..
+        } = scratch;
+        let (plain, contracted) = (&interval.plain, &interval.contracted);
+        let ends = [last, last];
+        match level {
+            Order::Third => self.interval_plan.third(
+                ends,
+                [plain, contracted],
+                BlockMask::HERE,
+                &target,
+                local,
+                values,
+            ),
+            _ => self
+                .interval_plan
+                .hessian(ends, plain, BlockMask::HERE, &target, local, values),
+        }
+    }
+
+    /// Evaluates an instant and adds its forces.
+    pub fn evaluate_instant(
+        &self,
+        level: Order,
+        instant: &mut Configuration,
+        weights: &[f64],
+        scratch: &mut Scratch,
+    ) {
+        let n = self.motion.coordinates;
+        let frame = Sample {
+            vectors: [&instant.x, &instant.x],
+            along: [&instant.w, &instant.w],
+            scalars: &instant.z[n..self.motion.unknowns()],
+            scalars_along: &instant.l[n..],
+            h: 1.0,
+            horizon: Horizon::Given,
+            sides: BlockMask::HERE,
+            weights,
+        };
+        self.instants.evaluate(level, &frame, &mut scratch.instant);
+        add(&mut instant.forces, &scratch.instant.plain.forces[0]);
+        if level == Order::Third {
+            add(
+                &mut instant.contracted,
+                &scratch.instant.contracted.forces[0],
+            );
+        }
+    }
+
+    /// Adds the second derivatives of the instant evaluated last, and the curvature of its coordinates under all forces
+    /// on it, to the values of instant k; levels as for an interval.
+    pub fn pull_back_instant(
+        &self,
+        level: Order,
+        instant: &mut Configuration,
+        k: usize,
+        scratch: &mut Scratch,
+        values: &mut [f64],
+    ) {
+        let same = self.layout.same_at(k);
+        let target = Destination {
+            blocks: [same; 4],
+            mixed: [same, usize::MAX],
+            scalars: usize::MAX,
+        };
+        let Scratch {
+            instant: output,
+            local,
+            ..
+        } = scratch;
+        let (plain, contracted) = (&output.plain, &output.contracted);
+        match level {
+            Order::Gradient => return,
+            Order::Hessian => self.instant_plan.hessian(
+                [instant, instant],
+                plain,
+                BlockMask::HERE,
+                &target,
+                local,
+                values,
+            ),
+            Order::Third => self.instant_plan.third(
+                [instant, instant],
+                [plain, contracted],
+                BlockMask::HERE,
+                &target,
+                local,
+                values,
+            ),
+        }
+        if let Some(tree) = &self.motion.tree {
+            let values = &mut values[same..];
+            match level {
+                Order::Third => tree.curvature_along(instant, &self.curvature, values),
+                _ => tree.curvature(instant, &self.curvature, values),
+            }
+        }
+    }
+
+    /// Momentum Pᵀ ∂T/∂ẋ of each coordinate of a placed instant with rates `rates` of the coordinates.
+    pub fn momentum(&self, instant: &mut Configuration, rates: &[f64]) -> Vec<f64> {
+        instant.l.fill(0.0);
+        instant.l[..rates.len()].copy_from_slice(rates);
+        self.motion.along(instant);
+        let mut momenta = vec![Vector::zeros(); instant.x.len()];
+        for effect in &self.intervals.effects {
+            effect.momentum(&instant.x, &instant.w, &mut momenta);
+        }
+        let mut rows = vec![0.0; self.motion.coordinates];
+        self.motion.pull_back(&instant.columns, &momenta, &mut rows);
+        rows
+    }
+
+    /// Adds Pᵀ R to the first rows and the rows of the multipliers to the others.
+    ///
+    /// The instant has to be evaluated last.
+    pub fn rows(&self, instant: &mut Configuration, scratch: &Scratch, rows: &mut [f64]) {
+        self.motion.rows(instant, rows);
+        for (row, value) in rows[self.motion.coordinates..]
+            .iter_mut()
+            .zip(&scratch.instant.plain.rows)
+        {
+            *row += value;
+        }
+    }
+}
+
+/// Adds one list of vectors to another.
+fn add(sum: &mut [Vector], list: &[Vector]) {
+    for (s, v) in sum.iter_mut().zip(list) {
+        *s += v;
+    }
+}

@@ -1,0 +1,168 @@
+//! Scene and problem files: what is written, read with units, checked, and turned into what it means.
+//!
+//! - `quantity`, `unit`: numbers with units, converted once to g, mm, ms, N, MPa, V.
+//! - `spec_scene`, `spec_solids`, `spec_problem`, `spec_simulate`, `spec_control`, `spec_states`, `spec_voltages`, `spec_coordinates`, `spec_integrator`, `spec_limits`, `either`: the serde types of the two files; `expand`: the chain shorthand.
+//! - `components`: kinds of parts of which each has one file for both.
+//! - `spec_study`: the serde types of a study of variants of a problem.
+//! - `document`, `locate`, `wording`, `error`, `set`: text, places in it, mistakes, overrides.
+//! - `point`, `names`: points as written, and what names mean.
+//! - `build_*`, `graph`, `scope`, `solution`: from what is written to [`System`] and [`Task`].
+
+mod build_body;
+mod build_choice;
+mod build_control;
+mod build_electrodes;
+mod build_guess;
+mod build_limits;
+mod build_marker;
+mod build_material;
+mod build_mesh;
+mod build_muscle;
+mod build_place;
+mod build_problem;
+mod build_scene;
+mod build_simulation;
+mod build_solid;
+mod build_state;
+mod build_voltages;
+pub mod components;
+mod document;
+mod either;
+mod error;
+mod expand;
+mod graph;
+mod layout;
+mod locate;
+mod names;
+pub mod point;
+pub mod quantity;
+mod scope;
+mod set;
+mod solution;
+pub mod spec_control;
+pub mod spec_coordinates;
+pub mod spec_integrator;
+pub mod spec_limits;
+pub mod spec_problem;
+pub mod spec_scene;
+pub mod spec_simulate;
+pub mod spec_solids;
+pub mod spec_states;
+pub mod spec_study;
+pub mod spec_voltages;
+mod start;
+mod typed;
+mod unit;
+mod wording;
+
+pub(crate) use document::Document;
+pub use error::{SceneError, printable};
+pub(crate) use layout::lay_out;
+pub(crate) use locate::JsonPath;
+pub(crate) use scope::Scope;
+pub use start::new_trunk;
+pub use typed::{driven_voltages, read_system};
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+use crate::control::problem::Task;
+use crate::files::build_problem::build_problem;
+use crate::files::build_scene::build_scene;
+use crate::files::expand::expanded;
+use crate::files::set::Override;
+use crate::files::spec_problem::{ProblemSpec, SceneSource};
+use crate::files::spec_scene::SceneSpec;
+use crate::files::spec_study::StudySpec;
+use crate::model::system::System;
+
+/// A problem with its scene, read and checked.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// What exists.
+    pub system: System,
+    /// What is asked.
+    pub task: Task,
+    /// File of the scene; `None` where the problem holds the scene itself.
+    pub scene_path: Option<PathBuf>,
+    /// The scene as written, overrides applied.
+    pub scene: Value,
+    /// The problem as written, overrides applied.
+    pub problem: Value,
+}
+
+/// Reads a problem file and its scene, with overrides such as `control.intervals=80` or `scene.gravity=[0,0,0]`.
+pub fn read_problem(path: &Path, overrides: &[String]) -> Result<Loaded, SceneError> {
+    let overrides: Vec<Override> = overrides
+        .iter()
+        .map(|written| Override::parse(written))
+        .collect::<Result<_, _>>()?;
+    let (of_scene, of_problem): (Vec<_>, Vec<_>) = overrides
+        .into_iter()
+        .partition(|change| change.in_scene().is_some());
+    let mut document = Document::read(path)?;
+    for change in &of_problem {
+        change.apply(&mut document)?;
+    }
+    let scene_apart = document.value.get("scene").is_some_and(Value::is_string);
+    if !scene_apart {
+        for change in &of_scene {
+            change.apply(&mut document)?;
+        }
+    }
+    let problem: ProblemSpec = document.parse()?;
+    let scope = Scope::of(&document);
+    let (system, scene, scene_path) = match &problem.scene {
+        SceneSource::Inline(scene) => {
+            let system = build_scene(scene, &scope.key("scene"))?;
+            (system, document.value["scene"].clone(), None)
+        }
+        SceneSource::Path(path) => {
+            let file = document.beside(path);
+            if !file.is_file() {
+                let found = format!("{path:?}, where there is no file");
+                return Err(scope.key("scene").wrong(found, "the path of a scene file"));
+            }
+            let mut scene = Document::read(&file)?;
+            for change in of_scene.iter().filter_map(Override::in_scene) {
+                change.apply(&mut scene)?;
+            }
+            let system = build_scene(&scene.parse()?, &Scope::of(&scene))?;
+            (system, scene.value, Some(file))
+        }
+    };
+    Ok(Loaded {
+        task: build_problem(&problem, &system, &scope)?,
+        system,
+        scene_path,
+        scene,
+        problem: document.value.clone(),
+    })
+}
+
+/// Reads a scene file.
+pub fn read_scene(path: &Path) -> Result<System, SceneError> {
+    let document = Document::read(path)?;
+    build_scene(&document.parse()?, &Scope::of(&document))
+}
+
+/// The JSON text of a scene file without shorthand, checked.
+pub fn expand(path: &Path) -> Result<String, SceneError> {
+    let document = Document::read(path)?;
+    let scene: SceneSpec = document.parse()?;
+    build_scene(&scene, &Scope::of(&document))?;
+    let compact = serde_json::to_string(&expanded(scene)).expect("a scene is JSON");
+    Ok(lay_out(&compact))
+}
+
+/// The JSON Schemas of the scene file and of the problem file.
+pub fn schema() -> (Value, Value) {
+    let scene = schemars::schema_for!(SceneSpec);
+    let problem = schemars::schema_for!(ProblemSpec);
+    (scene.to_value(), problem.to_value())
+}
+
+/// The JSON Schema of the study file.
+pub fn study_schema() -> Value {
+    schemars::schema_for!(StudySpec).to_value()
+}

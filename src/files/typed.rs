@@ -1,0 +1,70 @@
+//! What is read from the command line besides overrides: the scene of any file, and voltages by source.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::files::build_scene::build_scene;
+use crate::files::build_state::A_SOURCE;
+use crate::files::document::Document;
+use crate::files::error::{Mistake, SceneError, nearest};
+use crate::files::quantity::{Quantity, Voltage};
+use crate::files::scope::Scope;
+use crate::files::set::Override;
+use crate::model::system::{Source, System};
+
+/// The system of a scene file, or of the scene of a problem file, with overrides as for the file itself.
+///
+/// # Errors
+/// The file, its scene or an override is wrong.
+pub fn read_system(path: &Path, overrides: &[String]) -> Result<System, SceneError> {
+    let mut document = Document::read(path)?;
+    if document.value.get("scene").is_some() {
+        return Ok(crate::files::read_problem(path, overrides)?.system);
+    }
+    for written in overrides {
+        let change = Override::parse(written)?;
+        change.in_scene().unwrap_or(change).apply(&mut document)?;
+    }
+    build_scene(&document.parse()?, &Scope::of(&document))
+}
+
+/// One voltage per source in V from words such as `muscle2=1.7kV`, 0 where not named.
+///
+/// # Errors
+/// A source does not exist or takes no voltage, or a voltage is none.
+pub fn driven_voltages(words: &[String], system: &System) -> Result<Vec<f64>, SceneError> {
+    let sources = system.sources();
+    let mut voltages = vec![0.0; sources.len()];
+    let mistake = |word: &str, expected: String, nearest: Option<String>| -> SceneError {
+        Mistake {
+            file: "command line".to_owned(),
+            path: "--voltages".to_owned(),
+            found: format!("{word:?}"),
+            expected,
+            nearest,
+            source: None,
+            overridden: false,
+        }
+        .into()
+    };
+    for word in words.iter().filter(|word| !word.trim().is_empty()) {
+        let expected = || "muscle=voltage, such as muscle2=1.7kV".to_owned();
+        let (name, value) = word
+            .split_once('=')
+            .ok_or_else(|| mistake(word, expected(), None))?;
+        let name = name.trim();
+        let named = |source: &Source| source.name == name && source.takes_voltage;
+        let source = sources.iter().position(named).ok_or_else(|| {
+            let nearest = nearest(name, sources.iter().map(|source| source.name.as_str()));
+            let expected = format!("{A_SOURCE} that takes a voltage");
+            mistake(name, expected, nearest.filter(|other| other != name))
+        })?;
+        let value = value.trim();
+        let json = serde_json::from_str(value).unwrap_or_else(|_| Value::from(value));
+        let quantity: Quantity<Voltage> = serde_json::from_value(json)
+            .map_err(|_| mistake(word, Quantity::<Voltage>::expected(), None))?;
+        voltages[source] = quantity.value();
+    }
+    Ok(voltages)
+}

@@ -1,0 +1,232 @@
+//! A term of a sum, and the sum.
+
+use crate::functional::{BlockMask, Couplings, Part};
+use crate::math::Vector;
+use std::fmt::Debug;
+
+/// How far derivatives are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Order {
+    /// Forces: first derivatives.
+    Gradient,
+    /// Also second derivatives.
+    Hessian,
+    /// Also both contracted with a direction.
+    Third,
+}
+
+/// What an effect reads on one interval.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<'a> {
+    /// Vectors at t_k and t_{k+1}.
+    pub vectors: [&'a [Vector]; 2],
+    /// Rates of the vectors along the direction.
+    pub along: [&'a [Vector]; 2],
+    /// Scalars of the site: voltages and potentials of the interval, multipliers of the instant.
+    pub scalars: &'a [f64],
+    /// Rates of the scalars along the direction.
+    pub scalars_along: &'a [f64],
+    /// Interval length in ms.
+    pub h: f64,
+    /// Whether the interval length is itself an argument.
+    pub horizon: Horizon,
+    /// Which blocks are asked for.
+    pub sides: BlockMask,
+    /// Weights of the measures of the site in the contraction at level `Third`.
+    pub weights: &'a [f64],
+}
+
+impl<'a> Sample<'a> {
+    /// One instant by itself, in an interval of 1 ms that begins and ends there.
+    pub fn of_instant(vectors: &'a [Vector], scalars: &'a [f64]) -> Self {
+        Self {
+            vectors: [vectors, vectors],
+            along: [vectors, vectors],
+            scalars,
+            scalars_along: &[],
+            h: 1.0,
+            horizon: Horizon::Given,
+            sides: BlockMask::ALL,
+            weights: &[],
+        }
+    }
+}
+
+/// What the interval length is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Horizon {
+    /// A given number.
+    Given,
+    /// An argument: derivatives with respect to it are asked for.
+    Free,
+}
+
+/// Where an effect adds its derivatives.
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// The derivatives.
+    pub plain: Part,
+    /// The derivatives contracted with the direction.
+    pub contracted: Part,
+}
+
+/// What an effect is in the energy balance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Kinetic energy.
+    Kinetic,
+    /// Potential energy.
+    Potential,
+    /// Virtual work of forces without a potential.
+    VirtualWork,
+    /// Constraints times multipliers.
+    Constraint,
+}
+
+/// A term of a sum: all elements of one kind at one site.
+pub trait Term: Debug + Send + Sync {
+    /// Name for reports.
+    fn name(&self) -> &str;
+
+    /// How many elements there are.
+    fn elements(&self) -> usize;
+
+    /// Registers the couplings of the elements, and lists the slots that they got in the order in which they are read.
+    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>);
+
+    /// What the effect is in the energy balance.
+    fn kind(&self) -> Kind;
+
+    /// Kinetic or potential energy at the midpoint of an interval in mJ; the work that a virtual work does over it.
+    fn energy(&self, frame: &Sample<'_>) -> f64;
+
+    /// Names of the parts of its energy, as reports show them.
+    fn energy_parts(&self) -> Vec<String> {
+        vec![self.name().to_owned()]
+    }
+
+    /// The parts of its energy, in the order of their names.
+    fn energies(&self, frame: &Sample<'_>, out: &mut Vec<f64>) {
+        out.push(self.energy(frame));
+    }
+
+    /// Adds the momenta ∂T/∂ẋ at vectors x with rates v.
+    fn momentum(&self, x: &[Vector], v: &[Vector], out: &mut [Vector]);
+
+    /// Adds the derivatives; `slots` are those of its couplings.
+    fn evaluate(&self, level: Order, frame: &Sample<'_>, slots: &[u32], out: &mut Output);
+}
+
+/// A quantity at one site that is read by itself: a path limit, a goal.
+pub trait Measure: Debug + Send + Sync {
+    /// Registers what the quantity couples, and lists the slots in the order in which they are read.
+    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>);
+
+    /// Vectors it reads.
+    fn vectors(&self) -> Vec<usize>;
+
+    /// Scalars it reads.
+    fn scalars(&self) -> Vec<usize>;
+
+    /// Whether it reads the instant k + side.
+    fn reads(&self, side: usize) -> bool;
+
+    /// Its value.
+    fn value(&self, frame: &Sample<'_>) -> f64;
+
+    /// Adds its gradient.
+    fn gradient(&self, frame: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]);
+
+    /// Adds its gradient and Hessian times a weight; `slots` are those of its couplings.
+    fn add_weighted(&self, weight: f64, frame: &Sample<'_>, slots: &[u32], part: &mut Part);
+}
+
+/// A sum of effects at one site, and the quantities that are measured there.
+#[derive(Debug, Default)]
+pub struct Functional {
+    /// The effects.
+    pub effects: Vec<Box<dyn Term>>,
+    /// The quantities.
+    pub measures: Vec<Box<dyn Measure>>,
+    /// What couples in them.
+    pub couplings: Couplings,
+    /// Slots of the couplings of each effect.
+    effect_slots: Vec<Vec<u32>>,
+    /// Slots of the couplings of each quantity.
+    measure_slots: Vec<Vec<u32>>,
+    /// Number of vectors.
+    pub vectors: usize,
+    /// Number of scalars of the site.
+    pub scalars: usize,
+}
+
+impl Functional {
+    /// A sum over effects that read `vectors` vectors and `scalars` scalars.
+    pub fn new(
+        effects: Vec<Box<dyn Term>>,
+        measures: Vec<Box<dyn Measure>>,
+        vectors: usize,
+        scalars: usize,
+    ) -> Self {
+        let mut couplings = Couplings::default();
+        let mut laid = |couple: &dyn Fn(&mut Couplings, &mut Vec<u32>)| {
+            let mut slots = Vec::new();
+            couple(&mut couplings, &mut slots);
+            slots
+        };
+        let of_effect = |effect: &dyn Term| laid(&|c, slots| effect.couple(c, slots));
+        let effect_slots = effects.iter().map(Box::as_ref).map(of_effect).collect();
+        let of_measure = |measure: &dyn Measure| laid(&|c, slots| measure.couple(c, slots));
+        let measure_slots = measures.iter().map(Box::as_ref).map(of_measure).collect();
+        Self {
+            effects,
+            measures,
+            couplings,
+            effect_slots,
+            measure_slots,
+            vectors,
+            scalars,
+        }
+    }
+
+    /// The effects with the slots of their couplings.
+    pub fn terms(&self) -> impl Iterator<Item = (&dyn Term, &[u32])> {
+        let effects = self.effects.iter().map(Box::as_ref);
+        effects.zip(self.effect_slots.iter().map(Vec::as_slice))
+    }
+
+    /// Storage for the derivatives up to a level.
+    pub fn output(&self, level: Order) -> Output {
+        let part = |least: Order| {
+            let couplings = (level >= least).then_some(&self.couplings);
+            Part::new(self.vectors, self.scalars, couplings)
+        };
+        Output {
+            plain: part(Order::Hessian),
+            contracted: if level == Order::Third {
+                part(Order::Third)
+            } else {
+                Part::default()
+            },
+        }
+    }
+
+    /// The derivatives on one interval, in place of what `out` held.
+    pub fn evaluate(&self, level: Order, frame: &Sample<'_>, out: &mut Output) {
+        out.plain.clear(level >= Order::Hessian);
+        if level == Order::Third {
+            out.contracted.clear(true);
+        }
+        for (effect, slots) in self.terms() {
+            effect.evaluate(level, frame, slots, out);
+        }
+        if level == Order::Third {
+            let measures = self.measures.iter().zip(&self.measure_slots);
+            for ((measure, slots), &weight) in measures.zip(frame.weights) {
+                if weight != 0.0 {
+                    measure.add_weighted(weight, frame, slots, &mut out.contracted);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! What nothing moves: parts of a system at rest that no force acts on.
+//!
+//! In the reference configuration muscles and blocks are free of stress, so that weight and electric fields are the only
+//! forces. Bodies hang together by joints, muscles and glue, and the ground hangs together with nothing.
+
+use crate::model::analysis::Analysis;
+use crate::model::field_extent;
+use crate::model::system::System;
+
+/// Parts of a scene that rest all the time.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Immobile {
+    /// Whether each body rests.
+    pub bodies: Vec<bool>,
+    /// Whether each block of the scene rests.
+    pub solids: Vec<bool>,
+    /// Whether each muscle rests.
+    pub muscles: Vec<bool>,
+}
+
+/// What rests of a system whose silent sources drive nothing any more.
+pub(super) fn immobile(system: &System, question: &Analysis) -> Immobile {
+    let counts = [
+        system.bodies.len(),
+        system.solids.len(),
+        system.muscles.len(),
+    ];
+    let [of_bodies, of_solids, of_muscles] = counts;
+    let Some(stirred) = &question.stirred else {
+        return Immobile {
+            bodies: vec![false; of_bodies],
+            solids: vec![false; of_solids],
+            muscles: vec![false; of_muscles],
+        };
+    };
+    let (first_solid, first_muscle) = (of_bodies, of_bodies + of_solids);
+    let mut parts = Parts::new(counts.iter().sum());
+    for joint in &system.joints {
+        parts.join(joint.parent, Some(joint.child));
+    }
+    for (m, muscle) in system.muscles.iter().enumerate() {
+        for end in [&muscle.from, &muscle.to] {
+            parts.join(end.body, Some(first_muscle + m));
+        }
+    }
+    for (s, solid) in system.solids.iter().enumerate() {
+        for glue in &solid.glued {
+            parts.join(glue.body, Some(first_solid + s));
+        }
+    }
+    let weighs = system.gravity.is_some();
+    let mut moved: Vec<usize> = Vec::new();
+    for component in system.components.iter() {
+        let points = component.points();
+        let bodies: Vec<usize> = points.iter().filter_map(|point| point.body).collect();
+        for pair in bodies.windows(2) {
+            parts.join(Some(pair[0]), Some(pair[1]));
+        }
+        if component.is_prestressed() {
+            moved.extend(bodies);
+        }
+    }
+    let bodies = (0..of_bodies).filter(|b| weighs || stirred.bodies.contains(b));
+    moved.extend(bodies);
+    for (s, solid) in system.solids.iter().enumerate() {
+        let is_heavy = weighs && solid.materials.iter().any(|m| m.density.is_some());
+        let starts = solid.velocities.iter().any(|v| v.norm() > 0.0);
+        if is_heavy
+            || starts
+            || stirred.solids.contains(&s)
+            || field_extent::dielectric(solid).contains(&true)
+        {
+            moved.push(first_solid + s);
+        }
+    }
+    for (m, muscle) in system.muscles.iter().enumerate() {
+        let is_heavy = weighs && muscle.material.density.is_some();
+        if muscle.material.electric.is_some() || is_heavy {
+            moved.push(first_muscle + m);
+        }
+    }
+    for part in moved {
+        let root = parts.of[part];
+        parts.moved[root] = true;
+    }
+    let rests = |from: usize, count: usize| (from..from + count).map(|i| !parts.moved[parts.of[i]]);
+    Immobile {
+        bodies: rests(0, of_bodies).collect(),
+        solids: rests(first_solid, of_solids).collect(),
+        muscles: rests(first_muscle, of_muscles).collect(),
+    }
+}
+
+/// Which parts hang together.
+struct Parts {
+    of: Vec<usize>,
+    moved: Vec<bool>,
+}
+
+impl Parts {
+    fn new(count: usize) -> Self {
+        Self {
+            of: (0..count).collect(),
+            moved: vec![false; count],
+        }
+    }
+
+    /// Two parts hang together; the ground, `None`, with nothing.
+    fn join(&mut self, a: Option<usize>, b: Option<usize>) {
+        let (Some(a), Some(b)) = (a, b) else { return };
+        let (a, b) = (self.of[a], self.of[b]);
+        for of in self.of.iter_mut().filter(|of| **of == a) {
+            *of = b;
+        }
+    }
+}

@@ -1,0 +1,316 @@
+//! What remains of a system to be solved for: bodies that are welded together are one, what nothing moves is ground, and a
+//! source without voltage drives nothing.
+//!
+//! The muscles, blocks and markers of the condensed system are those of the scene in its order; bodies and joints are fewer.
+
+use crate::kinematics::Pose;
+use crate::math::{Matrix, Vector};
+use crate::model::analysis::Analysis;
+use crate::model::immobile::{self, Immobile};
+use crate::model::system::{
+    Body, Electrode, Joint, JointKind, Material, Potential, Shape, Solid, Support, System,
+};
+use nalgebra::SymmetricEigen;
+
+/// Where a body of the scene is found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BodyLocation {
+    /// It is this body of the condensed system.
+    Body(usize),
+    /// It is fixed to this body.
+    Welded {
+        /// The body.
+        to: usize,
+        /// Its centre of mass in the directors of that body, from the centre there.
+        centre: Vector,
+        /// Its directors relative to those.
+        directors: Matrix,
+    },
+    /// It is fixed to the ground, or nothing moves it.
+    Ground,
+}
+
+/// A system without what is not solved for.
+#[derive(Clone, Debug)]
+pub struct Presolved {
+    /// The system.
+    pub system: System,
+    /// Where each body of the scene is found.
+    pub bodies: Vec<BodyLocation>,
+    /// Joint of the scene of each joint.
+    pub joints: Vec<usize>,
+    /// What nothing moves.
+    pub immobile: Immobile,
+}
+
+impl Presolved {
+    /// What remains of a system for a question.
+    pub fn new(system: &System, question: &Analysis) -> Self {
+        let mut rest = system.clone();
+        silence(&mut rest, question);
+        let still = immobile::immobile(&rest, question);
+        for (solid, &is_still) in rest.solids.iter_mut().zip(&still.solids) {
+            if is_still {
+                hold(solid);
+            }
+        }
+        let group = groups(system, &still);
+        let ground = system.bodies.len();
+        let mut bodies = Vec::new();
+        let mut of_group = vec![None; ground + 1];
+        for b in (0..ground).filter(|&b| group[b] == b) {
+            let members: Vec<usize> = (b..ground).filter(|&m| group[m] == b).collect();
+            of_group[b] = Some(bodies.len());
+            bodies.push(weld(&members, &system.bodies));
+        }
+        let index = |b: Option<usize>| b.and_then(|b| of_group[group[b]]);
+        let place = |(b, body): (usize, &Body)| match index(Some(b)) {
+            None => BodyLocation::Ground,
+            Some(to) if bodies[to] == *body => BodyLocation::Body(to),
+            Some(to) => {
+                let pose = bodies[to].pose();
+                BodyLocation::Welded {
+                    to,
+                    centre: pose.local(&body.centre),
+                    directors: pose.directors.tr_mul(&body.directors),
+                }
+            }
+        };
+        let places = system.bodies.iter().enumerate().map(place).collect();
+        let mut joints = Vec::new();
+        rest.joints.clear();
+        for (j, joint) in system.joints.iter().enumerate() {
+            if let Some(joint) = between(joint, index(joint.parent), index(Some(joint.child))) {
+                joints.push(j);
+                rest.joints.push(joint);
+            }
+        }
+        for muscle in &mut rest.muscles {
+            for end in [&mut muscle.from, &mut muscle.to] {
+                end.body = index(end.body);
+            }
+        }
+        for glue in rest.solids.iter_mut().flat_map(|s| &mut s.glued) {
+            glue.body = index(glue.body);
+        }
+        for marker in &mut rest.markers {
+            marker.point.body = index(marker.point.body);
+        }
+        rest.bodies = bodies;
+        Self {
+            system: rest,
+            bodies: places,
+            joints,
+            immobile: still,
+        }
+    }
+
+    /// Poses of the bodies of the scene from those of the condensed system.
+    pub fn poses(&self, poses: &[Pose], reference: &[Body]) -> Vec<Pose> {
+        let pose = |(place, body): (&BodyLocation, &Body)| match *place {
+            BodyLocation::Ground => body.pose(),
+            BodyLocation::Body(b) => poses[b],
+            BodyLocation::Welded {
+                to,
+                centre,
+                directors,
+            } => Pose {
+                centre: poses[to].point(&centre),
+                directors: poses[to].directors * directors,
+            },
+        };
+        self.bodies.iter().zip(reference).map(pose).collect()
+    }
+
+    /// Body of the condensed system that carries what is fixed to a body of the scene; `None` is the ground.
+    pub fn carrier(&self, body: Option<usize>) -> Option<usize> {
+        match self.bodies[body?] {
+            BodyLocation::Ground => None,
+            BodyLocation::Body(to) | BodyLocation::Welded { to, .. } => Some(to),
+        }
+    }
+
+    /// Poses of the condensed bodies from those of the bodies of the scene; `reference` where none tells.
+    pub fn condense(&self, poses: &[Pose], reference: &[Pose]) -> Vec<Pose> {
+        let mut condensed = reference.to_vec();
+        for (place, pose) in self.bodies.iter().zip(poses) {
+            match *place {
+                BodyLocation::Ground => {}
+                BodyLocation::Body(b) => condensed[b] = *pose,
+                BodyLocation::Welded {
+                    to,
+                    centre,
+                    directors,
+                } => {
+                    let directors = pose.directors * directors.transpose();
+                    condensed[to] = Pose {
+                        centre: pose.centre - directors * centre,
+                        directors,
+                    };
+                }
+            }
+        }
+        condensed
+    }
+
+    /// Values by joint of the condensed system from values by joint of the scene.
+    pub fn by_joint(&self, values: &[f64]) -> Vec<f64> {
+        self.joints.iter().map(|&j| values[j]).collect()
+    }
+
+    /// Joint of the condensed system that is this one of the scene.
+    pub fn joint(&self, joint: usize) -> Option<usize> {
+        self.joints.iter().position(|&j| j == joint)
+    }
+}
+
+/// Without voltage a muscle is passive and a driven electrode is grounded.
+fn silence(system: &mut System, question: &Analysis) {
+    for &source in &question.zero_voltage {
+        if let Some(muscle) = system.muscles.get_mut(source) {
+            let material = muscle.material;
+            muscle.material = Material {
+                electric: None,
+                ..material
+            };
+        }
+    }
+    for solid in &mut system.solids {
+        let mut electrodes: Vec<Electrode> = Vec::new();
+        for electrode in std::mem::take(&mut solid.electrodes) {
+            let is_silent = matches!(electrode.potential, Potential::Driven { source, .. }
+                if question.zero_voltage.contains(&source));
+            if !is_silent {
+                electrodes.push(electrode);
+                continue;
+            }
+            // Electrodes of one name are one.
+            let same = |e: &&mut Electrode| {
+                e.name == electrode.name && e.potential == Potential::Given(0.0)
+            };
+            match electrodes.iter_mut().find(same) {
+                Some(same) => same.nodes.extend(electrode.nodes),
+                None => electrodes.push(Electrode {
+                    potential: Potential::Given(0.0),
+                    ..electrode
+                }),
+            }
+        }
+        solid.electrodes = electrodes;
+    }
+}
+
+/// Holds all nodes of a block.
+pub(super) fn hold(solid: &mut Solid) {
+    solid.supports = vec![Support {
+        nodes: (0..solid.mesh.nodes.len()).collect(),
+        held: [true; 3],
+    }];
+}
+
+/// The first body that each body is rigidly connected to, itself included; the number of bodies for those of the ground.
+fn groups(system: &System, still: &Immobile) -> Vec<usize> {
+    let ground = system.bodies.len();
+    let at = |b: Option<usize>| b.unwrap_or(ground);
+    // The ground comes first in its group.
+    let mut group: Vec<usize> = (0..ground).collect();
+    group.push(ground);
+    for (b, &is_still) in still.bodies.iter().enumerate() {
+        if is_still {
+            group[b] = ground;
+        }
+    }
+    let join = |group: &mut Vec<usize>, a: usize, b: usize| {
+        let (a, b) = (group[a], group[b]);
+        let to = match a == ground || b == ground {
+            true => ground,
+            false => a.min(b),
+        };
+        for g in group.iter_mut().filter(|g| **g == a || **g == b) {
+            *g = to;
+        }
+    };
+    let fixed = |joint: &&Joint| joint.kind == JointKind::Fixed;
+    let before = group.clone();
+    for joint in system.joints.iter().filter(fixed) {
+        join(&mut group, at(joint.parent), joint.child);
+    }
+    // A group that a moving joint closes on itself stays as it is: its joint says what a start has to fit.
+    let is_closed = |group: &[usize], joint: &Joint| {
+        let within = |group: &[usize]| group[at(joint.parent)] == group[joint.child];
+        within(group) && !within(&before)
+    };
+    let moving = system.joints.iter().filter(|joint| !fixed(joint));
+    let closed: Vec<usize> = moving
+        .filter(|joint| is_closed(&group, joint))
+        .map(|joint| group[joint.child])
+        .collect();
+    (0..=ground)
+        .map(|b| {
+            if closed.contains(&group[b]) {
+                before[b]
+            } else {
+                group[b]
+            }
+        })
+        .collect()
+}
+
+/// A joint between bodies of the condensed system; `None` where it is within one.
+fn between(joint: &Joint, parent: Option<usize>, child: Option<usize>) -> Option<Joint> {
+    if parent == child {
+        return None;
+    }
+    if let Some(child) = child {
+        return Some(Joint {
+            parent,
+            child,
+            ..joint.clone()
+        });
+    }
+    // Seen from the other side the same coordinate goes along the opposite axis.
+    let kind = match joint.kind {
+        JointKind::Revolute { axis } => JointKind::Revolute { axis: -axis },
+        JointKind::Prismatic { axis } => JointKind::Prismatic { axis: -axis },
+        other => other,
+    };
+    Some(Joint {
+        parent: None,
+        child: parent.expect("not both sides are ground"),
+        kind,
+        ..joint.clone()
+    })
+}
+
+/// One body of several: masses and moments of inertia add, about the common centre.
+fn weld(members: &[usize], bodies: &[Body]) -> Body {
+    let all = || members.iter().map(|&m| &bodies[m]);
+    if let [only] = members {
+        return bodies[*only].clone();
+    }
+    let mass: f64 = all().map(|b| b.mass).sum();
+    let centre = all().map(|b| b.centre * b.mass).sum::<Vector>() / mass;
+    let tensor = |body: &Body| {
+        let own = Matrix::from_diagonal(&Vector::from(body.inertia));
+        let arm = body.centre - centre;
+        let away = Matrix::identity() * arm.norm_squared() - arm * arm.transpose();
+        body.directors * own * body.directors.transpose() + away * body.mass
+    };
+    let SymmetricEigen {
+        eigenvectors,
+        eigenvalues,
+    } = SymmetricEigen::new(all().map(tensor).sum::<Matrix>());
+    let mut directors = eigenvectors;
+    if directors.determinant() < 0.0 {
+        directors.column_mut(2).neg_mut();
+    }
+    let names: Vec<&str> = all().map(|b| b.name.as_str()).collect();
+    Body {
+        name: names.join("+"),
+        mass,
+        inertia: eigenvalues.into(),
+        centre,
+        directors,
+        shape: Shape::None,
+    }
+}

@@ -1,0 +1,140 @@
+//! An elastic block as the model sees it: vectors and potentials of its nodes, laws of its elements, charges of its electrodes.
+
+use crate::element::{Dielectric, Elastomer, ElementGeometry, Local, Passive, Volume};
+use crate::functional::ScalarArg;
+use crate::math::Vector;
+use crate::model::system::{ElectricConstants, Electrode, ElementKind, Material, Potential, Solid};
+
+/// A block as the model sees it.
+#[derive(Clone, Debug)]
+pub struct SolidBlock {
+    /// What the scene says.
+    pub solid: Solid,
+    /// Vector of each node of the mesh.
+    pub vectors: Vec<usize>,
+    /// Terminal of each node of the mesh; `None` where there is no potential.
+    pub terminals: Vec<Option<ScalarArg>>,
+    /// Whether it is a muscle, whose electrodes are one.
+    pub of_muscle: bool,
+    /// Geometry of each element.
+    pub shapes: Vec<ElementGeometry>,
+    /// Whether a field reaches each element.
+    pub is_dielectric: Vec<bool>,
+    /// Whether all nodes rest on the ground, and no field is there.
+    pub is_still: bool,
+}
+
+impl SolidBlock {
+    /// The material of an element.
+    pub fn material(&self, element: usize) -> &Material {
+        &self.solid.materials[self.solid.mesh.regions[element]]
+    }
+
+    /// Vectors of the nodes of an element.
+    pub fn nodes(&self, element: usize) -> [usize; 8] {
+        self.solid.mesh.hexahedra[element].map(|node| self.vectors[node])
+    }
+
+    /// Gradients of the shape functions at the centre of an element; `None` where it is turned inside out there.
+    pub(super) fn central_gradients(&self, element: usize) -> Option<[Vector; 8]> {
+        let mesh = &self.solid.mesh;
+        ElementGeometry::central_gradients(&mesh.hexahedra[element].map(|node| mesh.nodes[node]))
+    }
+
+    /// Terminals of the nodes of a dielectric element.
+    pub fn terminals(&self, element: usize) -> [ScalarArg; 8] {
+        self.solid.mesh.hexahedra[element]
+            .map(|node| self.terminals[node].expect("a dielectric element has potentials"))
+    }
+
+    /// The law of a passive element.
+    pub fn passive(&self, element: usize) -> Elastomer<Passive> {
+        let material = self.material(element);
+        Elastomer {
+            shear_modulus: material.shear_modulus,
+            lame_lambda: material.lame_lambda.unwrap_or(0.0),
+            volume: match self.solid.element {
+                ElementKind::Hex8 => Volume::Pointwise,
+                ElementKind::Hex8Q1P0 => Volume::Mean,
+            },
+            field: Passive,
+        }
+    }
+
+    /// The law of a dielectric element.
+    pub fn dielectric(&self, element: usize) -> Elastomer<Dielectric> {
+        let ElectricConstants {
+            c1,
+            c2,
+            permittivity,
+        } = self
+            .material(element)
+            .electric
+            .expect("a dielectric element has electric constants");
+        let law = self.passive(element);
+        Elastomer {
+            shear_modulus: law.shear_modulus,
+            lame_lambda: law.lame_lambda,
+            volume: law.volume,
+            field: Dielectric {
+                c1,
+                c2,
+                permittivity,
+            },
+        }
+    }
+
+    /// Vector of the node nearest to a place.
+    pub(super) fn nearest(&self, place: &Vector) -> usize {
+        let node = self.solid.mesh.nearest_node(place);
+        self.vectors[node.expect("a mesh has nodes")]
+    }
+
+    /// Places of the nodes at vectors x.
+    pub fn places(&self, x: &[Vector]) -> Vec<Vector> {
+        self.vectors.iter().map(|&v| x[v]).collect()
+    }
+
+    /// Block and electrode of the electrodes that no voltage drives.
+    pub fn still_electrodes(&self) -> impl Iterator<Item = (&str, &str)> + '_ {
+        let all = self.solid.electrodes.iter().filter(|e| self.is_still(e));
+        all.map(|e| (self.solid.name.as_str(), e.name.as_str()))
+    }
+
+    fn is_still(&self, electrode: &Electrode) -> bool {
+        !self.of_muscle && !matches!(electrode.potential, Potential::Driven { .. })
+    }
+
+    /// Charges −∂W/∂φ in mC of the electrodes that no voltage drives, with the nodes at vectors x.
+    pub fn still_charges(&self, x: &[Vector], scalars: &[f64]) -> Vec<f64> {
+        let electrodes = self.solid.electrodes.iter();
+        let still: Vec<_> = electrodes.filter(|e| self.is_still(e)).collect();
+        if still.is_empty() {
+            return Vec::new();
+        }
+        let (places, potentials) = (self.places(x), self.potentials(scalars));
+        let mut charges = vec![0.0; places.len()];
+        let mut local = Local::default();
+        for (e, nodes) in self.solid.mesh.hexahedra.iter().enumerate() {
+            if self.is_dielectric[e] {
+                let (at, phi) = (nodes.map(|n| places[n]), nodes.map(|n| potentials[n]));
+                let law = self.dielectric(e);
+                law.gradient(&self.shapes[e], &at, &phi, &mut local);
+                for (&node, charge) in nodes.iter().zip(&local.electric.charges) {
+                    charges[node] -= charge;
+                }
+            }
+        }
+        let sum = |e: &&Electrode| -> f64 { e.nodes.iter().map(|&n| charges[n]).sum() };
+        still.iter().map(sum).collect()
+    }
+
+    /// Potentials of the nodes in V; zero where there is none.
+    pub fn potentials(&self, scalars: &[f64]) -> Vec<f64> {
+        let value = |t: &Option<ScalarArg>| {
+            let ScalarArg { constant, scalar } = t.unwrap_or_default();
+            constant + scalar.map_or(0.0, |(s, factor)| factor * scalars[s])
+        };
+        self.terminals.iter().map(value).collect()
+    }
+}

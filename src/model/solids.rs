@@ -1,0 +1,216 @@
+//! Elastic blocks on their way to effects: which vector each node of a mesh is, and where its potential comes from.
+//!
+//! A node glued to a body is a material point of it, a node held in all directions a point of the ground; all others have
+//! coordinates. Only nodes that an electric field reaches have a potential.
+
+use crate::coordinates::NodePlace;
+use crate::element::{ElementGeometry, Inverted};
+use crate::functional::ScalarArg;
+use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
+use crate::model::system::{Glue, Material, Potential, Solid};
+use crate::model::{ModelError, SolidBlock, field_extent};
+use std::collections::HashMap;
+
+/// Blocks on their way to effects: nodes, ties and potentials of all of them.
+#[derive(Debug, Default)]
+pub(super) struct Solids {
+    pub(super) list: Vec<SolidBlock>,
+    /// Nodes with coordinates.
+    pub(super) nodes: Vec<NodePlace>,
+    /// Block and node of the mesh of each of them.
+    pub(super) names: Vec<(usize, usize)>,
+    /// Node and place on a body that multipliers hold together, and what they are called.
+    pub(super) ties: Vec<(MaterialVector, String)>,
+    /// What each potential of an interval is.
+    pub(super) potentials: Vec<String>,
+    /// Unit of the potentials in V.
+    pub(super) unit: f64,
+}
+
+/// What is in use of a potential before it is numbered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Connection {
+    Terminal(ScalarArg),
+    /// The potential of a floating electrode, by index.
+    Floating(usize),
+    Free,
+}
+
+impl Solids {
+    /// Lays out blocks, of which the first `scene` are those of the scene; `voltages` are the sources of the first scalars, and glued nodes keep coordinates of their own
+    /// where `ties` says so.
+    ///
+    /// # Errors
+    /// An element of a mesh is turned inside out.
+    pub(super) fn new(
+        solids: Vec<Solid>,
+        scene: usize,
+        reference: &[Pose],
+        voltages: &[usize],
+        ties: bool,
+        vectors: &mut Vectors,
+    ) -> Result<Self, ModelError> {
+        let mut out = Self {
+            unit: unit(&solids),
+            ..Self::default()
+        };
+        for (index, solid) in solids.into_iter().enumerate() {
+            let shapes = shapes(&solid)?;
+            let places = out.places(index, &solid, reference, ties, vectors);
+            let is_dielectric = field_extent::dielectric(&solid);
+            let terminals = out.terminals(&solid, &is_dielectric, voltages);
+            let on_ground = |&v: &usize| {
+                let mut terms = vectors.list()[v].terms.iter();
+                terms.all(|term| term.carrier == Carrier::Ground)
+            };
+            let is_still = !is_dielectric.contains(&true) && places.iter().all(on_ground);
+            out.list.push(SolidBlock {
+                solid,
+                vectors: places,
+                of_muscle: index >= scene,
+                terminals,
+                shapes,
+                is_dielectric,
+                is_still,
+            });
+        }
+        Ok(out)
+    }
+
+    /// The vector of each node.
+    fn places(
+        &mut self,
+        index: usize,
+        solid: &Solid,
+        reference: &[Pose],
+        ties: bool,
+        vectors: &mut Vectors,
+    ) -> Vec<usize> {
+        let count = solid.mesh.nodes.len();
+        let mut free = vec![[true; 3]; count];
+        for support in &solid.supports {
+            for &node in &support.nodes {
+                for (free, held) in free[node].iter_mut().zip(support.held) {
+                    *free &= !held;
+                }
+            }
+        }
+        let mut body = vec![None; count];
+        for Glue { nodes, body: to } in &solid.glued {
+            for &node in nodes {
+                body[node] = Some(*to);
+                // A glued node moves with its body, whatever else holds it.
+                free[node] = [to.is_some() && ties; 3];
+            }
+        }
+        let mut place = |node: usize| {
+            let at = &solid.mesh.nodes[node];
+            if free[node] == [false; 3] {
+                let body = body[node].flatten();
+                return vectors.push(MaterialVector::point(body, at, reference));
+            }
+            let number = self.nodes.len();
+            self.nodes.push(NodePlace {
+                reference: *at,
+                free: free[node],
+            });
+            self.names.push((index, node));
+            if let Some(Some(body)) = body[node] {
+                let point = MaterialVector::point(Some(body), at, reference);
+                let name = format!("glue of node {node} of {}", solid.name);
+                self.ties.push((
+                    MaterialVector::span(&MaterialVector::node(number), &point),
+                    name,
+                ));
+            }
+            vectors.push(MaterialVector::node(number))
+        };
+        (0..count).map(&mut place).collect()
+    }
+
+    /// The terminal of each node that a dielectric element has.
+    fn terminals(
+        &mut self,
+        solid: &Solid,
+        is_dielectric: &[bool],
+        voltages: &[usize],
+    ) -> Vec<Option<ScalarArg>> {
+        let mut wires = vec![None; solid.mesh.nodes.len()];
+        let elements = solid.mesh.hexahedra.iter().zip(is_dielectric);
+        for (nodes, _) in elements.filter(|(_, is)| **is) {
+            for &node in nodes {
+                wires[node] = Some(Connection::Free);
+            }
+        }
+        for (e, electrode) in solid.electrodes.iter().enumerate() {
+            let wire = match electrode.potential {
+                Potential::Given(constant) => Connection::Terminal(ScalarArg {
+                    constant,
+                    scalar: None,
+                }),
+                Potential::Driven { source, factor } => Connection::Terminal(ScalarArg {
+                    constant: 0.0,
+                    scalar: voltages
+                        .iter()
+                        .position(|&v| v == source)
+                        .map(|s| (s, factor)),
+                }),
+                Potential::Floating => Connection::Floating(e),
+            };
+            for &node in &electrode.nodes {
+                if wires[node].is_some() {
+                    wires[node] = Some(wire);
+                }
+            }
+        }
+        let mut floating: HashMap<usize, usize> = HashMap::new();
+        let fresh = |name: String, potentials: &mut Vec<String>| {
+            potentials.push(name);
+            voltages.len() + potentials.len() - 1
+        };
+        let mut terminal = |(node, wire): (usize, Option<Connection>)| {
+            let scalar = match wire? {
+                Connection::Terminal(terminal) => return Some(terminal),
+                Connection::Floating(e) => *floating.entry(e).or_insert_with(|| {
+                    let name = format!("{}.{}", solid.name, solid.electrodes[e].name);
+                    fresh(name, &mut self.potentials)
+                }),
+                Connection::Free => fresh(
+                    format!("node {node} of {}", solid.name),
+                    &mut self.potentials,
+                ),
+            };
+            Some(ScalarArg {
+                constant: 0.0,
+                scalar: Some((scalar, self.unit)),
+            })
+        };
+        wires.into_iter().enumerate().map(&mut terminal).collect()
+    }
+}
+
+/// √(μ/ε) in V/mm, the unit of fields in which mechanics and electrostatics have one magnitude; potentials are counted in
+/// this times a millimetre.
+fn unit(solids: &[Solid]) -> f64 {
+    let of = |m: &Material| {
+        m.electric
+            .map(|e| (m.shear_modulus / e.permittivity).sqrt())
+    };
+    let units = solids
+        .iter()
+        .flat_map(|s| s.materials.iter().filter_map(of));
+    let largest = units.fold(0.0, f64::max);
+    if largest > 0.0 { largest } else { 1.0 }
+}
+
+fn shapes(solid: &Solid) -> Result<Vec<ElementGeometry>, ModelError> {
+    let shape = |(element, nodes): (usize, &[usize; 8])| {
+        ElementGeometry::new(&nodes.map(|n| solid.mesh.nodes[n])).map_err(|Inverted { .. }| {
+            ModelError::Inverted {
+                solid: solid.name.clone(),
+                element,
+            }
+        })
+    };
+    solid.mesh.hexahedra.iter().enumerate().map(shape).collect()
+}
