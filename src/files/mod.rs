@@ -1,79 +1,36 @@
 //! Scene and problem files: what is written, read with units, checked, and turned into what it means.
 //!
-//! - `quantity`, `unit`: numbers with units, converted once to g, mm, ms, N, MPa, V.
-//! - `spec_scene`, `spec_solids`, `spec_problem`, `spec_simulate`, `spec_control`, `spec_states`, `spec_voltages`, `spec_coordinates`, `spec_integrator`, `spec_limits`, `either`: the serde types of the two files; `expand`: the chain shorthand.
-//! - `components`: kinds of parts of which each has one file for both.
-//! - `spec_study`: the serde types of a study of variants of a problem.
-//! - `document`, `locate`, `wording`, `error`, `set`: text, places in it, mistakes, overrides.
-//! - `point`, `names`: points as written, and what names mean.
-//! - `build_*`, `graph`, `scope`, `solution`: from what is written to [`System`] and [`Task`].
+//! - [`units`]: numbers with units; [`json`]: text, places in it, mistakes, overrides.
+//! - [`scene`], [`problem`]: what is written in the two files, and what it becomes: [`System`] and [`Task`].
+//! - [`study`]: what is written in a study of variants of a problem.
+//! - `typed`: scenes and voltages named on the command line.
 
-mod build_body;
-mod build_choice;
-mod build_control;
-mod build_electrodes;
-mod build_guess;
-mod build_limits;
-mod build_marker;
-mod build_material;
-mod build_mesh;
-mod build_muscle;
-mod build_place;
-mod build_problem;
-mod build_scene;
-mod build_simulation;
-mod build_solid;
-mod build_state;
-mod build_voltages;
-pub mod components;
-mod document;
-mod either;
-mod error;
-mod expand;
-mod graph;
-mod layout;
-mod locate;
-mod names;
-pub mod point;
-pub mod quantity;
-mod scope;
-mod set;
-mod solution;
-pub mod spec_control;
-pub mod spec_coordinates;
-pub mod spec_integrator;
-pub mod spec_limits;
-pub mod spec_problem;
-pub mod spec_scene;
-pub mod spec_simulate;
-pub mod spec_solids;
-pub mod spec_states;
-pub mod spec_study;
-pub mod spec_voltages;
-mod start;
+pub mod json;
+pub mod problem;
+pub mod scene;
+pub mod study;
 mod typed;
-mod unit;
-mod wording;
+pub mod units;
 
-pub(crate) use document::Document;
-pub use error::{SceneError, printable};
-pub(crate) use layout::lay_out;
-pub(crate) use locate::JsonPath;
-pub(crate) use scope::Scope;
-pub use start::new_trunk;
+pub(crate) use json::document::Document;
+pub use json::error::{SceneError, printable};
+pub(crate) use json::layout::lay_out;
+pub(crate) use json::locate::JsonPath;
+pub(crate) use json::scope::Scope;
+pub use scene::trunk::new_trunk;
 pub use typed::{driven_voltages, read_system};
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 use crate::control::problem::Task;
-use crate::files::build_problem::build_problem;
-use crate::files::build_scene::build_scene;
-use crate::files::expand::expanded;
-use crate::files::set::Override;
-use crate::files::spec_problem::{ProblemSpec, SceneSource};
-use crate::files::spec_scene::SceneSpec;
-use crate::files::spec_study::StudySpec;
+use crate::files::json::set::Override;
+use crate::files::problem::build::build_problem;
+use crate::files::problem::spec::{ProblemSpec, SceneSource};
+use crate::files::scene::build::build_scene;
+use crate::files::scene::expand::expanded;
+use crate::files::scene::spec::SceneSpec;
+use crate::files::study::StudySpec;
 use crate::model::system::System;
 
 /// A problem with its scene, read and checked.

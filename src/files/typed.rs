@@ -4,13 +4,13 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::files::build_scene::build_scene;
-use crate::files::build_state::A_SOURCE;
-use crate::files::document::Document;
-use crate::files::error::{Mistake, SceneError, nearest};
-use crate::files::quantity::{Quantity, Voltage};
-use crate::files::scope::Scope;
-use crate::files::set::Override;
+use crate::files::json::document::Document;
+use crate::files::json::error::{Mistake, SceneError, nearest};
+use crate::files::json::scope::Scope;
+use crate::files::json::set::Override;
+use crate::files::problem::state::A_SOURCE;
+use crate::files::scene::build::build_scene;
+use crate::files::units::quantity::{Quantity, Voltage};
 use crate::model::system::{Source, System};
 
 /// The system of a scene file, or of the scene of a problem file, with overrides as for the file itself.

@@ -1,6 +1,6 @@
 //! Overrides of a study, with the places that they are from.
 
-use crate::files::spec_study::ChangesSpec;
+use crate::files::study::ChangesSpec;
 use crate::files::{JsonPath, SceneError, Scope};
 use serde_json::Value;
 use std::path::Path;

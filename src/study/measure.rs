@@ -6,7 +6,7 @@ use crate::control::problem::{Task, Voltages};
 use crate::files::Loaded;
 use crate::model::{Coordinates, Model};
 
-pub use crate::files::spec_study::MeasureSpec as StudyMeasure;
+pub use crate::files::study::MeasureSpec as StudyMeasure;
 
 /// What the problems of a study ask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::control::problem::{Duration, Task};
-use crate::files::spec_study::{MethodSpec, ReferenceSpec, RefineSpec, StudySpec};
+use crate::files::study::{MethodSpec, ReferenceSpec, RefineSpec, StudySpec};
 use crate::files::{Document, Loaded, SceneError, Scope, read_problem};
 use crate::study::changes::Changes;
 use crate::study::measure::{self, StudyMeasure, StudyTask};

@@ -1,6 +1,6 @@
 //! How fine the points of a refinement are, and what they are called.
 
-use crate::files::spec_study::RefineSpec;
+use crate::files::study::RefineSpec;
 use crate::files::{SceneError, Scope};
 use serde_json::Value;
 

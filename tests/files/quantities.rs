@@ -1,6 +1,6 @@
 //! Numbers with units: every spelling, and conversions against another library.
 
-use proboscis::files::quantity::{
+use proboscis::files::units::quantity::{
     Angle, Density, ElectricField, Length, PhysicalQuantity, Quantity, RotationalDamping, Time,
     Viscosity, Voltage,
 };

@@ -1,0 +1,137 @@
+//! A place in a document from which checks report, and the checks shared by scene and problem.
+
+use std::collections::HashSet;
+use std::fmt;
+
+use crate::files::json::document::Document;
+use crate::files::json::error::SceneError;
+use crate::files::json::locate::JsonPath;
+use crate::files::units::quantity::{PhysicalQuantity, Quantity};
+
+/// A place in a document.
+#[derive(Clone)]
+pub(crate) struct Scope<'a> {
+    pub(crate) document: &'a Document,
+    pub(crate) place: JsonPath,
+}
+
+impl<'a> Scope<'a> {
+    /// The whole document.
+    pub(crate) fn of(document: &'a Document) -> Self {
+        let place = JsonPath::default();
+        Self { document, place }
+    }
+
+    /// The entry under a key.
+    pub(crate) fn key(&self, key: &str) -> Self {
+        let place = self.place.key(key);
+        Self { place, ..*self }
+    }
+
+    /// The entry at an index.
+    pub(crate) fn index(&self, index: usize) -> Self {
+        let place = self.place.index(index);
+        Self { place, ..*self }
+    }
+
+    /// The mistake that here stands something else than expected.
+    pub(crate) fn wrong(
+        &self,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> SceneError {
+        self.document.mistake(&self.place, found, expected)
+    }
+
+    /// Index of a name in a list.
+    pub(crate) fn find(
+        &self,
+        name: &str,
+        names: &[String],
+        expected: &str,
+    ) -> Result<usize, SceneError> {
+        let position = names.iter().position(|other| other == name);
+        position.ok_or_else(|| {
+            let candidates = names.iter().map(String::as_str);
+            self.document
+                .wrong_name(&self.place, name, expected, candidates)
+        })
+    }
+
+    /// A positive quantity in the units inside.
+    pub(crate) fn positive<M: PhysicalQuantity>(
+        &self,
+        quantity: &Quantity<M>,
+    ) -> Result<f64, SceneError> {
+        let value = quantity.value();
+        if value > 0.0 {
+            return Ok(value);
+        }
+        let expected = format!("a positive value: {}", Quantity::<M>::expected());
+        Err(self.wrong(quantity.to_string(), expected))
+    }
+
+    /// A quantity that is zero or more; zero leaves no trace.
+    pub(crate) fn absent_or_positive<M: PhysicalQuantity>(
+        &self,
+        quantity: Option<&Quantity<M>>,
+    ) -> Result<Option<f64>, SceneError> {
+        match quantity {
+            Some(quantity) if quantity.value() != 0.0 => self.positive(quantity).map(Some),
+            _ => Ok(None),
+        }
+    }
+
+    /// The one entry that is there.
+    pub(crate) fn exactly_one<T, const N: usize>(
+        &self,
+        entries: [(&str, Option<T>); N],
+    ) -> Result<T, SceneError> {
+        let expected = format!(
+            "exactly one of {}",
+            list(entries.iter().map(|&(key, _)| key))
+        );
+        let mut there = entries
+            .into_iter()
+            .filter_map(|(key, entry)| Some((key, entry?)));
+        match (there.next(), there.next()) {
+            (Some((_, entry)), None) => Ok(entry),
+            (None, _) => Err(self.wrong("none of them", expected)),
+            (Some((first, _)), Some((second, _))) => {
+                Err(self.wrong(list([first, second].into_iter()), expected))
+            }
+        }
+    }
+
+    /// A list without repeated, empty or reserved names; `place` tells where a name stands.
+    pub(crate) fn unique(
+        &self,
+        names: &[String],
+        reserved: &[&str],
+        place: impl Fn(usize) -> Self,
+    ) -> Result<(), SceneError> {
+        let mut seen = HashSet::new();
+        for (index, name) in names.iter().enumerate() {
+            let found = format!("{name:?}");
+            if name.is_empty() {
+                return Err(place(index).wrong(found, "a name"));
+            }
+            if reserved.contains(&name.as_str()) {
+                return Err(place(index).wrong(found, "a name that is not reserved"));
+            }
+            if !seen.insert(name) {
+                let found = format!("{found} a second time");
+                return Err(place(index).wrong(found, "a name that is not taken"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Names in quotes, separated by commas.
+pub(crate) fn list<T: fmt::Debug>(names: impl Iterator<Item = T>) -> String {
+    names
+        .map(|name| format!("{name:?}"))
+        .collect::<Vec<_>>()
+        .join(", ")
+}

@@ -1,0 +1,117 @@
+//! Messages of serde in the words of this project: what was found, what is expected, which name is near.
+
+use crate::files::json::error::nearest;
+
+/// A message of serde, taken apart.
+pub(crate) struct Wording {
+    pub(crate) found: String,
+    pub(crate) expected: String,
+    pub(crate) nearest: Option<String>,
+    /// Whether the key is wrong, not its value.
+    pub(crate) at_key: bool,
+}
+
+/// Keys of the file format that this version does not read, and what it says about them.
+const UNAVAILABLE: [(&str, &str); 2] = [
+    (
+        "tracking",
+        "this objective is not available in this version",
+    ),
+    (
+        "electrical_energy",
+        "this objective is not available in this version",
+    ),
+];
+
+/// Takes a message of serde apart; `key` is the last key of its place.
+pub(crate) fn wording(key: Option<&str>, message: &str) -> Wording {
+    let message = message.trim_end();
+    let (problem, expected) = message
+        .rsplit_once(", expected ")
+        .or_else(|| message.rsplit_once(", there are "))
+        .unwrap_or((message, ""));
+    let plain = |found: String, expected: String| Wording {
+        found,
+        expected,
+        nearest: None,
+        at_key: false,
+    };
+    if problem.starts_with("unknown field ") {
+        return unknown_key(key.unwrap_or_default(), expected);
+    }
+    if let Some(variant) = problem.strip_prefix("unknown variant ") {
+        let variant = variant.trim_matches('`');
+        return Wording {
+            found: format!("{variant:?}"),
+            expected: one_of(expected),
+            nearest: nearest(variant, quoted(expected)),
+            at_key: false,
+        };
+    }
+    if let Some(field) = problem.strip_prefix("missing field ") {
+        let field = field.trim_matches('`');
+        return plain(format!("no key {field:?}"), format!("the key {field:?}"));
+    }
+    let found = ["invalid type: ", "invalid value: ", "invalid length "]
+        .into_iter()
+        .find_map(|prefix| problem.strip_prefix(prefix))
+        .unwrap_or(problem);
+    let count = if problem.starts_with("invalid length ") {
+        "a list of length "
+    } else {
+        ""
+    };
+    plain(format!("{count}{}", json_word(found)), json_word(expected))
+}
+
+fn unknown_key(key: &str, expected: &str) -> Wording {
+    let unavailable = UNAVAILABLE.iter().find(|&&(name, _)| name == key);
+    let note = unavailable.map_or_else(String::new, |(_, note)| format!(" ({note})"));
+    Wording {
+        found: format!("the key {key:?}{note}"),
+        expected: one_of(expected),
+        nearest: match unavailable {
+            Some(_) => None,
+            None => nearest(key, quoted(expected)),
+        },
+        at_key: true,
+    }
+}
+
+/// The names between backticks.
+fn quoted(text: &str) -> impl Iterator<Item = &str> {
+    text.split('`')
+        .skip(1)
+        .step_by(2)
+        .filter(|name| !name.starts_with('$'))
+}
+
+fn one_of(expected: &str) -> String {
+    let names: Vec<String> = quoted(expected).map(|name| format!("{name:?}")).collect();
+    match names.as_slice() {
+        [] => "no key here".to_owned(),
+        [name] => name.clone(),
+        names => format!("one of {}", names.join(", ")),
+    }
+}
+
+/// Words of JSON for words of Rust.
+fn json_word(text: &str) -> String {
+    let word = match text {
+        "usize" | "u32" | "u64" => "a whole number, 0 or more",
+        "f64" => "a number",
+        "a map" | "map" => "an object",
+        "a sequence" | "sequence" => "a list",
+        "a boolean" => "true or false",
+        "a string" | "a borrowed string" => "a text",
+        "null" => "null",
+        "unit variant" => "a word alone",
+        "newtype variant" => "an object with this key",
+        "an array of length 2" => "a list of 2 values",
+        "an array of length 3" | "fewer elements in array" => "a list of 3 values",
+        _ if text.starts_with("struct ") => "an object",
+        _ => text,
+    };
+    let word = word.strip_prefix("string ").unwrap_or(word);
+    word.replace('`', "")
+}

@@ -1,0 +1,53 @@
+//! From a problem as written to the task it means, with one voltage per source and indices for names.
+
+use crate::control::problem::{AtRest, Task};
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::control::control;
+use crate::files::problem::coordinates::{coordinates, count};
+use crate::files::problem::simulation::simulation;
+use crate::files::problem::spec::ProblemSpec;
+use crate::files::problem::state::voltages;
+use crate::model::system::System;
+
+/// Most equilibria of a path.
+const MOST_POINTS: usize = 1_000_000;
+
+/// The task that a problem asks of a system.
+pub(crate) fn build_problem(
+    problem: &ProblemSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Task, SceneError> {
+    type Build<'a> = Box<dyn FnOnce() -> Result<Task, SceneError> + 'a>;
+    let simulate = problem.simulate.as_ref().map(|spec| -> Build<'_> {
+        Box::new(|| simulation(spec, system, &scope.key("simulate")).map(Task::Simulate))
+    });
+    let equilibrium = problem.equilibrium.as_ref().map(|spec| -> Build<'_> {
+        Box::new(|| {
+            let scope = scope.key("equilibrium");
+            let voltages = voltages(&spec.voltages, system, &scope.key("voltages"))?;
+            let coordinates = coordinates(spec.coordinates, system, &scope)?;
+            if let Some(points) = spec.path {
+                count(points, "point", MOST_POINTS, &scope.key("path"))?;
+            }
+            Ok(Task::Equilibrium(AtRest {
+                voltages,
+                coordinates,
+                path: spec.path,
+            }))
+        })
+    });
+    let control = problem.control.as_ref().map(|spec| -> Build<'_> {
+        Box::new(|| {
+            let control = control(spec, system, &scope.key("control"))?;
+            Ok(Task::Control(Box::new(control)))
+        })
+    });
+    let build = scope.exactly_one([
+        ("simulate", simulate),
+        ("equilibrium", equilibrium),
+        ("control", control),
+    ])?;
+    build()
+}

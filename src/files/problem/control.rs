@@ -1,0 +1,219 @@
+//! From a control problem as written to the task.
+
+use crate::control::problem::{BoundaryState, Control, Duration, Objective, Solver};
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::coordinates::{coordinates, count};
+use crate::files::problem::guess::guess;
+use crate::files::problem::limits::limit;
+use crate::files::problem::spec_control::{
+    ControlSpec, DurationSpec, ObjectiveSpec, OptionSpec, SolverSpec,
+};
+use crate::files::problem::state::{ELECTRIC_KEYS, driven, goal_state, start_state};
+use crate::files::scene::graph::tree_freedoms;
+use crate::ipopt::OptionValue;
+use crate::model::system::{Fidelity, Muscle, System};
+use std::collections::BTreeMap;
+
+/// Most intervals of a control problem; a slip of the pen asks for more.
+pub(crate) const MOST_INTERVALS: usize = 1_000_000;
+
+pub(crate) fn control(
+    spec: &ControlSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Control, SceneError> {
+    let duration = duration(&spec.duration, &scope.key("duration"))?;
+    let place = scope.key("intervals");
+    count(spec.intervals, "interval", MOST_INTERVALS, &place)?;
+    if !system.sources().iter().any(|source| source.takes_voltage) {
+        let found = "a scene without any muscle or electrode that takes a voltage";
+        let expected = format!("a muscle of {ELECTRIC_KEYS}, or a driven electrode");
+        return Err(scope.wrong(found, expected));
+    }
+    let voltage_bounds = voltage_bounds(spec, &scope.key("voltage_bounds"))?;
+    let start = start_state(&spec.start, system, &scope.key("start"))?;
+    let goal = goal_state(&spec.goal, system, &scope.key("goal"))?;
+    let given = given_voltages(spec, system, &scope.key("voltages"))?;
+    for (key, state) in [("start", &start), ("goal", &goal)] {
+        check_rest_voltages(state, system, &given, voltage_bounds, &scope.key(key))?;
+    }
+    check_final_conditions(&goal, system, &scope.key("goal"))?;
+    let mut limits = Vec::new();
+    for (index, spec) in spec.limits.iter().enumerate() {
+        limits.extend(limit(spec, system, &scope.key("limits").index(index))?);
+    }
+    Ok(Control {
+        duration,
+        intervals: spec.intervals,
+        start,
+        goal,
+        voltage_bounds,
+        given,
+        hold: spec.hold.into(),
+        objective: objective(&spec.objective, &scope.key("objective"))?,
+        limits,
+        coordinates: coordinates(spec.coordinates, system, scope)?,
+        guess: guess(&spec.guess, system, voltage_bounds, &scope.key("guess"))?,
+        solver: solver(&spec.solver, &scope.key("solver"))?,
+    })
+}
+
+pub(crate) fn duration(spec: &DurationSpec, scope: &Scope<'_>) -> Result<Duration, SceneError> {
+    let free = match spec {
+        DurationSpec::Given(duration) => return scope.positive(duration).map(Duration::Given),
+        DurationSpec::Free(free) => free,
+    };
+    let min = scope.key("min").positive(&free.min)?;
+    let max = scope.key("max").positive(&free.max)?;
+    let guess = scope.key("guess").positive(&free.guess)?;
+    if min > max {
+        let expected = format!("a time that is no shorter than \"min\" {}", free.min);
+        return Err(scope.key("max").wrong(free.max.to_string(), expected));
+    }
+    if guess < min || guess > max {
+        let expected = format!("a time from {} to {}", free.min, free.max);
+        return Err(scope.key("guess").wrong(free.guess.to_string(), expected));
+    }
+    Ok(Duration::Free { min, max, guess })
+}
+
+pub(crate) fn voltage_bounds(
+    spec: &ControlSpec,
+    scope: &Scope<'_>,
+) -> Result<[f64; 2], SceneError> {
+    let [lower, upper] = &spec.voltage_bounds;
+    let bounds = [lower.value(), upper.value()];
+    if bounds[0] < 0.0 {
+        return Err(scope
+            .index(0)
+            .wrong(lower.to_string(), "a voltage that is not negative"));
+    }
+    if bounds[0] > bounds[1] {
+        let expected = format!("an upper bound that is no less than the lower bound {lower}");
+        return Err(scope.index(1).wrong(upper.to_string(), expected));
+    }
+    Ok(bounds)
+}
+
+/// Voltages that are given for all the time; one is left to be looked for.
+pub(crate) fn given_voltages(
+    spec: &ControlSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BTreeMap<usize, f64>, SceneError> {
+    let sources = system.sources();
+    let mut given = BTreeMap::new();
+    for (name, voltage) in &spec.voltages {
+        given.insert(driven(name, &sources, &scope.key(name))?, voltage.value());
+    }
+    let is_sought = |s: usize| sources[s].takes_voltage && !given.contains_key(&s);
+    if (0..sources.len()).any(is_sought) {
+        return Ok(given);
+    }
+    let found = "all voltages";
+    Err(scope.wrong(
+        found,
+        "one voltage or more that is not given, to be looked for",
+    ))
+}
+
+/// Rest voltages of sources that are looked for lie in the bounds.
+pub(crate) fn check_rest_voltages(
+    state: &BoundaryState,
+    system: &System,
+    given: &BTreeMap<usize, f64>,
+    [lower, upper]: [f64; 2],
+    scope: &Scope<'_>,
+) -> Result<(), SceneError> {
+    let BoundaryState::RestAtVoltages(voltages) = state else {
+        return Ok(());
+    };
+    for (s, (source, &voltage)) in system.sources().iter().zip(voltages).enumerate() {
+        let outside = voltage < lower || voltage > upper;
+        if outside && source.takes_voltage && !given.contains_key(&s) {
+            let place = scope.key("rest_at_voltages").key(&source.name);
+            let found = format!("{voltage} V");
+            let expected = format!("a voltage within the bounds {lower} V to {upper} V");
+            return Err(place.wrong(found, expected));
+        }
+    }
+    Ok(())
+}
+
+/// No more final conditions than degrees of freedom, where these can be counted from the joints: nodes bring more.
+pub(crate) fn check_final_conditions(
+    goal: &BoundaryState,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<(), SceneError> {
+    let lumped = |muscle: &Muscle| muscle.fidelity == Fidelity::Lumped;
+    if !system.solids.is_empty() || !system.muscles.iter().all(lumped) {
+        return Ok(());
+    }
+    let (conditions, key) = match goal {
+        BoundaryState::Markers { places, .. } => (3 * places.len(), "markers"),
+        BoundaryState::JointAngles { angles, .. } => (angles.len(), "joint_angles"),
+        BoundaryState::RestAtVoltages(_) => return Ok(()),
+    };
+    match tree_freedoms(system.bodies.len(), &system.joints) {
+        Some(freedoms) if conditions > freedoms => {
+            let found = format!("{conditions} final conditions on positions");
+            let expected = format!("no more than the {freedoms} degrees of freedom");
+            Err(scope.key(key).wrong(found, expected))
+        }
+        _ => Ok(()),
+    }
+}
+
+pub(crate) fn objective(spec: &ObjectiveSpec, scope: &Scope<'_>) -> Result<Objective, SceneError> {
+    let weights = [
+        ("effort", spec.effort),
+        ("rate", spec.rate),
+        ("duration", spec.duration),
+    ];
+    for (key, weight) in weights {
+        if weight < 0.0 {
+            let expected = "a weight that is not negative";
+            return Err(scope.key(key).wrong(weight.to_string(), expected));
+        }
+    }
+    if weights.iter().all(|(_, weight)| *weight == 0.0) {
+        let expected = "a positive weight of \"effort\", \"rate\" or \"duration\"";
+        return Err(scope.wrong("no weight", expected));
+    }
+    Ok(Objective {
+        effort: spec.effort,
+        rate: spec.rate,
+        duration: spec.duration,
+    })
+}
+
+pub(crate) fn solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<Solver, SceneError> {
+    let tolerance = spec.tolerance.unwrap_or(1e-10);
+    if tolerance <= 0.0 {
+        let expected = "a positive tolerance";
+        return Err(scope
+            .key("tolerance")
+            .wrong(tolerance.to_string(), expected));
+    }
+    let max_iterations = spec.max_iterations.unwrap_or(500);
+    if i32::try_from(max_iterations).is_err() {
+        let expected = "a number of iterations below 2147483648";
+        let place = scope.key("max_iterations");
+        return Err(place.wrong(max_iterations.to_string(), expected));
+    }
+    let option = |(name, value): (&String, &OptionSpec)| {
+        let value = match value {
+            OptionSpec::Integer(integer) => OptionValue::Integer(*integer),
+            OptionSpec::Number(number) => OptionValue::Number(*number),
+            OptionSpec::Text(text) => OptionValue::Text(text.clone()),
+        };
+        (name.clone(), value)
+    };
+    Ok(Solver {
+        tolerance,
+        max_iterations,
+        ipopt: spec.ipopt.iter().map(option).collect(),
+    })
+}

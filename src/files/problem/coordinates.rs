@@ -1,0 +1,41 @@
+//! Counts and coordinates, which several tasks ask for.
+
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::spec_coordinates::CoordinatesSpec;
+use crate::files::scene::graph::tree_freedoms;
+use crate::model::Coordinates;
+use crate::model::system::System;
+
+/// A number of things from one to a limit.
+pub(crate) fn count(
+    value: usize,
+    noun: &str,
+    most: usize,
+    scope: &Scope<'_>,
+) -> Result<(), SceneError> {
+    let expected = match value {
+        0 => format!("1 {noun} or more"),
+        _ if value > most => format!("no more than {most} {noun}s"),
+        _ => return Ok(()),
+    };
+    Err(scope.wrong(value.to_string(), expected))
+}
+
+pub(crate) fn coordinates(
+    spec: Option<CoordinatesSpec>,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Option<Coordinates>, SceneError> {
+    let bodies = system.bodies.len();
+    let place = scope.key("coordinates");
+    match spec {
+        None => Ok(None),
+        Some(CoordinatesSpec::Redundant) => Ok(Some(Coordinates::Redundant)),
+        Some(CoordinatesSpec::Reduced) if tree_freedoms(bodies, &system.joints).is_none() => {
+            let found = "\"reduced\", though the joints close a loop";
+            Err(place.wrong(found, "\"redundant\""))
+        }
+        Some(CoordinatesSpec::Reduced) => Ok(Some(Coordinates::Reduced)),
+    }
+}

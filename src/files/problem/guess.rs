@@ -1,0 +1,51 @@
+//! From a guess as written to the guess.
+
+use crate::control::problem::{Guess, Voltages};
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::spec_control::GuessSpec;
+use crate::files::problem::voltages::{existing, over_time};
+use crate::math::random::Random;
+use crate::model::system::{Source, System};
+
+pub(crate) fn guess(
+    spec: &GuessSpec,
+    system: &System,
+    bounds: [f64; 2],
+    scope: &Scope<'_>,
+) -> Result<Guess, SceneError> {
+    let GuessSpec::Object(spec) = spec else {
+        return Ok(Guess::Interpolate);
+    };
+    type Build<'a> = Box<dyn FnOnce() -> Result<Guess, SceneError> + 'a>;
+    let simulate = spec.simulate.as_ref().map(|simulate| -> Build<'_> {
+        let scope = scope.key("simulate").key("voltages");
+        Box::new(move || over_time(&simulate.voltages, system, &scope).map(Guess::Simulate))
+    });
+    let solution = spec.solution.as_ref().map(|solution| -> Build<'_> {
+        let scope = scope.key("solution");
+        Box::new(move || existing(solution, &scope).map(Guess::Solution))
+    });
+    let random = spec.random.as_ref().map(|random| -> Build<'_> {
+        Box::new(|| {
+            let voltages = drawn(random.seed, system, bounds);
+            Ok(Guess::Simulate(Voltages::Constant(voltages)))
+        })
+    });
+    let build = scope.exactly_one([
+        ("simulate", simulate),
+        ("solution", solution),
+        ("random", random),
+    ])?;
+    build()
+}
+
+/// A voltage within the bounds for each source that takes one, drawn at random.
+pub(crate) fn drawn(seed: u64, system: &System, [lower, upper]: [f64; 2]) -> Vec<f64> {
+    let mut random = Random::new(seed);
+    let draw = |source: &Source| match source.takes_voltage {
+        true => random.between(lower, upper),
+        false => 0.0,
+    };
+    system.sources().iter().map(draw).collect()
+}

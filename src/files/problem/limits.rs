@@ -1,0 +1,237 @@
+//! From path limits as written to indices, bounds and regions.
+
+use crate::control::problem::{PathConstraint, Side};
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::spec_limits::{
+    All, ElectricFieldLimitSpec, JointAngleLimitSpec, LimitSpec, MarkerLimitSpec, RegionSpec,
+    StretchLimitSpec,
+};
+use crate::files::problem::state::{ELECTRIC_KEYS, joint_value, joint_with_coordinate};
+use crate::files::scene::names::names;
+use crate::files::scene::point::vector;
+use crate::files::units::quantity::{Angle, Length};
+use crate::model::Region;
+use crate::model::system::System;
+
+/// The limits that one entry stands for.
+pub(crate) fn limit(
+    spec: &LimitSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<PathConstraint>, SceneError> {
+    let key = scope.exactly_one([
+        (
+            "joint_angle",
+            spec.joint_angle.as_ref().map(|_| "joint_angle"),
+        ),
+        ("stretch", spec.stretch.as_ref().map(|_| "stretch")),
+        (
+            "electric_field",
+            spec.electric_field.as_ref().map(|_| "electric_field"),
+        ),
+        ("marker", spec.marker.as_ref().map(|_| "marker")),
+    ])?;
+    let scope = scope.key(key);
+    let mut limits = Vec::new();
+    if let Some(spec) = &spec.joint_angle {
+        limits.push(joint_angle(spec, system, &scope)?);
+    }
+    if let Some(spec) = &spec.stretch {
+        limits.push(stretch(spec, system, &scope)?);
+    }
+    if let Some(spec) = &spec.electric_field {
+        limits.extend(electric_field(spec, system, &scope)?);
+    }
+    if let Some(spec) = &spec.marker {
+        limits.push(marker(spec, system, &scope)?);
+    }
+    Ok(limits)
+}
+
+fn joint_angle(
+    spec: &JointAngleLimitSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<PathConstraint, SceneError> {
+    let joint = joint_with_coordinate(&spec.joint, system, &scope.key("joint"))?;
+    let kinds = [Angle::kind(), Length::kind()];
+    let bound = |key: &str, quantity: Option<&_>, absent: f64| match quantity {
+        Some(quantity) => joint_value(quantity, &kinds, joint, system, &scope.key(key)),
+        None => Ok(absent),
+    };
+    let min = bound("min", spec.min.as_ref(), f64::NEG_INFINITY)?;
+    let max = bound("max", spec.max.as_ref(), f64::INFINITY)?;
+    check_bounds(min, max, spec.min.is_some() || spec.max.is_some(), scope)?;
+    Ok(PathConstraint::JointAngle { joint, min, max })
+}
+
+fn stretch(
+    spec: &StretchLimitSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<PathConstraint, SceneError> {
+    let muscles = names(&system.muscles, |muscle| &muscle.name);
+    let expected = "the name of a muscle";
+    let muscle = scope.key("muscle").find(&spec.muscle, &muscles, expected)?;
+    for (key, bound) in [("min", spec.min), ("max", spec.max)] {
+        if let Some(bound) = bound.filter(|bound| *bound <= 0.0) {
+            return Err(scope
+                .key(key)
+                .wrong(bound.to_string(), "a positive stretch"));
+        }
+    }
+    let (min, max) = (spec.min.unwrap_or(0.0), spec.max.unwrap_or(f64::INFINITY));
+    check_bounds(min, max, spec.min.is_some() || spec.max.is_some(), scope)?;
+    Ok(PathConstraint::Stretch { muscle, min, max })
+}
+
+fn check_bounds(min: f64, max: f64, there: bool, scope: &Scope<'_>) -> Result<(), SceneError> {
+    if !there {
+        return Err(scope.wrong("no bound", "\"min\", \"max\" or both"));
+    }
+    if min > max {
+        let found = "\"max\" below \"min\"";
+        return Err(scope.key("max").wrong(found, "bounds that are not crossed"));
+    }
+    Ok(())
+}
+
+fn electric_field(
+    spec: &ElectricFieldLimitSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<PathConstraint>, SceneError> {
+    let max = scope.key("max").positive(&spec.max)?;
+    let one = |name: &Option<String>| name.clone().map(Some);
+    let all = |all: Option<All>| all.map(|_| None);
+    let chosen = [
+        ("muscle", one(&spec.muscle)),
+        ("muscles", all(spec.muscles)),
+        ("solid", one(&spec.solid)),
+        ("solids", all(spec.solids)),
+    ];
+    let key = chosen.iter().find(|(_, choice)| choice.is_some());
+    let key = key.map_or("", |(key, _)| key);
+    let name = scope.exactly_one(chosen)?;
+    let place = scope.key(key);
+    if spec.region.is_some() && key != "solid" {
+        let found = "a region without \"solid\"";
+        return Err(scope.key("region").wrong(found, "a region of one block"));
+    }
+    let nothing = |expected: String| place.wrong("nothing that a field reaches", expected);
+    if key.starts_with("muscle") {
+        let muscles = match &name {
+            Some(name) => vec![muscle_with_field(name, system, &place)?],
+            None => (0..system.muscles.len())
+                .filter(|&muscle| system.muscles[muscle].material.electric.is_some())
+                .collect(),
+        };
+        if muscles.is_empty() {
+            let beside = match system.solids.is_empty() {
+                true => "",
+                false => "; the field of elastic blocks is limited by \"solid\" or \"solids\"",
+            };
+            return Err(nothing(format!("a muscle of {ELECTRIC_KEYS}{beside}")));
+        }
+        let limit = |muscle| match system.meshed_muscles().position(|m| m == muscle) {
+            None => PathConstraint::ElectricField { muscle, max },
+            Some(index) => PathConstraint::BlockField {
+                block: system.solids.len() + index,
+                region: None,
+                max,
+            },
+        };
+        return Ok(muscles.into_iter().map(limit).collect());
+    }
+    let (blocks, region) = match &name {
+        None => ((0..system.solids.len()).collect(), None),
+        Some(name) => {
+            let names = names(&system.solids, |solid| &solid.name);
+            let block = place.find(name, &names, "the name of an elastic block")?;
+            let regions = &system.solids[block].mesh.region_names;
+            let of = scope.key("region");
+            let region = spec.region.as_ref();
+            let region = region.map(|name| of.find(name, regions, "the name of a region"));
+            (vec![block], region.transpose()?)
+        }
+    };
+    let has_field = |&block: &usize| {
+        let solid = &system.solids[block];
+        let mut elements = solid.mesh.regions.iter().zip(solid.elements_with_field());
+        elements.any(|(of, has_field)| has_field && region.is_none_or(|region| *of == region))
+    };
+    let blocks: Vec<usize> = blocks.into_iter().filter(has_field).collect();
+    if blocks.is_empty() {
+        let expected = format!("elements of {ELECTRIC_KEYS} between electrodes");
+        return Err(nothing(expected));
+    }
+    let limit = |block| PathConstraint::BlockField { block, region, max };
+    Ok(blocks.into_iter().map(limit).collect())
+}
+
+/// Index of a muscle with an electric term.
+fn muscle_with_field(name: &str, system: &System, scope: &Scope<'_>) -> Result<usize, SceneError> {
+    let muscles = names(&system.muscles, |muscle| &muscle.name);
+    let index = scope.find(name, &muscles, "the name of a muscle")?;
+    if system.muscles[index].material.electric.is_some() {
+        return Ok(index);
+    }
+    let found = format!("{name:?}, whose material has no electric term");
+    Err(scope.wrong(found, format!("a muscle of {ELECTRIC_KEYS}")))
+}
+
+fn marker(
+    spec: &MarkerLimitSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<PathConstraint, SceneError> {
+    let markers = names(&system.markers, |marker| &marker.name);
+    let expected = "the name of a marker";
+    let marker = scope.key("marker").find(&spec.marker, &markers, expected)?;
+    let (region_spec, side, key) = scope.exactly_one([
+        (
+            "inside",
+            spec.inside
+                .as_ref()
+                .map(|region| (region, Side::Inside, "inside")),
+        ),
+        (
+            "outside",
+            spec.outside
+                .as_ref()
+                .map(|region| (region, Side::Outside, "outside")),
+        ),
+    ])?;
+    let region = region(region_spec, &scope.key(key))?;
+    Ok(PathConstraint::Marker {
+        marker,
+        region,
+        side,
+    })
+}
+
+fn region(spec: &RegionSpec, scope: &Scope<'_>) -> Result<Region, SceneError> {
+    scope.exactly_one([
+        ("box", spec.cuboid.as_ref().map(|_| ())),
+        ("sphere", spec.sphere.as_ref().map(|_| ())),
+    ])?;
+    match (&spec.cuboid, &spec.sphere) {
+        (None, Some(ball)) => Ok(Region::Sphere {
+            centre: vector(&ball.centre),
+            radius: scope.key("sphere").key("radius").positive(&ball.radius)?,
+        }),
+        (Some(corners), _) => {
+            let (min, max) = (vector(&corners.min), vector(&corners.max));
+            for index in 0..3 {
+                if min[index] >= max[index] {
+                    let place = scope.key("box").key("max").index(index);
+                    let expected = format!("more than {} of \"min\"", corners.min[index]);
+                    return Err(place.wrong(corners.max[index].to_string(), expected));
+                }
+            }
+            Ok(Region::Box { min, max })
+        }
+        (None, None) => Err(scope.wrong("no region", "\"box\" or \"sphere\"")),
+    }
+}

@@ -1,0 +1,115 @@
+//! From a simulation as written to the task.
+
+use crate::control::problem::{BoundaryState, Simulation};
+use crate::dynamics::{Integrator, Newton, Solving};
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::coordinates::coordinates;
+use crate::files::problem::spec_integrator::integrator;
+use crate::files::problem::spec_simulate::{SimulateSpec, StepSpec};
+use crate::files::problem::state::start_state;
+use crate::files::problem::voltages::over_time;
+use crate::model::system::{Fidelity, System};
+use std::collections::BTreeMap;
+
+/// Tolerance of steps of no given length, where none is written.
+pub(crate) const TOLERANCE: f64 = 1e-3;
+
+/// Tolerances below this ask for more than rounding allows.
+pub(crate) const LEAST_TOLERANCE: f64 = 1e-9;
+
+/// The first step that a tolerance controls, as a part of the duration.
+pub(crate) const FIRST: f64 = 1e-2;
+
+/// Most steps of a simulation.
+pub(crate) const MOST_STEPS: f64 = 1e8;
+
+pub(crate) fn simulation(
+    spec: &SimulateSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Simulation, SceneError> {
+    let duration = scope.key("duration").positive(&spec.duration)?;
+    let method = integrator(spec.integrator.as_ref(), system, &scope.key("integrator"))?;
+    let (step, tolerance) = step(spec, duration, method, scope)?;
+    let start = match &spec.start {
+        Some(start) => start_state(start, system, &scope.key("start"))?,
+        None => BoundaryState::JointAngles {
+            angles: BTreeMap::new(),
+            rates: BTreeMap::new(),
+            velocities: Default::default(),
+        },
+    };
+    let place = scope.key("voltages");
+    let voltages = over_time(&spec.voltages, system, &place)?;
+    Ok(Simulation {
+        duration,
+        step,
+        tolerance,
+        start,
+        voltages,
+        coordinates: coordinates(spec.coordinates, system, scope)?,
+        solving: Solving {
+            integrator: method,
+            newton: spec.newton.map_or_else(|| newton(system), Into::into),
+            backend: spec.linear_solver.map(Into::into),
+        },
+    })
+}
+
+/// Length of the steps in ms, of the first attempt where a tolerance controls it, and the tolerance.
+pub(crate) fn step(
+    spec: &SimulateSpec,
+    duration: f64,
+    method: Integrator,
+    scope: &Scope<'_>,
+) -> Result<(f64, Option<f64>), SceneError> {
+    let Some(StepSpec::Given(written)) = &spec.step else {
+        if method != Integrator::Midpoint {
+            let found = format!(
+                "steps of no given length with the integrator {}",
+                method.name()
+            );
+            let expected = "a step, such as \"10 ms\": only the midpoint rule chooses its steps";
+            return Err(scope.wrong(found, expected));
+        }
+        let tolerance = spec.tolerance.unwrap_or(TOLERANCE);
+        if !(LEAST_TOLERANCE..1.0).contains(&tolerance) {
+            let expected = format!("a tolerance from {LEAST_TOLERANCE:.0e} to below 1");
+            return Err(scope
+                .key("tolerance")
+                .wrong(tolerance.to_string(), expected));
+        }
+        return Ok((FIRST * duration, Some(tolerance)));
+    };
+    let place = scope.key("step");
+    let step = place.positive(written)?;
+    if let Some(tolerance) = spec.tolerance {
+        let found = format!("{tolerance} beside steps of {written}");
+        let expected = "a tolerance only where the step is \"auto\" or not written";
+        return Err(scope.key("tolerance").wrong(found, expected));
+    }
+    if step > duration {
+        let expected = format!(
+            "a step that is no longer than the duration {}",
+            spec.duration
+        );
+        return Err(place.wrong(written.to_string(), expected));
+    }
+    if duration / step > MOST_STEPS {
+        let found = format!("{written}, which makes {:.0e} steps", duration / step);
+        return Err(place.wrong(found, format!("no more than {MOST_STEPS:.0e} steps")));
+    }
+    Ok((step, None))
+}
+
+/// When the tangent of a step is factorised, where nothing is written: the factorisation of finite elements is worth keeping,
+/// that of a few joint coordinates is not (benches/README.md).
+pub(crate) fn newton(system: &System) -> Newton {
+    let mut muscles = system.muscles.iter();
+    let of_muscles = muscles.any(|muscle| muscle.fidelity != Fidelity::Lumped);
+    match of_muscles || !system.solids.is_empty() {
+        true => Newton::Reused,
+        false => Newton::Full,
+    }
+}

@@ -1,0 +1,125 @@
+//! Voltages over time: from an earlier `solution.json`, or a table in the problem.
+
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use crate::control::problem::{Afterwards, Voltages};
+use crate::files::json::document::Document;
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::spec_voltages::TableSpec;
+use crate::files::problem::state::{driven, voltages};
+use crate::model::system::System;
+
+/// What is read of a solution.
+#[derive(Debug, Deserialize)]
+struct SolutionRecord {
+    /// Instants in s.
+    time: Vec<f64>,
+    /// Voltages in V by source, one per interval.
+    voltages: BTreeMap<String, Vec<f64>>,
+    /// Voltages in V by source that hold the goal; a motion without a goal, or with one whose voltages are not known, has none.
+    #[serde(default)]
+    hold: Option<BTreeMap<String, f64>>,
+}
+
+/// Voltages of a solution, then those that hold its goal, or where it names none the last ones; 0 for sources that it does
+/// not know.
+pub(crate) fn of_solution(path: &Path, system: &System) -> Result<Voltages, SceneError> {
+    let document = &Document::read(path)?;
+    let solution: SolutionRecord = document.parse()?;
+    let scope = Scope::of(document);
+    let instants: Vec<f64> = solution.time.iter().map(|time| 1e3 * time).collect();
+    let rows = rows(&instants, &solution.voltages, system, &scope)?;
+    let hold = match &solution.hold {
+        Some(hold) => {
+            let sources = system.sources();
+            let mut row = vec![0.0; sources.len()];
+            for (name, &voltage) in hold {
+                row[driven(name, &sources, &scope.key("hold").key(name))?] = voltage;
+            }
+            Some(row)
+        }
+        None => None,
+    };
+    Ok(sampled(&instants, rows, hold, Some(path.to_owned())))
+}
+
+/// Voltages of a table, then those that it says are held, or the last ones; 0 for sources that it does not name.
+pub(crate) fn of_table(
+    table: &TableSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Voltages, SceneError> {
+    let instants: Vec<f64> = table.time.iter().map(|time| time.value()).collect();
+    let histories = table.voltages.iter().map(|(name, history)| {
+        let history: Vec<f64> = history.iter().map(|voltage| voltage.value()).collect();
+        (name.clone(), history)
+    });
+    let rows = rows(&instants, &histories.collect(), system, scope)?;
+    if instants[0] != 0.0 {
+        let found = format!("{} s", instants[0] / 1e3);
+        return Err(scope.key("time").index(0).wrong(found, "0"));
+    }
+    let hold = match &table.hold {
+        Some(hold) => Some(voltages(hold, system, &scope.key("hold"))?),
+        None => None,
+    };
+    Ok(sampled(&instants, rows, hold, None))
+}
+
+/// A row of voltages for each interval between instants in ms.
+fn rows(
+    instants: &[f64],
+    histories: &BTreeMap<String, Vec<f64>>,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<Vec<f64>>, SceneError> {
+    let place = scope.key("time");
+    if instants.len() < 2 {
+        let found = format!("{} instants", instants.len());
+        return Err(place.wrong(found, "2 instants or more"));
+    }
+    if let Some(index) = instants.windows(2).position(|pair| pair[0] >= pair[1]) {
+        let found = format!("{} s", instants[index + 1] / 1e3);
+        return Err(place.index(index + 1).wrong(found, "increasing times"));
+    }
+    let intervals = instants.len() - 1;
+    let sources = system.sources();
+    let mut rows = vec![vec![0.0; sources.len()]; intervals];
+    for (name, history) in histories {
+        let place = scope.key("voltages").key(name);
+        let source = driven(name, &sources, &place)?;
+        if history.len() != intervals {
+            let found = format!("{} voltages", history.len());
+            let expected = format!("{intervals}, one per interval");
+            return Err(place.wrong(found, expected));
+        }
+        for (row, voltage) in rows.iter_mut().zip(history) {
+            row[source] = *voltage;
+        }
+    }
+    Ok(rows)
+}
+
+/// Rows of voltages, and those afterwards.
+fn sampled(
+    instants: &[f64],
+    mut rows: Vec<Vec<f64>>,
+    hold: Option<Vec<f64>>,
+    solution: Option<PathBuf>,
+) -> Voltages {
+    let afterwards = match hold {
+        Some(_) => Afterwards::Held,
+        None => Afterwards::OfLastInterval,
+    };
+    let last = rows[rows.len() - 1].clone();
+    rows.push(hold.unwrap_or(last));
+    Voltages::Sampled {
+        ends: instants[1..].to_vec(),
+        rows,
+        afterwards,
+        solution,
+    }
+}

@@ -1,0 +1,62 @@
+//! A problem as it is written: the serde types of the problem file.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Deserializer};
+use std::marker::PhantomData;
+
+use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::files::problem::spec_control::ControlSpec;
+use crate::files::problem::spec_coordinates::CoordinatesSpec;
+use crate::files::problem::spec_simulate::SimulateSpec;
+use crate::files::problem::spec_voltages::VoltageMap;
+use crate::files::scene::spec::SceneSpec;
+
+/// What is asked of a scene: exactly one of `simulate`, `equilibrium`, `control`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ProblemSpec {
+    /// JSON Schema of this file, for editors.
+    #[serde(rename = "$schema", default)]
+    #[expect(dead_code, reason = "read by editors only")]
+    pub(crate) schema: Option<String>,
+    /// Path of the scene file, relative to this file, or the scene itself.
+    pub scene: SceneSource,
+    /// Forward simulation.
+    #[serde(default)]
+    pub simulate: Option<SimulateSpec>,
+    /// Static equilibrium.
+    #[serde(default)]
+    pub equilibrium: Option<EquilibriumSpec>,
+    /// Optimal control.
+    #[serde(default)]
+    pub control: Option<ControlSpec>,
+}
+
+/// A static equilibrium.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EquilibriumSpec {
+    /// Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
+    #[serde(default)]
+    pub voltages: VoltageMap,
+    /// Coordinates.
+    #[serde(default)]
+    pub coordinates: Option<CoordinatesSpec>,
+    /// Follow the path of equilibria from zero voltage by arc length for so many points, past limit points such as pull-in.
+    #[serde(default)]
+    pub path: Option<usize>,
+}
+
+/// A scene by its path, or the scene itself.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum SceneSource {
+    /// Path relative to the problem file.
+    Path(String),
+    /// The scene.
+    Inline(Box<SceneSpec>),
+}
+
+scalar_or_object! {
+    SceneSource: String = Self::Path, Box<SceneSpec> = Self::Inline, "the path of a scene file or a scene";
+}

@@ -1,0 +1,180 @@
+//! A control problem as it is written.
+
+use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::files::problem::spec_coordinates::CoordinatesSpec;
+use crate::files::problem::spec_limits::LimitSpec;
+use crate::files::problem::spec_states::{GoalSpec, HoldSpec, StartSpec};
+use crate::files::problem::spec_voltages::{VoltageMap, VoltagesSpec};
+use crate::files::units::quantity::{Quantity, Time, Voltage};
+use schemars::JsonSchema;
+use serde::{Deserialize, Deserializer};
+use std::collections::BTreeMap;
+use std::marker::PhantomData;
+
+/// An optimal control problem.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ControlSpec {
+    /// Final time, SI unit s, or its bounds and a guess.
+    pub duration: DurationSpec,
+    /// Number of intervals, 1 or more.
+    pub intervals: usize,
+    /// Initial state.
+    pub start: StartSpec,
+    /// Final state, at rest.
+    pub goal: GoalSpec,
+    /// Lower and upper bound of every voltage that is looked for, SI unit V.
+    pub voltage_bounds: [Quantity<Voltage>; 2],
+    /// Voltages that are given for all the time, by the names of muscles and driven electrodes (`block.electrode`), SI unit V:
+    /// they are no unknowns, and one of 0 leaves no electric term at all.
+    #[serde(default)]
+    pub voltages: VoltageMap,
+    /// What becomes of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is
+    /// `reported` (where not written), or refused where holding it is `required`.
+    #[serde(default)]
+    pub hold: HoldSpec,
+    /// What is minimised.
+    pub objective: ObjectiveSpec,
+    /// Path limits.
+    #[serde(default)]
+    pub limits: Vec<LimitSpec>,
+    /// Coordinates.
+    #[serde(default)]
+    pub coordinates: Option<CoordinatesSpec>,
+    /// Where the solver starts.
+    #[serde(default)]
+    pub guess: GuessSpec,
+    /// Options of the solver.
+    #[serde(default)]
+    pub solver: SolverSpec,
+}
+
+/// Bounds of a free final time.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FreeDurationSpec {
+    /// Lower bound, SI unit s.
+    pub min: Quantity<Time>,
+    /// Upper bound, SI unit s.
+    pub max: Quantity<Time>,
+    /// Where the solver starts, SI unit s.
+    pub guess: Quantity<Time>,
+}
+
+/// Weights of the objective.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectiveSpec {
+    /// Weight of Σ h |V_k|², V in kV, h in s.
+    #[serde(default)]
+    pub effort: f64,
+    /// Weight of Σ |V_k − V_{k−1}|²/h, V in kV, h in s, with the rest voltages of start and goal at the ends.
+    #[serde(default)]
+    pub rate: f64,
+    /// Weight of the final time in s.
+    #[serde(default)]
+    pub duration: f64,
+}
+
+/// Options of the solver.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolverSpec {
+    /// Relative tolerance, 1e-10 where not written.
+    #[serde(default)]
+    pub tolerance: Option<f64>,
+    /// Limit of iterations, 500 where not written.
+    #[serde(default)]
+    pub max_iterations: Option<usize>,
+    /// Options of Ipopt by name.
+    #[serde(default)]
+    pub ipopt: BTreeMap<String, OptionSpec>,
+}
+
+/// A value of an option of Ipopt.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(
+    untagged,
+    expecting = "another kind of value, expected a whole number, a number or a text"
+)]
+pub enum OptionSpec {
+    /// Whole number.
+    Integer(i32),
+    /// Number.
+    Number(f64),
+    /// Text.
+    Text(String),
+}
+
+/// A simulation as a guess.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GuessSimulationSpec {
+    /// Constant voltages, those of a solution, or a table, as of a simulation; 0 where not written.
+    #[serde(default)]
+    pub voltages: VoltagesSpec,
+}
+
+/// A random guess.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RandomGuessSpec {
+    /// Equal seeds give equal guesses.
+    pub seed: u64,
+}
+
+/// An object of a guess: exactly one of the three.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GuessObjectSpec {
+    /// A simulation under given voltages.
+    #[serde(default)]
+    pub simulate: Option<GuessSimulationSpec>,
+    /// Path of a `solution.json`, relative to this file or to the current folder.
+    #[serde(default)]
+    pub solution: Option<String>,
+    /// A simulation under constant voltages drawn at random within the bounds.
+    #[serde(default)]
+    pub random: Option<RandomGuessSpec>,
+}
+
+/// A word of a guess.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GuessWord {
+    /// Smooth interpolation between start and goal.
+    Interpolate,
+}
+
+/// A time, or bounds of a free one.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum DurationSpec {
+    /// Given.
+    Given(Quantity<Time>),
+    /// Free.
+    Free(FreeDurationSpec),
+}
+
+/// A word or an object.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum GuessSpec {
+    /// `"interpolate"`.
+    Word(GuessWord),
+    /// An object.
+    Object(GuessObjectSpec),
+}
+
+impl Default for GuessSpec {
+    fn default() -> Self {
+        Self::Word(GuessWord::Interpolate)
+    }
+}
+
+scalar_or_object! {
+    DurationSpec: Quantity<Time> = Self::Given, FreeDurationSpec = Self::Free,
+        "a time, such as \"0.6 s\", or an object with \"min\", \"max\" and \"guess\"";
+    GuessSpec: GuessWord = Self::Word, GuessObjectSpec = Self::Object,
+        "\"interpolate\" or an object with \"simulate\", \"solution\" or \"random\"";
+}

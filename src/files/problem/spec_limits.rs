@@ -1,0 +1,124 @@
+//! Path limits as they are written: a part of the problem file.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::files::scene::point::{CornersSpec, Point};
+use crate::files::units::quantity::{ElectricField, JointCoordinate, Length, Quantity};
+
+/// A path limit: exactly one of the four.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LimitSpec {
+    /// Limits of a joint coordinate.
+    #[serde(default)]
+    pub joint_angle: Option<JointAngleLimitSpec>,
+    /// Limits of the stretch of a muscle.
+    #[serde(default)]
+    pub stretch: Option<StretchLimitSpec>,
+    /// Breakdown field of muscles or elastic blocks.
+    #[serde(default)]
+    pub electric_field: Option<ElectricFieldLimitSpec>,
+    /// Region of a marker.
+    #[serde(default)]
+    pub marker: Option<MarkerLimitSpec>,
+}
+
+/// Limits of a joint coordinate: `min`, `max` or both.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JointAngleLimitSpec {
+    /// Name of the joint.
+    pub joint: String,
+    /// Lower bound, SI unit rad or m.
+    #[serde(default)]
+    pub min: Option<Quantity<JointCoordinate>>,
+    /// Upper bound, SI unit rad or m.
+    #[serde(default)]
+    pub max: Option<Quantity<JointCoordinate>>,
+}
+
+/// Limits of the stretch of a muscle: `min`, `max` or both.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StretchLimitSpec {
+    /// Name of the muscle.
+    pub muscle: String,
+    /// Lower bound.
+    #[serde(default)]
+    pub min: Option<f64>,
+    /// Upper bound.
+    #[serde(default)]
+    pub max: Option<f64>,
+}
+
+/// Breakdown field of one muscle (`"muscle": name`) or all (`"muscles": "all"`), of one elastic block (`"solid": name`, or a
+/// `region` of it) or all (`"solids": "all"`).
+///
+/// It bounds the true field at every instant and in the middle of every interval; in finite elements at their centres and Gauss
+/// points.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ElectricFieldLimitSpec {
+    /// Name of the muscle.
+    #[serde(default)]
+    pub muscle: Option<String>,
+    /// All muscles with an electric term.
+    #[serde(default)]
+    pub muscles: Option<All>,
+    /// Name of the elastic block.
+    #[serde(default)]
+    pub solid: Option<String>,
+    /// All elastic blocks that a field reaches.
+    #[serde(default)]
+    pub solids: Option<All>,
+    /// Name of a region of the mesh of `solid`; all elements that a field reaches where not written.
+    #[serde(default)]
+    pub region: Option<String>,
+    /// Largest true field, SI unit V/m.
+    pub max: Quantity<ElectricField>,
+}
+
+/// All of them.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum All {
+    /// All of them.
+    All,
+}
+
+/// Region of a marker: exactly one of `inside` and `outside`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MarkerLimitSpec {
+    /// Name of the marker.
+    pub marker: String,
+    /// Where it stays.
+    #[serde(default)]
+    pub inside: Option<RegionSpec>,
+    /// What it stays out of.
+    #[serde(default)]
+    pub outside: Option<RegionSpec>,
+}
+
+/// A region: exactly one of the two.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RegionSpec {
+    /// Box between two corners.
+    #[serde(rename = "box", default)]
+    pub cuboid: Option<CornersSpec>,
+    /// Ball.
+    #[serde(default)]
+    pub sphere: Option<BallSpec>,
+}
+
+/// A ball.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BallSpec {
+    /// Centre, SI unit m.
+    pub centre: Point,
+    /// Radius, SI unit m.
+    pub radius: Quantity<Length>,
+}

@@ -1,0 +1,247 @@
+//! From states and voltages as written to indices and one voltage per source.
+
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+
+use crate::control::problem::BoundaryState;
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::spec_states::{BodyVelocitySpec, GoalSpec, StartSpec};
+use crate::files::problem::spec_voltages::VoltageMap;
+use crate::files::scene::names::names;
+use crate::files::scene::point::{Point, vector};
+use crate::files::units::quantity::{
+    Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity,
+};
+use crate::model::Graph;
+use crate::model::system::{JointKind, Source, System};
+
+/// What a name of a voltage may be, for messages.
+pub(crate) const A_SOURCE: &str = "the name of a muscle or of a driven electrode (block.electrode)";
+
+/// What gives a material an electric term, for messages.
+pub(crate) const ELECTRIC_KEYS: &str =
+    "a material with \"relative_permittivity\", or \"c1\" and \"c2\"";
+
+/// One voltage per source in V, 0 where not named.
+pub(crate) fn voltages(
+    map: &VoltageMap,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<f64>, SceneError> {
+    let sources = system.sources();
+    let mut voltages = vec![0.0; sources.len()];
+    for (name, voltage) in map {
+        voltages[driven(name, &sources, &scope.key(name))?] = voltage.value();
+    }
+    Ok(voltages)
+}
+
+/// Index of a source that takes a voltage.
+pub(crate) fn driven(
+    name: &str,
+    sources: &[Source],
+    scope: &Scope<'_>,
+) -> Result<usize, SceneError> {
+    let index = scope.find(name, &names(sources, |source| &source.name), A_SOURCE)?;
+    if sources[index].takes_voltage {
+        return Ok(index);
+    }
+    let found = format!("{name:?}, whose material has no electric term");
+    Err(scope.wrong(found, format!("a muscle of {ELECTRIC_KEYS}")))
+}
+
+/// A state at the start.
+pub(crate) fn start_state(
+    spec: &StartSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BoundaryState, SceneError> {
+    let moving =
+        spec.joint_angles.is_some() || spec.joint_rates.is_some() || spec.body_velocities.is_some();
+    let rest = spec.rest_at_voltages.as_ref().map(Some);
+    match scope.exactly_one([
+        ("rest_at_voltages", rest),
+        ("joint_angles", moving.then_some(None)),
+    ])? {
+        Some(map) => {
+            voltages(map, system, &scope.key("rest_at_voltages")).map(BoundaryState::RestAtVoltages)
+        }
+        None => {
+            let kinds = [Angle::kind(), Length::kind()];
+            let angles = by_joint(
+                &spec.joint_angles,
+                &kinds,
+                system,
+                &scope.key("joint_angles"),
+            )?;
+            let kinds = [AngularVelocity::kind(), Velocity::kind()];
+            let rates = by_joint(&spec.joint_rates, &kinds, system, &scope.key("joint_rates"))?;
+            let place = scope.key("body_velocities");
+            Ok(BoundaryState::JointAngles {
+                angles,
+                rates,
+                velocities: velocities(&spec.body_velocities, system, &place)?,
+            })
+        }
+    }
+}
+
+/// Velocities at the start of bodies that joints leave free to have them.
+fn velocities(
+    map: &Option<BTreeMap<String, BodyVelocitySpec>>,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BTreeMap<usize, [Vector3<f64>; 2]>, SceneError> {
+    let bodies = names(&system.bodies, |body| &body.name);
+    let (floating, turning) = Graph::new(system).movable(system);
+    let mut velocities = BTreeMap::new();
+    for (name, spec) in map.iter().flatten() {
+        let place = scope.key(name);
+        let body = place.find(name, &bodies, "the name of a body")?;
+        if !floating.contains(&body) && !turning.contains(&body) {
+            let found = format!("{name:?}, whose motion follows from its joints");
+            let free = floating
+                .iter()
+                .chain(&turning)
+                .map(|&b| format!("{:?}", bodies[b]));
+            let free: Vec<String> = free.collect();
+            let expected = match free.is_empty() {
+                true => "\"joint_rates\", as no body is free".to_owned(),
+                false => format!("one of {}, and \"joint_rates\" of others", free.join(", ")),
+            };
+            return Err(place.wrong(found, expected));
+        }
+        if spec.linear.is_some() && !floating.contains(&body) {
+            let found = format!("a linear velocity of {name:?}, which a spherical joint holds");
+            return Err(place
+                .key("linear")
+                .wrong(found, "its angular velocity alone"));
+        }
+        let linear = spec.linear.as_ref().map_or_else(Vector3::zeros, vector);
+        let angular = spec.angular.as_ref().map_or_else(Vector3::zeros, vector);
+        velocities.insert(body, [linear, angular]);
+    }
+    Ok(velocities)
+}
+
+/// A state at the end.
+pub(crate) fn goal_state(
+    spec: &GoalSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BoundaryState, SceneError> {
+    let key = scope.exactly_one([
+        (
+            "rest_at_voltages",
+            spec.rest_at_voltages.as_ref().map(|_| "rest_at_voltages"),
+        ),
+        (
+            "joint_angles",
+            spec.joint_angles.as_ref().map(|_| "joint_angles"),
+        ),
+        ("markers", spec.markers.as_ref().map(|_| "markers")),
+    ])?;
+    let outer = scope;
+    let scope = outer.key(key);
+    for (name, is_written) in [("hold", spec.hold.is_some()), ("rest", spec.rest.is_some())] {
+        if is_written && spec.markers.is_none() {
+            let found = format!("{name:?} beside {key:?}");
+            return Err(outer.key(name).wrong(found, "it beside \"markers\" only"));
+        }
+    }
+    if let Some(map) = &spec.rest_at_voltages {
+        return voltages(map, system, &scope).map(BoundaryState::RestAtVoltages);
+    }
+    if let Some(markers) = &spec.markers {
+        let held = |map| voltages(map, system, &outer.key("hold"));
+        return Ok(BoundaryState::Markers {
+            places: marker_goals(markers, system, &scope)?,
+            rest: spec.rest.unwrap_or_default().into(),
+            hold: spec.hold.as_ref().map(held).transpose()?,
+        });
+    }
+    let kinds = [Angle::kind(), Length::kind()];
+    let angles = by_joint(&spec.joint_angles, &kinds, system, &scope)?;
+    if angles.is_empty() {
+        return Err(scope.wrong("no joint", "the coordinate of a joint or more"));
+    }
+    Ok(BoundaryState::JointAngles {
+        angles,
+        rates: BTreeMap::new(),
+        velocities: BTreeMap::new(),
+    })
+}
+
+fn marker_goals(
+    markers: &BTreeMap<String, Point>,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BTreeMap<usize, Vector3<f64>>, SceneError> {
+    let all = names(&system.markers, |marker| &marker.name);
+    let mut goals = BTreeMap::new();
+    for (name, at) in markers {
+        let place = scope.key(name);
+        let index = place.find(name, &all, "the name of a marker")?;
+        let marker = &system.markers[index];
+        if marker.point.body.is_none() && marker.solid.is_none() {
+            let found = format!("{name:?}, which is fixed to the ground");
+            return Err(place.wrong(found, "a marker on a body or a block"));
+        }
+        goals.insert(index, vector(at));
+    }
+    if goals.is_empty() {
+        return Err(scope.wrong("no marker", "the position of a marker or more"));
+    }
+    Ok(goals)
+}
+
+/// Values by joint index, of the first kind for rotations and of the second for translations.
+fn by_joint<M: PhysicalQuantity>(
+    map: &Option<BTreeMap<String, Quantity<M>>>,
+    kinds: &[Kind; 2],
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BTreeMap<usize, f64>, SceneError> {
+    let mut values = BTreeMap::new();
+    for (name, quantity) in map.iter().flatten() {
+        let place = scope.key(name);
+        let index = joint_with_coordinate(name, system, &place)?;
+        let value = joint_value(quantity, kinds, index, system, &place)?;
+        values.insert(index, value);
+    }
+    Ok(values)
+}
+
+/// Index of a joint that has one coordinate.
+pub(crate) fn joint_with_coordinate(
+    name: &str,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<usize, SceneError> {
+    let joints = names(&system.joints, |joint| &joint.name);
+    let index = scope.find(name, &joints, "the name of a joint")?;
+    match system.joints[index].has_coordinate() {
+        true => Ok(index),
+        false => {
+            let found = format!("{name:?}, which is neither revolute nor prismatic, or locked");
+            Err(scope.wrong(found, "a joint with one coordinate"))
+        }
+    }
+}
+
+/// A value of a joint in the kind that the joint calls for.
+pub(crate) fn joint_value<M: PhysicalQuantity>(
+    quantity: &Quantity<M>,
+    [angular, linear]: &[Kind; 2],
+    joint: usize,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<f64, SceneError> {
+    let kind = match system.joints[joint].kind {
+        JointKind::Prismatic { .. } => linear,
+        _ => angular,
+    };
+    let value = quantity.value_as(kind);
+    value.map_err(|found| scope.wrong(found, kind.expected()))
+}

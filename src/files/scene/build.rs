@@ -1,0 +1,298 @@
+//! From a scene as written to the system it means: names resolved and everything checked.
+
+use std::cell::Cell;
+
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::scene::body::{body, unit_axis};
+use crate::files::scene::components::{spring, tendon};
+use crate::files::scene::electrodes::number_sources;
+use crate::files::scene::expand::expanded;
+use crate::files::scene::graph::check_connected;
+use crate::files::scene::marker::marker;
+use crate::files::scene::material::materials;
+use crate::files::scene::muscle::{MOST_ELEMENTS, ModelSpec, fidelity, muscle, positive_sides};
+use crate::files::scene::names::{find_body, find_material, names};
+use crate::files::scene::point::vector;
+use crate::files::scene::solid::solid;
+use crate::files::scene::spec::{AxisSpec, ChainSpec, JointSpec, SceneSpec};
+use crate::files::units::quantity::{Damping, RotationalDamping};
+use crate::model::components::Components;
+use crate::model::system::{Joint, JointKind, Material, System};
+
+/// Longest chain that the shorthand writes out.
+const LONGEST_CHAIN: usize = 1000;
+
+/// The system that a scene means.
+pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System, SceneError> {
+    let materials = materials(&scene.materials, &scope.key("materials"))?;
+    if let Some(chain) = &scene.chain {
+        check_chain(chain, &materials, &scope.key("chain"))?;
+    }
+    let bodies = NamedEntries::new(scope, "bodies", scene.bodies.len());
+    let joints = NamedEntries::new(scope, "joints", scene.joints.len());
+    let muscles = NamedEntries::new(scope, "muscles", scene.muscles.len());
+    let solids = NamedEntries::new(scope, "solids", scene.solids.len());
+    let markers = NamedEntries::new(scope, "markers", scene.markers.len());
+
+    let scene = expanded(scene.clone());
+    let body_names = names(&scene.bodies, |body| &body.name);
+    let muscle_names = names(&scene.muscles, |muscle| &muscle.name);
+    let solid_names = names(&scene.solids, |solid| &solid.name);
+    bodies.unique(&body_names, &["ground"])?;
+    joints.unique(&names(&scene.joints, |joint| &joint.name), &[])?;
+    muscles.unique(&muscle_names, &["solution", "time", "voltages", "hold"])?;
+    let springs = NamedEntries::new(scope, "springs", scene.springs.len());
+    let tendons = NamedEntries::new(scope, "tendons", scene.tendons.len());
+    let spring_names = names(&scene.springs, |spring| &spring.name);
+    let tendon_names = names(&scene.tendons, |tendon| &tendon.name);
+    springs.unique(&spring_names, &[])?;
+    tendons.unique(
+        &tendon_names,
+        &spring_names.iter().map(String::as_str).collect::<Vec<_>>(),
+    )?;
+    // Blocks and muscles share files and names of voltages.
+    let all = [muscle_names, solid_names.clone()].concat();
+    let place = |index: usize| scope.key("solids").index(index - scene.muscles.len());
+    scope.unique(&all, &[], |index| place(index).key("name"))?;
+    markers.unique(&names(&scene.markers, |marker| &marker.name), &[])?;
+
+    let elements = Elements::default();
+    let muscles = muscles.build(&scene.muscles, |spec, scope| {
+        let muscle = muscle(spec, &body_names, &materials, scope)?;
+        elements.add(muscle.fidelity.elements(), scope)?;
+        Ok(muscle)
+    })?;
+    let mut blocks = solids.build(&scene.solids, |spec, scope| {
+        let solid = solid(spec, &body_names, &materials, scope)?;
+        elements.add(solid.mesh.hexahedra.len(), scope)?;
+        Ok(solid)
+    })?;
+    number_sources(&mut blocks, muscles.len());
+    let system = System {
+        bodies: bodies.build(&scene.bodies, body)?,
+        joints: joints.build(&scene.joints, |spec, scope| joint(spec, &body_names, scope))?,
+        muscles,
+        markers: markers.build(&scene.markers, |spec, scope| {
+            marker(spec, &body_names, &blocks, scope)
+        })?,
+        solids: blocks,
+        gravity: scene
+            .gravity
+            .as_ref()
+            .map(vector)
+            .filter(|g| g.norm() > 0.0),
+        components: Components {
+            springs: springs.build(&scene.springs, |spec, scope| {
+                spring(spec, &body_names, scope)
+            })?,
+            tendons: tendons.build(&scene.tendons, |spec, scope| {
+                tendon(spec, &body_names, scope)
+            })?,
+            others: Vec::new(),
+        },
+        name: scene.name,
+    };
+    check_connected(&scene.bodies, &system.joints, |index| bodies.scope(index))?;
+    let sources = names(&system.sources(), |source| &source.name);
+    scope.unique(&sources, &[], |_| scope.key("solids"))?;
+    Ok(system)
+}
+
+/// Elements counted while a scene is built.
+#[derive(Default)]
+struct Elements(Cell<usize>);
+
+impl Elements {
+    /// Adds those of a muscle or block, unless they are too many in all.
+    fn add(&self, count: usize, scope: &Scope<'_>) -> Result<(), SceneError> {
+        let total = self.0.get() + count;
+        self.0.set(total);
+        if total <= MOST_ELEMENTS {
+            return Ok(());
+        }
+        let found = format!("{total} elements with those before");
+        Err(scope.wrong(
+            found,
+            format!("no more than {MOST_ELEMENTS} elements in all"),
+        ))
+    }
+}
+
+/// One list of the scene; entries beyond the written ones come from the chain.
+struct NamedEntries<'a> {
+    list: Scope<'a>,
+    chain: Scope<'a>,
+    written: usize,
+}
+
+impl<'a> NamedEntries<'a> {
+    fn new(scene: &Scope<'a>, list: &str, written: usize) -> Self {
+        Self {
+            list: scene.key(list),
+            chain: scene.key("chain"),
+            written,
+        }
+    }
+
+    fn scope(&self, index: usize) -> Scope<'a> {
+        match index {
+            index if index < self.written => self.list.index(index),
+            _ => self.chain.clone(),
+        }
+    }
+
+    fn unique(&self, names: &[String], reserved: &[&str]) -> Result<(), SceneError> {
+        self.list.unique(names, reserved, |index| match index {
+            index if index < self.written => self.scope(index).key("name"),
+            _ => self.scope(index),
+        })
+    }
+
+    fn build<S, T>(
+        &self,
+        specs: &[S],
+        build: impl Fn(&S, &Scope<'a>) -> Result<T, SceneError>,
+    ) -> Result<Vec<T>, SceneError> {
+        let build = |(index, spec)| build(spec, &self.scope(index));
+        specs.iter().enumerate().map(build).collect()
+    }
+}
+
+/// What a chain needs to be written out.
+fn check_chain(
+    chain: &ChainSpec,
+    materials: &[(String, Material)],
+    scope: &Scope<'_>,
+) -> Result<(), SceneError> {
+    if !(1..=LONGEST_CHAIN).contains(&chain.segments) {
+        let expected = format!("a whole number from 1 to {LONGEST_CHAIN}");
+        return Err(scope
+            .key("segments")
+            .wrong(chain.segments.to_string(), expected));
+    }
+    let length = scope.key("length").positive(&chain.length)?;
+    scope.key("radius").positive(&chain.radius)?;
+    scope.key("mass").positive(&chain.mass)?;
+    let reach = length * chain.segments as f64;
+    if !reach.is_finite() {
+        let found = chain.length.to_string();
+        return Err(scope.key("length").wrong(found, "a finite chain"));
+    }
+    let axis = unit_axis(&chain.axis, &scope.key("axis"))?;
+    let place = scope.key("first_joint_axis");
+    let joint_axis = unit_axis(&chain.first_joint_axis, &place)?;
+    if axis.dot(&joint_axis).abs() > 1e-9 {
+        let found = format!("{:?}", chain.first_joint_axis);
+        return Err(place.wrong(found, "an axis at right angles to \"axis\""));
+    }
+    if let Some(pair) = &chain.muscles {
+        let scope = scope.key("muscles");
+        find_material(&pair.material, materials, &scope.key("material"))?;
+        let model = ModelSpec {
+            model: pair.model,
+            elements: pair.elements,
+            layers: pair.layers,
+            element: pair.element,
+            material: &pair.material,
+        };
+        fidelity(&model, materials, &scope)?;
+        let arm = scope.key("arm").positive(&pair.arm)?;
+        let rest_length = scope.key("rest_length").positive(&pair.rest_length)?;
+        if !(reach + arm + rest_length).is_finite() {
+            let found = format!("an arm of {} at a length of {}", pair.arm, pair.rest_length);
+            return Err(scope.wrong(found, "muscles in finite places"));
+        }
+        positive_sides(&pair.cross_section, &scope)?;
+        scope
+            .key("layer_thickness")
+            .positive(&pair.layer_thickness)?;
+    }
+    Ok(())
+}
+
+fn joint(spec: &JointSpec, bodies: &[String], scope: &Scope<'_>) -> Result<Joint, SceneError> {
+    let kind = scope.exactly_one([
+        (
+            "revolute",
+            spec.revolute.as_ref().map(|_| JointKey::Revolute),
+        ),
+        (
+            "prismatic",
+            spec.prismatic.as_ref().map(|_| JointKey::Prismatic),
+        ),
+        (
+            "spherical",
+            spec.spherical.as_ref().map(|_| JointKey::Spherical),
+        ),
+        (
+            "floating",
+            spec.floating.as_ref().map(|_| JointKey::Floating),
+        ),
+        ("fixed", spec.fixed.as_ref().map(|_| JointKey::Fixed)),
+    ])?;
+    let axis = |key: &str, spec: &Option<AxisSpec>| {
+        let axis = spec.as_ref().map_or([0.0; 3], |spec| spec.axis);
+        unit_axis(&axis, &scope.key(key).key("axis"))
+    };
+    let place = scope.key("damping");
+    let (kind, damping_kind) = match kind {
+        JointKey::Revolute => {
+            let axis = axis("revolute", &spec.revolute)?;
+            (
+                JointKind::Revolute { axis },
+                Some(RotationalDamping::kind()),
+            )
+        }
+        JointKey::Prismatic => {
+            let axis = axis("prismatic", &spec.prismatic)?;
+            (JointKind::Prismatic { axis }, Some(Damping::kind()))
+        }
+        JointKey::Spherical => (JointKind::Spherical, None),
+        JointKey::Floating => (JointKind::Floating, None),
+        JointKey::Fixed => (JointKind::Fixed, None),
+    };
+    let damping = match (&spec.damping, damping_kind) {
+        (None, _) => None,
+        (Some(damping), None) => {
+            let expected = "no damping, as the joint is neither revolute nor prismatic";
+            return Err(place.wrong(damping.to_string(), expected));
+        }
+        (Some(damping), Some(kind)) => {
+            let value = damping.value_as(&kind);
+            let value = value.map_err(|found| place.wrong(found, kind.expected()))?;
+            if value < 0.0 {
+                let expected = format!("zero or a positive value: {}", kind.expected());
+                return Err(place.wrong(damping.to_string(), expected));
+            }
+            Some(value).filter(|&value| value > 0.0)
+        }
+    };
+    let (kind, damping) = match spec.locked {
+        true => (JointKind::Fixed, None),
+        false => (kind, damping),
+    };
+    let parent = find_body(&spec.parent, bodies, &scope.key("parent"))?;
+    let place = scope.key("child");
+    let child = place.find(&spec.child, bodies, "the name of a body")?;
+    if parent == Some(child) {
+        let found = format!("{:?}, which is the parent too", spec.child);
+        return Err(place.wrong(found, "another body than the parent"));
+    }
+    Ok(Joint {
+        name: spec.name.clone(),
+        kind,
+        parent,
+        child,
+        at: vector(&spec.at),
+        damping,
+    })
+}
+
+enum JointKey {
+    Revolute,
+    Prismatic,
+    Spherical,
+    Floating,
+    Fixed,
+}

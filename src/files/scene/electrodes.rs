@@ -1,0 +1,175 @@
+//! From electrodes as written to the nodes of one potential each.
+
+use std::collections::BTreeMap;
+
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::scene::mesh::Meshed;
+use crate::files::scene::nodes::{AXES, extent, in_plane, nodes, place, planes_near};
+use crate::files::scene::spec_solids::{PotentialSpec, SolidSpec, StackSpec};
+use crate::mesh::Mesh;
+use crate::model::system::{Electrode, Potential, Solid};
+
+/// A voltage that has no number yet, see [`number_sources`].
+const DRIVEN: Potential = Potential::Driven {
+    source: usize::MAX,
+    factor: 1.0,
+};
+
+/// The electrodes of a block, connected ones as one.
+pub(crate) fn electrodes(
+    spec: &SolidSpec,
+    meshed: &Meshed,
+    scope: &Scope<'_>,
+) -> Result<Vec<Electrode>, SceneError> {
+    let mut placed = Placed {
+        mesh: &meshed.mesh,
+        electrodes: Vec::new(),
+        owners: BTreeMap::new(),
+    };
+    for (index, electrode) in spec.electrodes.iter().enumerate() {
+        let scope = scope.key("electrodes").index(index);
+        let place = (
+            electrode.face.as_ref(),
+            electrode.plane.as_ref(),
+            electrode.cuboid.as_ref(),
+        );
+        let owner = format!("electrode {:?}", electrode.name);
+        let nodes = nodes(&owner, place, &meshed.mesh, &scope)?;
+        let potential = match &electrode.potential {
+            PotentialSpec::Grounded => Potential::Given(0.0),
+            PotentialSpec::Floating => Potential::Floating,
+            PotentialSpec::Driven => DRIVEN,
+            PotentialSpec::Given(voltage) => Potential::Given(voltage.value()),
+        };
+        placed.add(&electrode.name, &nodes, potential, &scope)?;
+    }
+    if let Some(stack) = &spec.stack {
+        placed.add_stack(stack, meshed, &scope.key("stack"))?;
+    }
+    let is_floating = |electrode: &Electrode| electrode.potential == Potential::Floating;
+    if !placed.electrodes.is_empty() && placed.electrodes.iter().all(is_floating) {
+        let expected = "one that is grounded, driven or given, or more";
+        let place = scope.key("electrodes");
+        return Err(place.wrong("floating electrodes only", expected));
+    }
+    Ok(placed.electrodes)
+}
+
+/// Gives the driven electrodes their sources, in the order of the blocks; the first one is `first`.
+pub(crate) fn number_sources(solids: &mut [Solid], first: usize) {
+    let mut next = first;
+    for electrode in solids.iter_mut().flat_map(|solid| &mut solid.electrodes) {
+        if let Potential::Driven { source, .. } = &mut electrode.potential {
+            *source = next;
+            next += 1;
+        }
+    }
+}
+
+/// Electrodes with the owner of each node.
+struct Placed<'a> {
+    mesh: &'a Mesh,
+    electrodes: Vec<Electrode>,
+    owners: BTreeMap<usize, usize>,
+}
+
+impl Placed<'_> {
+    /// Adds an electrode, or its nodes to the driven one of the same name.
+    fn add(
+        &mut self,
+        name: &str,
+        nodes: &[usize],
+        potential: Potential,
+        scope: &Scope<'_>,
+    ) -> Result<(), SceneError> {
+        if name.is_empty() {
+            return Err(scope.key("name").wrong("\"\"", "a name"));
+        }
+        let known = self.electrodes.iter().position(|other| other.name == name);
+        let index = match known {
+            Some(known) if potential == DRIVEN && self.electrodes[known].potential == DRIVEN => {
+                known
+            }
+            Some(_) => {
+                let found = format!("{name:?} a second time");
+                let expected = "a name that is not taken: only driven electrodes share one";
+                return Err(scope.key("name").wrong(found, expected));
+            }
+            None => {
+                self.electrodes.push(Electrode {
+                    name: name.to_owned(),
+                    nodes: Vec::new(),
+                    potential,
+                });
+                self.electrodes.len() - 1
+            }
+        };
+        for &node in nodes {
+            match self.owners.insert(node, index) {
+                None => self.electrodes[index].nodes.push(node),
+                Some(owner) if owner == index => {}
+                Some(owner) => {
+                    let other = &self.electrodes[owner].name;
+                    let at = place(&self.mesh.nodes[node]);
+                    let found = format!(
+                        "electrode {name:?}, to whose node at {at} electrode {other:?} lays claim too"
+                    );
+                    return Err(scope.wrong(found, "electrodes that do not meet"));
+                }
+            }
+        }
+        self.electrodes[index].nodes.sort_unstable();
+        Ok(())
+    }
+
+    fn add_stack(
+        &mut self,
+        stack: &StackSpec,
+        meshed: &Meshed,
+        scope: &Scope<'_>,
+    ) -> Result<(), SceneError> {
+        let axis = stack.axis.index();
+        let boundaries = boundaries(stack, meshed, &scope.key("layers"))?;
+        let mut parts = [Vec::new(), Vec::new()];
+        for (layer, at) in boundaries.into_iter().enumerate() {
+            let nodes = in_plane(self.mesh, axis, at);
+            if nodes.is_empty() {
+                let found = format!(
+                    "layers of the electrode {:?} of which one begins at {} = {at} mm, where no node is",
+                    stack.name, AXES[axis]
+                );
+                return Err(scope.wrong(found, planes_near(self.mesh, axis, at)));
+            }
+            parts[layer % 2].extend(nodes);
+        }
+        let [grounded, driven] = parts;
+        let ground = format!("{}_ground", stack.name);
+        self.add(&ground, &grounded, Potential::Given(0.0), scope)?;
+        self.add(&stack.name, &driven, DRIVEN, scope)
+    }
+}
+
+/// The planes between layers and at the ends, in mm.
+fn boundaries(
+    stack: &StackSpec,
+    meshed: &Meshed,
+    scope: &Scope<'_>,
+) -> Result<Vec<f64>, SceneError> {
+    let axis = stack.axis.index();
+    let Some(planes) = &meshed.planes else {
+        if stack.layers == 0 {
+            return Err(scope.wrong("0", "1 layer or more"));
+        }
+        let [low, high] = extent(&meshed.mesh).map(|corner| corner[axis]);
+        let place = |layer: usize| low + (high - low) * layer as f64 / stack.layers as f64;
+        return Ok((0..=stack.layers).map(place).collect());
+    };
+    let elements = planes[axis].len() - 1;
+    if stack.layers == 0 || !elements.is_multiple_of(stack.layers) {
+        let expected = format!("a divisor of the {elements} elements along {}", AXES[axis]);
+        return Err(scope.wrong(stack.layers.to_string(), expected));
+    }
+    let stride = elements / stack.layers;
+    Ok(planes[axis].iter().step_by(stride).copied().collect())
+}

@@ -1,0 +1,147 @@
+//! The chain shorthand, written out as bodies, joints, muscles and a marker.
+
+use nalgebra::Vector3;
+
+use crate::files::scene::body::direction;
+use crate::files::scene::point::{Point, PointSpec};
+use crate::files::scene::spec::{
+    AxisSpec, BodySpec, ChainSpec, CylinderSpec, JointSpec, MarkerSpec, MuscleSpec, SceneSpec,
+};
+use crate::files::units::quantity::Quantity;
+
+/// The same scene without shorthand; what the chain stands for comes after what is written.
+///
+/// The chain is in order: positive lengths, perpendicular axes.
+pub(crate) fn expanded(mut scene: SceneSpec) -> SceneSpec {
+    if let Some(chain) = scene.chain.take() {
+        for number in 1..=chain.segments {
+            let link = Link::new(&chain, number);
+            scene.bodies.push(link.body(&chain));
+            scene.joints.push(link.joint());
+            scene.muscles.extend(link.muscles(&chain));
+        }
+        scene.markers.extend(tip(&chain));
+    }
+    scene
+}
+
+/// One joint and the segment behind it.
+struct Link {
+    number: usize,
+    /// Unit vector along the chain.
+    axis: Vector3<f64>,
+    /// Unit vector of the joint axis.
+    joint_axis: Vector3<f64>,
+    /// Unit vector towards the first muscle.
+    arm_axis: Vector3<f64>,
+    /// Place of the joint in mm.
+    at: Vector3<f64>,
+}
+
+impl Link {
+    fn new(chain: &ChainSpec, number: usize) -> Self {
+        let axis = direction(&chain.axis).unwrap_or_default();
+        let first = direction(&chain.first_joint_axis).unwrap_or_default();
+        let second = axis.cross(&first);
+        let odd = number % 2 == 1;
+        Self {
+            number,
+            axis,
+            joint_axis: if odd { first } else { second },
+            arm_axis: if odd { second } else { first },
+            at: axis * ((number - 1) as f64 * chain.length.value()),
+        }
+    }
+
+    fn segment(&self) -> String {
+        format!("segment{}", self.number)
+    }
+
+    fn parent(&self) -> String {
+        match self.number {
+            1 => "ground".to_owned(),
+            number => format!("segment{}", number - 1),
+        }
+    }
+
+    fn body(&self, chain: &ChainSpec) -> BodySpec {
+        let centre = self.axis * ((self.number as f64 - 0.5) * chain.length.value());
+        BodySpec {
+            name: self.segment(),
+            mass: chain.mass.clone(),
+            cylinder: Some(CylinderSpec {
+                length: chain.length.clone(),
+                radius: chain.radius.clone(),
+                axis: chain.axis,
+            }),
+            cuboid: None,
+            sphere: None,
+            inertia: None,
+            position: point(&centre),
+            free: false,
+        }
+    }
+
+    fn joint(&self) -> JointSpec {
+        // Adding zero turns −0 into 0.
+        let axis = self.joint_axis.map(|entry| entry + 0.0).into();
+        JointSpec {
+            name: format!("joint{}", self.number),
+            revolute: Some(AxisSpec { axis }),
+            prismatic: None,
+            spherical: None,
+            floating: None,
+            fixed: None,
+            parent: self.parent(),
+            child: self.segment(),
+            at: point(&self.at),
+            locked: false,
+            damping: None,
+        }
+    }
+
+    fn muscles(&self, chain: &ChainSpec) -> Vec<MuscleSpec> {
+        let Some(pair) = &chain.muscles else {
+            return Vec::new();
+        };
+        let half = self.axis * (0.5 * pair.rest_length.value());
+        let muscle = |(place, side): (usize, f64)| {
+            let middle = self.at + self.arm_axis * (side * pair.arm.value());
+            MuscleSpec {
+                name: format!("muscle{}", 2 * self.number - 1 + place),
+                model: pair.model,
+                elements: pair.elements,
+                layers: pair.layers,
+                element: pair.element,
+                material: pair.material.clone(),
+                cross_section: pair.cross_section.clone(),
+                layer_thickness: pair.layer_thickness.clone(),
+                from: PointSpec {
+                    body: self.parent(),
+                    at: point(&(middle - half)),
+                },
+                to: PointSpec {
+                    body: self.segment(),
+                    at: point(&(middle + half)),
+                },
+                section_inertia: false,
+            }
+        };
+        [1.0, -1.0].into_iter().enumerate().map(muscle).collect()
+    }
+}
+
+fn tip(chain: &ChainSpec) -> Option<MarkerSpec> {
+    let link = Link::new(chain, chain.segments);
+    let end = link.axis * (chain.segments as f64 * chain.length.value());
+    Some(MarkerSpec {
+        name: chain.tip_marker.clone()?,
+        body: Some(link.segment()),
+        solid: None,
+        at: point(&end),
+    })
+}
+
+fn point(place: &Vector3<f64>) -> Point {
+    [place.x, place.y, place.z].map(Quantity::millimetres)
+}

@@ -1,0 +1,64 @@
+//! The graph of bodies and joints: what hangs together, whether it is a tree, and how many degrees of freedom a tree has.
+
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::scene::spec::BodySpec;
+use crate::model::system::Joint;
+
+/// Every body hangs on the ground or together with a free one, and no free one hangs on the ground.
+pub(crate) fn check_connected<'a>(
+    bodies: &[BodySpec],
+    joints: &[Joint],
+    scope: impl Fn(usize) -> Scope<'a>,
+) -> Result<(), SceneError> {
+    let parts = parts(bodies.len(), joints);
+    let ground = parts[bodies.len()];
+    for (index, body) in bodies.iter().enumerate() {
+        let grounded = parts[index] == ground;
+        if body.free && grounded {
+            let found = format!("{:?} free, though joints lead to the ground", body.name);
+            return Err(scope(index).wrong(found, "no \"free\" here"));
+        }
+        let mut part = bodies
+            .iter()
+            .zip(&parts)
+            .filter(|(_, part)| **part == parts[index]);
+        if !grounded && !part.any(|(body, _)| body.free) {
+            let found = format!(
+                "{:?}, which no chain of joints connects to the ground",
+                body.name
+            );
+            let expected = "a joint that leads to the ground, or \"free\": true";
+            return Err(scope(index).wrong(found, expected));
+        }
+    }
+    Ok(())
+}
+
+/// Degrees of freedom where the joints form a tree, a part without ground counting 6; `None` where they close a loop.
+pub(crate) fn tree_freedoms(bodies: usize, joints: &[Joint]) -> Option<usize> {
+    let mut roots = parts(bodies, joints);
+    roots.sort_unstable();
+    roots.dedup();
+    let free_parts = roots.len() - 1;
+    let coordinates = joints.iter().map(|joint| joint.kind.freedoms());
+    let is_tree = joints.len() + free_parts == bodies;
+    is_tree.then(|| coordinates.sum::<usize>() + 6 * free_parts)
+}
+
+/// The part of each body, and of the ground in the last entry, as the smallest number in it.
+fn parts(bodies: usize, joints: &[Joint]) -> Vec<usize> {
+    let mut parts: Vec<usize> = (0..=bodies).collect();
+    loop {
+        let before = parts.clone();
+        for joint in joints {
+            let parent = joint.parent.unwrap_or(bodies);
+            let least = parts[parent].min(parts[joint.child]);
+            parts[parent] = least;
+            parts[joint.child] = least;
+        }
+        if parts == before {
+            return parts;
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! From materials as written to their constants.
+
+use std::collections::BTreeMap;
+
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::scene::spec::{Dielectric, MaterialSpec};
+use crate::files::units::quantity::Quantity;
+use crate::model::system::{ElectricConstants, Material, VACUUM_PERMITTIVITY};
+
+/// All materials with their names.
+pub(crate) fn materials(
+    specs: &BTreeMap<String, MaterialSpec>,
+    scope: &Scope<'_>,
+) -> Result<Vec<(String, Material)>, SceneError> {
+    let material = |(name, spec): (&String, &MaterialSpec)| {
+        let material = material(spec, &scope.key(name))?;
+        Ok((name.clone(), material))
+    };
+    specs.iter().map(material).collect()
+}
+
+fn material(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Material, SceneError> {
+    let shear_modulus = scope.key("shear_modulus").positive(&spec.shear_modulus)?;
+    Ok(Material {
+        density: scope
+            .key("density")
+            .absent_or_positive(spec.density.as_ref())?,
+        shear_modulus,
+        lame_lambda: lame_lambda(spec, shear_modulus, scope)?,
+        electric: electric(spec, scope)?,
+        viscosity: scope
+            .key("viscosity")
+            .absent_or_positive(spec.viscosity.as_ref())?,
+    })
+}
+
+/// λ, or 2 μ ν/(1 − 2 ν), in MPa.
+fn lame_lambda(
+    spec: &MaterialSpec,
+    shear_modulus: f64,
+    scope: &Scope<'_>,
+) -> Result<Option<f64>, SceneError> {
+    match (&spec.lame_lambda, spec.poisson_ratio) {
+        (None, None) => Ok(None),
+        (Some(lambda), None) => {
+            // The bulk modulus λ + 2 μ/3 is positive.
+            if lambda.value() > -2.0 / 3.0 * shear_modulus {
+                return Ok(Some(lambda.value()));
+            }
+            let expected = "a stress larger than -2/3 of the shear modulus";
+            Err(scope.key("lame_lambda").wrong(lambda.to_string(), expected))
+        }
+        (None, Some(ratio)) if ratio > -1.0 && ratio < 0.5 => {
+            Ok(Some(2.0 * shear_modulus * ratio / (1.0 - 2.0 * ratio)))
+        }
+        (None, Some(ratio)) => {
+            let expected = "a number larger than -1 and smaller than 0.5";
+            Err(scope
+                .key("poisson_ratio")
+                .wrong(ratio.to_string(), expected))
+        }
+        (Some(_), Some(_)) => {
+            let found = "\"lame_lambda\" and \"poisson_ratio\"";
+            Err(scope.wrong(found, "one of the two"))
+        }
+    }
+}
+
+/// Constants of the electric energy, where the material has one.
+fn electric(
+    spec: &MaterialSpec,
+    scope: &Scope<'_>,
+) -> Result<Option<ElectricConstants>, SceneError> {
+    let ratio = spec.relative_permittivity;
+    if let (None, Some(_)) = (ratio, spec.dielectric) {
+        let expected = "\"relative_permittivity\" beside it";
+        return Err(scope
+            .key("dielectric")
+            .wrong("\"dielectric\" alone", expected));
+    }
+    let (c1, c2) = (spec.c1.as_ref(), spec.c2.as_ref());
+    match (ratio, c1, c2) {
+        (None, None, None) => Ok(None),
+        (None, Some(c1), Some(c2)) => Ok(Some(ElectricConstants {
+            c1: c1.value(),
+            c2: c2.value(),
+            permittivity: VACUUM_PERMITTIVITY,
+        })),
+        (Some(ratio), None, None) if ratio >= 1.0 => {
+            Ok(Some(match spec.dielectric.unwrap_or_default() {
+                Dielectric::FirstOrder => ElectricConstants {
+                    c1: -(ratio - 1.0) * VACUUM_PERMITTIVITY,
+                    c2: (ratio - 1.0) * VACUUM_PERMITTIVITY / 2.0,
+                    permittivity: VACUUM_PERMITTIVITY,
+                },
+                Dielectric::Ideal => ElectricConstants {
+                    c1: 0.0,
+                    c2: 0.0,
+                    permittivity: ratio * VACUUM_PERMITTIVITY,
+                },
+            }))
+        }
+        (Some(ratio), None, None) => {
+            let place = scope.key("relative_permittivity");
+            Err(place.wrong(ratio.to_string(), "a number that is 1 or more"))
+        }
+        _ => {
+            let there = |quantity: Option<&Quantity<_>>, key| quantity.map(|_| key);
+            let found: Vec<&str> = [
+                ratio.map(|_| "\"relative_permittivity\""),
+                there(c1, "\"c1\""),
+                there(c2, "\"c2\""),
+            ]
+            .into_iter()
+            .flatten()
+            .collect();
+            let expected = "either \"relative_permittivity\" or both \"c1\" and \"c2\"";
+            Err(scope.wrong(found.join(" and "), expected))
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! From a box or a Gmsh file as written to a mesh.
+
+use nalgebra::Vector3;
+
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::scene::muscle::{MOST_ELEMENTS, check_elements};
+use crate::files::scene::point::vector;
+use crate::files::scene::spec_solids::{DivisionSpec, GridSpec, LayerSpec, SolidSpec};
+use crate::mesh::error::MeshError;
+use crate::mesh::grid::Grid;
+use crate::mesh::{Mesh, gmsh};
+
+/// Unit of a Gmsh file in mm where none is written: the metre.
+const DEFAULT_UNIT: f64 = 1e3;
+
+/// A mesh, and for boxes the node planes along x, y, z in mm.
+pub(crate) struct Meshed {
+    pub(crate) mesh: Mesh,
+    pub(crate) planes: Option<[Vec<f64>; 3]>,
+}
+
+/// The mesh of a block, checked.
+pub(crate) fn meshed(spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed, SceneError> {
+    scope.exactly_one([
+        ("box", spec.cuboid.as_ref().map(|_| ())),
+        ("mesh", spec.mesh.as_ref().map(|_| ())),
+    ])?;
+    if let (Some(unit), None) = (&spec.unit, &spec.mesh) {
+        let expected = "no such key: the lengths of a box have units of their own";
+        return Err(scope.key("unit").wrong(unit.to_string(), expected));
+    }
+    let (meshed, place) = match (&spec.cuboid, &spec.mesh) {
+        (Some(cuboid), _) => (boxed(cuboid, &scope.key("box"))?, scope.key("box")),
+        (None, Some(path)) => (from_file(path, spec, scope)?, scope.key("mesh")),
+        (None, None) => return Err(scope.wrong("no mesh", "\"box\" or \"mesh\"")),
+    };
+    let checked = meshed.mesh.check();
+    checked.map_err(|error| mesh_mistake(&error, &place))?;
+    Ok(meshed)
+}
+
+fn from_file(path: &str, spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed, SceneError> {
+    let unit = match &spec.unit {
+        Some(unit) => scope.key("unit").positive(unit)?,
+        None => DEFAULT_UNIT,
+    };
+    let scope = scope.key("mesh");
+    let file = scope.document.beside(path);
+    if !file.is_file() {
+        let found = format!("{path:?}, where there is no file");
+        return Err(scope.wrong(found, "the path of a Gmsh file"));
+    }
+    let mesh = gmsh::read(&file, unit).map_err(|error| mesh_mistake(&error, &scope))?;
+    Ok(Meshed { mesh, planes: None })
+}
+
+/// What is wrong with a mesh, at the place in the scene that asks for it.
+fn mesh_mistake(error: &MeshError, scope: &Scope<'_>) -> SceneError {
+    match error {
+        MeshError::Unreadable { file, cause } => {
+            let found = format!("{file:?}, which cannot be read ({cause})");
+            scope.wrong(found, "a readable Gmsh file")
+        }
+        MeshError::Line {
+            file,
+            line,
+            found,
+            expected,
+        } => scope.wrong(format!("{found} in {file}:{line}"), expected),
+        MeshError::Element {
+            element,
+            found,
+            expected,
+            ..
+        } => scope.wrong(format!("{found} in {element}"), expected),
+        MeshError::Layers {
+            found, expected, ..
+        }
+        | MeshError::Whole { found, expected } => scope.wrong(found, expected),
+    }
+}
+
+fn boxed(spec: &GridSpec, scope: &Scope<'_>) -> Result<Meshed, SceneError> {
+    let mut size = Vector3::zeros();
+    for (axis, length) in spec.size.iter().enumerate() {
+        size[axis] = scope.key("size").index(axis).positive(length)?;
+    }
+    let corner = spec.corner.as_ref().map_or_else(Vector3::zeros, vector);
+    let scope = scope.key("elements");
+    let mut layers = [Vec::new(), Vec::new(), Vec::new()];
+    for (axis, division) in spec.elements.iter().enumerate() {
+        layers[axis] = match division {
+            DivisionSpec::Equal(elements) => vec![(size[axis], *elements)],
+            DivisionSpec::Layers(written) => layered(written, &scope.index(axis))?,
+        };
+    }
+    let count = |layers: &Vec<(f64, usize)>| layers.iter().map(|layer| layer.1).sum();
+    check_elements(layers.each_ref().map(count), &scope)?;
+    let grid = Grid::layers(corner, size, layers.clone()).map_err(|error| {
+        let axis = match error {
+            MeshError::Layers { axis, .. } => "xyz".find(axis).unwrap_or(0),
+            _ => 0,
+        };
+        mesh_mistake(&error, &scope.index(axis))
+    })?;
+    let mut mesh = grid.mesh();
+    name_regions(&mut mesh, spec, &grid.planes, &scope)?;
+    Ok(Meshed {
+        mesh,
+        planes: Some(grid.planes),
+    })
+}
+
+/// Thickness in mm and elements of the layers along one direction.
+fn layered(layers: &[LayerSpec], scope: &Scope<'_>) -> Result<Vec<(f64, usize)>, SceneError> {
+    let layer = |(index, layer): (usize, &LayerSpec)| {
+        let scope = scope.index(index);
+        if layer.elements == 0 || layer.elements > MOST_ELEMENTS {
+            let found = layer.elements.to_string();
+            return Err(scope.key("elements").wrong(found, "1 element or more"));
+        }
+        let thickness = scope.key("thickness").positive(&layer.thickness)?;
+        Ok((thickness, layer.elements))
+    };
+    layers.iter().enumerate().map(layer).collect()
+}
+
+/// Gives each element the region of its layer, in the one direction that names regions.
+fn name_regions(
+    mesh: &mut Mesh,
+    spec: &GridSpec,
+    planes: &[Vec<f64>; 3],
+    scope: &Scope<'_>,
+) -> Result<(), SceneError> {
+    let mut named = None;
+    for (axis, division) in spec.elements.iter().enumerate() {
+        let DivisionSpec::Layers(layers) = division else {
+            continue;
+        };
+        let Some(first) = layers.iter().position(|layer| layer.region.is_some()) else {
+            continue;
+        };
+        if named.replace((axis, layers)).is_some() {
+            let place = scope.index(axis).index(first).key("region");
+            let found = "a region in a second direction";
+            return Err(place.wrong(found, "regions along one direction only"));
+        }
+    }
+    let Some((axis, layers)) = named else {
+        return Ok(());
+    };
+    let mut names = Vec::new();
+    let mut of_element = Vec::new();
+    for (index, layer) in layers.iter().enumerate() {
+        let Some(name) = &layer.region else {
+            let place = scope.index(axis).index(index);
+            return Err(place.wrong("a layer without a region", "a region for each layer"));
+        };
+        let region = names.iter().position(|other| other == name);
+        let region = region.unwrap_or_else(|| {
+            names.push(name.clone());
+            names.len() - 1
+        });
+        of_element.extend(std::iter::repeat_n(region, layer.elements));
+    }
+    // Elements count along x first, then y, then z.
+    let elements = |axis: usize| planes[axis].len() - 1;
+    let stride: usize = (0..axis).map(elements).product();
+    for (element, region) in mesh.regions.iter_mut().enumerate() {
+        *region = of_element[element / stride % elements(axis)];
+    }
+    mesh.region_names = names;
+    Ok(())
+}

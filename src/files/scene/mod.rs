@@ -1,0 +1,23 @@
+//! The scene file: what is written (`spec`, `spec_solids`, `point`) and how it becomes a [`System`](crate::model::System).
+//!
+//! - `build`: the scene; `body`, `material`, `muscle`, `marker`: its parts; `components`: kinds of which each has one file for both.
+//! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `graph`: how joints hang together; `names`: what names mean.
+//! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
+
+pub(crate) mod body;
+pub(crate) mod build;
+pub mod components;
+pub(crate) mod electrodes;
+pub(crate) mod expand;
+pub(crate) mod graph;
+pub(crate) mod marker;
+pub(crate) mod material;
+pub(crate) mod mesh;
+pub(crate) mod muscle;
+pub(crate) mod names;
+pub(crate) mod nodes;
+pub mod point;
+pub(crate) mod solid;
+pub mod spec;
+pub mod spec_solids;
+pub(crate) mod trunk;

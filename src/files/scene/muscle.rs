@@ -1,0 +1,151 @@
+//! From a muscle as written to its span, section and model.
+
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::scene::names::{attachment, find_compressible, find_material};
+use crate::files::scene::point::PointSpec;
+use crate::files::scene::spec::{MuscleModel, MuscleSpec};
+use crate::files::scene::spec_solids::ElementSpec;
+use crate::files::units::quantity::{Length, Quantity};
+use crate::model::system::{Discretisation, ElementKind, Fidelity, Material, Muscle};
+
+/// Spans shorter than this in mm have no direction.
+const SHORTEST_SPAN: f64 = 1e-9;
+
+/// Most elements of one mesh; a slip of the pen asks for more.
+pub(crate) const MOST_ELEMENTS: usize = 1_000_000;
+
+/// The muscle that is written.
+pub(crate) fn muscle(
+    spec: &MuscleSpec,
+    bodies: &[String],
+    materials: &[(String, Material)],
+    scope: &Scope<'_>,
+) -> Result<Muscle, SceneError> {
+    let material = find_material(&spec.material, materials, &scope.key("material"))?;
+    let model = ModelSpec {
+        model: spec.model,
+        elements: spec.elements,
+        layers: spec.layers,
+        element: spec.element,
+        material: &spec.material,
+    };
+    let fidelity = fidelity(&model, materials, scope)?;
+    if spec.section_inertia && fidelity != Fidelity::Lumped {
+        let found = "\"section_inertia\" of a muscle of finite elements";
+        let expected = "no such key, as all inertia of finite elements counts";
+        return Err(scope.key("section_inertia").wrong(found, expected));
+    }
+    let end =
+        |key: &str, point: &PointSpec| attachment(&point.body, &point.at, bodies, &scope.key(key));
+    let (from, to) = (end("from", &spec.from)?, end("to", &spec.to)?);
+    let length = (to.at - from.at).norm();
+    if length.is_nan() || length < SHORTEST_SPAN {
+        let found = "the place where the muscle starts, which makes its length zero";
+        return Err(scope
+            .key("to")
+            .key("at")
+            .wrong(found, "another place than \"from\""));
+    }
+    if from.body == to.body {
+        let found = format!("{:?}, where the muscle starts too", spec.to.body);
+        return Err(scope
+            .key("to")
+            .key("body")
+            .wrong(found, "another body than \"from\""));
+    }
+    Ok(Muscle {
+        name: spec.name.clone(),
+        from,
+        to,
+        cross_section: positive_sides(&spec.cross_section, scope)?,
+        layer_thickness: scope
+            .key("layer_thickness")
+            .positive(&spec.layer_thickness)?,
+        material,
+        section_inertia: spec.section_inertia,
+        fidelity,
+    })
+}
+
+/// The keys of a muscle or of a pair that say how it is modelled.
+pub(crate) struct ModelSpec<'a> {
+    pub(crate) model: MuscleModel,
+    pub(crate) elements: Option<[usize; 3]>,
+    pub(crate) layers: Option<usize>,
+    pub(crate) element: Option<ElementSpec>,
+    pub(crate) material: &'a str,
+}
+
+/// How a muscle is modelled; the keys stand in `scope`.
+pub(crate) fn fidelity(
+    spec: &ModelSpec<'_>,
+    materials: &[(String, Material)],
+    scope: &Scope<'_>,
+) -> Result<Fidelity, SceneError> {
+    if spec.model == MuscleModel::Lumped {
+        let keys = [
+            ("elements", spec.elements.is_some()),
+            ("layers", spec.layers.is_some()),
+            ("element", spec.element.is_some()),
+        ];
+        let Some((key, _)) = keys.into_iter().find(|(_, there)| *there) else {
+            return Ok(Fidelity::Lumped);
+        };
+        let found = format!("{key:?} of a lumped muscle");
+        let expected = "no such key, or \"model\": \"finite_elements\"";
+        return Err(scope.key(key).wrong(found, expected));
+    }
+    find_compressible(spec.material, materials, &scope.key("material"))?;
+    let Some(elements) = spec.elements else {
+        let expected = "the key \"elements\", such as [2, 2, 8]: across, across, along";
+        return Err(scope.wrong("finite elements without a number", expected));
+    };
+    check_elements(elements, &scope.key("elements"))?;
+    let layers = spec.layers.unwrap_or(elements[2]);
+    if layers == 0 || !elements[2].is_multiple_of(layers) {
+        let expected = format!("a divisor of the {} elements along the span", elements[2]);
+        return Err(scope.key("layers").wrong(layers.to_string(), expected));
+    }
+    Ok(Fidelity::FiniteElements(Discretisation {
+        elements,
+        layers,
+        element: element_kind(spec.element),
+    }))
+}
+
+/// One element or more in each direction, and not too many.
+pub(crate) fn check_elements(elements: [usize; 3], scope: &Scope<'_>) -> Result<(), SceneError> {
+    if let Some(axis) = elements.iter().position(|&count| count == 0) {
+        return Err(scope.index(axis).wrong("0", "1 element or more"));
+    }
+    let total = elements
+        .iter()
+        .try_fold(1_usize, |total, &count| total.checked_mul(count));
+    if total.is_none_or(|total| total > MOST_ELEMENTS) {
+        let expected = format!("no more than {MOST_ELEMENTS} elements in all");
+        return Err(scope.wrong(format!("{elements:?}"), expected));
+    }
+    Ok(())
+}
+
+/// Which hexahedron; trilinear where not written.
+pub(crate) fn element_kind(spec: Option<ElementSpec>) -> ElementKind {
+    match spec.unwrap_or_default() {
+        ElementSpec::Hex8 => ElementKind::Hex8,
+        ElementSpec::Hex8Q1p0 => ElementKind::Hex8Q1P0,
+    }
+}
+
+/// Sides of the cross-section of a muscle or of a pair.
+pub(crate) fn positive_sides(
+    sides: &[Quantity<Length>; 2],
+    scope: &Scope<'_>,
+) -> Result<[f64; 2], SceneError> {
+    let place = scope.key("cross_section");
+    let [first, second] = sides;
+    Ok([
+        place.index(0).positive(first)?,
+        place.index(1).positive(second)?,
+    ])
+}

@@ -1,0 +1,70 @@
+//! What names in a scene mean: bodies, points of bodies, materials.
+
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::scene::point::{Point, vector};
+use crate::model::system::{Attachment, Material};
+
+/// Names of the entries of a list.
+pub(crate) fn names<T>(specs: &[T], name: impl Fn(&T) -> &String) -> Vec<String> {
+    specs.iter().map(|spec| name(spec).clone()).collect()
+}
+
+/// The material of a name that stands at `scope`.
+pub(crate) fn find_material(
+    name: &str,
+    materials: &[(String, Material)],
+    scope: &Scope<'_>,
+) -> Result<Material, SceneError> {
+    let names: Vec<String> = materials.iter().map(|(name, _)| name.clone()).collect();
+    let found = scope.find(name, &names, "the name of a material");
+    found.map(|index| materials[index].1)
+}
+
+/// The material of finite elements, whose name stands at `scope`: it says how it resists changes of volume.
+pub(crate) fn find_compressible(
+    name: &str,
+    materials: &[(String, Material)],
+    scope: &Scope<'_>,
+) -> Result<Material, SceneError> {
+    let material = find_material(name, materials, scope)?;
+    if material.lame_lambda.is_some() {
+        return Ok(material);
+    }
+    let found = format!("{name:?}, which has neither \"lame_lambda\" nor \"poisson_ratio\"");
+    Err(scope.wrong(
+        found,
+        "a material with one of them, as finite elements need it",
+    ))
+}
+
+/// A point of a body that is written under `body` and `at`.
+pub(crate) fn attachment(
+    body: &str,
+    at: &Point,
+    bodies: &[String],
+    scope: &Scope<'_>,
+) -> Result<Attachment, SceneError> {
+    let body = find_body(body, bodies, &scope.key("body"))?;
+    let at = vector(at);
+    Ok(Attachment { body, at })
+}
+
+/// Index of a body; `None` is the ground.
+pub(crate) fn find_body(
+    name: &str,
+    bodies: &[String],
+    scope: &Scope<'_>,
+) -> Result<Option<usize>, SceneError> {
+    if name == "ground" {
+        return Ok(None);
+    }
+    if let Some(index) = bodies.iter().position(|body| body == name) {
+        return Ok(Some(index));
+    }
+    let or_ground = bodies.iter().map(String::as_str).chain(["ground"]);
+    let expected = "the name of a body or \"ground\"";
+    Err(scope
+        .document
+        .wrong_name(&scope.place, name, expected, or_ground))
+}

@@ -1,0 +1,187 @@
+//! From an elastic block as written to nodes, materials, electrodes, supports and velocities.
+
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::{Scope, list};
+use crate::files::problem::state::ELECTRIC_KEYS;
+use crate::files::scene::electrodes::electrodes;
+use crate::files::scene::mesh::{Meshed, meshed};
+use crate::files::scene::muscle::element_kind;
+use crate::files::scene::names::{find_body, find_compressible};
+use crate::files::scene::nodes::{extent, face, nodes, place};
+use crate::files::scene::point::vector;
+use crate::files::scene::spec_solids::{AxisName, FixedSpec, SolidSpec, VelocitySpec};
+use crate::mesh::Mesh;
+use crate::model::system::{Glue, Material, Solid, Support};
+
+/// The block that is written; the voltages of its electrodes count from zero.
+pub(crate) fn solid(
+    spec: &SolidSpec,
+    bodies: &[String],
+    materials: &[(String, Material)],
+    scope: &Scope<'_>,
+) -> Result<Solid, SceneError> {
+    let meshed = meshed(spec, scope)?;
+    let by_region = by_region(spec, &meshed.mesh, scope)?;
+    let mut of_region = Vec::new();
+    for (name, place) in &by_region {
+        of_region.push(find_compressible(name, materials, place)?);
+    }
+    let electrodes = electrodes(spec, &meshed, scope)?;
+    let passive = of_region
+        .iter()
+        .position(|material| material.electric.is_none());
+    if let Some(region) = passive.filter(|_| !electrodes.is_empty()) {
+        let (name, place) = &by_region[region];
+        let found = format!("{name:?}, which has no electric term, in a block with electrodes");
+        return Err(place.wrong(found, ELECTRIC_KEYS));
+    }
+    let Meshed { mesh, .. } = meshed;
+    let (glued, grounded) = glued(spec, &mesh, bodies, &scope.key("glued"))?;
+    let mut supports = supports(spec, &mesh, &scope.key("fixed"))?;
+    supports.extend(grounded);
+    // A glued node moves with its body, whatever else holds its face.
+    for support in &mut supports {
+        let is_free = |node: &usize| {
+            glued
+                .iter()
+                .all(|glue| glue.nodes.binary_search(node).is_err())
+        };
+        support.nodes.retain(is_free);
+    }
+    supports.retain(|support| !support.nodes.is_empty());
+    let velocity = spec.velocity.as_ref();
+    let velocities = velocity.map_or_else(Vec::new, |velocity| velocities(velocity, &mesh));
+    Ok(Solid {
+        name: spec.name.clone(),
+        mesh,
+        materials: of_region,
+        element: element_kind(spec.element),
+        electrodes,
+        supports,
+        glued,
+        velocities,
+    })
+}
+
+/// Name of the material of each region, and where it stands.
+fn by_region<'s, 'a>(
+    spec: &'s SolidSpec,
+    mesh: &Mesh,
+    scope: &Scope<'a>,
+) -> Result<Vec<(&'s String, Scope<'a>)>, SceneError> {
+    scope.exactly_one([
+        ("material", spec.material.as_ref().map(|_| ())),
+        ("materials", spec.materials.as_ref().map(|_| ())),
+    ])?;
+    if let Some(name) = &spec.material {
+        return Ok(vec![(name, scope.key("material")); mesh.region_names.len()]);
+    }
+    let scope = scope.key("materials");
+    let named: &BTreeMap<String, String> = spec.materials.as_ref().expect("one of the two");
+    let expected = format!(
+        "the name of a region: one of {}",
+        list(mesh.region_names.iter())
+    );
+    for region in named.keys() {
+        let place = scope.key(region);
+        place.find(region, &mesh.region_names, &expected)?;
+    }
+    let regions = mesh.region_names.iter().map(|region| {
+        let missing = || scope.wrong(format!("no material of the region {region:?}"), "one");
+        let name = named.get(region).ok_or_else(missing)?;
+        Ok((name, scope.key(region)))
+    });
+    regions.collect()
+}
+
+/// The places that are held.
+fn supports(spec: &SolidSpec, mesh: &Mesh, scope: &Scope<'_>) -> Result<Vec<Support>, SceneError> {
+    let support = |(index, fixed): (usize, &FixedSpec)| {
+        let scope = scope.index(index);
+        let held = match fixed {
+            FixedSpec::Clamped(name) => {
+                let nodes = face(name, mesh, &scope)?.to_vec();
+                let held = [true; 3];
+                return Ok(Support { nodes, held });
+            }
+            FixedSpec::Held(held) => held,
+        };
+        let place = (
+            held.face.as_ref(),
+            held.plane.as_ref(),
+            held.cuboid.as_ref(),
+        );
+        let nodes = nodes("a support", place, mesh, &scope)?;
+        let directions = held.directions.as_deref();
+        let held = directions.map_or([true; 3], along);
+        if held == [false; 3] {
+            let expected = "one of \"x\", \"y\", \"z\" or more";
+            return Err(scope.key("directions").wrong("no direction", expected));
+        }
+        Ok(Support { nodes, held })
+    };
+    spec.fixed.iter().enumerate().map(support).collect()
+}
+
+/// Whether x, y, z are among some directions.
+fn along(directions: &[AxisName]) -> [bool; 3] {
+    [AxisName::X, AxisName::Y, AxisName::Z].map(|axis| directions.contains(&axis))
+}
+
+/// The faces that are glued to bodies, and those that are glued to the ground, which clamps them.
+fn glued(
+    spec: &SolidSpec,
+    mesh: &Mesh,
+    bodies: &[String],
+    scope: &Scope<'_>,
+) -> Result<(Vec<Glue>, Vec<Support>), SceneError> {
+    let mut owners: BTreeMap<usize, &String> = BTreeMap::new();
+    let (mut glued, mut grounded) = (Vec::new(), Vec::new());
+    for (name, body) in &spec.glued {
+        let scope = scope.key(name);
+        let all = face(name, mesh, &scope)?;
+        let mut nodes = Vec::new();
+        for &node in all {
+            match owners.insert(node, body) {
+                None => nodes.push(node),
+                Some(other) if other == body => {}
+                Some(other) => {
+                    let at = place(&mesh.nodes[node]);
+                    let found = format!("{body:?}, though {other:?} holds the node at {at} too");
+                    return Err(scope.wrong(found, "faces of different bodies that do not meet"));
+                }
+            }
+        }
+        match find_body(body, bodies, &scope)? {
+            Some(body) => glued.push(Glue {
+                nodes,
+                body: Some(body),
+            }),
+            None => grounded.push(Support {
+                nodes,
+                held: [true; 3],
+            }),
+        }
+    }
+    Ok((glued, grounded))
+}
+
+/// v₀ + ω × (X − c) + diag(rate) (X − c) of each node in mm/ms.
+fn velocities(spec: &VelocitySpec, mesh: &Mesh) -> Vec<Vector3<f64>> {
+    let linear = spec.linear.as_ref().map_or_else(Vector3::zeros, vector);
+    let angular = spec.angular.as_ref().map_or_else(Vector3::zeros, vector);
+    let rate = spec
+        .stretch_rate
+        .as_ref()
+        .map_or_else(Vector3::zeros, vector);
+    let [low, high] = extent(mesh);
+    let centre = spec.centre.as_ref().map_or((low + high) / 2.0, vector);
+    let velocity = |node: &Vector3<f64>| {
+        let arm = node - centre;
+        linear + angular.cross(&arm) + rate.component_mul(&arm)
+    };
+    mesh.nodes.iter().map(velocity).collect()
+}

@@ -1,0 +1,316 @@
+//! A scene as it is written: the serde types of the scene file.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+use crate::files::scene::components::{SpringSpec, TendonSpec};
+use crate::files::scene::point::{Point, PointSpec};
+use crate::files::scene::spec_solids::{ElementSpec, SolidSpec};
+use crate::files::units::quantity::{
+    Acceleration, Density, JointDamping, Length, Mass, MomentOfInertia, Permittivity, Quantity,
+    Stress, Viscosity,
+};
+
+/// What exists. Positions and axes are given in the reference configuration, in the ground frame; what is not written does not exist.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SceneSpec {
+    /// JSON Schema of this file, for editors.
+    #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
+    pub schema: Option<String>,
+    /// Name for captions.
+    pub name: String,
+    /// Elastomers by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub materials: BTreeMap<String, MaterialSpec>,
+    /// Rigid bodies; `ground` is there without being written.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<BodySpec>,
+    /// Joints between bodies or to the ground.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub joints: Vec<JointSpec>,
+    /// Dielectric elastomer muscles.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub muscles: Vec<MuscleSpec>,
+    /// Elastic blocks of finite elements.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub solids: Vec<SolidSpec>,
+    /// Springs and dampers between two points.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub springs: Vec<SpringSpec>,
+    /// Elastic cables through points.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tendons: Vec<TendonSpec>,
+    /// Points whose motion is reported.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub markers: Vec<MarkerSpec>,
+    /// Acceleration of gravity, SI unit m/s².
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gravity: Option<[Quantity<Acceleration>; 3]>,
+    /// Shorthand for a chain of segments with a pair of muscles at each joint.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chain: Option<ChainSpec>,
+}
+
+/// A dielectric elastomer.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialSpec {
+    /// Density, SI unit kg/m³; without it muscles are massless.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<Quantity<Density>>,
+    /// Shear modulus μ, SI unit Pa.
+    pub shear_modulus: Quantity<Stress>,
+    /// First Lamé constant λ, SI unit Pa; or give `poisson_ratio`. Finite elements need one of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lame_lambda: Option<Quantity<Stress>>,
+    /// Poisson's ratio, between −1 and 0.5; or give `lame_lambda`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub poisson_ratio: Option<f64>,
+    /// Relative permittivity, 1 or more; or give `c1` and `c2`; without either the material has no electric term.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relative_permittivity: Option<f64>,
+    /// How `relative_permittivity` enters the energy.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dielectric: Option<Dielectric>,
+    /// Constant of the term c₁ E·E, SI unit F/m = N/V².
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub c1: Option<Quantity<Permittivity>>,
+    /// Constant of the term c₂ C:(E⊗E), SI unit F/m = N/V².
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub c2: Option<Quantity<Permittivity>>,
+    /// Viscosity η in σ = η d, SI unit Pa s; without it no viscous force.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub viscosity: Option<Quantity<Viscosity>>,
+}
+
+/// How the relative permittivity enters the energy.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Dielectric {
+    /// To first order in the deformation: c₁ = −(ε_r − 1) ε₀, c₂ = (ε_r − 1) ε₀/2.
+    #[default]
+    FirstOrder,
+    /// Exactly: c₁ = c₂ = 0 and ε_r ε₀ in place of ε₀.
+    Ideal,
+}
+
+/// A rigid body: one shape, or an explicit inertia, or both.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BodySpec {
+    /// Unique name other than `ground`.
+    pub name: String,
+    /// Mass, SI unit kg.
+    pub mass: Quantity<Mass>,
+    /// Solid cylinder.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cylinder: Option<CylinderSpec>,
+    /// Solid box with edges along the axes of the ground frame.
+    #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
+    pub cuboid: Option<BoxSpec>,
+    /// Solid sphere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sphere: Option<SphereSpec>,
+    /// Moments of inertia about the axes of the ground frame through the centre of mass, SI unit kg m²; overrides the shape's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inertia: Option<[Quantity<MomentOfInertia>; 3]>,
+    /// Centre of mass, SI unit m.
+    pub position: Point,
+    /// Whether the body is free of the ground: no chain of joints leads there.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub free: bool,
+}
+
+/// A cylinder.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderSpec {
+    /// Length along the axis, SI unit m.
+    pub length: Quantity<Length>,
+    /// Radius, SI unit m.
+    pub radius: Quantity<Length>,
+    /// Direction of the axis, of any length.
+    pub axis: [f64; 3],
+}
+
+/// A box.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxSpec {
+    /// Edge lengths along x, y, z, SI unit m.
+    pub size: Point,
+}
+
+/// A sphere.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SphereSpec {
+    /// Radius, SI unit m.
+    pub radius: Quantity<Length>,
+}
+
+/// A joint: exactly one of `revolute`, `prismatic`, `spherical`, `floating`, `fixed`.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JointSpec {
+    /// Unique name.
+    pub name: String,
+    /// Rotation about an axis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub revolute: Option<AxisSpec>,
+    /// Translation along an axis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prismatic: Option<AxisSpec>,
+    /// Rotation about a point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spherical: Option<Nothing>,
+    /// Any motion: the child is as free as without the joint, and its orientation in the first body is told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub floating: Option<Nothing>,
+    /// No motion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fixed: Option<Nothing>,
+    /// Body on the side of the root, or `ground`.
+    pub parent: String,
+    /// Body on the other side.
+    pub child: String,
+    /// Place, SI unit m.
+    pub at: Point,
+    /// Whether the joint is locked as it stands in the reference configuration: it is then `fixed`, and what it connects is one
+    /// body.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub locked: bool,
+    /// Damping of the joint coordinate, SI unit N m s/rad (revolute) or N s/m (prismatic).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping: Option<Quantity<JointDamping>>,
+}
+
+/// An axis.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AxisSpec {
+    /// Direction, of any length.
+    pub axis: [f64; 3],
+}
+
+/// An object without entries.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Nothing {}
+
+/// A muscle between two points.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MuscleSpec {
+    /// Unique name.
+    pub name: String,
+    /// Model; `lumped` where not written.
+    #[serde(default)]
+    pub model: MuscleModel,
+    /// Elements along both sides of the cross-section and along the span; of `finite_elements` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elements: Option<[usize; 3]>,
+    /// Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layers: Option<usize>,
+    /// Which hexahedron; of `finite_elements` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub element: Option<ElementSpec>,
+    /// Name of the material.
+    pub material: String,
+    /// Sides of the rectangular cross-section at rest, SI unit m.
+    pub cross_section: [Quantity<Length>; 2],
+    /// Thickness of one layer at rest, SI unit m.
+    pub layer_thickness: Quantity<Length>,
+    /// Start.
+    pub from: PointSpec,
+    /// End.
+    pub to: PointSpec,
+    /// Whether the inertia of the changing cross-section is called for.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub section_inertia: bool,
+}
+
+/// How a muscle is modelled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MuscleModel {
+    /// One stretch at constant volume.
+    #[default]
+    Lumped,
+    /// Finite elements, glued to both bodies with its end faces.
+    FiniteElements,
+}
+
+/// A named material point of a body or of a block: exactly one of `body` and `solid`.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MarkerSpec {
+    /// Unique name.
+    pub name: String,
+    /// Name of the body, or `ground`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<String>,
+    /// Name of the block; its node nearest to the place is meant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solid: Option<String>,
+    /// Place, SI unit m.
+    pub at: Point,
+}
+
+/// A chain from the origin along an axis: `segment1`…, `joint1`…, and `muscle1`…, two at each joint.
+///
+/// Joint i stands at (i − 1) lengths; the joint axes alternate by 90° about the long axis. Muscle 2i − 1 runs at `+arm`, muscle 2i at
+/// `−arm` off the long axis, from half a rest length below the joint to half a rest length above it.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ChainSpec {
+    /// Number of segments.
+    pub segments: usize,
+    /// Length of a segment, SI unit m.
+    pub length: Quantity<Length>,
+    /// Radius of a segment, SI unit m.
+    pub radius: Quantity<Length>,
+    /// Mass of a segment, SI unit kg.
+    pub mass: Quantity<Mass>,
+    /// Long axis.
+    pub axis: [f64; 3],
+    /// Axis of the first joint, at right angles to the long axis.
+    pub first_joint_axis: [f64; 3],
+    /// Pair of muscles at each joint.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub muscles: Option<PairSpec>,
+    /// Name of a marker at the end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tip_marker: Option<String>,
+}
+
+/// A pair of muscles at a joint of a chain.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PairSpec {
+    /// Model; `lumped` where not written.
+    #[serde(default)]
+    pub model: MuscleModel,
+    /// Elements along both sides of the cross-section and along the span; of `finite_elements` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elements: Option<[usize; 3]>,
+    /// Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layers: Option<usize>,
+    /// Which hexahedron; of `finite_elements` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub element: Option<ElementSpec>,
+    /// Name of the material.
+    pub material: String,
+    /// Distance from the long axis, SI unit m.
+    pub arm: Quantity<Length>,
+    /// Length at rest, SI unit m.
+    pub rest_length: Quantity<Length>,
+    /// Sides of the rectangular cross-section at rest, SI unit m.
+    pub cross_section: [Quantity<Length>; 2],
+    /// Thickness of one layer at rest, SI unit m.
+    pub layer_thickness: Quantity<Length>,
+}

@@ -1,0 +1,264 @@
+//! Elastic blocks as they are written: a part of the scene file.
+
+use schemars::JsonSchema;
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Error, SeqAccess, Unexpected, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::marker::PhantomData;
+
+use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::files::scene::point::CornersSpec;
+use crate::files::scene::point::Point;
+use crate::files::units::quantity::{AngularVelocity, Length, Quantity, Rate, Velocity, Voltage};
+
+/// An elastic block of hexahedra: a `box` or a `mesh`, of one `material` or of `materials` by region.
+///
+/// Faces are `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max` of a box, and physical groups of a mesh.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolidSpec {
+    /// Unique name.
+    pub name: String,
+    /// Name of the material.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
+    /// Names of the materials by region.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub materials: Option<BTreeMap<String, String>>,
+    /// Box with edges along the axes of the ground frame.
+    #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
+    pub cuboid: Option<GridSpec>,
+    /// Path of a Gmsh file, relative to this file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<String>,
+    /// Length of a unit of the Gmsh file, SI unit m; 1 m where not written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Quantity<Length>>,
+    /// Which hexahedron.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub element: Option<ElementSpec>,
+    /// Electrodes; without any the block has no potential.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub electrodes: Vec<ElectrodeSpec>,
+    /// Electrodes between the layers of a stack and at its ends, alternately grounded and driven.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stack: Option<StackSpec>,
+    /// Faces and other places that are held. A node that is glued as well moves with its body.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fixed: Vec<FixedSpec>,
+    /// Names of bodies by the faces that are glued to them; a face glued to `ground` is clamped.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub glued: BTreeMap<String, String>,
+    /// Velocity at the start; at rest where not written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity: Option<VelocitySpec>,
+}
+
+/// Which hexahedron: how it treats volume.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ElementSpec {
+    /// Trilinear.
+    #[default]
+    Hex8,
+    /// Trilinear with one dilatation an element, for materials that hardly change their volume.
+    Hex8Q1p0,
+}
+
+/// A box cut into hexahedra.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GridSpec {
+    /// Lower corner, SI unit m; the origin where not written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub corner: Option<Point>,
+    /// Edge lengths along x, y, z, SI unit m.
+    pub size: Point,
+    /// Elements along x, y, z: a number, or a list of layers.
+    pub elements: [DivisionSpec; 3],
+}
+
+/// How a direction of a box is cut.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum DivisionSpec {
+    /// This many equal elements.
+    Equal(usize),
+    /// Layers from the lower face to the upper one, whose thicknesses add up to the size of the box.
+    Layers(Vec<LayerSpec>),
+}
+
+/// A layer of a box.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LayerSpec {
+    /// Thickness, SI unit m.
+    pub thickness: Quantity<Length>,
+    /// Elements through the thickness.
+    pub elements: usize,
+    /// Name of the region that the layer belongs to; in one direction only, and there for every layer.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub region: Option<String>,
+}
+
+/// An electrode: nodes of one potential, at exactly one of `face`, `plane`, `box`.
+///
+/// Driven electrodes of one name are connected: they share the voltage `block.name`.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ElectrodeSpec {
+    /// Name, unique in the block except for driven electrodes.
+    pub name: String,
+    /// All nodes of a face.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub face: Option<String>,
+    /// All nodes of a plane.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plane: Option<PlaneSpec>,
+    /// All nodes in a box.
+    #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
+    pub cuboid: Option<CornersSpec>,
+    /// Its potential.
+    pub potential: PotentialSpec,
+}
+
+/// A plane at right angles to an axis: exactly one of the three.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneSpec {
+    /// Place along x, SI unit m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x: Option<Quantity<Length>>,
+    /// Place along y, SI unit m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub y: Option<Quantity<Length>>,
+    /// Place along z, SI unit m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub z: Option<Quantity<Length>>,
+}
+
+/// The potential of an electrode.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PotentialSpec {
+    /// Zero.
+    Grounded,
+    /// Whatever makes the charge vanish.
+    Floating,
+    /// The voltage `block.electrode` of the problem.
+    Driven,
+    /// This one, SI unit V.
+    Given(Quantity<Voltage>),
+}
+
+/// Electrodes at all boundaries of equal layers, both ends included: grounded, driven, grounded…
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StackSpec {
+    /// Direction across the layers.
+    pub axis: AxisName,
+    /// Number of layers, a divisor of the elements along the axis.
+    pub layers: usize,
+    /// Name of the driven electrodes, whose voltage is `block.name`.
+    pub name: String,
+}
+
+/// An axis of the ground frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AxisName {
+    /// The first.
+    X,
+    /// The second.
+    Y,
+    /// The third.
+    Z,
+}
+
+impl AxisName {
+    /// Index of the coordinate.
+    pub(crate) fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// A face that is clamped, or a place that is held in some directions.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum FixedSpec {
+    /// Held in all directions.
+    Clamped(String),
+    /// Held in some.
+    Held(Box<HeldSpec>),
+}
+
+/// A `face`, `plane` or `box` whose nodes are held in some directions: a roller is held in one.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HeldSpec {
+    /// All nodes of a face.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub face: Option<String>,
+    /// All nodes of a plane.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plane: Option<PlaneSpec>,
+    /// All nodes in a box.
+    #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
+    pub cuboid: Option<CornersSpec>,
+    /// Directions in which it is held; all three where not written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub directions: Option<Vec<AxisName>>,
+}
+
+/// A velocity v = v₀ + ω × (X − c) + diag(rate) (X − c) at the start.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VelocitySpec {
+    /// v₀, SI unit m/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub linear: Option<[Quantity<Velocity>; 3]>,
+    /// ω, SI unit rad/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angular: Option<[Quantity<AngularVelocity>; 3]>,
+    /// c, SI unit m; the middle of the block where not written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub centre: Option<Point>,
+    /// Rate of stretch along x, y, z, SI unit 1/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stretch_rate: Option<[Quantity<Rate>; 3]>,
+}
+
+scalar_or_object! {
+    FixedSpec: String = Self::Clamped, Box<HeldSpec> = Self::Held,
+        "the name of a face, or an object with \"face\" and \"directions\"";
+}
+
+impl<'de> Deserialize<'de> for DivisionSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(DivisionVisitor)
+    }
+}
+
+struct DivisionVisitor;
+
+impl<'de> Visitor<'de> for DivisionVisitor {
+    type Value = DivisionSpec;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a whole number of elements or a list of layers")
+    }
+
+    fn visit_u64<E: Error>(self, number: u64) -> Result<DivisionSpec, E> {
+        let number = usize::try_from(number);
+        number.map(DivisionSpec::Equal).map_err(|_| {
+            let found = Unexpected::Other("a number beyond counting");
+            E::invalid_value(found, &self)
+        })
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, layers: A) -> Result<DivisionSpec, A::Error> {
+        Vec::deserialize(SeqAccessDeserializer::new(layers)).map(DivisionSpec::Layers)
+    }
+}

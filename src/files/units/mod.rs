@@ -1,0 +1,4 @@
+//! Numbers with units, converted once to g, mm, ms, N, MPa, V.
+
+pub mod quantity;
+pub(crate) mod unit;

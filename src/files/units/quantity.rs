@@ -1,0 +1,362 @@
+//! Quantities as written in JSON: numbers in SI units or strings with a unit, converted once to g, mm, ms, N, MPa, V.
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Error, Unexpected, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
+use std::fmt;
+use std::marker::PhantomData;
+use uom::si;
+
+use crate::files::units::unit::{Dimension, Unit, scale};
+
+/// A kind of quantity: its name, an example, and the dimensions it is written in.
+#[derive(Clone, Debug)]
+pub struct Kind {
+    /// Name with article: `a length`.
+    pub name: &'static str,
+    /// Example with quotes: `"50 mm"`.
+    pub example: &'static str,
+    /// Accepted dimensions, the coherent one first; they differ in powers of the radian only.
+    dimensions: Vec<Dimension>,
+}
+
+impl Kind {
+    /// Name and example, for messages.
+    pub fn expected(&self) -> String {
+        format!("{}, such as {}", self.name, self.example)
+    }
+}
+
+/// What a [`Quantity`] measures.
+pub trait PhysicalQuantity {
+    /// Name of the measure in the JSON Schema.
+    const NAME: &'static str;
+
+    /// The accepted kinds: one, or two where a joint decides.
+    fn kinds() -> Vec<Kind>;
+}
+
+/// Declares measures by the dimension of uom, powers of the radian, name and example.
+macro_rules! measures {
+    ($($(#[$doc:meta])* $measure:ident: $dimension:ty, $radians:expr, $name:literal, $example:literal;)*) => {
+        $(
+            $(#[$doc])*
+            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+            pub struct $measure;
+
+            impl $measure {
+                /// The one kind of this measure.
+                pub fn kind() -> Kind {
+                    let dimension = Dimension::of::<$dimension>();
+                    let dimensions = $radians.into_iter().map(|radian| dimension.radians(radian)).collect();
+                    Kind { name: $name, example: $example, dimensions }
+                }
+            }
+
+            impl PhysicalQuantity for $measure {
+                const NAME: &'static str = stringify!($measure);
+
+                fn kinds() -> Vec<Kind> {
+                    vec![Self::kind()]
+                }
+            }
+        )*
+
+        /// Every kind that has a name.
+        fn named_kinds() -> Vec<Kind> {
+            vec![$($measure::kind()),*]
+        }
+    };
+}
+
+measures! {
+    /// Length: m, mm inside.
+    Length: si::length::Dimension, [0], "a length", "\"50 mm\"";
+    /// Mass: kg, g inside.
+    Mass: si::mass::Dimension, [0], "a mass", "\"30 g\"";
+    /// Time: s, ms inside.
+    Time: si::time::Dimension, [0], "a time", "\"10 ms\"";
+    /// Voltage: V.
+    Voltage: si::electric_potential::Dimension, [0], "a voltage", "\"1.7 kV\"";
+    /// Angle: rad.
+    Angle: si::angle::Dimension, [1], "an angle", "\"0.3 rad\" or \"17 deg\"";
+    /// Stress or elastic modulus: Pa, MPa inside.
+    Stress: si::pressure::Dimension, [0], "a stress", "\"100 kPa\"";
+    /// Density: kg/m³, g/mm³ inside.
+    Density: si::mass_density::Dimension, [0], "a density", "\"1000 kg/m^3\"";
+    /// Viscosity: Pa s, MPa ms inside.
+    Viscosity: si::dynamic_viscosity::Dimension, [0], "a viscosity", "\"1000 Pa s\"";
+    /// Permittivity: F/m, N/V² inside.
+    Permittivity: si::electric_permittivity::Dimension, [0], "a permittivity", "\"8.854e-12 F/m\"";
+    /// Electric field: V/m, V/mm inside.
+    ElectricField: si::electric_field::Dimension, [0], "an electric field", "\"80 V/um\"";
+    /// Acceleration: m/s², mm/ms² inside.
+    Acceleration: si::acceleration::Dimension, [0], "an acceleration", "\"9.81 m/s^2\"";
+    /// Velocity: m/s, mm/ms inside.
+    Velocity: si::velocity::Dimension, [0], "a velocity", "\"0.2 m/s\"";
+    /// Angular velocity: rad/s, rad/ms inside.
+    AngularVelocity: si::angular_velocity::Dimension, [1], "an angular velocity", "\"2 rad/s\"";
+    /// Rate of a stretch: 1/s, 1/ms inside.
+    Rate: si::frequency::Dimension, [0], "a rate", "\"25 1/s\"";
+    /// Moment of inertia: kg m², g mm² inside.
+    MomentOfInertia: si::moment_of_inertia::Dimension, [0], "a moment of inertia", "\"9.25e-6 kg m^2\"";
+    /// Damping of a rotation: N m s/rad, N mm ms inside.
+    RotationalDamping: si::angular_momentum::Dimension, [0, -1], "a rotational damping", "\"1e-4 N m s/rad\"";
+    /// Damping of a translation: N s/m, N ms/mm inside.
+    Damping: si::mass_rate::Dimension, [0], "a damping", "\"0.5 N s/m\"";
+    /// Stiffness of a spring: N/m, N/mm inside.
+    Stiffness: si::surface_tension::Dimension, [0], "a stiffness", "\"200 N/m\"";
+    /// Force, for messages.
+    Force: si::force::Dimension, [0], "a force", "\"1 N\"";
+    /// Area, for messages.
+    Area: si::area::Dimension, [0], "an area", "\"1 mm^2\"";
+    /// Energy, for messages.
+    Energy: si::energy::Dimension, [0], "an energy", "\"1 mJ\"";
+}
+
+/// Declares measures of joints: an angular and a linear kind.
+macro_rules! joint_measures {
+    ($($(#[$doc:meta])* $measure:ident: $angular:ident | $linear:ident;)*) => {
+        $(
+            $(#[$doc])*
+            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+            pub struct $measure;
+
+            impl PhysicalQuantity for $measure {
+                const NAME: &'static str = stringify!($measure);
+
+                fn kinds() -> Vec<Kind> {
+                    vec![$angular::kind(), $linear::kind()]
+                }
+            }
+        )*
+    };
+}
+
+joint_measures! {
+    /// Joint coordinate: an angle, or a length of a prismatic joint.
+    JointCoordinate: Angle | Length;
+    /// Rate of a joint coordinate: an angular velocity, or a velocity of a prismatic joint.
+    JointRate: AngularVelocity | Velocity;
+    /// Damping of a joint coordinate: rotational, or linear of a prismatic joint.
+    JointDamping: RotationalDamping | Damping;
+}
+
+/// What was written: a number in SI units, or a text with a unit.
+#[derive(Clone, Debug, PartialEq)]
+enum Written {
+    Number(f64),
+    Text(String),
+}
+
+/// A finite quantity of one of the kinds of a [`PhysicalQuantity`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity<M> {
+    written: Written,
+    number: f64,
+    unit: Option<Unit>,
+    measure: PhantomData<M>,
+}
+
+impl<M: PhysicalQuantity> Quantity<M> {
+    /// A number in SI units.
+    fn try_from_number(number: f64) -> Result<Self, String> {
+        Self {
+            written: Written::Number(number),
+            number,
+            unit: None,
+            measure: PhantomData,
+        }
+        .checked()
+    }
+
+    /// Reads a text such as `50 mm`; the error says what was found instead.
+    pub fn try_from_text(text: &str) -> Result<Self, String> {
+        let (number, tail) = split_number(text.trim_start());
+        let number: f64 = number
+            .parse()
+            .map_err(|_| format!("{text:?}, which does not begin with a number"))?;
+        if tail.trim().is_empty() {
+            return Err(format!("{text:?}, which has no unit"));
+        }
+        let unit = Unit::parse(tail)
+            .ok_or_else(|| format!("{text:?}, where {:?} is no known unit", tail.trim()))?;
+        if !M::kinds()
+            .iter()
+            .any(|kind| kind.dimensions.contains(&unit.dimension))
+        {
+            return Err(format!("{text:?}, which is {}", describe(unit.dimension)));
+        }
+        Self {
+            written: Written::Text(text.to_owned()),
+            number,
+            unit: Some(unit),
+            measure: PhantomData,
+        }
+        .checked()
+    }
+
+    /// A finite value that stays finite in the units inside.
+    fn checked(self) -> Result<Self, String> {
+        let finite = |kind: &Kind| self.converted(kind).is_finite();
+        if M::kinds().iter().all(finite) {
+            Ok(self)
+        } else {
+            Err(format!("{self}, which is not finite"))
+        }
+    }
+
+    fn converted(&self, kind: &Kind) -> f64 {
+        let unit = self.unit.unwrap_or(Unit::ONE);
+        let exponent = unit.exponent + kind.dimensions[0].internal_exponent();
+        scale(self.number * unit.factor, exponent)
+    }
+
+    /// Value in the units inside, of the only kind of this measure.
+    pub fn value(&self) -> f64 {
+        self.converted(&M::kinds()[0])
+    }
+
+    /// Value in the units inside, read as one kind; the error says what was found instead.
+    pub fn value_as(&self, kind: &Kind) -> Result<f64, String> {
+        match self.unit {
+            Some(unit) if !kind.dimensions.contains(&unit.dimension) => {
+                Err(format!("{self}, which is {}", describe(unit.dimension)))
+            }
+            _ => Ok(self.converted(kind)),
+        }
+    }
+
+    /// Kinds and examples, for messages.
+    pub(crate) fn expected() -> String {
+        let kinds: Vec<String> = M::kinds().iter().map(Kind::expected).collect();
+        kinds.join(", or ")
+    }
+}
+
+impl Quantity<Length> {
+    /// A finite length of this many mm, written with its unit.
+    pub(crate) fn millimetres(value: f64) -> Self {
+        // Adding zero turns −0 into 0.
+        let number = value + 0.0;
+        Self {
+            written: Written::Text(format!("{number} mm")),
+            number,
+            unit: Some(Unit::millimetre()),
+            measure: PhantomData,
+        }
+    }
+}
+
+impl<M> fmt::Display for Quantity<M> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.written {
+            Written::Number(number) => write!(f, "{number}"),
+            Written::Text(text) => write!(f, "{text:?}"),
+        }
+    }
+}
+
+impl<M> Serialize for Quantity<M> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match &self.written {
+            Written::Number(number) => serializer.serialize_f64(*number),
+            Written::Text(text) => serializer.serialize_str(text),
+        }
+    }
+}
+
+impl<'de, M: PhysicalQuantity> Deserialize<'de> for Quantity<M> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(QuantityVisitor(PhantomData))
+    }
+}
+
+struct QuantityVisitor<M>(PhantomData<M>);
+
+impl<M: PhysicalQuantity> QuantityVisitor<M> {
+    fn wrong<T, E: Error>(found: Result<T, String>) -> Result<T, E> {
+        found.map_err(|found| {
+            E::invalid_value(
+                Unexpected::Other(&found),
+                &Quantity::<M>::expected().as_str(),
+            )
+        })
+    }
+}
+
+impl<M: PhysicalQuantity> Visitor<'_> for QuantityVisitor<M> {
+    type Value = Quantity<M>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&Quantity::<M>::expected())
+    }
+
+    fn visit_f64<E: Error>(self, number: f64) -> Result<Self::Value, E> {
+        Self::wrong(Quantity::try_from_number(number))
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<Self::Value, E> {
+        self.visit_f64(number as f64)
+    }
+
+    fn visit_u64<E: Error>(self, number: u64) -> Result<Self::Value, E> {
+        self.visit_f64(number as f64)
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
+        Self::wrong(Quantity::try_from_text(text))
+    }
+}
+
+impl<M: PhysicalQuantity> JsonSchema for Quantity<M> {
+    fn schema_name() -> Cow<'static, str> {
+        M::NAME.into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": ["number", "string"],
+            "description": format!("A number in SI units or a text with a unit: {}.", Self::expected()),
+        })
+    }
+}
+
+/// The decimal number at the start of a text, and the rest.
+fn split_number(text: &str) -> (&str, &str) {
+    let bytes = text.as_bytes();
+    let digits = |mut at: usize| {
+        while bytes.get(at).is_some_and(u8::is_ascii_digit) {
+            at += 1;
+        }
+        at
+    };
+    let sign = |at: usize| at + usize::from(matches!(bytes.get(at), Some(b'+' | b'-')));
+    let mut end = digits(sign(0));
+    if bytes.get(end) == Some(&b'.') {
+        end = digits(end + 1);
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let start = sign(end + 1);
+        let exponent = digits(start);
+        if exponent > start {
+            end = exponent;
+        }
+    }
+    text.split_at(end)
+}
+
+/// What has this dimension, in words.
+fn describe(dimension: Dimension) -> String {
+    named_kinds()
+        .into_iter()
+        .find(|kind| kind.dimensions.contains(&dimension))
+        .map_or_else(
+            || match dimension.to_string() {
+                unit if unit.is_empty() => "a plain number".to_owned(),
+                unit => format!("a quantity in {unit}"),
+            },
+            |kind| kind.name.to_owned(),
+        )
+}
