@@ -1,6 +1,6 @@
 //! The lumped muscle: a stack of equal cells that keep their volume, with one stretch.
 //!
-//! All through the polynomial invariant I = Λ² = |r|²/L₀² of the span r (physics.md, 3.1 to 3.3).
+//! All through the polynomial invariant I = Λ² = |r|²/L₀² of the span r (docs/theory.md, 3.1 to 3.3).
 
 use crate::energy::Energy;
 use crate::math::{Jet, Vector};

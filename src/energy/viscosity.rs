@@ -4,7 +4,7 @@ use crate::energy::Energy;
 use crate::math::{Jet, Matrix, Vector};
 use nalgebra::SVector;
 
-/// Virtual work `−(3/2) η V₀ (r·ṙ)(r·δr)/|r|⁴` of σ_vis = η d, arguments: δr, r̄, ṙ (physics.md, 3.2).
+/// Virtual work `−(3/2) η V₀ (r·ṙ)(r·δr)/|r|⁴` of σ_vis = η d, arguments: δr, r̄, ṙ (docs/theory.md, 3.2).
 ///
 /// At the midpoint r̄·ṙ is exactly the difference quotient of ½|r|², so the discrete force is objective.
 #[derive(Clone, Copy, Debug)]

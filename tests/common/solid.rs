@@ -160,7 +160,7 @@ pub(crate) fn dielectric(
     }
 }
 
-/// The published material set (2.5) of physics, with a viscosity in MPa ms.
+/// The published material set (docs/theory.md, 2.5) with a viscosity in MPa ms.
 pub(crate) fn published(viscosity: Option<f64>) -> Material {
     let electric = ElectricConstants {
         c1: 5e-8,

@@ -1,4 +1,4 @@
-//! Optimal control of one degree of freedom with a force, in closed form (physics.md, 6.1).
+//! Optimal control of one degree of freedom with a force, in closed form (docs/theory.md, 12.4).
 //!
 //! A force s along n is the potential −s n·x, a torque s about the ground's axis the potential −s θ, with s constant in
 //! each interval: the midpoint rule gives f⁻ = f⁺ = (h/2) s.

@@ -134,7 +134,7 @@ fn patch_test() {
     }
 }
 
-/// Rows of physics.md 8.2: E in V/mm, lateral stretch, stretch along the field, J.
+/// Rows of docs/theory.md, 12.2: E in V/mm, lateral stretch, stretch along the field, J.
 const FREE_BLOCK: [[f64; 4]; 5] = [
     [2.0e4, 1.0004972444, 0.9987764628, 0.9997699817],
     [5.0e4, 1.0030833599, 0.9924433383, 0.9985728935],

@@ -11,7 +11,7 @@ use proboscis::math::{Matrix, Vector};
 
 // Viscosity.
 
-/// Σ y_i·f_i = ∫ P_vis : Ẏ dV with P_vis = ½ J η (F⁻ᵀ Ḟᵀ F⁻ᵀ + Ḟ C⁻¹) of physics.md 2.3; arguments x, v.
+/// Σ y_i·f_i = ∫ P_vis : Ẏ dV with P_vis = ½ J η (F⁻ᵀ Ḟᵀ F⁻ᵀ + Ḟ C⁻¹) of docs/theory.md, 2.3; arguments x, v.
 fn viscous_work<D: DualNum<f64> + Copy>(
     points: &[(f64, [[f64; 3]; 8])],
     eta: f64,

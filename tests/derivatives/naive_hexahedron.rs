@@ -111,7 +111,7 @@ pub(crate) fn deformation<D: DualNum<f64> + Copy>(p: &[D], gradients: &[[f64; 3]
     })
 }
 
-/// The energy of physics.md 2.1 through C and C⁻¹, arguments: 24 coordinates, then 8 potentials.
+/// The energy of docs/theory.md, 2.1 through C and C⁻¹, arguments: 24 coordinates, then 8 potentials.
 pub(crate) struct Naive {
     pub(crate) mu: f64,
     pub(crate) lambda: f64,

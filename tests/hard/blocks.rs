@@ -8,7 +8,7 @@ use proboscis::report::lines::{Mark, Series};
 use proboscis::report::style::hue;
 use serde_json::{Value, json};
 
-/// λ, Λ and E √(ε/μ) at pull-in of a free cube of ν = 0.4 (physics.md, 8.3).
+/// λ, Λ and E √(ε/μ) at pull-in of a free cube of ν = 0.4 (docs/theory.md, 12.3).
 const AT_PULL_IN: (&str, f64, f64) = ("400 kPa", 0.63473428, 0.68759172);
 
 fn ideal(lame_lambda: &str) -> Value {

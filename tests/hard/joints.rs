@@ -19,7 +19,7 @@ fn a_joint_turns_many_times() {
         "joints": [{ "name": "hinge", "revolute": { "axis": [0, 0, 1] }, "parent": "ground", "child": "rod", "at": [0, 0, 0] }],
     });
     let steps = 20_000;
-    // The discrete momentum is J sin Δθ/h: every step turns by the same angle (physics.md, 6.1).
+    // The discrete momentum is J sin Δθ/h: every step turns by the same angle (docs/theory.md, 6.5).
     let turn = 0.5_f64.asin();
     let expected: Vec<f64> = (0..=steps).map(|k| f64::from(k) * turn).collect();
     let (mut curves, mut seen) = (Vec::new(), Vec::new());

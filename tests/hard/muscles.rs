@@ -9,7 +9,7 @@ use proboscis::report::lines::{Mark, Series};
 use proboscis::report::style::{Dash, hue};
 use serde_json::{Value, json};
 
-/// 4^(−1/3), and the nominal field there in units of √(μ/ε): the limit of Λ − Λ⁴ (physics.md, 8.3).
+/// 4^(−1/3), and the nominal field there in units of √(μ/ε): the limit of Λ − Λ⁴ (docs/theory.md, 12.3).
 const AT_PULL_IN: [f64; 2] = [0.629960524947, 0.687364818499];
 
 /// The silicone as an ideal dielectric without mass, with entries changed.

@@ -198,7 +198,7 @@ fn distorted(part: f64) -> String {
 
 #[test]
 fn a_cube_of_distorted_elements_pulls_in() {
-    // λ, Λ and E √(ε/μ) at pull-in of a free cube of ν = 0.4 (physics.md, 8.3).
+    // λ, Λ and E √(ε/μ) at pull-in of a free cube of ν = 0.4 (docs/theory.md, 12.3).
     let (lame_lambda, stretch, critical) = ("400 kPa", 0.63473428, 0.68759172);
     let unit = 10e-3 * (SHEAR / (3.0 * VACUUM)).sqrt();
     let material = silicone_with(json!({

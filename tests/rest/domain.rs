@@ -15,7 +15,7 @@ fn the_domain_ends_where_the_permittivity_vanishes() {
         c2: 2.0 * vacuum,
         permittivity: vacuum,
     };
-    // physics.md 2.4: exact zero for ε_r = 5, J = 1.
+    // docs/theory.md, 2.4: exact zero for ε_r = 5, J = 1.
     assert!((largest_stretch(&electric, 1.0).unwrap() - 1.4553).abs() < 5e-5);
     for volume in [0.7, 1.0, 1.3] {
         let limit = largest_stretch(&electric, volume).unwrap();
@@ -101,7 +101,7 @@ fn a_muscle_outside_the_domain_is_told() {
     let outside = &told["domain"][0];
     assert_eq!(outside["name"], "m");
     assert_eq!(outside["stretch"], told["stretches"]["m"]);
-    // A W_Λ/V₀ = m g of the weight and half of the muscle, by physics.md 3.1; in N and m, at 1 kV over 50 µm.
+    // A W_Λ/V₀ = m g of the weight and half of the muscle, by docs/theory.md, 3.1; in N and m, at 1 kV over 50 µm.
     let stretch = outside["stretch"].as_f64().unwrap();
     let (field, vacuum) = (2e7_f64, 8.854_187_8e-12);
     let elastic = 1e5 * (stretch - stretch.powi(-2));

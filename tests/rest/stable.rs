@@ -104,7 +104,7 @@ fn redundant_coordinates_rest_where_joint_coordinates_do() {
     assert_eq!(upright.softest.unwrap().softening, Softening::Weight);
 }
 
-/// Potential energy in N mm, written out: W(Λ, V) of the lumped muscles by physics.md 3.1, weights of bodies and of halves of
+/// Potential energy in N mm, written out: W(Λ, V) of the lumped muscles by docs/theory.md, 3.1, weights of bodies and of halves of
 /// muscles at their ends.
 fn energy(system: &System, model: &Model, z: &[f64], voltages: &[f64]) -> f64 {
     let instant = model.action.motion.placed(z);

@@ -1,4 +1,4 @@
-//! One muscle between the ground and a sliding body: equilibria under voltage have closed forms (physics.md, 3.4 and 8.3).
+//! One muscle between the ground and a sliding body: equilibria under voltage have closed forms (docs/theory.md, 12.1 and 12.3).
 //!
 //! Without load `W_Λ = 0`: μ(Λ − Λ⁻²) + 2c₂ΛE² + ε₀E²Λ⁻³ = 0.
 
@@ -94,7 +94,7 @@ fn default_signs(relative: f64) -> ElectricConstants {
 
 #[test]
 fn published_material_contracts_as_tabulated() {
-    // physics.md 3.4, set of THREAD-3-2/elec_mech_beam: μ = 233 MPa, c2 = 1e-9 N/V².
+    // docs/theory.md, 12.1, set of THREAD-3-2/elec_mech_beam: μ = 233 MPa, c2 = 1e-9 N/V².
     let system = single(
         233.0,
         ElectricConstants {
@@ -152,7 +152,7 @@ fn default_material_contracts_as_tabulated() {
     }
 }
 
-/// Λ and Ē = E √(ε_r ε₀/μ) at the limit, from physics.md 8.3.
+/// Λ and Ē = E √(ε_r ε₀/μ) at the limit, from docs/theory.md, 12.3.
 #[test]
 fn pull_in_is_refused_where_the_path_ends() {
     let shear_modulus = 0.3;

@@ -4,7 +4,7 @@
 //! screw, which carry one frame each: a body, or a frame without mass between two screws of a joint. For a link j with
 //! axis a_j through c_j the column of P on every descendant is `a_j × (φ − c_j)`, `a_j × d_I` (turn) or `a_j`, `0` (slide).
 //! Second derivatives nest, the link nearest the root outermost: ∂_i ∂_k x = a_i × (a_k × v). Contracted with forces R one
-//! matrix `N_k = Σ v Rᵀ` and one force f_k per link carry the curvature (physics.md, 5.3),
+//! matrix `N_k = Σ v Rᵀ` and one force f_k per link carry the curvature (docs/theory.md, 5.3),
 //!
 //! ```text
 //! (R·P′)_ik = a_iᵀ N_k a_k − (a_i·a_k) tr N_k          slide k:  f_k·(a_i × a_k)
