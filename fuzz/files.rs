@@ -1,6 +1,6 @@
 //! A folder with files to read, and what every answer about them has to be.
 
-use proboscis::run::RunError;
+use proboscis::app::CommandError;
 use std::cell::RefCell;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ fn prepared() -> TempDir {
 }
 
 /// A mistake names its file in one line, and the lines around it can be shown.
-pub fn check(name: &str, error: impl Into<RunError>) {
+pub fn check(name: &str, error: impl Into<CommandError>) {
     let error = error.into();
     let told = error.to_string();
     assert!(told.contains(name), "{told}");

@@ -31,13 +31,15 @@
 //! | [`ipopt`] | the solver behind one safe function |
 //! | [`kinematics`] | material vectors, linear in the poses of bodies |
 //! | [`functional`] | sums of effects over intervals and instants |
-//! | [`reduction`] | the same sums as functions of coordinates |
+//! | [`coordinates`] | the same sums as functions of coordinates |
 //! | [`model`] | from a system of bodies, joints and muscles to its action |
 //! | [`dynamics`] | simulation, equilibrium, observations |
 //! | [`control`] | the transcription of a control problem (DMOCC) |
-//! | [`scene`], [`report`] | files in and files out |
-//! | [`run`], [`study`] | what the commands do with one problem, and with many variants of it |
+//! | [`workflow`] | simulate, optimise, refine, verify: in memory |
+//! | [`files`], [`report`] | files in and files out |
+//! | [`app`], [`study`] | what the commands do with one problem, and with many variants of it |
 
+pub mod app;
 pub mod control;
 pub mod coordinates;
 pub mod dynamics;
@@ -52,6 +54,6 @@ pub mod mesh;
 pub mod model;
 pub mod nlp;
 pub mod report;
-pub mod run;
 pub mod sparse;
 pub mod study;
+pub mod workflow;

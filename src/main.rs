@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
+use proboscis::app::{self, CommandError, CommandInput, CommandOutput, ProgressDisplay};
 use proboscis::files::printable;
 use proboscis::ipopt::interrupt;
-use proboscis::run::accuracy::AccuracyTarget;
-use proboscis::run::{self, CommandInput, CommandOutput, ProgressDisplay, RunError};
 use proboscis::study::{StudyRequest, study};
+use proboscis::workflow::accuracy::AccuracyTarget;
 use tracing_subscriber::EnvFilter;
 
 /// Simulation and optimal control of robots driven by dielectric elastomer muscles.
@@ -266,7 +266,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn answer(command: Command) -> Result<CommandOutput, RunError> {
+fn answer(command: Command) -> Result<CommandOutput, CommandError> {
     let text = |result: String| CommandOutput {
         is_solved: true,
         result,
@@ -285,25 +285,25 @@ fn answer(command: Command) -> Result<CommandOutput, RunError> {
                 ..problem.request()
             };
             match starts {
-                Some(starts) => run::solve_from_starts(&request, starts, seed),
-                None => run::run(&request),
+                Some(starts) => app::solve_from_starts(&request, starts, seed),
+                None => app::run(&request),
             }
         }
         Command::Simulate(problem) => {
             interrupt::install();
-            run::run(&problem.request())
+            app::run(&problem.request())
         }
         Command::Equilibrium { problem, voltages } => {
             interrupt::install();
-            run::equilibrium_of_file(&problem.request(), voltages.as_deref())
+            app::equilibrium_of_file(&problem.request(), voltages.as_deref())
         }
-        Command::Inspect { input, output } => run::inspect(&CommandInput {
+        Command::Inspect { input, output } => app::inspect(&CommandInput {
             output,
             ..input.request()
         }),
         Command::Check { input, max_seconds } => {
             interrupt::install();
-            run::check(&CommandInput {
+            app::check(&CommandInput {
                 max_seconds,
                 ..input.request()
             })
@@ -312,19 +312,19 @@ fn answer(command: Command) -> Result<CommandOutput, RunError> {
             interrupt::install();
             study(&variants.request())
         }
-        Command::Expand { scene } => run::expand(&scene).map(text),
+        Command::Expand { scene } => app::expand(&scene).map(text),
         Command::Schema { file } => {
-            let (scene, problem) = run::schema();
+            let (scene, problem) = app::schema();
             Ok(text(match file {
                 File::Scene => scene,
                 File::Problem => problem,
-                File::Study => run::study_schema(),
+                File::Study => app::study_schema(),
             }))
         }
         Command::New {
             what: New::Trunk { segments, folder },
         } => {
-            let files = run::new_trunk(segments, &folder)?;
+            let files = app::new_trunk(segments, &folder)?;
             let names = files.iter().map(|path| path.display().to_string());
             Ok(text(names.collect::<Vec<_>>().join("\n")))
         }

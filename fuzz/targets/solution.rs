@@ -4,7 +4,7 @@
 use libfuzzer_sys::fuzz_target;
 use proboscis::control::problem::Task;
 use proboscis::control::{Boundary, Transcription, guess};
-use proboscis::run::solution_file;
+use proboscis::files::solution;
 use proboscis::scene::read_problem;
 use proboscis_fuzz::{PROBLEM, check, with};
 use std::fs;

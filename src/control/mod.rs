@@ -3,6 +3,7 @@
 mod boundary;
 mod calls;
 mod conditions;
+mod earlier;
 mod ends;
 mod error;
 mod evened;
@@ -17,6 +18,7 @@ mod transcription;
 
 pub use boundary::resolve_start;
 pub use conditions::{BoundaryConditions, TerminalState};
+pub use earlier::{Earlier, EarlierSolution};
 pub use error::BoundaryError;
 pub use guess::{InitialGuess, guess};
 pub use limits::{BoundedQuantity, Limits, When};

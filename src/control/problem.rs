@@ -1,5 +1,6 @@
 //! What is asked of a system: simulate it, find its equilibrium, or steer it. Units g, mm, ms, N, V.
 
+use crate::control::Earlier;
 use crate::dynamics::Solving;
 use crate::ipopt::OptionValue;
 use crate::model::system::{ElectricConstants, Muscle};
@@ -328,8 +329,8 @@ pub enum Guess {
     Interpolate,
     /// A simulation under given voltages.
     Simulate(Voltages),
-    /// An earlier `solution.json`, also from another grid.
-    Solution(PathBuf),
+    /// An earlier solution, also from another grid.
+    Solution(Earlier),
 }
 
 /// Options of the solver.

@@ -8,6 +8,7 @@
 pub mod json;
 pub mod problem;
 pub mod scene;
+pub mod solution;
 pub mod study;
 mod typed;
 pub mod units;

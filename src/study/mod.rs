@@ -28,10 +28,10 @@ pub use request::StudyRequest;
 use std::path::Path;
 use std::time::Instant;
 
+use crate::app::{CommandError, CommandOutput, make_folder};
 use crate::ipopt;
 use crate::report::atomic;
 use crate::report::origin::Origin;
-use crate::run::{CommandOutput, RunError, make_folder};
 use crate::study::compare::{Judged, judge, moved_marker};
 use crate::study::conclusion::conclusion;
 use crate::study::measure::StudyTask;
@@ -42,7 +42,7 @@ use crate::study::schedule::{Results, bar, look, time};
 ///
 /// # Errors
 /// The study or one of its problems is wrong, or the results cannot be written.
-pub fn study(request: &StudyRequest) -> Result<CommandOutput, RunError> {
+pub fn study(request: &StudyRequest) -> Result<CommandOutput, CommandError> {
     let began = Instant::now();
     let study = read_study(&request.input)?;
     let folder = request.folder();
@@ -52,7 +52,7 @@ pub fn study(request: &StudyRequest) -> Result<CommandOutput, RunError> {
     let mut results = look(&study, &bar);
     if let Some((name, apart)) = moved_marker(&study, &results) {
         bar.finish_and_clear();
-        return Err(RunError::Problem {
+        return Err(CommandError::Problem {
             file: request.input.clone(),
             place: "markers".to_owned(),
             reason: format!(
@@ -77,7 +77,7 @@ fn write(
     results: &Results<'_>,
     judged: &[Judged],
     said: &str,
-) -> Result<String, RunError> {
+) -> Result<String, CommandError> {
     let origin = Origin {
         command: request.command.clone(),
         input: request.input.display().to_string(),

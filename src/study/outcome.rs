@@ -6,16 +6,22 @@ use std::time::Instant;
 
 use nalgebra::Vector3;
 
+use crate::app::CommandError;
 use crate::control::problem::{AtRest, Control, Simulation, Task, Voltages};
 use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{EquilibriumError, observations, simulate, stable_equilibrium};
 use crate::ipopt::interrupt;
 use crate::model::Model;
-use crate::run::{
-    Cause, Iterate, Optimum, RunError, Simulated, SolveLimits, integrate, optimise, trajectory,
-};
 use crate::study::measure::StudyMeasure;
 use crate::study::read::StudyPoint;
+use crate::workflow::Cause;
+use crate::workflow::Iterate;
+use crate::workflow::Optimum;
+use crate::workflow::Simulated;
+use crate::workflow::SolveLimits;
+use crate::workflow::integrate;
+use crate::workflow::optimise;
+use crate::workflow::trajectory;
 
 /// How much finer the grid is on which optimal voltages are put to the test.
 pub const FINER: usize = 16;
@@ -71,18 +77,16 @@ fn control(
 ) -> (RunOutcome, Option<Observed>) {
     let system = &point.loaded.system;
     let mut on = |_: &Iterate<'_>| ControlFlow::Continue(());
-    let found = optimise(
-        &point.problem,
-        system,
-        task,
-        None,
-        SolveLimits::default(),
-        &mut on,
-    );
+    let found = optimise(system, task, None, SolveLimits::default(), &mut on);
     let seconds = began.elapsed().as_secs_f64();
     let optimum = match found {
         Ok(optimum) => optimum,
-        Err(error) => return (refused(&error, seconds), None),
+        Err(error) => {
+            return (
+                refused(&CommandError::of(&point.problem)(error), seconds),
+                None,
+            );
+        }
     };
     let is_solved = optimum.is_solved();
     let none = || "the solver found no solution".to_owned();
@@ -144,7 +148,7 @@ fn motion(
     began: Instant,
 ) -> (RunOutcome, Option<Observed>) {
     let mut interrupted = false;
-    let found = integrate(&point.problem, &point.loaded.system, task, |_, _| {
+    let found = integrate(&point.loaded.system, task, |_, _| {
         interrupted = interrupt::requested();
         match interrupted {
             true => ControlFlow::Break(()),
@@ -154,7 +158,12 @@ fn motion(
     let seconds = began.elapsed().as_secs_f64();
     let simulated = match found {
         Ok(simulated) => simulated,
-        Err(error) => return (refused(&error, seconds), None),
+        Err(error) => {
+            return (
+                refused(&CommandError::of(&point.problem)(error), seconds),
+                None,
+            );
+        }
     };
     let is_solved = simulated.failure.is_none() && !interrupted;
     let ended = RunOutcome {
@@ -269,7 +278,7 @@ fn rest(
 /// The status of a point whose model, start or goal does not exist.
 const REFUSED: &str = "refused";
 
-fn refused(error: &RunError, seconds: f64) -> RunOutcome {
+fn refused(error: &CommandError, seconds: f64) -> RunOutcome {
     RunOutcome {
         status: REFUSED,
         message: Some(error.to_string()),

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::run::ProgressDisplay;
+use crate::app::ProgressDisplay;
 
 /// A command on a study file.
 #[derive(Clone, Debug)]

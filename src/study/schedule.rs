@@ -3,8 +3,8 @@
 
 use indicatif::ProgressBar;
 
+use crate::app::{ProgressDisplay, progress_bar};
 use crate::ipopt::interrupt;
-use crate::run::{ProgressDisplay, progress_bar};
 use crate::study::outcome::{INTERRUPTED, Observed, RunOutcome, run};
 use crate::study::read::{Reference, Study, StudyPoint};
 

@@ -14,9 +14,9 @@ use proboscis::ipopt::{self, Options};
 use proboscis::kinematics::MaterialVector;
 use proboscis::model::Model;
 use proboscis::model::system::{JointKind, System};
-use proboscis::run::accuracy::{AccuracyTarget, Attempt, Refined, refine};
-use proboscis::run::estimate::ErrorSample;
-use proboscis::run::{Iterate, SolveLimits, integrate_to, optimise_to};
+use proboscis::workflow::accuracy::{AccuracyTarget, Attempt, Refined, refine};
+use proboscis::workflow::estimate::ErrorSample;
+use proboscis::workflow::{Iterate, SolveLimits, integrate_to, optimise_to};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -292,7 +292,6 @@ fn a_pendulum_is_where_elliptic_functions_say_to_the_accuracy_asked_for() {
     let mut steps = Vec::new();
     for request in [1e-2, 1e-3, 1e-4, 1e-5] {
         let found = integrate_to(
-            Path::new("pendulum"),
             &pendulum(),
             &swing(0.05),
             AccuracyTarget::Below(request),
@@ -336,14 +335,7 @@ fn a_motion_stopped_on_a_finer_grid_is_kept_as_it_was_on_the_one_before() {
     };
     let wanted = AccuracyTarget::Below(1e-7);
     let task = swing(0.05);
-    let found = integrate_to(
-        Path::new("pendulum"),
-        &pendulum(),
-        &task,
-        wanted,
-        None,
-        stop_at_80,
-    );
+    let found = integrate_to(&pendulum(), &task, wanted, None, stop_at_80);
     let found = found.unwrap();
     assert_eq!(found.run.history.intervals(), 40);
     assert_eq!(found.accuracy.is_met, Some(false));
@@ -367,7 +359,7 @@ fn an_optimum_stopped_on_a_finer_grid_is_kept_as_it_was_on_the_one_before() {
     };
     let wanted = AccuracyTarget::Below(1e-4);
     let allowed = SolveLimits::default();
-    let found = optimise_to(&file, &loaded.system, &control, wanted, allowed, stop_at_80).unwrap();
+    let found = optimise_to(&loaded.system, &control, wanted, allowed, stop_at_80).unwrap();
     assert_eq!(found.run.motion.intervals(), 40);
     assert!(found.run.solution.status.is_solved());
     assert_eq!(found.accuracy.stopped.as_deref(), Some("interrupted"));

@@ -5,7 +5,9 @@ use proboscis::control::problem::Task;
 use proboscis::dynamics::simulate;
 use proboscis::files::read_problem;
 use proboscis::ipopt::Status;
-use proboscis::run::{Iterate, SolveLimits, optimise};
+use proboscis::workflow::Iterate;
+use proboscis::workflow::SolveLimits;
+use proboscis::workflow::optimise;
 use std::ops::ControlFlow;
 
 /// What a solve of a well-posed problem may end with.
@@ -31,14 +33,7 @@ fn solve(goal: &Goal, kind: Kind) -> bool {
         iterations: Some(200),
         seconds: None,
     };
-    let optimum = optimise(
-        &trunk(),
-        &loaded.system,
-        &control,
-        None,
-        allowed,
-        &mut go_on,
-    );
+    let optimum = optimise(&loaded.system, &control, None, allowed, &mut go_on);
     let optimum = optimum.expect("a reachable goal");
     let status = optimum.solution.status;
     assert!(CLASSIFIED.contains(&status), "{status} for {}", goal.json);
@@ -124,7 +119,7 @@ fn a_simulation_as_a_guess_saves_iterations() {
             let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
             let system = &loaded.system;
             let allowed = SolveLimits::default();
-            let optimum = optimise(&trunk(), system, &control, None, allowed, &mut go_on);
+            let optimum = optimise(system, &control, None, allowed, &mut go_on);
             let solution = optimum.expect("a reachable goal").solution;
             assert!(solution.status.is_solved(), "{goal}");
             counts.push(solution.iterations.len() - 1);

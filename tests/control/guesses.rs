@@ -5,21 +5,18 @@ use proboscis::control::problem::{Control, Duration, Guess, Task};
 use proboscis::control::{BoundaryConditions, InitialGuess, Solution, guess};
 use proboscis::files::read_problem;
 use proboscis::model::{Coordinates, System};
-use proboscis::run::{SolveLimits, integrate, optimise, solved};
+use proboscis::workflow::SolveLimits;
+use proboscis::workflow::integrate;
+use proboscis::workflow::optimise;
+use proboscis::workflow::solved;
 use std::ops::ControlFlow;
-use std::path::Path;
 use tempfile::tempdir;
 
 /// The optimum of a control problem.
 pub(crate) fn optimum(system: &System, control: &Control) -> Solution {
-    let found = optimise(
-        Path::new("problem"),
-        system,
-        control,
-        None,
-        SolveLimits::default(),
-        &mut |_| ControlFlow::Continue(()),
-    );
+    let found = optimise(system, control, None, SolveLimits::default(), &mut |_| {
+        ControlFlow::Continue(())
+    });
     let found = found.unwrap();
     assert!(found.solution.status.is_solved());
     found.motion
@@ -75,9 +72,7 @@ fn a_guess_changes_nothing_that_is_asked() {
     let Task::Simulate(task) = loaded.task else {
         panic!("a simulation")
     };
-    let simulated = integrate(Path::new("problem"), &loaded.system, &task, |_, _| {
-        ControlFlow::Continue(())
-    });
+    let simulated = integrate(&loaded.system, &task, |_, _| ControlFlow::Continue(()));
     let simulated = simulated.unwrap();
     let earlier = [
         optimum(&system, &given),

@@ -1,8 +1,10 @@
 //! Ends that are held, and those that cannot be.
 
 use crate::verdicts::{control, kept, read, request, told, trust};
+use proboscis::app::CommandInput;
+use proboscis::app::run;
 use proboscis::control::BoundaryConditions;
-use proboscis::run::{CommandInput, run, solution_file};
+use proboscis::files::solution;
 use std::fs;
 use std::path::Path;
 use tempfile::tempdir;
@@ -64,8 +66,8 @@ fn a_solution_holds_its_goal_after_its_end() {
     )];
     let (system, asked) = control("pair", &set);
     let (model, _) = BoundaryConditions::resolve(&system, &asked, 10.0).unwrap();
-    assert_eq!(solution_file::read(&old, &model).unwrap().hold, None);
-    let held = solution_file::read(&path, &model).unwrap().hold.unwrap();
+    assert_eq!(solution::read(&old, &model).unwrap().hold, None);
+    let held = solution::read(&path, &model).unwrap().hold.unwrap();
     assert_eq!(held.iter().copied().fold(0.0, f64::max), 1700.0);
 }
 

@@ -8,7 +8,10 @@ use proboscis::control::{
 };
 use proboscis::files::read_problem;
 use proboscis::model::Coordinates;
-use proboscis::run::{Iterate, Optimum, SolveLimits, optimise};
+use proboscis::workflow::Iterate;
+use proboscis::workflow::Optimum;
+use proboscis::workflow::SolveLimits;
+use proboscis::workflow::optimise;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -40,7 +43,6 @@ fn problem(coordinates: Coordinates, intervals: usize) -> Control {
 
 fn solve(control: &Control) -> Optimum {
     let found = optimise(
-        Path::new("trunk"),
         &trunk(2),
         control,
         None,
@@ -194,7 +196,6 @@ fn a_coarser_grid_and_one_that_fits_nowhere_are_reached_as_well() {
         let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(apart < 0.05, "{intervals}: {apart}");
         let from = optimise(
-            Path::new("trunk"),
             &trunk(2),
             &control,
             Some(&solved.motion),
@@ -253,7 +254,7 @@ fn least_effort_is_found_from_other_grids_and_durations_sooner_and_as_good() {
         let motion = from.map(|optimum| &optimum.motion);
         let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
         let allowed = SolveLimits::default();
-        let found = optimise(&file, &loaded.system, &control, motion, allowed, &mut go_on);
+        let found = optimise(&loaded.system, &control, motion, allowed, &mut go_on);
         let found = found.unwrap();
         assert!(found.solution.status.is_solved());
         found

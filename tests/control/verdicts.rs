@@ -1,14 +1,19 @@
 //! What an optimum is worth: guesses that change nothing that is asked, violations that are numbers, voltages that hold.
 
+use proboscis::app::CommandInput;
+use proboscis::app::CommandOutput;
+use proboscis::app::ProgressDisplay;
+use proboscis::app::run;
 use proboscis::control::problem::{Control, Task};
 use proboscis::files::read_problem;
 use proboscis::math::random::Random;
 use proboscis::model::System;
 use proboscis::nlp::Bounds;
-use proboscis::run::{
-    Cause, CommandInput, CommandOutput, ProgressDisplay, SolveLimits, integrate, optimise, run,
-    solved,
-};
+use proboscis::workflow::Cause;
+use proboscis::workflow::SolveLimits;
+use proboscis::workflow::integrate;
+use proboscis::workflow::optimise;
+use proboscis::workflow::solved;
 use serde_json::Value;
 use std::fs;
 use std::ops::ControlFlow;
@@ -102,10 +107,7 @@ fn beside(folder: &Path, problem: &Value, steps: usize) -> (f64, f64) {
     let Task::Simulate(task) = loaded.task else {
         panic!("a simulation")
     };
-    let found = integrate(&again, &loaded.system, &task, |_, _| {
-        ControlFlow::Continue(())
-    })
-    .unwrap();
+    let found = integrate(&loaded.system, &task, |_, _| ControlFlow::Continue(())).unwrap();
     let motion = solved(&found.model, &found.history, None);
     let (mut way, mut apart) = (0.0_f64, 0.0_f64);
     for (j, joint) in loaded.system.joints.iter().enumerate() {
@@ -147,14 +149,9 @@ fn a_grid_that_resolves_no_motion_is_refined() {
 fn an_optimum_on_another_root_of_a_step_is_no_solution() {
     // The optimum of the problem's own grid alone, without a finer one.
     let (system, control) = control("elephant_trunk_effort", &["control.intervals=3".to_owned()]);
-    let found = optimise(
-        Path::new("trunk"),
-        &system,
-        &control,
-        None,
-        SolveLimits::default(),
-        &mut |_| ControlFlow::Continue(()),
-    );
+    let found = optimise(&system, &control, None, SolveLimits::default(), &mut |_| {
+        ControlFlow::Continue(())
+    });
     let found = found.unwrap();
     assert!(found.solution.status.is_solved() && !found.is_solved());
     assert_eq!(found.word(), "not_reproduced");

@@ -1,8 +1,8 @@
 //! Files that are deep, long or ask for what no memory holds.
 
 use crate::fuzz_reader::{beside_scenes, is_refused, kept};
+use proboscis::app::CommandError;
 use proboscis::files::read_problem;
-use proboscis::run::RunError;
 use std::path::Path;
 
 #[test]
@@ -59,7 +59,7 @@ fn mistakes_in_a_long_line_are_told() {
     let error = read_problem(&path, &[]).unwrap_err();
     assert_eq!(error.path(), "scene.gravty");
     assert!(error.span().unwrap().start > 65_536);
-    assert_eq!(RunError::from(error).excerpt(), None);
+    assert_eq!(CommandError::from(error).excerpt(), None);
 }
 
 /// Long keys around many values: each place written out would be gigabytes.

@@ -3,8 +3,8 @@
 //! `make fuzz` holds each property for as long as one likes (`FUZZ_SECONDS`), and `PROPTEST_CASES` says how often it is held
 //! here; `fuzz/` does the same with random bytes.
 
+use proboscis::app::CommandError;
 use proboscis::files::{SceneError, read_problem, read_scene};
-use proboscis::run::RunError;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest::test_runner::TestRunner;
@@ -93,7 +93,7 @@ fn check(error: SceneError, file: &str, is_text: bool) {
         &told[..200]
     );
     assert_eq!(error.span().is_some(), is_text, "{told}");
-    let excerpt = RunError::from(error).excerpt();
+    let excerpt = CommandError::from(error).excerpt();
     // Lines that are longer than a page are not shown.
     assert!(is_text || excerpt.is_none(), "{told}");
     let is_shown = |c: char| c == '\n' || !c.is_control();

@@ -4,7 +4,7 @@ use crate::scene::{Case, check, folder, mistake};
 use proboscis::control::problem::Task;
 use proboscis::files::read_problem;
 use proboscis::files::read_scene;
-use proboscis::files::scene::expand;
+use proboscis::files::expand;
 use proboscis::model::system::{ElementKind, Potential};
 use std::fs;
 

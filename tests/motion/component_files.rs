@@ -4,7 +4,7 @@ use crate::components::column;
 use proboscis::control::problem::Task;
 use proboscis::files::{read_problem, read_system};
 use proboscis::model::system::System;
-use proboscis::run::integrate;
+use proboscis::workflow::integrate;
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -68,9 +68,7 @@ fn the_finger_with_a_tendon_bends() {
     let Task::Simulate(task) = &loaded.task else {
         panic!("a simulation")
     };
-    let run = integrate(&problem, &loaded.system, task, |_, _| {
-        ControlFlow::Continue(())
-    });
+    let run = integrate(&loaded.system, task, |_, _| ControlFlow::Continue(()));
     let run = run.unwrap();
     assert_eq!(run.failure, None);
     let of = |name: &str| column(&run.model, &run.history, name);

@@ -12,7 +12,8 @@ use proboscis::dynamics::{
 use proboscis::files::read_problem;
 use proboscis::model::system::JointKind;
 use proboscis::model::{Coordinates, Model};
-use proboscis::run::{Simulated, integrate};
+use proboscis::workflow::Simulated;
+use proboscis::workflow::integrate;
 use serde_json::{Value, json};
 use std::fs;
 use std::ops::ControlFlow;
@@ -34,13 +35,7 @@ fn motion_of(file: &Path, step: Option<f64>) -> Simulated {
         step: step.unwrap_or(task.step),
         ..task
     };
-    integrate(
-        file,
-        &loaded.system,
-        &task,
-        |_, _| ControlFlow::Continue(()),
-    )
-    .unwrap()
+    integrate(&loaded.system, &task, |_, _| ControlFlow::Continue(())).unwrap()
 }
 
 /// Greatest distance in mm of the markers of two motions, at the instants of the first, which has so many times fewer steps.

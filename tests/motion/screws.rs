@@ -15,10 +15,11 @@ use proboscis::dynamics::{
 use proboscis::model::system::{JointKind, System};
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::differences;
-use proboscis::run::{Iterate, SolveLimits, optimise};
+use proboscis::workflow::Iterate;
+use proboscis::workflow::SolveLimits;
+use proboscis::workflow::optimise;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
-use std::path::Path;
 
 const BOTH: [Coordinates; 2] = [Coordinates::Reduced, Coordinates::Redundant];
 
@@ -253,16 +254,8 @@ fn a_satellite_turns_by_bending_its_trunk_in_both_coordinates() {
     let optima = BOTH.map(|coordinates| {
         problem.coordinates = Some(coordinates);
         let nothing = &mut |_: &Iterate<'_>| ControlFlow::Continue(());
-        let file = Path::new("p.json");
         let before = earlier.as_ref();
-        let found = optimise(
-            file,
-            &system,
-            &problem,
-            before,
-            SolveLimits::default(),
-            nothing,
-        );
+        let found = optimise(&system, &problem, before, SolveLimits::default(), nothing);
         let found = found.unwrap();
         assert!(found.solution.status.is_solved(), "{}", found.word());
         let ends = [0, intervals].map(|k| found.motion.poses[k][0].directors);

@@ -3,7 +3,8 @@
 use crate::runs::run;
 use proboscis::control::problem::Task;
 use proboscis::files::read_problem;
-use proboscis::run::{integrate, trajectory};
+use proboscis::workflow::integrate;
+use proboscis::workflow::trajectory;
 use serde_json::{Value, json};
 use std::fs;
 use std::ops::ControlFlow;
@@ -233,14 +234,8 @@ fn each_point_runs_again_from_its_overrides_to_the_last_bit() {
             let Task::Simulate(task) = &loaded.task else {
                 panic!("a simulation");
             };
-            let moved = integrate(
-                &path,
-                &loaded.system,
-                task,
-                |_, _| ControlFlow::Continue(()),
-            )
-            .unwrap();
-            let kept = proboscis::run::solved(&moved.model, &moved.history, None);
+            let moved = integrate(&loaded.system, task, |_, _| ControlFlow::Continue(())).unwrap();
+            let kept = proboscis::workflow::solved(&moved.model, &moved.history, None);
             let places = trajectory(&moved.model, &kept).path(0);
             let last = places.last().unwrap();
             let told = numbers(&point["values"]["end"]);

@@ -4,7 +4,10 @@ use crate::study::{numbers, of, results, steps, wheel};
 use proboscis::control::problem::Task;
 use proboscis::dynamics::simulate;
 use proboscis::files::read_problem;
-use proboscis::run::{Iterate, SolveLimits, optimise, trajectory};
+use proboscis::workflow::Iterate;
+use proboscis::workflow::SolveLimits;
+use proboscis::workflow::optimise;
+use proboscis::workflow::trajectory;
 use serde_json::json;
 use std::fs;
 use std::ops::ControlFlow;
@@ -47,15 +50,7 @@ fn optimal_voltages_are_put_to_the_test_on_a_finer_grid() {
         panic!("a control problem");
     };
     let mut on = |_: &Iterate<'_>| ControlFlow::Continue(());
-    let optimum = optimise(
-        &path,
-        &loaded.system,
-        task,
-        None,
-        SolveLimits::default(),
-        &mut on,
-    )
-    .unwrap();
+    let optimum = optimise(&loaded.system, task, None, SolveLimits::default(), &mut on).unwrap();
     assert_eq!(
         optimum.solution.objective,
         point["values"]["objective"][0].as_f64().unwrap()
@@ -76,7 +71,7 @@ fn optimal_voltages_are_put_to_the_test_on_a_finer_grid() {
         |_| ControlFlow::Continue(()),
     );
     assert_eq!(failure, None);
-    let kept = proboscis::run::solved(model, &history, None);
+    let kept = proboscis::workflow::solved(model, &history, None);
     let again = trajectory(model, &kept).path(0);
     let optimal = trajectory(model, &optimum.motion).path(0);
     let distances: Vec<f64> = (0..=20)

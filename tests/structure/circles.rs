@@ -7,9 +7,9 @@ use crate::sources::{Source, sources};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Folders in which circles are left.
-const LEFT: [&str; 3] = ["dynamics", "model", "reduction"];
+const LEFT: [&str; 3] = ["coordinates", "dynamics", "model"];
 
-/// A file or an item in it: `["scene", "unit", "Unit"]`.
+/// A file or an item in it: `["files", "units", "unit", "Unit"]`.
 type Path = Vec<String>;
 
 fn is_word(c: char) -> bool {

@@ -14,8 +14,8 @@ use proboscis::mesh::grid::Grid;
 use proboscis::model::plan::TERMS;
 use proboscis::model::system::{Potential, System};
 use proboscis::model::{Analysis, Coordinates, Model};
-use proboscis::run::Plan;
 use proboscis::sparse::Symmetry;
+use proboscis::workflow::Plan;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 

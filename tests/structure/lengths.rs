@@ -11,8 +11,8 @@ const LONG: [&str; 8] = [
     "src/dynamics/stages/mod.rs",
     "src/dynamics/stepper.rs",
     "src/model/mod.rs",
-    "src/reduction/pull_back/articulated.rs",
-    "src/reduction/reduced.rs",
+    "src/coordinates/pull_back/articulated.rs",
+    "src/coordinates/reduced.rs",
     "tests/common/cases.rs",
     "tests/motion/screws.rs",
 ];

@@ -5,7 +5,7 @@ use std::path::Path;
 
 /// A file of Rust.
 pub(crate) struct Source {
-    /// Its path below the folder that was asked for, such as `scene/unit.rs`.
+    /// Its path below the folder that was asked for, such as `energy/muscle.rs`.
     pub(crate) name: String,
     /// Its text.
     pub(crate) text: String,

@@ -1,10 +1,12 @@
 //! From a guess as written to the guess.
 
+use crate::control::Earlier;
 use crate::control::problem::{Guess, Voltages};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_control::GuessSpec;
 use crate::files::problem::voltages::{existing, over_time};
+use crate::files::solution::SolutionFile;
 use crate::math::random::Random;
 use crate::model::system::{Source, System};
 
@@ -24,7 +26,10 @@ pub(crate) fn guess(
     });
     let solution = spec.solution.as_ref().map(|solution| -> Build<'_> {
         let scope = scope.key("solution");
-        Box::new(move || existing(solution, &scope).map(Guess::Solution))
+        Box::new(move || {
+            let path = existing(solution, &scope)?;
+            Ok(Guess::Solution(Earlier::new(SolutionFile(path))))
+        })
     });
     let random = spec.random.as_ref().map(|random| -> Build<'_> {
         Box::new(|| {

@@ -1,0 +1,211 @@
+//! The derivatives of a problem against differences, at its guess moved by noise.
+
+use std::collections::{BTreeMap, HashMap};
+use std::time::Instant;
+
+use crate::app::error::CommandError;
+use crate::app::request::{CommandInput, CommandOutput};
+use crate::control::problem::{
+    BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, Task, Voltages,
+};
+use crate::control::{Row, Transcription, Variable};
+use crate::files::read_problem;
+use crate::ipopt::interrupt::TimeLimit;
+use crate::mesh::Mesh;
+use crate::model::{Coordinates, Model, System};
+use crate::nlp::Nlp;
+use crate::nlp::differences::{self, Along};
+use crate::workflow::effects;
+use crate::workflow::memory;
+use crate::workflow::optimise::{Counted, Prepared, prepare, resolve};
+
+/// Noise on each variable, relative to its size.
+const NOISE: f64 = 1e-2;
+/// Seed of noise, factor and costates.
+const SEED: u64 = 7;
+/// Intervals looked at where the problem has no grid of its own; all intervals are alike.
+const INTERVALS: usize = 6;
+/// Entries of the Jacobian that are evaluated for the differences; of larger programs a part of the variables is looked at.
+const WORK: f64 = 2e8;
+
+/// Compares gradient, Jacobian and Hessian with differences; not solved where an entry is wrong.
+///
+/// What is not a control problem is made one without a goal, so that every equation of its motion is looked at.
+///
+/// # Errors
+/// The input is wrong.
+pub fn check(request: &CommandInput) -> Result<CommandOutput, CommandError> {
+    let began = Instant::now();
+    let loaded = read_problem(&request.input, &request.set)?;
+    memory::of_elements(&loaded.system).map_err(CommandError::of(&request.input))?;
+    let control = as_control(loaded.task, &loaded.system);
+    let (model, boundary) =
+        resolve(&loaded.system, &control).map_err(CommandError::of(&request.input))?;
+    let Prepared {
+        mut program, point, ..
+    } = prepare(&model, &boundary, &control, None, Counted::No)
+        .map_err(CommandError::of(&request.input))?;
+    let sizes = sizes(&program, &model);
+    let mut noise = Noise(SEED);
+    let mut moved = |(x, size): (&f64, &f64)| x + NOISE * size * noise.next();
+    let x: Vec<f64> = point.x.iter().zip(&sizes).map(&mut moved).collect();
+    let columns = columns(&program, &mut noise);
+    let along = Along {
+        columns: &columns,
+        sizes: &sizes,
+    };
+    let left = |seconds: f64| seconds - began.elapsed().as_secs_f64();
+    let limit = TimeLimit::after(request.max_seconds.map(left));
+    let mut stopped = None;
+    let report = differences::check_along(&mut program, &x, along, SEED, || {
+        stopped = limit.reached();
+        stopped.is_some()
+    });
+    let mut notes: Vec<String> = report.to_string().lines().map(str::to_owned).collect();
+    for (entry, note) in report.wrong.iter().zip(&mut notes[1..]) {
+        let effects = coupling(&program, &model, &entry.row, &entry.column);
+        if !effects.is_empty() {
+            note.push_str(&format!(" [{}]", effects.join(", ")));
+        }
+    }
+    let worst = report.gradient.max(report.jacobian).max(report.hessian);
+    let of = match report.checked == x.len() {
+        true => String::new(),
+        false => format!(", along {} of {} variables", report.checked, x.len()),
+    };
+    let result = match (report.is_consistent(), stopped) {
+        (true, _) => format!("derivatives agree with differences to {worst:.1e}{of}"),
+        (false, Some(status)) if report.wrong.is_empty() => {
+            let why = status.word().replace('_', " ");
+            format!("not all derivatives were compared ({why}): {worst:.1e}{of}")
+        }
+        (false, _) => format!(
+            "derivatives are wrong: {} entries or more, {} variables not checked{of}",
+            report.wrong.len(),
+            report.unchecked.len()
+        ),
+    };
+    Ok(CommandOutput {
+        is_solved: report.is_consistent(),
+        result,
+        notes,
+    })
+}
+
+/// The size of each variable as the solver sees it: that of an element for the coordinates of its nodes.
+fn sizes(program: &Transcription<'_>, model: &Model) -> Vec<f64> {
+    let blocks = model.solids.iter().map(|block| &block.solid.mesh);
+    let edge = blocks
+        .map(Mesh::shortest_edge)
+        .fold(f64::INFINITY, f64::min);
+    let size = (edge / model.length()).min(1.0);
+    let of_bodies = model.action.motion.of_bodies;
+    let n = model.coordinate_count();
+    let of = |variable: &Variable| match *variable {
+        Variable::Unknown { i, .. } if (of_bodies..n).contains(&i) => size,
+        _ => 1.0,
+    };
+    program.unknowns().variables.iter().map(of).collect()
+}
+
+/// The variables that are looked at: all, or so many by chance that their differences take some minutes.
+fn columns(program: &Transcription<'_>, noise: &mut Noise) -> Vec<usize> {
+    let count = program.unknowns().variables.len();
+    let entries = program.jacobian_structure().rows.len();
+    let share = WORK / (count as f64 * entries as f64);
+    let is_taken = |_: &usize| share >= 1.0 || noise.next().abs() < share;
+    (0..count).filter(is_taken).collect()
+}
+
+/// Names of the effects that couple the unknowns of a row and a column.
+fn coupling(program: &Transcription<'_>, model: &Model, row: &str, column: &str) -> Vec<String> {
+    let n = model.coordinate_count();
+    let of_variable = |variable: &Variable| match *variable {
+        Variable::Unknown { i, .. } => Some(i),
+        Variable::Scalar { s, .. } => Some(n + s),
+        Variable::Horizon => None,
+    };
+    let mut entries = HashMap::new();
+    for (i, variable) in program.unknowns().variables.iter().enumerate() {
+        entries.insert(program.variable_name(i), of_variable(variable));
+    }
+    for (r, kind) in program.unknowns().rows.iter().enumerate() {
+        let entry = match *kind {
+            Row::Equation { i, .. } => Some(i),
+            Row::Gauss { s, .. } => Some(n + s),
+            Row::Limit { .. } => None,
+        };
+        entries.insert(program.constraint_name(r), entry);
+    }
+    let entry = |name: &str| entries.get(name).copied().flatten();
+    let (Some(i), Some(j)) = (entry(row), entry(column)) else {
+        return Vec::new();
+    };
+    effects::coupling(model, i, j)
+}
+
+/// The control problem whose program has the derivatives of a task.
+fn as_control(task: Task, system: &System) -> Control {
+    let at_reference = || BoundaryState::JointAngles {
+        angles: BTreeMap::new(),
+        rates: BTreeMap::new(),
+        velocities: Default::default(),
+    };
+    let without_goal = |start, step, voltages, coordinates: Option<Coordinates>| Control {
+        duration: Duration::Given(step * INTERVALS as f64),
+        intervals: INTERVALS,
+        start,
+        goal: at_reference(),
+        voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
+        given: BTreeMap::new(),
+        hold: Default::default(),
+        objective: Objective {
+            effort: 1.0,
+            rate: 1.0,
+            duration: 0.0,
+        },
+        limits: Vec::new(),
+        coordinates,
+        guess: Guess::Simulate(Voltages::Constant(voltages)),
+        solver: Solver {
+            tolerance: 1e-10,
+            max_iterations: 0,
+            ipopt: BTreeMap::new(),
+        },
+    };
+    match task {
+        Task::Control(control) => *control,
+        Task::Simulate(simulation) => {
+            let silent = simulation.question(system, simulation.step).zero_voltage;
+            let Simulation {
+                step,
+                start,
+                voltages,
+                coordinates,
+                ..
+            } = simulation;
+            let row = voltages.at(0.0).to_vec();
+            Control {
+                given: silent.into_iter().map(|source| (source, 0.0)).collect(),
+                ..without_goal(start, step, row, coordinates)
+            }
+        }
+        Task::Equilibrium(task) => {
+            without_goal(at_reference(), 1.0, task.voltages, task.coordinates)
+        }
+    }
+}
+
+/// Numbers in [−1, 1] by the generator `splitmix64` of S. Vigna (public domain).
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        2.0 * (z >> 11) as f64 / (1_u64 << 53) as f64 - 1.0
+    }
+}

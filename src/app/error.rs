@@ -1,0 +1,105 @@
+//! Why a command gives no answer: the input is wrong, or a file cannot be written.
+
+use std::error::Error as StdError;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::files::SceneError;
+use crate::ipopt::Status;
+use crate::report::atomic::WriteError;
+use crate::workflow::WorkflowError;
+
+/// A command ends without an answer.
+#[derive(Debug, Error)]
+pub enum CommandError {
+    /// A scene, problem or override is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// An earlier solution cannot be used.
+    #[error(transparent)]
+    Earlier(Box<dyn StdError + Send + Sync>),
+    /// What a problem asks for does not exist.
+    #[error("{}: {place}: {reason}", file.display())]
+    Problem {
+        /// The problem file as typed.
+        file: PathBuf,
+        /// Path in it.
+        place: String,
+        /// Why.
+        reason: String,
+    },
+    /// The input is right, but a start or goal at rest was not found.
+    #[error("{}: {place}: {reason}", file.display())]
+    NoEquilibrium {
+        /// The problem file as typed.
+        file: PathBuf,
+        /// Path in it.
+        place: String,
+        /// Why.
+        reason: String,
+    },
+    /// A value typed on the command line is wrong.
+    #[error("{option}: {reason}")]
+    Option {
+        /// The option.
+        option: &'static str,
+        /// Why.
+        reason: String,
+    },
+    /// One of several starts finds the input wrong.
+    #[error("start {start}: {message}")]
+    Start {
+        /// Its number.
+        start: usize,
+        /// What it said.
+        message: String,
+    },
+    /// Ctrl-C was pressed, or the time allowed is over, before there was anything to write.
+    #[error("stopped before the first result ({})", .0.word().replace('_', " "))]
+    Stopped(Status),
+    /// A file stands where a new one was to be written.
+    #[error("{} exists already and is left as it is; choose another folder", .0.display())]
+    Exists(PathBuf),
+    /// A file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+impl CommandError {
+    /// Exit status of the program: 2 where the input is wrong, 1 where it has no answer, there was no time, or results could not
+    /// be kept.
+    pub fn exit_status(&self) -> u8 {
+        match self {
+            Self::Write(_) | Self::Stopped(_) | Self::NoEquilibrium { .. } => 1,
+            _ => 2,
+        }
+    }
+
+    /// The lines of the file around the mistake, marked, where there is such a place.
+    pub fn excerpt(&self) -> Option<String> {
+        match self {
+            Self::Scene(mistake) => mistake.excerpt(),
+            _ => None,
+        }
+    }
+
+    /// What a workflow says of the problem in a file.
+    pub(crate) fn of(file: &Path) -> impl Fn(WorkflowError) -> Self {
+        let file = file.to_owned();
+        move |error| match error {
+            WorkflowError::Problem { place, reason } => Self::Problem {
+                file: file.clone(),
+                place,
+                reason,
+            },
+            WorkflowError::NoEquilibrium { place, reason } => Self::NoEquilibrium {
+                file: file.clone(),
+                place,
+                reason,
+            },
+            WorkflowError::Earlier(error) => Self::Earlier(error),
+            WorkflowError::Stopped(status) => Self::Stopped(status),
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! A simulation from file to folder.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use crate::app::blocks::BlockSizes;
+use crate::app::comparison::{self, Comparison};
+use crate::app::domain;
+use crate::app::error::CommandError;
+use crate::app::fields;
+use crate::app::folder::make_folder;
+use crate::app::progress::Progress;
+use crate::app::request::{CommandInput, CommandOutput};
+use crate::app::solution_file;
+use crate::app::steps;
+use crate::app::summary::{self, MEASURED, Seconds, Summary};
+use crate::app::unfinished::Unfinished;
+use crate::app::words::counted;
+use crate::control::problem::{Afterwards, Simulation, Voltages};
+use crate::dynamics::{DiscreteTrajectory, local_error, observations, out_of_domain};
+use crate::ipopt::interrupt;
+use crate::model::{Model, System};
+use crate::report::skins::Skins;
+use crate::report::{Run, write_run};
+use crate::workflow::effects::Plan;
+use crate::workflow::grids::integrate_to;
+use crate::workflow::integrate::{Simulated, grid, integrate};
+use crate::workflow::motion::{solved, trajectory};
+use crate::workflow::phase::phase;
+
+/// Simulates and writes the folder; a motion that ends early is kept as far as it went.
+pub(super) fn simulation(
+    request: &CommandInput,
+    system: &System,
+    task: &Simulation,
+    began: Instant,
+) -> Result<CommandOutput, CommandError> {
+    let (steps, _) = grid(task);
+    if task.tolerance.is_some() && request.wanted.is_some() {
+        return Err(CommandError::Problem {
+            file: request.input.clone(),
+            place: "simulate.step".to_owned(),
+            reason: "steps are halved for --accuracy and --estimate-error: write a step; \"auto\" has a \"tolerance\" instead"
+                .to_owned(),
+        });
+    }
+    let folder = request.folder();
+    let read = began.elapsed().as_secs_f64();
+    let mut unwritable = None;
+    let mut unfinished = Unfinished::of(&folder);
+    let watch = interrupt::watch(request.max_seconds.map(|s| s - read));
+    let (
+        Simulated {
+            model,
+            history,
+            failure,
+            setup,
+            seconds: spent,
+        },
+        accuracy,
+    ) = {
+        let progress = Progress::of_steps(request.progress, steps);
+        let mut observer = |steps: usize, model: &Model, history: &DiscreteTrajectory| {
+            let step = history.intervals();
+            progress.step(steps, step);
+            // A folder that cannot be made is told before a long run, not after it.
+            if step == 1 && unwritable.is_none() {
+                unwritable = make_folder(&folder).err();
+            }
+            // The steps so far are final; those of a finer grid begin anew.
+            unfinished.consider(model, 0.0, || solved(model, history, None));
+            match unwritable {
+                Some(_) => ControlFlow::Break(()),
+                None => ControlFlow::Continue(()),
+            }
+        };
+        match request.wanted {
+            None => {
+                let run = integrate(system, task, |model, history| {
+                    observer(steps, model, history)
+                })
+                .map_err(CommandError::of(&request.input))?;
+                (run, None)
+            }
+            Some(wanted) => {
+                let left = request.max_seconds.map(|s| s - read);
+                let found = integrate_to(system, task, wanted, left, &mut observer)
+                    .map_err(CommandError::of(&request.input))?;
+                (found.run, Some(found.accuracy))
+            }
+        }
+    };
+    // A finer grid that was stopped leaves the motion on the one before as it is.
+    let reached = history.times[history.intervals()];
+    let is_early = reached < task.duration * (1.0 - 1e-12);
+    let stopped = interrupt::stop().filter(|_| is_early);
+    drop(watch);
+    if let Some(error) = unwritable {
+        return Err(error.into());
+    }
+    make_folder(&folder)?;
+    phase("writing");
+    let plan = Plan::of(&model, None, MEASURED);
+    let status = match (&failure, stopped) {
+        (Some(_), _) => "step_failed",
+        (None, Some(stopped)) => stopped.word(),
+        (None, None) => "simulated",
+    };
+
+    let kept = solved(&model, &history, None);
+    if kept.intervals() > 0 {
+        solution_file::write(&folder.join("solution.json"), &model, &kept)?;
+    }
+    let mut summary = Summary::new(request, status, model.coordinates.name());
+    summary.message = failure.as_ref().map(ToString::to_string);
+    summary.accuracy = accuracy;
+    let integrator = task.solving.integrator;
+    let neglected = local_error(&model, &history, integrator.order());
+    let simulation = summary::Simulation::new(&history, task, neglected);
+    summary.simulation = Some(simulation);
+    summary.plan = plan;
+    let observed = observations(&model, &history);
+    summary.domain = domain::told(&out_of_domain(&model, &history));
+    let origin = request.origin(false);
+    let written = fields::write(&folder, &model, &history, &origin)?;
+    summary.blocks = BlockSizes::of(&model).map(|b| b.after(&model, &observed, written));
+    summary.seconds = Seconds {
+        total: began.elapsed().as_secs_f64(),
+        setup: read + setup,
+        solver: spent,
+        ..Seconds::default()
+    };
+    let motion = trajectory(&model, &kept);
+    let path = task.voltages.solution();
+    let earlier = path.and_then(|path| comparison::earlier(&model, path));
+    summary.comparison = path
+        .zip(earlier.as_ref())
+        .map(|(path, earlier)| Comparison::new(&model, path, &motion, earlier));
+    let compared = summary.comparison.iter().flat_map(Comparison::notes);
+    let mut notes: Vec<String> = summary.message.iter().cloned().chain(compared).collect();
+    summary.notes.extend(afterwards(task));
+    summary.notes.extend(domain::note(&summary.domain, true));
+    summary.notes.extend(steps::told(neglected, &history, task));
+    summary.notes.extend(steps::unbalanced(&history));
+    notes.extend(summary.notes.iter().cloned());
+    summary.write(&folder)?;
+    let method = match task.tolerance {
+        Some(tolerance) => format!(
+            "{}, steps by a tolerance of {tolerance:e} (unequal steps keep momentum maps, not the energy over long times)",
+            integrator.name()
+        ),
+        None => integrator.name(),
+    };
+    let mut rows = vec![
+        ("status".to_owned(), status.replace('_', " ")),
+        ("steps".to_owned(), steps::counted(&history, task)),
+        ("duration".to_owned(), format!("{} s", reached / 1e3)),
+        ("method".to_owned(), method),
+        (
+            "coordinates".to_owned(),
+            model.coordinates.name().to_owned(),
+        ),
+        ("time".to_owned(), format!("{:.3} s", summary.seconds.total)),
+    ];
+    rows.extend(summary.accuracy.iter().flat_map(|a| {
+        let told = |(name, error): (&&str, &f64)| {
+            (format!("estimated error, {name}"), format!("{error:.1e}"))
+        };
+        a.estimate.iter().map(told)
+    }));
+    rows.extend(neglected.map(|error| {
+        let words = format!(
+            "{:.2e} m, {:.2} % of the path",
+            error.error / 1e3,
+            100.0 * error.relative()
+        );
+        ("sum of the local errors of the steps".to_owned(), words)
+    }));
+    let run = Run {
+        system,
+        trajectory: &motion,
+        skins: &Skins::new(&model, &history),
+        name: "simulation",
+        observations: &observed,
+        comparison: earlier.as_ref().map(|e| ("the solution", e)),
+        held: None,
+        origin: &origin,
+        title: "Simulation",
+        summary: &rows,
+    };
+    write_run(&folder, &run)?;
+    unfinished.done();
+    let mut is_solved = status == "simulated";
+    let mut word = match is_solved {
+        true => "simulated".to_owned(),
+        false => format!("not simulated to the end ({})", status.replace('_', " ")),
+    };
+    if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
+        notes.extend(accuracy.notes());
+        (word, is_solved) = accuracy.outcome(&word);
+    }
+    Ok(CommandOutput {
+        is_solved,
+        result: format!(
+            "{word}: {}, {} s of motion, {:.2} s, {}",
+            counted(history.intervals(), "step"),
+            reached / 1e3,
+            summary.seconds.total,
+            folder.display()
+        ),
+        notes,
+    })
+}
+
+/// What drives a simulation after the end of the solution whose voltages it takes, where it goes on for longer.
+fn afterwards(task: &Simulation) -> Option<String> {
+    let Voltages::Sampled {
+        ends,
+        afterwards,
+        solution,
+        ..
+    } = &task.voltages
+    else {
+        return None;
+    };
+    let end = ends[ends.len() - 1];
+    let named = solution.as_ref().map(|path| path.display().to_string());
+    let of_solution = named.is_some();
+    let source = named.unwrap_or_else(|| "the table".to_owned());
+    (task.duration > end * (1.0 + 1e-9)).then(|| match afterwards {
+        Afterwards::Held if of_solution => {
+            format!("after {} s the voltages that hold the goal of {source} are held", end / 1e3)
+        }
+        Afterwards::Held => format!("after {} s the voltages of \"hold\" are held", end / 1e3),
+        Afterwards::OfLastInterval if of_solution => format!(
+            "after {} s the voltages of the last interval are held: {source} has no \"hold\", voltages that hold its goal",
+            end / 1e3
+        ),
+        Afterwards::OfLastInterval => format!(
+            "after {} s the voltages of the last interval are held: {source} has no \"hold\"",
+            end / 1e3
+        ),
+    })
+}

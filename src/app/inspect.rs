@@ -1,0 +1,217 @@
+//! What a problem consists of, before it is solved.
+
+use crate::app::blocks::BlockSizes;
+use crate::app::error::CommandError;
+use crate::app::extent;
+use crate::app::folder::make_folder;
+use crate::app::request::{CommandInput, CommandOutput};
+use crate::app::sparsity;
+use crate::app::words::key;
+use crate::control::problem::{Control, Task};
+use crate::files::read_problem;
+use crate::model::{Model, System};
+use crate::nlp::Nlp;
+use crate::report::atomic;
+use crate::report::table;
+use crate::sparse::Symmetry;
+use crate::workflow::WorkflowError;
+use crate::workflow::effects::Plan;
+use crate::workflow::memory;
+use crate::workflow::optimise::{Counted, Prepared, prepare, resolve};
+
+/// The plan: effects in numbers, what calls for them, and what is not there; with sizes; with a folder also pictures of Jacobian and Hessian.
+///
+/// # Errors
+/// The input is wrong, or a picture cannot be written.
+pub fn inspect(request: &CommandInput) -> Result<CommandOutput, CommandError> {
+    let loaded = read_problem(&request.input, &request.set)?;
+    let system = &loaded.system;
+    memory::of_elements(system).map_err(CommandError::of(&request.input))?;
+    let wrong = |error| {
+        CommandError::of(&request.input)(WorkflowError::boundary(key(&loaded.task), &error))
+    };
+    let result = match &loaded.task {
+        Task::Control(control) => of_control(request, system, control)?,
+        Task::Simulate(task) => {
+            let model = Model::answering(system.clone(), task.question(system, task.step))
+                .map_err(|error| wrong(error.into()))?;
+            of_model(&model, None)
+        }
+        Task::Equilibrium(task) => {
+            let model = Model::answering(system.clone(), task.question(system))
+                .map_err(|error| wrong(error.into()))?;
+            of_model(&model, None)
+        }
+    };
+    Ok(CommandOutput {
+        is_solved: true,
+        result,
+        notes: Vec::new(),
+    })
+}
+
+/// Time in s that goes into measuring each effect.
+const MEASURED: f64 = 5e-3;
+
+fn of_model(model: &Model, control: Option<&Control>) -> String {
+    let plan = Plan::of(model, control, MEASURED);
+    let system = &model.system;
+    let mut sizes = vec![
+        ("bodies", system.bodies.len()),
+        ("joints", system.joints.len()),
+        ("muscles", system.muscles.len()),
+        ("markers", system.markers.len()),
+        ("coordinates of an instant", model.coordinate_count()),
+        ("multipliers of an instant", model.multiplier_names.len()),
+        ("voltages of an interval", model.voltages.len()),
+    ];
+    let components = &system.components;
+    let kinds = [
+        ("springs", components.springs.len()),
+        ("tendons", components.tendons.len()),
+        ("other components", components.others.len()),
+    ];
+    let kinds = kinds.into_iter().filter(|(_, count)| *count > 0);
+    sizes.splice(3..3, kinds);
+    if !system.solids.is_empty() {
+        sizes.insert(3, ("elastic blocks", system.solids.len()));
+    }
+    if let Some(blocks) = BlockSizes::of(model) {
+        sizes.extend([
+            ("potentials of an interval", blocks.potentials),
+            ("nodes", blocks.nodes),
+            ("elements", blocks.elements),
+        ]);
+    }
+    let tangent = match (model.analysis.of_motion, control) {
+        (true, None) => factorisation(model),
+        _ => "",
+    };
+    format!(
+        "{}, {} coordinates\n\n{}\n{}\n{}\n{}{tangent}{}",
+        system.name,
+        model.coordinates.name(),
+        active(&plan),
+        reasons(&plan),
+        missing(&plan),
+        numbers(&sizes),
+        extent::lines(system)
+    )
+}
+
+/// How the tangent of a step is factorised.
+fn factorisation(model: &Model) -> &'static str {
+    match model.step_symmetry() {
+        Symmetry::Symmetric => {
+            "tangent of a step: symmetric, LDLᵀ, as every coordinate is a node's and every force has a potential\n"
+        }
+        Symmetry::Unsymmetric => "tangent of a step: not symmetric, LU\n",
+    }
+}
+
+/// The effects in numbers.
+fn active(plan: &Plan) -> String {
+    let has_hessian = plan.effects.iter().any(|e| e.hessian.is_some());
+    let mut header = vec!["effect", "kind", "elements", "unknowns", "equations"];
+    header.push(if has_hessian { "Jacobian" } else { "tangent" });
+    if has_hessian {
+        header.push("Hessian");
+    }
+    header.push("µs");
+    let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
+    for effect in &plan.effects {
+        let mut row = vec![effect.name.clone(), effect.kind.to_owned()];
+        let counts = [effect.elements, effect.unknowns, effect.equations];
+        row.extend(counts.map(|n| n.to_string()));
+        row.push(effect.jacobian.to_string());
+        row.extend(effect.hessian.map(|n| n.to_string()));
+        row.push(format!("{:.2}", effect.microseconds));
+        rows.push(row);
+    }
+    table::aligned(&rows)
+}
+
+/// Why they are there.
+fn reasons(plan: &Plan) -> String {
+    let effects = plan.effects.iter();
+    listed("called for by", effects.map(|e| (&e.name, &e.why)))
+}
+
+/// What is not there.
+fn missing(plan: &Plan) -> String {
+    let absent = plan.absent.iter();
+    listed("not there", absent.map(|a| (&a.name, &a.why)))
+}
+
+/// Names under a heading with what is said of them, in two columns.
+fn listed<'a>(heading: &str, lines: impl Iterator<Item = (&'a String, &'a String)>) -> String {
+    let lines: Vec<_> = lines.collect();
+    let widths = lines.iter().map(|(name, _)| name.chars().count());
+    let width = widths.max().unwrap_or(0);
+    let mut text = format!("{heading}\n");
+    for (name, why) in lines {
+        text.push_str(&format!("  {name:<width$}  {why}\n"));
+    }
+    text
+}
+
+fn of_control(
+    request: &CommandInput,
+    system: &System,
+    control: &Control,
+) -> Result<String, CommandError> {
+    let (model, boundary) = resolve(system, control).map_err(CommandError::of(&request.input))?;
+    let Prepared { program, start, .. } = prepare(&model, &boundary, control, None, Counted::Yes)
+        .map_err(CommandError::of(&request.input))?;
+    let (jacobian, hessian) = (program.jacobian_structure(), program.hessian_structure());
+    let rows = program.constraints();
+    let equalities = rows.lower.iter().zip(&rows.upper).filter(|(l, u)| l == u);
+    let (variables, constraints) = (program.variables().lower.len(), rows.lower.len());
+    let equalities = equalities.count();
+    let sizes = [
+        ("intervals", control.intervals),
+        ("variables", variables),
+        ("constraints", constraints),
+        ("of them inequalities", constraints - equalities),
+        (
+            "degrees of freedom left",
+            variables.saturating_sub(equalities),
+        ),
+        ("nonzeros of the Jacobian", jacobian.rows.len()),
+        (
+            "nonzeros of the Hessian (lower triangle)",
+            hessian.rows.len(),
+        ),
+    ];
+    let mut text = of_model(&model, Some(control));
+    text.push_str(&format!(
+        "\n{}start of the solver: {start:?}\n",
+        numbers(&sizes)
+    ));
+    if let Some(folder) = &request.output {
+        make_folder(folder)?;
+        let origin = request.origin(false);
+        let pictures = [
+            ("jacobian.svg", "Jacobian", constraints, &jacobian),
+            ("hessian.svg", "Hessian", variables, &hessian),
+        ];
+        for (file, name, rows, entries) in pictures {
+            let shape = sparsity::MatrixSize {
+                name,
+                rows,
+                columns: variables,
+            };
+            let svg = sparsity::svg(shape, entries, &origin);
+            atomic::write(&folder.join(file), svg.as_bytes())?;
+        }
+    }
+    Ok(text)
+}
+
+fn numbers(sizes: &[(&str, usize)]) -> String {
+    let rows: Vec<_> = sizes
+        .iter()
+        .map(|(name, count)| vec![(*name).to_owned(), count.to_string()])
+        .collect();
+    table::aligned(&rows)
+}

@@ -1,0 +1,51 @@
+//! What the commands do: files in, files and words out.
+//!
+//! - `solve`, `forward`, `rest`: the three tasks; `task` chooses what a file asks for; `path`, `followed`: paths of equilibria.
+//! - `multistart`: a control problem from several guesses, each in a process of its own.
+//! - `inspect`, `sparsity`, `check`, `templates`: the other commands.
+//! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
+//! - `accuracy_table`, `blocks`, `comparison`, `domain`, `extent`, `steps`: what is told of a result.
+//! - `rest_observed`, `rest_refused`, `rest_words`, `words`, `folder`, `progress`, `request`, `error`: what commands share.
+
+mod accuracy_table;
+mod blocks;
+mod check;
+mod comparison;
+mod domain;
+mod error;
+mod extent;
+mod fields;
+mod folder;
+mod followed;
+mod forward;
+mod inspect;
+mod multistart;
+mod path;
+mod progress;
+mod request;
+mod rest;
+mod rest_observed;
+mod rest_refused;
+mod rest_words;
+mod solution_file;
+mod solve;
+mod sparsity;
+mod steps;
+mod summary;
+mod task;
+mod templates;
+mod unfinished;
+mod words;
+
+pub use blocks::{BlockSize, BlockSizes};
+pub use check::check;
+pub use error::CommandError;
+pub(crate) use folder::make_folder;
+pub use inspect::inspect;
+pub use multistart::solve_from_starts;
+pub use progress::ProgressDisplay;
+pub(crate) use progress::progress_bar;
+pub use request::{CommandInput, CommandOutput};
+pub use rest::equilibrium_of_file;
+pub use task::run;
+pub use templates::{expand, new_trunk, schema, study_schema};

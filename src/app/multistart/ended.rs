@@ -1,0 +1,198 @@
+//! How one start ended, and which of them found one optimum.
+
+use super::launch::{Running, folder_of};
+use crate::app::error::CommandError;
+use crate::ipopt::interrupt;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs::{self};
+use std::io::{Read, Seek};
+use std::path::Path;
+use std::process::ExitStatus;
+
+/// Relative difference of the objectives of one optimum.
+pub(super) const SAME_OBJECTIVE: f64 = 1e-6;
+
+/// Difference of the voltages of one optimum, relative to the largest: weakly bounded ones are known to 1e-4.
+pub(super) const SAME_VOLTAGE: f64 = 1e-3;
+
+/// How one start ended.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Ended {
+    /// Its number, from 1.
+    pub(super) start: usize,
+    /// Seed of a random guess; none for the guess of the problem itself.
+    pub(super) seed: Option<u64>,
+    /// The word of its summary; `not_started`, or `failed` where it left none.
+    pub(super) status: String,
+    pub(super) objective: Option<f64>,
+    pub(super) iterations: Option<usize>,
+    /// Greatest violation of an equation or limit.
+    pub(super) infeasibility: Option<f64>,
+    pub(super) seconds: f64,
+    /// Number of the optimum it found, from 1 for the best.
+    pub(super) optimum: Option<usize>,
+    #[serde(skip)]
+    pub(super) is_solved: bool,
+    #[serde(skip)]
+    pub(super) voltages: Vec<f64>,
+    /// What else was said of it.
+    #[serde(skip)]
+    pub(super) notes: Vec<String>,
+}
+
+/// What is read of the summary of a start.
+#[derive(Deserialize)]
+pub(super) struct Summary {
+    pub(super) status: String,
+    pub(super) objective: Option<f64>,
+    pub(super) iterations: Option<usize>,
+    pub(super) infeasibility: Option<f64>,
+    pub(super) seconds: Seconds,
+    #[serde(default)]
+    pub(super) notes: Vec<String>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Seconds {
+    pub(super) total: f64,
+}
+
+/// What is read of the solution of a start.
+#[derive(Deserialize)]
+pub(super) struct SolutionRecord {
+    pub(super) voltages: BTreeMap<String, Vec<f64>>,
+}
+
+impl Ended {
+    /// A start that left no files.
+    pub(super) fn without_files(
+        start: usize,
+        seed: Option<u64>,
+        status: &str,
+        seconds: f64,
+    ) -> Self {
+        Self {
+            start,
+            seed,
+            status: status.to_owned(),
+            objective: None,
+            iterations: None,
+            infeasibility: None,
+            seconds,
+            optimum: None,
+            is_solved: false,
+            voltages: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// Reads what a start left.
+    ///
+    /// # Errors
+    /// It says that the input is wrong.
+    pub(super) fn of(
+        mut done: Running,
+        status: ExitStatus,
+        folder: &Path,
+    ) -> Result<Self, CommandError> {
+        let Running { start, seed, .. } = done;
+        if status.code() == Some(2) {
+            let mut told = String::new();
+            done.told.rewind().ok();
+            done.told.read_to_string(&mut told).ok();
+            let told = told.trim_end();
+            let message = told.strip_prefix("error: ").unwrap_or(told).to_owned();
+            return Err(CommandError::Start { start, message });
+        }
+        let path = folder_of(folder, start);
+        let Some(summary) = parsed::<Summary>(&path.join("summary.json")) else {
+            let seconds = done.began.elapsed().as_secs_f64();
+            let word = if interrupt::requested() {
+                "interrupted"
+            } else {
+                "failed"
+            };
+            return Ok(Self::without_files(start, seed, word, seconds));
+        };
+        let is_solved = status.success();
+        let solution = match is_solved {
+            true => parsed::<SolutionRecord>(&path.join("solution.json")),
+            false => None,
+        };
+        let voltages = solution.map_or_else(Vec::new, |solution| {
+            solution.voltages.into_values().flatten().collect()
+        });
+        Ok(Self {
+            start,
+            seed,
+            status: summary.status,
+            objective: summary.objective,
+            iterations: summary.iterations,
+            infeasibility: summary.infeasibility,
+            seconds: summary.seconds.total,
+            optimum: None,
+            is_solved,
+            voltages,
+            notes: summary.notes,
+        })
+    }
+
+    /// Whether two solutions are one optimum.
+    fn is_same(&self, other: &Self) -> bool {
+        let (Some(a), Some(b)) = (self.objective, other.objective) else {
+            return false;
+        };
+        let close = |a: f64, b: f64, tolerance: f64| (a - b).abs() <= tolerance;
+        let largest = self
+            .voltages
+            .iter()
+            .fold(0.0, |most: f64, v| most.max(v.abs()));
+        close(a, b, SAME_OBJECTIVE * a.abs().max(b.abs()))
+            && self.voltages.len() == other.voltages.len()
+            && self
+                .voltages
+                .iter()
+                .zip(&other.voltages)
+                .all(|(a, b)| close(*a, *b, SAME_VOLTAGE * largest))
+    }
+}
+
+pub(super) fn parsed<T: for<'de> Deserialize<'de>>(path: &Path) -> Option<T> {
+    serde_json::from_str(&fs::read_to_string(path).ok()?).ok()
+}
+
+/// The solution of least objective; where there is none, the start that came closest.
+pub(super) fn best(ended: &[Ended]) -> Option<usize> {
+    let rank = |one: &Ended| match (one.is_solved, one.objective, one.infeasibility) {
+        (true, Some(objective), _) => (0, objective),
+        (_, _, Some(infeasibility)) => (1, infeasibility),
+        _ => (2, 0.0),
+    };
+    let compare = |a: &usize, b: &usize| {
+        let (a, b) = (rank(&ended[*a]), rank(&ended[*b]));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    };
+    let all = 0..ended.len();
+    let best = all.min_by(compare)?;
+    (rank(&ended[best]).0 < 2).then_some(best)
+}
+
+/// Numbers the distinct optima, the best first; how many there are.
+pub(super) fn number_optima(ended: &mut [Ended]) -> usize {
+    let mut solved: Vec<usize> = (0..ended.len()).filter(|&i| ended[i].is_solved).collect();
+    let objective = |i: usize| ended[i].objective.unwrap_or(f64::INFINITY);
+    solved.sort_by(|&a, &b| objective(a).total_cmp(&objective(b)));
+    let mut firsts: Vec<usize> = Vec::new();
+    for i in solved {
+        let known = firsts
+            .iter()
+            .position(|&first| ended[first].is_same(&ended[i]));
+        let number = known.unwrap_or_else(|| {
+            firsts.push(i);
+            firsts.len() - 1
+        });
+        ended[i].optimum = Some(number + 1);
+    }
+    firsts.len()
+}

@@ -1,0 +1,173 @@
+//! The files of the best start, and the table of all.
+
+use super::ended::{Ended, best};
+use super::launch::folder_of;
+use crate::app::error::CommandError;
+use crate::app::folder::make_folder;
+use crate::app::request::{CommandInput, CommandOutput};
+use crate::files::lay_out;
+use crate::ipopt::interrupt;
+use crate::report::atomic::{self, WriteError};
+use crate::report::table::aligned;
+use serde::Serialize;
+use std::fs::{self};
+use std::path::Path;
+use std::time::Instant;
+
+/// The section `starts` of `summary.json`.
+#[derive(Debug, Serialize)]
+pub(super) struct Section<'a> {
+    pub(super) command: &'a str,
+    pub(super) count: usize,
+    pub(super) solved: usize,
+    pub(super) distinct_optima: usize,
+    /// The start whose files these are.
+    pub(super) best: Option<usize>,
+    /// Wall time of all of them in s.
+    pub(super) seconds: f64,
+    pub(super) each: &'a [Ended],
+}
+
+/// Writes the files of the best start and the table of all, and tells of them.
+pub(super) fn write(
+    request: &CommandInput,
+    folder: &Path,
+    ended: &[Ended],
+    distinct: usize,
+    began: Instant,
+) -> Result<CommandOutput, CommandError> {
+    let origin = request.origin(true);
+    let csv = format!("# {}\n{}", origin.line(), csv(ended));
+    atomic::write(&folder.join("starts.csv"), csv.as_bytes())?;
+    // Of the starts that found the best optimum the first, whatever the last digits say.
+    let first = ended.iter().find(|one| one.optimum == Some(1));
+    let best = first.or_else(|| best(ended).map(|i| &ended[i]));
+    let solved = ended.iter().filter(|one| one.is_solved).count();
+    let seconds = began.elapsed().as_secs_f64();
+    let section = Section {
+        command: &request.command,
+        count: ended.len(),
+        solved,
+        distinct_optima: distinct,
+        best: best.map(|one| one.start),
+        seconds,
+        each: ended,
+    };
+    if let Some(best) = best {
+        copy(&folder_of(folder, best.start), folder, &section)?;
+    }
+    let is_solved = solved > 0;
+    let counts = format!(
+        "{solved} of {} starts solved, {distinct} distinct {}, {seconds:.2} s, {}",
+        ended.len(),
+        if distinct == 1 { "optimum" } else { "optima" },
+        folder.display()
+    );
+    let head = match best.and_then(|best| best.objective) {
+        Some(objective) if is_solved => format!("solved: objective {objective:.7}, {counts}"),
+        _ => format!("not solved: {counts}"),
+    };
+    let mut notes = best.map_or_else(Vec::new, |best| best.notes.clone());
+    if interrupt::requested() {
+        notes.push("interrupted; the files hold the best start that had ended".to_owned());
+    }
+    Ok(CommandOutput {
+        is_solved,
+        result: format!("{head}\n{}", aligned(&rows(ended))),
+        notes,
+    })
+}
+
+pub(super) const COLUMNS: [&str; 7] = [
+    "start",
+    "guess",
+    "status",
+    "objective",
+    "iterations",
+    "seconds",
+    "optimum",
+];
+
+/// The table as text for people.
+pub(super) fn rows(ended: &[Ended]) -> Vec<Vec<String>> {
+    let or_dash = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
+    let row = |one: &Ended| {
+        vec![
+            one.start.to_string(),
+            one.seed
+                .map_or("own".to_owned(), |seed| format!("seed {seed}")),
+            one.status.replace('_', " "),
+            or_dash(one.objective.map(|value| format!("{value:.7}"))),
+            or_dash(one.iterations.map(|count| count.to_string())),
+            format!("{:.2}", one.seconds),
+            or_dash(one.optimum.map(|number| number.to_string())),
+        ]
+    };
+    let head = COLUMNS.map(str::to_owned).to_vec();
+    [head].into_iter().chain(ended.iter().map(row)).collect()
+}
+
+/// The table as `starts.csv`; cells of what does not exist are empty.
+pub(super) fn csv(ended: &[Ended]) -> String {
+    let mut text = "start,seed,status,objective,iterations,seconds [s],optimum\n".to_owned();
+    for one in ended {
+        let cells = [
+            one.start.to_string(),
+            one.seed.map_or_else(String::new, |seed| seed.to_string()),
+            one.status.clone(),
+            one.objective
+                .map_or_else(String::new, |value| format!("{value:?}")),
+            one.iterations
+                .map_or_else(String::new, |count| count.to_string()),
+            format!("{:?}", one.seconds),
+            one.optimum
+                .map_or_else(String::new, |number| number.to_string()),
+        ];
+        text.push_str(&cells.join(","));
+        text.push('\n');
+    }
+    text
+}
+
+/// Copies the files of a start, its summary last and with the table of all.
+pub(super) fn copy(from: &Path, to: &Path, section: &Section<'_>) -> Result<(), WriteError> {
+    let failed = |path: &Path| {
+        let path = path.to_owned();
+        move |cause| WriteError { path, cause }
+    };
+    let mut summary = None;
+    for entry in fs::read_dir(from).map_err(failed(from))? {
+        let path = entry.map_err(failed(from))?.path();
+        let Some(name) = path.file_name() else {
+            continue;
+        };
+        if path.is_dir() {
+            make_folder(&to.join(name))?;
+            for entry in fs::read_dir(&path).map_err(failed(&path))? {
+                let file = entry.map_err(failed(&path))?;
+                let bytes = fs::read(file.path()).map_err(failed(&file.path()))?;
+                atomic::write(&to.join(name).join(file.file_name()), &bytes)?;
+            }
+        } else if name == "summary.json" {
+            summary = Some(fs::read_to_string(&path).map_err(failed(&path))?);
+        } else {
+            let bytes = fs::read(&path).map_err(failed(&path))?;
+            atomic::write(&to.join(name), &bytes)?;
+        }
+    }
+    let summary = summary.unwrap_or_else(|| "{}".to_owned());
+    atomic::write(
+        &to.join("summary.json"),
+        with_section(&summary, section).as_bytes(),
+    )
+}
+
+/// A summary with the section of the starts at its end.
+pub(super) fn with_section(summary: &str, section: &Section<'_>) -> String {
+    let compact = serde_json::to_string(section).expect("numbers and words are JSON");
+    let laid_out = lay_out(&compact);
+    let indented = laid_out.trim_end().replace('\n', "\n  ");
+    let open = summary.trim_end().trim_end_matches('}').trim_end();
+    let comma = if open.ends_with('{') { "" } else { "," };
+    format!("{open}{comma}\n  \"starts\": {indented}\n}}\n")
+}

@@ -1,0 +1,244 @@
+//! The path of equilibria under growing voltages, followed by arc length past the points where stability is lost.
+
+use std::time::Instant;
+
+use crate::app::domain;
+use crate::app::error::CommandError;
+use crate::app::fields;
+use crate::app::folder::make_folder;
+use crate::app::followed::Followed;
+use crate::app::request::{CommandInput, CommandOutput};
+use crate::app::rest_observed::at_rest;
+use crate::app::rest_refused::refused;
+use crate::app::summary::{MEASURED, Seconds, Summary};
+use crate::app::words::counted;
+use crate::control::problem::AtRest;
+use crate::dynamics::trajectory::{Column, Observations, Trajectory};
+use crate::dynamics::{
+    Continuation, DiscreteTrajectory, Equilibrium, Instability, continuation, observations,
+    out_of_domain,
+};
+use crate::ipopt::{Status, interrupt};
+use crate::model::{Model, System};
+use crate::report::axes::{Axis, Extent};
+use crate::report::lines::{LinePlot, Mark, Series};
+use crate::report::origin::Origin;
+use crate::report::skins::Skins;
+use crate::report::{Run, atomic, style, write_still};
+use crate::workflow::WorkflowError;
+use crate::workflow::effects::Plan;
+use crate::workflow::phase::phase;
+
+/// Follows the path for `points` equilibria and writes `path.csv`, `path.svg`, the fields, and figure and page of the last
+/// equilibrium before stability is lost, or of the last one.
+pub(super) fn follow(
+    request: &CommandInput,
+    system: &System,
+    task: &AtRest,
+    points: usize,
+    began: Instant,
+) -> Result<CommandOutput, CommandError> {
+    let wrong =
+        |error| CommandError::of(&request.input)(WorkflowError::boundary("equilibrium", &error));
+    let model = Model::answering(system.clone(), task.question(system))
+        .map_err(|error| wrong(error.into()))?;
+    let setup = began.elapsed().as_secs_f64();
+    phase("following the path");
+    let start = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+    let found = match continuation(&model, &start, &model.scalars(&task.voltages), points) {
+        Ok(found) => found,
+        Err(error) => return refused(request, &error, "no equilibrium to start from"),
+    };
+    let stopped = interrupt::stop();
+    let path = Followed::new(&found);
+    let folder = request.folder();
+    make_folder(&folder)?;
+    let origin = request.origin(false);
+    let stops = Stop::all(&found);
+    // The first equilibrium stands at both ends of an interval of its own, so that each has its potentials.
+    let states = || stops.iter().map(|stop| stop.rest);
+    let history = DiscreteTrajectory {
+        times: std::iter::once(0.0)
+            .chain(stops.iter().map(|stop| stop.fraction))
+            .collect(),
+        z: std::iter::once(stops[0].rest)
+            .chain(states())
+            .map(|p| p.z.clone())
+            .collect(),
+        momenta: vec![vec![0.0; model.coordinate_count()]; stops.len() + 1],
+        scalars: states().map(|p| p.scalars.clone()).collect(),
+        ..DiscreteTrajectory::default()
+    };
+    let observed = observed(&model, &stops, &history);
+    let shown = stops.iter().position(|stop| stop.lost.is_some());
+    let shown = shown.unwrap_or(stops.len() - 1);
+    let still = still(&history, shown + 1);
+    let motion = Trajectory::from_history(&model, &still);
+    let rows = path.rows(stops[shown].fraction);
+    let run = Run {
+        system: &model.system,
+        trajectory: &motion,
+        skins: &Skins::new(&model, &still),
+        name: "rest",
+        observations: &observed,
+        comparison: None,
+        held: Some(&motion.voltages[0]),
+        origin: &origin,
+        title: "Path of equilibria",
+        summary: &rows,
+    };
+    write_still(&folder, "path.csv", &run)?;
+    let svg = figure(&model, &stops, &history, &origin);
+    atomic::write(&folder.join("path.svg"), svg.as_bytes())?;
+    fields::write(&folder, &model, &history, &origin)?;
+    let outside = domain::told(&out_of_domain(&model, &history));
+    let notes = path.lost.iter().map(|loss| {
+        format!(
+            "{} at {:.6} % of the voltages",
+            loss.words,
+            100.0 * loss.fraction
+        )
+    });
+    let early = stopped.map(|status| {
+        let why = status.word().replace('_', " ");
+        format!("the path was not followed to its end ({why})")
+    });
+    let told = CommandOutput {
+        is_solved: stopped.is_none(),
+        result: format!(
+            "{}, {}",
+            counted(found.points.len(), "equilibrium").replace("equilibriums", "equilibria"),
+            folder.display()
+        ),
+        notes: notes
+            .chain(early)
+            .chain(domain::note(&outside, false))
+            .collect(),
+    };
+    let word = stopped.map_or("path_followed", Status::word);
+    let mut summary = Summary::new(request, word, model.coordinates.name());
+    summary.plan = Plan::of(&model, None, MEASURED);
+    summary.path = Some(path);
+    summary.notes.extend(domain::note(&outside, false));
+    summary.domain = outside;
+    summary.seconds = Seconds {
+        total: began.elapsed().as_secs_f64(),
+        setup,
+        ..Seconds::default()
+    };
+    summary.write(&folder)?;
+    Ok(told)
+}
+
+/// An equilibrium of the path.
+struct Stop<'a> {
+    rest: &'a Equilibrium,
+    fraction: f64,
+    /// How stability is lost here.
+    lost: Option<Instability>,
+}
+
+impl<'a> Stop<'a> {
+    /// The equilibria followed, with those where stability is lost at their places.
+    fn all(found: &'a Continuation) -> Vec<Self> {
+        let mut stops = Vec::new();
+        for (k, (rest, &fraction)) in found.points.iter().zip(&found.fractions).enumerate() {
+            stops.push(Self {
+                rest,
+                fraction,
+                lost: None,
+            });
+            let here = found.lost.iter().zip(&found.limits);
+            for (&(_, fraction, kind), rest) in here.filter(|((index, ..), _)| *index == k) {
+                stops.push(Self {
+                    rest,
+                    fraction,
+                    lost: Some(kind),
+                });
+            }
+        }
+        stops
+    }
+}
+
+/// The state at an instant, alone.
+fn still(history: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
+    DiscreteTrajectory {
+        times: vec![0.0],
+        z: vec![history.z[k].clone()],
+        momenta: vec![history.momenta[k].clone()],
+        scalars: vec![history.scalars[k - 1].clone()],
+        ..DiscreteTrajectory::default()
+    }
+}
+
+/// Fraction, voltages, markers, stretches, charges, energies and stability of each equilibrium, and whether stability is lost
+/// there.
+fn observed(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory) -> Observations {
+    let mut columns = Vec::new();
+    let mut add = |name: String, unit: &'static str, values: Vec<f64>| {
+        columns.push(Column { name, unit, values });
+    };
+    let each = |value: &dyn Fn(&Stop<'_>) -> f64| stops.iter().map(value).collect();
+    add("fraction".to_owned(), "", each(&|stop| stop.fraction));
+    for (s, &source) in model.voltages.iter().enumerate() {
+        let values = each(&|stop| stop.rest.scalars[s]);
+        add(model.sources[source].name.clone(), "V", values);
+    }
+    for mut column in at_rest(observations(model, history)).columns {
+        column.values.remove(0);
+        add(column.name, column.unit, column.values);
+    }
+    let unstable = |stop: &Stop<'_>| stop.rest.unstable.map_or(f64::NAN, |n| n as f64);
+    add("unstable_directions".to_owned(), "", each(&unstable));
+    let lost = |stop: &Stop<'_>| f64::from(u8::from(stop.lost.is_some()));
+    add("stability_lost".to_owned(), "", each(&lost));
+    Observations { columns }
+}
+
+/// `path.svg`: fraction of the voltages over the way of each marker, or of the coordinate that moves most; where stability is
+/// lost it is marked.
+fn figure(
+    model: &Model,
+    stops: &[Stop<'_>],
+    history: &DiscreteTrajectory,
+    origin: &Origin,
+) -> String {
+    let marks = Trajectory::from_history(model, history).marks;
+    let reference = &model.coordinates_at(&vec![0.0; model.gauges.len()]);
+    let way = |m: usize, k: usize| (marks[k + 1][m] - marks[0][m]).norm();
+    let mut series = Vec::new();
+    let mut curve = |name: &str, m: usize, way: &dyn Fn(usize) -> f64| {
+        let place = |k: usize| [way(k), stops[k].fraction];
+        let points = (0..stops.len()).map(place).collect();
+        series.push(Series::curve(name, points, style::hue(m)).marked(Mark::Disc));
+        let lost = (0..stops.len()).filter(|&k| stops[k].lost.is_some());
+        let (points, labels): (Vec<_>, Vec<_>) = lost
+            .map(|k| {
+                let words = stops[k].lost.map_or("", Instability::words);
+                let label = format!("{words} at {:.2} %", 100.0 * stops[k].fraction);
+                (place(k), label)
+            })
+            .unzip();
+        if !points.is_empty() {
+            let mark = Series::curve("", points, style::INK).marked(Mark::Ring);
+            series.push(mark.unjoined().labelled(labels));
+        }
+    };
+    for (m, marker) in model.system.markers.iter().enumerate() {
+        curve(&marker.name, m, &|k| way(m, k));
+    }
+    if model.system.markers.is_empty() {
+        let far = |k: usize| {
+            let z = stops[k].rest.z.iter().zip(reference);
+            z.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        };
+        curve("largest change of a coordinate", 0, &far);
+    }
+    LinePlot::new(
+        Axis::linear("way from rest [mm]", Extent::FromZero),
+        Axis::linear("fraction of the voltages", Extent::FromZero),
+        series,
+    )
+    .svg(origin)
+}

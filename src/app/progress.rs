@@ -1,0 +1,169 @@
+//! Progress on standard error: what is being done before there is anything to count, the iterations of a solve, the steps of a
+//! simulation.
+
+use std::cell::RefCell;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::ipopt::Iteration;
+use crate::workflow::listen_to_phases;
+
+/// Whether progress is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProgressDisplay {
+    /// Where standard error is a terminal.
+    OnTerminal,
+    /// Never.
+    Never,
+}
+
+thread_local! {
+    /// The line of the run of this thread.
+    static LINE: RefCell<Option<ProgressBar>> = const { RefCell::new(None) };
+}
+
+/// Shows what this thread does: reading, building, ….
+fn show_phases() {
+    listen_to_phases(|doing| {
+        LINE.with_borrow(|line| {
+            if let Some(bar) = line {
+                bar.set_message(doing);
+                bar.tick();
+            }
+        });
+    });
+}
+
+/// A line that changes while a run goes on.
+#[derive(Debug)]
+pub(super) struct Progress {
+    bar: ProgressBar,
+    began: Instant,
+    before: Option<ProgressBar>,
+}
+
+impl Progress {
+    /// A run of which nothing is known yet but what it does.
+    pub(super) fn of_phases(shown: ProgressDisplay) -> Self {
+        Self::of_solve(shown)
+    }
+
+    /// A solve with an open number of iterations.
+    pub(super) fn of_solve(shown: ProgressDisplay) -> Self {
+        let bar = target(ProgressBar::no_length(), shown);
+        bar.set_style(style("{spinner} {elapsed_precise} {msg}"));
+        bar.enable_steady_tick(Duration::from_millis(120));
+        Self::starting(bar)
+    }
+
+    /// A simulation of `steps` steps.
+    pub(super) fn of_steps(shown: ProgressDisplay, steps: usize) -> Self {
+        let bar = target(ProgressBar::new(steps as u64), shown);
+        bar.set_style(style(
+            "{elapsed_precise} {bar:20} step {pos} of {len} {msg}",
+        ));
+        bar.enable_steady_tick(Duration::from_millis(120));
+        Self::starting(bar)
+    }
+
+    /// A solve from `starts` starting points.
+    pub(super) fn of_starts(shown: ProgressDisplay, starts: usize) -> Self {
+        let bar = target(ProgressBar::new(starts as u64), shown);
+        bar.set_style(style(
+            "{elapsed_precise} {wide_bar} start {pos} of {len} {msg}",
+        ));
+        bar.enable_steady_tick(Duration::from_millis(120));
+        Self::starting(bar)
+    }
+
+    fn starting(bar: ProgressBar) -> Self {
+        show_phases();
+        let before = LINE.replace(Some(bar.clone()));
+        if let Some(line) = &before {
+            line.finish_and_clear();
+        }
+        Self {
+            bar,
+            began: Instant::now(),
+            before,
+        }
+    }
+
+    /// An iterate on so many intervals was accepted.
+    pub(super) fn iteration(&self, intervals: usize, at: &Iteration) {
+        self.bar.set_message(format!(
+            "{intervals} intervals  iteration {}  objective {:.6e}  infeasibility {:.1e}  optimality {:.1e}{}",
+            at.iteration,
+            at.objective,
+            at.primal_infeasibility,
+            at.dual_infeasibility,
+            if at.restoration { "  restoration" } else { "" }
+        ));
+    }
+
+    /// So many starts have ended, some of them solved, with this objective at best.
+    pub(super) fn start(&self, ended: usize, solved: usize, best: Option<f64>) {
+        self.bar.set_position(ended as u64);
+        let best = best.map_or_else(String::new, |best| format!(", best objective {best:.6e}"));
+        self.bar.set_message(format!("({solved} solved{best})"));
+    }
+
+    /// Step `step` of so many is done.
+    pub(super) fn step(&self, steps: usize, step: usize) {
+        // The number of steps that a tolerance controls is not known.
+        let known = if steps == usize::MAX { step } else { steps };
+        self.bar.set_length(known as u64);
+        self.bar.set_position(step as u64);
+        let seconds = self.began.elapsed().as_secs_f64() / step.max(1) as f64;
+        // Short steps are too many to watch.
+        if seconds > 0.01 {
+            let left = match steps {
+                usize::MAX => String::new(),
+                _ => {
+                    let left = rough(seconds * steps.saturating_sub(step) as f64);
+                    format!(", about {left} left")
+                }
+            };
+            self.bar.set_message(format!("{seconds:.2} s each{left}"));
+        }
+    }
+}
+
+/// A time as one says it.
+fn rough(seconds: f64) -> String {
+    match seconds {
+        s if s < 90.0 => format!("{s:.0} s"),
+        s if s < 5400.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+/// A bar of another command: `length` steps, shown by a template of indicatif.
+pub(crate) fn progress_bar(shown: ProgressDisplay, length: u64, template: &str) -> ProgressBar {
+    let bar = target(ProgressBar::new(length), shown);
+    bar.set_style(style(template));
+    bar
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+        if let Some(line) = &self.before {
+            line.reset();
+            line.set_message("finishing");
+        }
+        LINE.set(self.before.take());
+    }
+}
+
+fn target(bar: ProgressBar, shown: ProgressDisplay) -> ProgressBar {
+    if shown == ProgressDisplay::Never {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    bar
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).expect("the template is well formed")
+}

@@ -1,0 +1,29 @@
+//! Why nothing is found at rest.
+
+use crate::app::error::CommandError;
+use crate::app::request::{CommandInput, CommandOutput};
+use crate::dynamics::EquilibriumError;
+
+/// Why there is no equilibrium at all: a floating block is wrong input, anything else a result without files.
+pub(super) fn refused(
+    request: &CommandInput,
+    error: &EquilibriumError,
+    result: &str,
+) -> Result<CommandOutput, CommandError> {
+    match error {
+        EquilibriumError::Floating { .. } => {
+            return Err(CommandError::Problem {
+                file: request.input.clone(),
+                place: "equilibrium".to_owned(),
+                reason: error.to_string(),
+            });
+        }
+        EquilibriumError::Stopped(status) => return Err(CommandError::Stopped(*status)),
+        _ => {}
+    }
+    Ok(CommandOutput {
+        is_solved: false,
+        result: result.to_owned(),
+        notes: vec![error.to_string()],
+    })
+}

@@ -1,0 +1,400 @@
+//! A control problem from file to folder: solved, re-simulated, and all that is told of it.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::Instant;
+
+use crate::app::blocks::BlockSizes;
+use crate::app::domain;
+use crate::app::error::CommandError;
+use crate::app::fields;
+use crate::app::folder::make_folder;
+use crate::app::progress::Progress;
+use crate::app::request::{CommandInput, CommandOutput};
+use crate::app::solution_file;
+use crate::app::summary::{Evaluations, MEASURED, PerInterval, Program, Seconds, Summary};
+use crate::app::unfinished::Unfinished;
+use crate::app::words::counted;
+use crate::control::problem::{Control, Hold};
+use crate::control::{BoundaryConditions, Solution};
+use crate::dynamics::{observations, out_of_domain};
+use crate::ipopt::{Status, interrupt};
+use crate::math::significant;
+use crate::model::{Model, System};
+use crate::report::atomic::WriteError;
+use crate::report::skins::Skins;
+use crate::report::{Run, write_run};
+use crate::workflow::accuracy::{Accuracy, Refined};
+use crate::workflow::cure::{Cured, reproduced};
+use crate::workflow::effects::Plan;
+use crate::workflow::grids::optimise_to;
+use crate::workflow::holding;
+use crate::workflow::infeasible::explain;
+use crate::workflow::motion::{history, solved, trajectory};
+use crate::workflow::optimise::{Iterate, Optimum, SolveLimits};
+use crate::workflow::resimulate::{Cause, Resimulation, under_constant_voltages};
+use crate::workflow::second_start::is_infeasible;
+use crate::workflow::violations::Violation;
+
+/// Length of the motion under constant voltages that is drawn beside the optimal one, in durations.
+const COMPARED: usize = 3;
+/// Solves a control problem and writes its folder, solved or not.
+pub(super) fn control(
+    request: &CommandInput,
+    system: &System,
+    control: &Control,
+    began: Instant,
+) -> Result<CommandOutput, CommandError> {
+    let folder = request.folder();
+    let mut unwritable = None;
+    let mut unfinished = Unfinished::of(&folder);
+    let read = began.elapsed().as_secs_f64();
+    let allowed = SolveLimits {
+        iterations: request.max_iterations,
+        seconds: request.max_seconds.map(|s| (s - read).max(0.0)),
+    };
+    let Found {
+        mut optimum,
+        iterations,
+        accuracy,
+        note,
+    } = {
+        let progress = Progress::of_solve(request.progress);
+        find(
+            request,
+            system,
+            control,
+            allowed,
+            &mut |intervals, iterate| {
+                let Iterate { report, model, .. } = *iterate;
+                progress.iteration(intervals, report);
+                // A folder that cannot be made is told before a long solve, not after it.
+                if report.iteration == 0 && unwritable.is_none() {
+                    unwritable = make_folder(&folder).err();
+                }
+                unfinished.consider(model, report.primal_infeasibility, iterate.motion);
+                match unwritable {
+                    Some(_) => ControlFlow::Break(()),
+                    None => ControlFlow::Continue(()),
+                }
+            },
+        )?
+    };
+    if let Some(error) = unwritable {
+        return Err(error.into());
+    }
+    make_folder(&folder)?;
+
+    optimum.hold();
+    let Optimum {
+        model,
+        boundary,
+        motion: kept,
+        solution,
+        violated,
+        resimulation,
+        ..
+    } = &optimum;
+    let refuted = optimum.reversed.map(|(k, m)| unresolved(model, k, m));
+    let refuted = refuted.or_else(|| optimum.cause().map(Cause::told));
+    let tested = resimulation.as_ref();
+    let not_kept = holding::warning(control, model, boundary, tested);
+    let mut is_solved = optimum.is_solved();
+    let mut word = optimum.word();
+    if interrupt::requested() && word == "not_reproduced" {
+        word = Status::Interrupted.word();
+    }
+    let has_to_hold = is_solved && control.hold == Hold::Required;
+    let not_held = not_kept.clone().filter(|_| has_to_hold);
+    if not_held.is_some() {
+        (is_solved, word) = (false, "not_held");
+    }
+    let intervals = kept.intervals();
+    let per_interval = |seconds: f64, evaluations: usize| {
+        (evaluations > 0).then(|| 1e6 * seconds / (evaluations * intervals) as f64)
+    };
+    let seconds = &solution.seconds;
+    let mut summary = Summary::new(request, word, model.coordinates.name());
+    summary.message = refuted.or(not_held);
+    if summary.message.is_none() && !is_solved {
+        summary.message = Some(meaning(solution.status).to_owned());
+    }
+    if let (Some(message), false) = (&mut summary.message, optimum.meets_equations()) {
+        message.push_str(&redundancy(&model.redundant_constraints(&boundary.start.z)));
+    }
+    summary.program = Some(Program {
+        objective: solution.objective,
+        iterations,
+        intervals,
+        duration: kept.times[intervals] / 1e3,
+        variables: solution.x.len(),
+        constraints: optimum.constraints,
+        jacobian_nonzeros: optimum.jacobian_nonzeros,
+        hessian_nonzeros: optimum.hessian_nonzeros,
+        evaluations: Evaluations {
+            objective: solution.evaluations.objective,
+            gradient: solution.evaluations.gradient,
+            constraints: solution.evaluations.constraints,
+            jacobian: solution.evaluations.jacobian,
+            hessian: solution.evaluations.hessian,
+        },
+        interval_microseconds: PerInterval {
+            jacobian: per_interval(seconds.jacobian, solution.evaluations.jacobian),
+            hessian: per_interval(seconds.hessian, solution.evaluations.hessian),
+        },
+        infeasibility: Some(optimum.infeasibility).filter(|value| value.is_finite()),
+        violations: violated.clone(),
+        resimulation: resimulation.clone(),
+    });
+    let coarse = tested.and_then(Resimulation::warning);
+    summary.notes.extend(note.into_iter().chain(coarse));
+    summary.notes.extend(not_kept.filter(|_| is_solved));
+    summary.notes.extend(optimum.stretched.map(stretched));
+    summary.notes.extend(optimum.restarted.map(restarted));
+    if is_infeasible(solution.status) {
+        let left = allowed.seconds.map(|s| s - began.elapsed().as_secs_f64());
+        let left = left.map(|s| s.max(0.0));
+        let lines = explain(system, control, &optimum, left);
+        summary.notes.extend(lines);
+    }
+    summary.accuracy = accuracy;
+    summary.plan = Plan::of(model, Some(control), MEASURED);
+    summary.seconds = Seconds {
+        total: began.elapsed().as_secs_f64(),
+        setup: read + optimum.setup,
+        solver: seconds.solver,
+        objective: seconds.objective,
+        gradient: seconds.gradient,
+        constraints: seconds.constraints,
+        jacobian: seconds.jacobian,
+        hessian: seconds.hessian,
+    };
+    write_files(request, &folder, model, boundary, kept, &mut summary)?;
+    unfinished.done();
+    Ok(told(&summary, violated, &folder))
+}
+
+/// The optimum that is written, and the way to it.
+struct Found {
+    optimum: Optimum,
+    /// Iterations on the grids up to its own.
+    iterations: usize,
+    accuracy: Option<Accuracy>,
+    /// Why another grid was taken than that of the problem.
+    note: Option<String>,
+}
+
+/// Solves on the grid of the problem, or on finer ones where an accuracy is asked for.
+fn find(
+    request: &CommandInput,
+    system: &System,
+    control: &Control,
+    allowed: SolveLimits,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+) -> Result<Found, CommandError> {
+    let Some(wanted) = request.wanted else {
+        let Cured {
+            optimum,
+            iterations,
+            note,
+        } = reproduced(system, control, allowed, observer)
+            .map_err(CommandError::of(&request.input))?;
+        return Ok(Found {
+            optimum,
+            iterations,
+            accuracy: None,
+            note,
+        });
+    };
+    let Refined {
+        run: optimum,
+        iterations,
+        accuracy,
+        ..
+    } = optimise_to(system, control, wanted, allowed, observer)
+        .map_err(CommandError::of(&request.input))?;
+    Ok(Found {
+        optimum,
+        iterations,
+        accuracy: Some(accuracy),
+        note: None,
+    })
+}
+
+fn write_files(
+    request: &CommandInput,
+    folder: &Path,
+    model: &Model,
+    boundary: &BoundaryConditions,
+    kept: &Solution,
+    summary: &mut Summary,
+) -> Result<(), WriteError> {
+    solution_file::write(&folder.join("solution.json"), model, kept)?;
+    let history = history(model, kept);
+    let observed = observations(model, &history);
+    let origin = request.origin(true);
+    let written = fields::write(folder, model, &history, &origin)?;
+    summary.blocks = BlockSizes::of(model).map(|b| b.after(model, &observed, written));
+    summary.domain = domain::told(&out_of_domain(model, &history));
+    summary.notes.extend(domain::note(&summary.domain, true));
+    summary.write(folder)?;
+    let motion = trajectory(model, kept);
+    let is_solved = summary.message.is_none();
+    let compared = is_solved
+        .then(|| under_constant_voltages(model, boundary, kept, COMPARED))
+        .flatten()
+        .map(|(history, _)| trajectory(model, &solved(model, &history, None)));
+    let rows = rows(summary);
+    let run = Run {
+        system: &model.system,
+        trajectory: &motion,
+        skins: &Skins::new(model, &history),
+        name: match summary.status.as_str() {
+            _ if is_solved => "optimal voltages",
+            "not_reproduced" | "not_held" => "optimum",
+            _ => "last iterate",
+        },
+        observations: &observed,
+        comparison: compared.as_ref().map(|c| ("constant voltages", c)),
+        held: boundary.rest[1].as_deref().filter(|_| is_solved),
+        origin: &origin,
+        title: "Optimal control",
+        summary: &rows,
+    };
+    write_run(folder, &run).map(|_| ())
+}
+
+/// Rows of the table of the page.
+fn rows(summary: &Summary) -> Vec<(String, String)> {
+    let mut rows = vec![("status".to_owned(), summary.status.clone())];
+    let mut row = |key: &str, value: String| rows.push((key.to_owned(), value));
+    if let Some(program) = &summary.program {
+        row("objective", format!("{:.9}", program.objective));
+        row("iterations", program.iterations.to_string());
+        row("duration", format!("{:.6} s", program.duration));
+        row("intervals", program.intervals.to_string());
+        row("coordinates", summary.coordinates.to_owned());
+        row("variables", program.variables.to_string());
+        row("constraints", program.constraints.to_string());
+        row("time", format!("{:.3} s", summary.seconds.total));
+        for (name, error) in summary.accuracy.iter().flat_map(|a| &a.estimate) {
+            row(&format!("estimated error, {name}"), format!("{error:.1e}"));
+        }
+        if let Some(r) = &program.resimulation {
+            let of = |d: &crate::workflow::distance::Distance| {
+                format!("{:.1e} rad, {:.1e} m", d.angle, d.length)
+            };
+            row("deviation when simulated forward", of(&r.deviation));
+            if let (Some(drift), Some(held)) = (&r.drift, r.held) {
+                row(&format!("drift when held for {held} s"), of(drift));
+            }
+        }
+        for violation in &program.violations {
+            row("violated", describe(violation));
+        }
+    }
+    rows
+}
+
+/// A violated row in words.
+fn describe(violation: &Violation) -> String {
+    match (violation.violation, violation.scaled) {
+        (Some(distance), Some(scaled)) => {
+            let unit = match violation.unit {
+                "" => String::new(),
+                unit => format!(" {unit}"),
+            };
+            format!(
+                "{}: violated by {}{unit} ({scaled:.1e} as the solver measures it)",
+                violation.row,
+                significant(distance, 4)
+            )
+        }
+        _ => format!("{}: has no value there", violation.row),
+    }
+}
+
+fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> CommandOutput {
+    let program = summary.program.as_ref();
+    let (objective, iterations) = program.map_or((f64::NAN, 0), |p| (p.objective, p.iterations));
+    let mut is_solved = summary.message.is_none();
+    let solved = if is_solved { "solved" } else { "not solved" };
+    let mut word = match summary.status.as_str() {
+        "solved" => solved.to_owned(),
+        word => format!("{solved} ({})", word.replace('_', " ")),
+    };
+    let mut notes: Vec<String> = summary.message.iter().cloned().collect();
+    notes.extend(violated.iter().map(describe));
+    notes.extend(summary.notes.iter().cloned());
+    let mut grid = String::new();
+    if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
+        notes.extend(accuracy.notes());
+        (word, is_solved) = accuracy.outcome(&word);
+        let intervals = program.map_or(0, |p| p.intervals);
+        grid = format!(", {}", counted(intervals, "interval"));
+    }
+    CommandOutput {
+        is_solved,
+        result: format!(
+            "{word}: objective {objective:.7}{grid}, {}, {:.2} s, {}",
+            counted(iterations, "iteration"),
+            summary.seconds.total,
+            folder.display()
+        ),
+        notes,
+    }
+}
+
+/// A guess of another length.
+fn stretched([from, to]: [f64; 2]) -> String {
+    format!(
+        "the guess lasts {} s; it was stretched in time to {} s",
+        from / 1e3,
+        to / 1e3
+    )
+}
+
+/// Why an optimum of the discrete equations is none of the system.
+fn unresolved(model: &Model, interval: usize, muscle: usize) -> String {
+    format!(
+        "muscle \"{}\" turns by a right angle or more in interval {interval}: its ends meet on the way, or the intervals are \
+         too long for the motion; take more intervals or another guess",
+        model.system.muscles[muscle].name
+    )
+}
+
+/// What is told of an optimum that the first start did not find.
+fn restarted(first: Status) -> String {
+    format!("found from a displaced second start; the first ended {first}")
+}
+
+/// A further reason why a solve failed, where there is one.
+fn redundancy(redundant: &[String]) -> String {
+    match redundant {
+        [] => String::new(),
+        names => format!(
+            "; constraints are redundant at the start: {} more than is needed, such as {}",
+            names.len(),
+            names.join(", ")
+        ),
+    }
+}
+
+/// What a status means for the problem.
+fn meaning(status: Status) -> &'static str {
+    match status {
+        Status::Infeasible | Status::RestorationFailed => {
+            "no motion meets the goal and the limits, or none was found from this guess; the files hold the closest one"
+        }
+        Status::IterationLimit => {
+            "the iterations allowed were used up; the files hold the last iterate"
+        }
+        Status::TimeLimit => "the time allowed was used up; the files hold the last iterate",
+        Status::Interrupted => "interrupted; the files hold the last iterate",
+        Status::InvalidNumber => {
+            "an equation or a derivative of one has no value where the solver went: the ends of a muscle meet there, or an element is turned inside out; the files hold the last iterate; take another guess or more intervals"
+        }
+        Status::TooFewDegreesOfFreedom => "there are more equations than unknowns",
+        _ => "the solver stopped short; the files hold the last iterate",
+    }
+}

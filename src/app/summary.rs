@@ -1,0 +1,252 @@
+//! `summary.json`: what was asked, how it ended, how large it was and how long it took.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::app::blocks::BlockSizes;
+use crate::app::comparison::Comparison;
+use crate::app::domain::Outside;
+use crate::app::followed::Followed;
+use crate::app::request::CommandInput;
+use crate::app::rest_words::Rest;
+use crate::control::problem;
+use crate::dynamics::{DiscreteTrajectory, LocalError};
+use crate::files::lay_out;
+use crate::report::atomic::{self, WriteError};
+use crate::workflow::accuracy::Accuracy;
+use crate::workflow::effects::Plan;
+use crate::workflow::resimulate::Resimulation;
+use crate::workflow::violations::Violation;
+
+/// Time in s that goes into measuring each effect for it.
+pub(super) const MEASURED: f64 = 2e-4;
+
+/// The file.
+#[derive(Debug, Serialize)]
+pub(super) struct Summary {
+    pub(super) command: String,
+    pub(super) input: String,
+    /// A word: `solved`, `simulated`, `infeasible`, `interrupted`, …
+    pub(super) status: String,
+    /// Why it ended early, in words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) message: Option<String>,
+    /// What else there is to say of the result.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) notes: Vec<String>,
+    #[serde(flatten)]
+    pub(super) program: Option<Program>,
+    #[serde(flatten)]
+    pub(super) simulation: Option<Simulation>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) accuracy: Option<Accuracy>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) comparison: Option<Comparison>,
+    #[serde(flatten)]
+    pub(super) rest: Option<Rest>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) path: Option<Followed>,
+    /// What leaves the domain of the first-order dielectric.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) domain: Vec<Outside>,
+    #[serde(flatten)]
+    pub(super) blocks: Option<BlockSizes>,
+    pub(super) coordinates: &'static str,
+    pub(super) seconds: Seconds,
+    #[serde(flatten)]
+    pub(super) plan: Plan,
+    pub(super) versions: Versions,
+}
+
+/// The nonlinear program of a control problem and its solution.
+#[derive(Debug, Serialize)]
+pub(super) struct Program {
+    pub(super) objective: f64,
+    pub(super) iterations: usize,
+    pub(super) intervals: usize,
+    /// Final time in s.
+    pub(super) duration: f64,
+    pub(super) variables: usize,
+    pub(super) constraints: usize,
+    pub(super) jacobian_nonzeros: usize,
+    pub(super) hessian_nonzeros: usize,
+    /// How often the solver asked for what.
+    pub(super) evaluations: Evaluations,
+    /// Mean time of one evaluation per interval.
+    pub(super) interval_microseconds: PerInterval,
+    /// Greatest violation of an equation or limit, as the solver measures it; absent where one has no value.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) infeasibility: Option<f64>,
+    /// The worst rows that do not hold; none of a solution.
+    pub(super) violations: Vec<Violation>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) resimulation: Option<Resimulation>,
+}
+
+/// Numbers of evaluations.
+#[derive(Debug, Serialize)]
+pub(super) struct Evaluations {
+    pub(super) objective: usize,
+    pub(super) gradient: usize,
+    pub(super) constraints: usize,
+    pub(super) jacobian: usize,
+    pub(super) hessian: usize,
+}
+
+/// Mean time of one evaluation per interval, in µs; nothing where there was none.
+#[derive(Debug, Serialize)]
+pub(super) struct PerInterval {
+    pub(super) jacobian: Option<f64>,
+    pub(super) hessian: Option<f64>,
+}
+
+/// What a simulation did.
+#[derive(Debug, Serialize)]
+pub(super) struct Simulation {
+    /// Steps recorded.
+    pub(super) steps: usize,
+    /// Length of the motion in s.
+    pub(super) duration: f64,
+    /// Estimate of what the steps neglect; absent where they are too few.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) local_error: Option<Neglected>,
+    /// The method.
+    pub(super) integrator: String,
+    /// Tolerance that controlled the lengths of the steps; absent of equal ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) tolerance: Option<f64>,
+    /// Newton iterations.
+    pub(super) newton_iterations: usize,
+    /// Steps that had to be halved.
+    pub(super) halved_steps: usize,
+    /// Who factorised the tangents.
+    pub(super) linear_solver: &'static str,
+    /// Factorisations of the tangent.
+    pub(super) factorisations: usize,
+    /// Seconds in rows and tangents.
+    pub(super) assembly_seconds: f64,
+    /// Seconds in factorisations.
+    pub(super) factorisation_seconds: f64,
+    /// Seconds in solutions with them.
+    pub(super) solution_seconds: f64,
+}
+
+/// The sum of the local errors of a motion, an estimate of its distance from the exact one.
+#[derive(Debug, Serialize)]
+pub(super) struct Neglected {
+    /// Of the point where it is greatest, in m.
+    pub(super) sum: f64,
+    /// Way of the point that goes farthest, in m.
+    pub(super) path: f64,
+    /// The sum as a part of the path.
+    pub(super) relative: f64,
+    /// Order of the method.
+    pub(super) order: usize,
+    /// Whether differences of the motion fall with their order; otherwise the estimate is no more than a warning.
+    pub(super) is_resolved: bool,
+}
+
+impl Neglected {
+    fn new(error: LocalError) -> Self {
+        Self {
+            sum: error.error / 1e3,
+            path: error.path / 1e3,
+            relative: error.relative(),
+            order: error.order,
+            is_resolved: error.is_resolved,
+        }
+    }
+}
+
+impl Simulation {
+    /// Of a motion.
+    pub(super) fn new(
+        history: &DiscreteTrajectory,
+        task: &problem::Simulation,
+        error: Option<LocalError>,
+    ) -> Self {
+        let (steps, report) = (history.intervals(), history.report);
+        Self {
+            steps,
+            duration: history.times[steps] / 1e3,
+            local_error: error.map(Neglected::new),
+            integrator: task.solving.integrator.name(),
+            tolerance: task.tolerance,
+            newton_iterations: report.iterations,
+            halved_steps: report.halved,
+            linear_solver: history.solver,
+            factorisations: report.factorisations,
+            assembly_seconds: report.assembly,
+            factorisation_seconds: report.factorisation,
+            solution_seconds: report.solution,
+        }
+    }
+}
+
+/// Wall time in s.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(super) struct Seconds {
+    /// From reading to writing.
+    pub(super) total: f64,
+    /// Before the solver or the first step.
+    pub(super) setup: f64,
+    /// In Ipopt without the callbacks, or in the steps of a simulation.
+    pub(super) solver: f64,
+    pub(super) objective: f64,
+    pub(super) gradient: f64,
+    pub(super) constraints: f64,
+    pub(super) jacobian: f64,
+    pub(super) hessian: f64,
+}
+
+/// Versions that the result depends on.
+#[derive(Debug, Serialize)]
+pub(super) struct Versions {
+    program: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    commit: Option<&'static str>,
+    ipopt: &'static str,
+}
+
+impl Versions {
+    /// Those of this program.
+    pub(super) fn new() -> Self {
+        Self {
+            program: env!("CARGO_PKG_VERSION"),
+            commit: option_env!("PROBOSCIS_COMMIT"),
+            ipopt: crate::ipopt::VERSION,
+        }
+    }
+}
+
+impl Summary {
+    /// A summary without a result.
+    pub(super) fn new(request: &CommandInput, status: &str, coordinates: &'static str) -> Self {
+        Self {
+            command: request.command.clone(),
+            input: request.input.display().to_string(),
+            status: status.to_owned(),
+            message: None,
+            notes: Vec::new(),
+            program: None,
+            simulation: None,
+            accuracy: None,
+            comparison: None,
+            rest: None,
+            path: None,
+            domain: Vec::new(),
+            blocks: None,
+            coordinates,
+            seconds: Seconds::default(),
+            plan: Plan::default(),
+            versions: Versions::new(),
+        }
+    }
+
+    /// Writes it as `summary.json` into a folder that exists.
+    pub(super) fn write(&self, folder: &Path) -> Result<(), WriteError> {
+        let text = serde_json::to_string(self).expect("numbers and names are JSON");
+        atomic::write(&folder.join("summary.json"), lay_out(&text).as_bytes())
+    }
+}

@@ -1,0 +1,52 @@
+//! An earlier solution to start from: in memory, or read once the model exists.
+
+use std::borrow::Cow;
+use std::error::Error;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use crate::control::Solution;
+use crate::model::Model;
+
+/// Where an earlier solution comes from.
+pub trait EarlierSolution: Debug + Send + Sync {
+    /// The solution, for this model.
+    ///
+    /// # Errors
+    /// It cannot be read, or belongs to another system.
+    fn solution(&self, model: &Model) -> Result<Cow<'_, Solution>, Box<dyn Error + Send + Sync>>;
+}
+
+impl EarlierSolution for Solution {
+    fn solution(&self, _: &Model) -> Result<Cow<'_, Solution>, Box<dyn Error + Send + Sync>> {
+        Ok(Cow::Borrowed(self))
+    }
+}
+
+/// A shared earlier solution; two are equal where they are the same one.
+#[derive(Clone, Debug)]
+pub struct Earlier(Arc<dyn EarlierSolution>);
+
+impl Earlier {
+    /// Shares it.
+    pub fn new(earlier: impl EarlierSolution + 'static) -> Self {
+        Self(Arc::new(earlier))
+    }
+
+    /// The solution, for this model.
+    ///
+    /// # Errors
+    /// As of [`EarlierSolution::solution`].
+    pub fn solution(
+        &self,
+        model: &Model,
+    ) -> Result<Cow<'_, Solution>, Box<dyn Error + Send + Sync>> {
+        self.0.solution(model)
+    }
+}
+
+impl PartialEq for Earlier {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}

@@ -1,0 +1,203 @@
+//! As fine a grid as an accuracy needs: each from the solution on the one before, until the estimated error is small enough.
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+use crate::workflow::error::WorkflowError;
+use crate::workflow::estimate::{Convergence, ErrorSample, Measures, greatest};
+
+/// No grid has more than so many times the intervals of the first.
+const FINEST: usize = 1 << 10;
+/// No grid has more variables than this.
+const VARIABLES: usize = 2_000_000;
+
+/// What is asked about the error of discretisation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AccuracyTarget {
+    /// Grids are refined until every error is estimated below this.
+    Below(f64),
+    /// The error on the grid of the problem is estimated by one refinement.
+    Estimate,
+}
+
+/// A run on one grid.
+#[derive(Clone, Debug)]
+pub struct Attempt<R> {
+    /// The run.
+    pub run: R,
+    /// What of it is compared.
+    pub sample: ErrorSample,
+    /// Number of intervals or steps.
+    pub intervals: usize,
+    /// Iterations of the solver.
+    pub iterations: usize,
+    /// Unknowns of all instants.
+    pub variables: usize,
+    /// How it ended, in a word.
+    pub status: &'static str,
+    /// Whether it came to its end.
+    pub is_complete: bool,
+}
+
+/// What `summary.json` says of the error of discretisation.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Accuracy {
+    /// The error that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub requested: Option<f64>,
+    /// Whether the estimate is below it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub is_met: Option<bool>,
+    /// Estimated errors of the solution that is kept; none where there is no second grid.
+    pub estimate: Measures,
+    /// Orders in the step that the last three grids show, as observed; zero or less where differences do not fall.
+    pub order: Measures,
+    /// Order where none is shown.
+    pub assumed_order: f64,
+    /// The grids, coarsest first.
+    pub levels: Vec<GridLevel>,
+    /// Why there is no finer grid, where the accuracy is not met or no estimate could be made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stopped: Option<String>,
+}
+
+/// A grid.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GridLevel {
+    /// Number of intervals or steps.
+    pub intervals: usize,
+    /// How it ended.
+    pub status: &'static str,
+    /// Seconds, set-up and comparison included.
+    pub seconds: f64,
+    /// Iterations of the solver, or of Newton's method.
+    pub iterations: usize,
+    /// The objective; a simulation has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub objective: Option<f64>,
+    /// Estimated errors, from the grids so far.
+    #[serde(skip_serializing_if = "Measures::is_empty")]
+    pub estimate: Measures,
+}
+
+/// The run that is kept and the way to it.
+#[derive(Clone, Debug)]
+pub struct Refined<R> {
+    /// The run on the finest grid that was solved; the one on the first grid where only its error was asked for.
+    pub run: R,
+    /// How many times the intervals of the first grid it has.
+    pub times: usize,
+    /// Iterations on the grids up to its own.
+    pub iterations: usize,
+    /// What is told of it.
+    pub accuracy: Accuracy,
+}
+
+/// Runs on finer and finer grids.
+///
+/// `attempt` runs on a number of times the intervals of the first grid, from the run before; `stop` says in a word why no
+/// other grid may follow. The order of convergence is `assumed` until three grids show it.
+///
+/// # Errors
+/// The first run has no answer. A later one that has none ends the refinement.
+pub fn refine<R>(
+    wanted: AccuracyTarget,
+    assumed: f64,
+    stop: impl Fn() -> Option<&'static str>,
+    mut attempt: impl FnMut(usize, Option<&R>) -> Result<Attempt<R>, WorkflowError>,
+) -> Result<Refined<R>, WorkflowError> {
+    let mut levels = Vec::new();
+    let mut timed = |times: usize, before: Option<&R>| {
+        let began = Instant::now();
+        attempt(times, before).map(|attempt| (attempt, began.elapsed().as_secs_f64()))
+    };
+    let (mut kept, seconds) = timed(1, None)?;
+    levels.push(GridLevel::new(&kept, seconds));
+    let mut times = 1;
+    let mut iterations = kept.iterations;
+    let mut convergence = Convergence::default();
+    convergence.add(None, &kept.sample);
+    let mut estimate = Measures::new();
+    let mut stopped = None;
+    if !kept.is_complete {
+        stopped = Some(kept.status.to_owned());
+    }
+    while stopped.is_none() {
+        let finer = 2 * times;
+        stopped = match stop() {
+            Some(word) => Some(word.to_owned()),
+            None if finer > FINEST || 2 * kept.variables > VARIABLES => {
+                Some("too_large".to_owned())
+            }
+            None => None,
+        };
+        if stopped.is_some() {
+            break;
+        }
+        let (fine, seconds) = match timed(finer, Some(&kept.run)) {
+            Ok(found) => found,
+            Err(error) => {
+                stopped = Some(error.to_string());
+                break;
+            }
+        };
+        let mut level = GridLevel::new(&fine, seconds);
+        if !fine.is_complete {
+            stopped = Some(fine.status.to_owned());
+            levels.push(level);
+            break;
+        }
+        convergence.add(Some(&kept.sample), &fine.sample);
+        let AccuracyTarget::Below(requested) = wanted else {
+            estimate = convergence.errors_before(assumed);
+            levels[0].estimate.clone_from(&estimate);
+            levels.push(level);
+            break;
+        };
+        estimate = convergence.errors(assumed);
+        level.estimate.clone_from(&estimate);
+        levels.push(level);
+        iterations += fine.iterations;
+        (kept, times) = (fine, finer);
+        if is_below(&estimate, requested) {
+            break;
+        }
+    }
+    let requested = match wanted {
+        AccuracyTarget::Below(value) => Some(value),
+        AccuracyTarget::Estimate => None,
+    };
+    Ok(Refined {
+        run: kept.run,
+        times,
+        iterations,
+        accuracy: Accuracy {
+            requested,
+            is_met: requested.map(|value| is_below(&estimate, value)),
+            order: convergence.orders(),
+            assumed_order: assumed,
+            estimate,
+            levels,
+            stopped,
+        },
+    })
+}
+
+/// Whether there is an estimate, all of it below a value.
+fn is_below(estimate: &Measures, value: f64) -> bool {
+    greatest(estimate).is_some_and(|(_, error)| error <= value)
+}
+
+impl GridLevel {
+    fn new<R>(attempt: &Attempt<R>, seconds: f64) -> Self {
+        Self {
+            intervals: attempt.intervals,
+            status: attempt.status,
+            seconds,
+            iterations: attempt.iterations,
+            objective: attempt.sample.objective,
+            estimate: Measures::new(),
+        }
+    }
+}

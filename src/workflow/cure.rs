@@ -1,0 +1,106 @@
+//! An optimum that its own voltages do not reproduce, solved again on finer grids until they do.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use crate::control::problem::Control;
+use crate::ipopt::interrupt;
+use crate::model::System;
+use crate::workflow::error::WorkflowError;
+use crate::workflow::optimise::{Iterate, Optimum, SolveLimits, optimise};
+
+/// How many times the intervals of the problem are tried.
+const TIMES: [usize; 3] = [2, 4, 8];
+/// No grid has more variables than this.
+const VARIABLES: usize = 2_000_000;
+
+/// An optimum and the way to it.
+pub(crate) struct Cured {
+    /// The one of the problem's own grid, or the first one on a finer grid that is reproduced.
+    pub(crate) optimum: Optimum,
+    /// Iterations on all grids.
+    pub(crate) iterations: usize,
+    /// That and why another grid was taken, or tried in vain.
+    pub(crate) note: Option<String>,
+}
+
+/// Solves a control problem on its own grid; where the optimum is not reproduced, on finer ones, each from the optimum
+/// before, then from the guess of the problem.
+///
+/// # Errors
+/// As of [`optimise`].
+pub(crate) fn reproduced(
+    system: &System,
+    control: &Control,
+    allowed: SolveLimits,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+) -> Result<Cured, WorkflowError> {
+    let began = Instant::now();
+    let left = || {
+        let spent = began.elapsed().as_secs_f64();
+        allowed.seconds.map(|s| (s - spent).max(0.0))
+    };
+    let mut solve = |intervals: usize, earlier: Option<&Optimum>| {
+        let control = Control {
+            intervals,
+            ..control.clone()
+        };
+        let limits = SolveLimits {
+            seconds: left(),
+            ..allowed
+        };
+        let earlier = earlier.map(|optimum| &optimum.motion);
+        let found = optimise(system, &control, earlier, limits, &mut |iterate| {
+            observer(intervals, iterate)
+        })?;
+        let iterations = found.solution.iterations.len().saturating_sub(1);
+        Ok::<_, WorkflowError>((found, iterations))
+    };
+    let (optimum, mut iterations) = solve(control.intervals, None)?;
+    let Some(cause) = optimum.cause() else {
+        return Ok(Cured {
+            optimum,
+            iterations,
+            note: None,
+        });
+    };
+    let of_problem = format!("on {} intervals: {}", control.intervals, cause.told());
+    let mut before = None;
+    let mut finest = None;
+    'grids: for times in TIMES {
+        let intervals = control.intervals * times;
+        for from_before in [true, false] {
+            let is_over = interrupt::requested() || left().is_some_and(|s| s <= 0.0);
+            if is_over || times * optimum.solution.x.len() > VARIABLES {
+                break 'grids;
+            }
+            let earlier = from_before.then(|| before.as_ref().unwrap_or(&optimum));
+            let Ok((mut found, more)) = solve(intervals, earlier) else {
+                break 'grids;
+            };
+            finest = Some(intervals);
+            iterations += more;
+            if found.is_solved() {
+                found.stretched = optimum.stretched;
+                return Ok(Cured {
+                    optimum: found,
+                    iterations,
+                    note: Some(format!(
+                        "{of_problem}; solved again on {intervals} intervals, whose optimum its voltages reproduce"
+                    )),
+                });
+            }
+            if found.solution.status.is_solved() {
+                before = Some(found);
+            }
+        }
+    }
+    let note = finest.map(|n| {
+        format!("finer grids of up to {n} intervals gave no optimum that its voltages reproduce")
+    });
+    Ok(Cured {
+        optimum,
+        iterations,
+        note,
+    })
+}

@@ -1,0 +1,150 @@
+//! How far motions are from each other, and how far they go.
+
+use serde::Serialize;
+
+use crate::control::Solution;
+use crate::model::Model;
+use crate::model::system::JointKind;
+
+/// Ways that count as none, in rad and in lengths of the system.
+const NO_WAY: f64 = 1e-3;
+
+/// How far an instant is from another, or how long a way is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Distance {
+    /// Greatest distance of a joint angle, or of the orientation of a body that joint angles do not tell, in rad.
+    pub angle: f64,
+    /// Greatest distance of a joint displacement, of the centre of a body or of a node in m.
+    pub length: f64,
+}
+
+impl Distance {
+    /// Between instant `k` of a motion and instant `l` of another.
+    pub(crate) fn between(
+        model: &Model,
+        motion: &Solution,
+        k: usize,
+        other: &Solution,
+        l: usize,
+    ) -> Self {
+        let mut out = Self::default();
+        each(model, motion, k, other, l, |_, kind, apart| {
+            let part = out.part(kind);
+            *part = part.max(apart);
+        });
+        out
+    }
+
+    /// The longest way of a joint, and of a body or a node, along a motion.
+    pub(crate) fn way(model: &Model, motion: &Solution) -> Self {
+        let mut ways: Vec<(Kind, f64)> = Vec::new();
+        for k in 1..motion.times.len() {
+            each(model, motion, k - 1, motion, k, |i, kind, apart| {
+                ways.resize(ways.len().max(i + 1), (kind, 0.0));
+                ways[i] = (kind, ways[i].1 + apart);
+            });
+        }
+        let mut out = Self::default();
+        for (kind, way) in ways {
+            let part = out.part(kind);
+            *part = part.max(way);
+        }
+        out
+    }
+
+    /// The greater of both, part by part.
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self {
+            angle: self.angle.max(other.angle),
+            length: self.length.max(other.length),
+        }
+    }
+
+    /// The greater of angle and length, in rad and lengths of the system.
+    pub(crate) fn size(self, model: &Model) -> f64 {
+        self.angle.max(self.length / metres(model))
+    }
+
+    /// The greater part of a way that this is, of its angle or of its length.
+    pub(crate) fn over(self, way: Self, model: &Model) -> f64 {
+        let length = metres(model);
+        let turned = self.angle / way.angle.max(NO_WAY);
+        turned.max(self.length / way.length.max(NO_WAY * length))
+    }
+
+    fn part(&mut self, kind: Kind) -> &mut f64 {
+        match kind {
+            Kind::Angle => &mut self.angle,
+            Kind::Length => &mut self.length,
+        }
+    }
+}
+
+/// In words, as in `0.0210 rad, 3.40 mm`.
+impl std::fmt::Display for Distance {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "{} rad, {} mm",
+            digits(self.angle),
+            digits(1e3 * self.length)
+        )
+    }
+}
+
+/// A number with three digits; rounding, and what is beyond all measure, with its power of ten.
+fn digits(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e4).contains(&value) {
+        return format!("{value:.2e}");
+    }
+    let places = (2.0 - value.log10().floor()).max(0.0) as usize;
+    format!("{value:.places$}")
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Angle,
+    Length,
+}
+
+/// Length of the system in m.
+fn metres(model: &Model) -> f64 {
+    model.length() / 1e3
+}
+
+/// Calls `visit` with number, kind and distance (rad or m) of each joint, body and coordinate of a node; of a body also the angle
+/// between its orientations, where joint coordinates do not tell all.
+fn each(
+    model: &Model,
+    motion: &Solution,
+    k: usize,
+    other: &Solution,
+    l: usize,
+    mut visit: impl FnMut(usize, Kind, f64),
+) {
+    let mut number = 0..;
+    let mut next = |kind, apart| visit(number.next().unwrap_or_default(), kind, apart);
+    let joints = motion.joints[k].iter().zip(&other.joints[l]);
+    for ((a, b), joint) in joints.zip(&model.system.joints) {
+        match joint.kind {
+            JointKind::Prismatic { .. } => next(Kind::Length, (a - b).abs() / 1e3),
+            _ => next(Kind::Angle, (a - b).abs()),
+        }
+    }
+    let turns_freely = model.turns_freely();
+    for (a, b) in motion.poses[k].iter().zip(&other.poses[l]) {
+        next(Kind::Length, (a.centre - b.centre).norm() / 1e3);
+        if turns_freely {
+            // ‖A − B‖ = 2√2 sin(θ/2), exact where both are nearly the same.
+            let half = (a.directors - b.directors).norm() / 8.0_f64.sqrt();
+            next(Kind::Angle, 2.0 * half.min(1.0).asin());
+        }
+    }
+    let nodes = model.action.motion.of_bodies..model.coordinate_count();
+    for (a, b) in motion.z[k][nodes.clone()].iter().zip(&other.z[l][nodes]) {
+        next(Kind::Length, (a - b).abs() / 1e3);
+    }
+}

@@ -1,0 +1,240 @@
+//! What a scene calls for, counted: elements, the unknowns each effect reads, and what it couples.
+
+use serde::Serialize;
+
+use crate::control::problem::Control;
+use crate::coordinates::CoordinateMap;
+use crate::functional::{Couplings, Kind, Term};
+use crate::model::Model;
+use crate::workflow::reasons::{self, Absent, absent};
+use crate::workflow::stopwatch;
+
+/// An effect and its size.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EffectCounts {
+    /// Name.
+    pub name: String,
+    /// `kinetic`, `potential`, `virtual work` or `constraint`.
+    pub kind: &'static str,
+    /// What in scene and problem calls for it.
+    pub why: String,
+    /// Elements.
+    pub elements: usize,
+    /// Coordinates of an instant, voltages and potentials that it reads.
+    pub unknowns: usize,
+    /// Equations that it adds: constraints at an instant, or Gauss's law for the potentials of an interval.
+    pub equations: usize,
+    /// Pairs of these unknowns that it couples at one instant.
+    pub nonzeros: usize,
+    /// Entries that it touches: of the program's Jacobian in an inner interval of a control problem, otherwise of the tangent
+    /// of a step or of a state of rest.
+    pub jacobian: usize,
+    /// Entries of the lower triangle of the program's Hessian that it touches in an inner interval; only of a control problem.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hessian: Option<usize>,
+    /// Time of one evaluation with second derivatives in µs, as measured here.
+    pub microseconds: f64,
+}
+
+/// What a model is made of, and what it does without.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Plan {
+    /// Effects that scene and problem call for.
+    pub effects: Vec<EffectCounts>,
+    /// What they do not call for.
+    pub absent: Vec<Absent>,
+}
+
+impl Plan {
+    /// The plan of a model, each effect measured for `spent` seconds or one evaluation.
+    pub fn of(model: &Model, control: Option<&Control>, spent: f64) -> Self {
+        Self {
+            effects: effect_counts(model, control, spent),
+            absent: absent(model, control),
+        }
+    }
+}
+
+/// Which matrix the pairs of an effect are counted in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Matrix {
+    /// Jacobian and Hessian of a program.
+    Program,
+    /// The tangent of a step.
+    Step,
+    /// The tangent of a state of rest.
+    Rest,
+}
+
+/// An effect with the pairs of unknowns it couples, the smaller of each pair first, sorted; coordinates by entry, scalars
+/// of the site behind them.
+struct Coupled<'a> {
+    effect: &'a dyn Term,
+    pairs: Vec<[u32; 2]>,
+}
+
+/// Counts of all effects of a model, each measured for `spent` seconds or one evaluation; of a control problem in its
+/// program, otherwise in the tangent.
+pub fn effect_counts(model: &Model, control: Option<&Control>, spent: f64) -> Vec<EffectCounts> {
+    let matrix = match (control, model.analysis.of_motion) {
+        (Some(_), _) => Matrix::Program,
+        (None, true) => Matrix::Step,
+        (None, false) => Matrix::Rest,
+    };
+    let given = |source: &usize| control.is_some_and(|c| c.given.contains_key(source));
+    let unknowns = Unknowns {
+        coordinates: model.coordinate_count(),
+        sought: model.voltages.iter().map(|s| !given(s)).collect(),
+        matrix,
+    };
+    let times = stopwatch::times(model, spent);
+    let count = |(coupled, microseconds): (Coupled<'_>, f64)| {
+        let count = coupled.counts(&unknowns);
+        EffectCounts {
+            why: reasons::why(&count.name, model),
+            microseconds,
+            ..count
+        }
+    };
+    each(model).zip(times).map(count).collect()
+}
+
+/// What is unknown, and where.
+struct Unknowns {
+    /// Number of coordinates.
+    coordinates: usize,
+    /// Whether each voltage is an unknown of a program.
+    sought: Vec<bool>,
+    matrix: Matrix,
+}
+
+/// Names of the effects that couple two unknowns: coordinates by entry, scalars of the site behind them.
+pub(crate) fn coupling(model: &Model, i: usize, j: usize) -> Vec<String> {
+    let pair = [i.min(j) as u32, i.max(j) as u32];
+    let couple = each(model).filter(|coupled| coupled.pairs.binary_search(&pair).is_ok());
+    couple.map(|c| c.effect.name().to_owned()).collect()
+}
+
+/// The effects of a model one after the other.
+fn each(model: &Model) -> impl Iterator<Item = Coupled<'_>> {
+    let sums = [&model.action.intervals, &model.action.instants];
+    let effects = sums.into_iter().flat_map(|sum| &sum.effects);
+    effects.map(|effect| Coupled::new(effect.as_ref(), &model.action.motion))
+}
+
+impl<'a> Coupled<'a> {
+    fn new(effect: &'a dyn Term, motion: &CoordinateMap) -> Self {
+        let mut couplings = Couplings::default();
+        effect.couple(&mut couplings, &mut Vec::new());
+        let scalar = |s: usize| motion.coordinates + s;
+        let mut pairs: Vec<[u32; 2]> = Vec::new();
+        let mut add = |a: usize, b: usize| pairs.push([a.min(b) as u32, a.max(b) as u32]);
+        // Pairs of vectors come in both orders.
+        for &(a, b) in couplings.full.iter().filter(|(a, b)| a <= b) {
+            let others = motion.support(b);
+            for i in motion.support(a) {
+                others.iter().for_each(|&j| add(i, j));
+            }
+        }
+        for &(a, b) in couplings.isotropic.iter().filter(|(a, b)| a <= b) {
+            // Directors and nodes couple component by component, joint coordinates all with all.
+            let meets = |i, j| match (axis(motion, i), axis(motion, j)) {
+                (Some(a), Some(b)) => a == b,
+                _ => true,
+            };
+            let others = motion.support(b);
+            for i in motion.support(a) {
+                let others = others.iter().filter(|&&j| meets(i, j));
+                others.for_each(|&j| add(i, j));
+            }
+        }
+        for &(a, s) in &couplings.mixed {
+            let support = motion.support(a).into_iter();
+            support.for_each(|i| add(i, scalar(s)));
+        }
+        for &(s, t) in &couplings.scalars {
+            add(scalar(s), scalar(t));
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        Self { effect, pairs }
+    }
+
+    /// Its counts, without reason and time.
+    fn counts(&self, of: &Unknowns) -> EffectCounts {
+        let mut unknowns: Vec<u32> = self.pairs.iter().flatten().copied().collect();
+        unknowns.sort_unstable();
+        unknowns.dedup();
+        let given = of.coordinates + of.sought.len();
+        let (kind, first) = match self.effect.kind() {
+            Kind::Kinetic => ("kinetic", given),
+            Kind::Potential => ("potential", given),
+            Kind::VirtualWork => ("virtual work", given),
+            Kind::Constraint => ("constraint", of.coordinates),
+        };
+        let equations = unknowns.iter().filter(|&&i| i as usize >= first);
+        let diagonal = self.pairs.iter().filter(|[i, j]| i == j).count();
+        let touched = self.pairs.iter().map(|pair| self.touched(pair, of));
+        let [jacobian, hessian] = touched.fold([0, 0], |[a, b], [c, d]| [a + c, b + d]);
+        EffectCounts {
+            name: self.effect.name().to_owned(),
+            kind,
+            why: String::new(),
+            elements: self.effect.elements(),
+            unknowns: unknowns.len(),
+            equations: equations.count(),
+            nonzeros: 2 * self.pairs.len() - diagonal,
+            jacobian,
+            hessian: (of.matrix == Matrix::Program).then_some(hessian),
+            microseconds: f64::NAN,
+        }
+    }
+
+    /// Entries of Jacobian and Hessian that a pair of unknowns touches in an inner interval, its first instant included.
+    fn touched(&self, &[i, j]: &[u32; 2], of: &Unknowns) -> [usize; 2] {
+        let (i, j) = (i as usize, j as usize);
+        let both_orders = if i == j { 1 } else { 2 };
+        let is_instantaneous = self.effect.kind() == Kind::Constraint;
+        if is_instantaneous {
+            // A multiplier has a column in the balances of its instant, its constraint a row in the coordinates.
+            let is_pair_of_coordinates = j < of.coordinates;
+            return match (is_pair_of_coordinates, of.matrix) {
+                (true, Matrix::Program | Matrix::Rest) => [both_orders, 1],
+                // The curvature of a constraint at the end of a step belongs to the next one.
+                (true, Matrix::Step) => [0, 0],
+                (false, _) => [2, 1],
+            };
+        }
+        let scalar = |i: usize| i.checked_sub(of.coordinates);
+        let is_potential = |s: usize| s >= of.sought.len();
+        let is_variable = |s: usize| match of.matrix {
+            Matrix::Program => is_potential(s) || of.sought[s],
+            Matrix::Step | Matrix::Rest => is_potential(s),
+        };
+        // A program has the balances of an instant with the instants before, here and after, and an interval has two ends.
+        let (balances, ends) = match of.matrix {
+            Matrix::Program => (3, 2),
+            Matrix::Step | Matrix::Rest => (1, 1),
+        };
+        match (scalar(i), scalar(j)) {
+            (None, None) => [balances * both_orders, 1 + both_orders],
+            (None, Some(s)) if is_variable(s) => {
+                let rows = if is_potential(s) { 2 } else { 1 };
+                [ends * rows, 2]
+            }
+            (Some(s), Some(t)) if is_variable(s) && is_variable(t) => {
+                let rows = usize::from(is_potential(s)) + usize::from(i != j && is_potential(t));
+                [rows, 1]
+            }
+            _ => [0, 0],
+        }
+    }
+}
+
+/// Direction of a coordinate that moves along one; `None` for a joint's.
+fn axis(motion: &CoordinateMap, i: usize) -> Option<usize> {
+    match i.checked_sub(motion.of_bodies) {
+        Some(of_node) => Some(motion.of_nodes[of_node].1),
+        None => motion.tree.is_none().then_some(i % 3),
+    }
+}

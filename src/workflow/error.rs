@@ -1,0 +1,102 @@
+//! Why there is no result.
+
+use std::error::Error as StdError;
+
+use thiserror::Error;
+
+use crate::control::BoundaryError;
+use crate::dynamics::EquilibriumError;
+use crate::ipopt::{IpoptError, Status};
+
+/// How a robot that nothing holds starts.
+const FLOATS: &str =
+    "; a robot that floats starts from its joint angles: \"start\": { \"joint_angles\": {} }";
+
+/// Why there is no result; places are paths in the problem, such as `control.goal`.
+#[derive(Debug, Error)]
+pub enum WorkflowError {
+    /// What a problem asks for does not exist.
+    #[error("{place}: {reason}")]
+    Problem {
+        /// Path in the problem.
+        place: String,
+        /// Why.
+        reason: String,
+    },
+    /// The problem is right, but a start or goal at rest was not found.
+    #[error("{place}: {reason}")]
+    NoEquilibrium {
+        /// Path in the problem.
+        place: String,
+        /// Why.
+        reason: String,
+    },
+    /// The earlier solution that a solve starts from cannot be used.
+    #[error(transparent)]
+    Earlier(Box<dyn StdError + Send + Sync>),
+    /// An interruption was asked for, or the time allowed is over, before there was a result.
+    #[error("stopped before the first result ({})", .0.word().replace('_', " "))]
+    Stopped(Status),
+}
+
+impl WorkflowError {
+    /// Start or goal of a problem that does not exist; `task` is its key in the file.
+    pub(crate) fn boundary(task: &str, error: &BoundaryError) -> Self {
+        let (key, reason) = match error {
+            BoundaryError::Model(source) => ("coordinates", source.to_string()),
+            BoundaryError::NoEquilibrium {
+                source: EquilibriumError::Stopped(status),
+                ..
+            } => return Self::Stopped(*status),
+            BoundaryError::Limit { place, reason } => (*place, reason.clone()),
+            BoundaryError::NoEquilibrium { place, source } => {
+                let reason = source.to_string();
+                // What nothing holds is wrong input; loads that a robot does not bear are not.
+                let is_borne = !matches!(
+                    source,
+                    EquilibriumError::LimitPoint { .. } | EquilibriumError::NoStart
+                );
+                if !is_borne {
+                    return Self::NoEquilibrium {
+                        place: format!("{task}.{place}"),
+                        reason,
+                    };
+                }
+                let floats = match source {
+                    EquilibriumError::Singular { redundant, .. } => redundant.is_empty(),
+                    EquilibriumError::NoStiffness(_) => true,
+                    _ => false,
+                };
+                let hint = match *place == "start" && floats {
+                    true => FLOATS,
+                    false => "",
+                };
+                (*place, reason + hint)
+            }
+            BoundaryError::Inconsistent { place, .. }
+            | BoundaryError::NoLength { place, .. }
+            | BoundaryError::Follows { place, .. } => {
+                let text = error.to_string();
+                let reason = text.strip_prefix(&format!("{place}: ")).unwrap_or(&text);
+                (*place, reason.to_owned())
+            }
+            BoundaryError::Overdetermined { .. } => ("goal", error.to_string()),
+        };
+        Self::Problem {
+            place: format!("{task}.{key}"),
+            reason,
+        }
+    }
+
+    /// An option or a problem that Ipopt does not take.
+    pub(crate) fn ipopt(error: &IpoptError) -> Self {
+        let place = match error {
+            IpoptError::OptionRejected { .. } => "control.solver.ipopt",
+            IpoptError::ProblemNotCreated { .. } => "control",
+        };
+        Self::Problem {
+            place: place.to_owned(),
+            reason: error.to_string(),
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Control problems and simulations on as fine a grid as an accuracy needs.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use crate::control::problem::{Control, Duration, Simulation, Voltages};
+use crate::dynamics::DiscreteTrajectory;
+use crate::ipopt::interrupt;
+use crate::model::{Model, System};
+use crate::workflow::accuracy::{AccuracyTarget, Attempt, Refined, refine};
+use crate::workflow::error::WorkflowError;
+use crate::workflow::estimate::ErrorSample;
+use crate::workflow::integrate::{Simulated, grid, integrate};
+use crate::workflow::motion;
+use crate::workflow::optimise::{Iterate, Optimum, SolveLimits, optimise};
+
+/// The solver's tolerance as a part of the accuracy asked for, where the problem names no smaller one.
+const SOLVER: f64 = 1e-2;
+/// Order of optimal voltages until three grids show it: switches and the cost of the first and last jump may make it one.
+const OF_CONTROL: f64 = 1.0;
+/// Order of the midpoint rule under voltages that are constant over its steps.
+const OF_MOTION: f64 = 2.0;
+
+/// Solves a control problem on its own grid, then on finer ones, each from the solution before, until every error is
+/// estimated below what is wanted; or estimates the error on its own grid. `observer` sees the number of intervals and every
+/// iteration.
+///
+/// # Errors
+/// As of [`optimise`].
+pub fn optimise_to(
+    system: &System,
+    control: &Control,
+    wanted: AccuracyTarget,
+    allowed: SolveLimits,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+) -> Result<Refined<Optimum>, WorkflowError> {
+    let began = Instant::now();
+    let left = || {
+        allowed
+            .seconds
+            .map(|s| (s - began.elapsed().as_secs_f64()).max(0.0))
+    };
+    refine(
+        wanted,
+        OF_CONTROL,
+        || stop(left()),
+        |times, before: Option<&Optimum>| {
+            let mut control = control.clone();
+            control.intervals *= times;
+            if let AccuracyTarget::Below(error) = wanted {
+                control.solver.tolerance = control.solver.tolerance.min(SOLVER * error);
+            }
+            let seconds = left();
+            let limits = SolveLimits { seconds, ..allowed };
+            let earlier = before.map(|optimum| &optimum.motion);
+            let mut run = optimise(system, &control, earlier, limits, &mut |iterate| {
+                observer(control.intervals, iterate)
+            })?;
+            // What the guess of the problem became belongs to all grids.
+            run.stretched = before.map_or(run.stretched, |optimum| optimum.stretched);
+            // What is not reproduced may be on a finer grid.
+            let is_complete = run.meets_equations();
+            let sample = match is_complete {
+                true => sample(&run, matches!(control.duration, Duration::Free { .. })),
+                false => ErrorSample::default(),
+            };
+            Ok(Attempt {
+                sample,
+                intervals: control.intervals,
+                iterations: run.solution.iterations.len().saturating_sub(1),
+                variables: run.solution.x.len(),
+                status: run.word(),
+                is_complete,
+                run,
+            })
+        },
+    )
+}
+
+/// Simulates with the step of the task, then with half of it and so on, until every error is estimated below what is wanted;
+/// or estimates the error with its own step. `observer` sees the number of steps, and the motion after each step.
+///
+/// # Errors
+/// As of [`integrate`].
+pub fn integrate_to(
+    system: &System,
+    task: &Simulation,
+    wanted: AccuracyTarget,
+    seconds: Option<f64>,
+    observer: &mut dyn FnMut(usize, &Model, &DiscreteTrajectory) -> ControlFlow<()>,
+) -> Result<Refined<Simulated>, WorkflowError> {
+    let began = Instant::now();
+    let left = || seconds.map(|s| s - began.elapsed().as_secs_f64());
+    let (first, _) = grid(task);
+    // Sampled voltages may change within a step.
+    let order = match task.voltages {
+        Voltages::Constant(_) => OF_MOTION,
+        Voltages::Sampled { .. } => OF_CONTROL,
+    };
+    refine(
+        wanted,
+        order,
+        || stop(left()),
+        |times, _| {
+            let steps = first * times;
+            let task = Simulation {
+                step: task.duration / steps as f64,
+                ..task.clone()
+            };
+            let run = integrate(system, &task, |model, history| {
+                observer(steps, model, history)
+            })?;
+            let is_complete = run.failure.is_none() && run.history.intervals() == steps;
+            let status = match (&run.failure, stop(left())) {
+                _ if is_complete => "simulated",
+                (Some(_), _) => "step_failed",
+                (None, stopped) => stopped.unwrap_or("stopped"),
+            };
+            Ok(Attempt {
+                sample: match is_complete {
+                    true => ErrorSample::of_motion(&run.model, &run.history),
+                    false => ErrorSample::default(),
+                },
+                intervals: run.history.intervals(),
+                iterations: run.history.report.iterations,
+                variables: steps * run.model.action.motion.unknowns(),
+                status,
+                is_complete,
+                run,
+            })
+        },
+    )
+}
+
+/// Why nothing more may be begun.
+fn stop(seconds: Option<f64>) -> Option<&'static str> {
+    match seconds {
+        _ if interrupt::requested() => Some("interrupted"),
+        Some(seconds) if seconds <= 0.0 => Some("time_limit"),
+        _ => None,
+    }
+}
+
+/// What is compared of an optimum.
+fn sample(optimum: &Optimum, is_free: bool) -> ErrorSample {
+    let kept = &optimum.motion;
+    let sample = ErrorSample {
+        objective: Some(optimum.solution.objective),
+        duration: is_free.then(|| kept.times[kept.intervals()]),
+        ..ErrorSample::of_motion(&optimum.model, &motion::history(&optimum.model, kept))
+    };
+    ErrorSample {
+        response: Some(response(optimum, &sample)),
+        ..sample
+    }
+}
+
+/// Deviation of an optimal motion from the one under its voltages with half the step; infinite where there is none.
+fn response(optimum: &Optimum, optimal: &ErrorSample) -> f64 {
+    let tested = optimum.resimulation.as_ref();
+    let half = tested.and_then(|tested| tested.half.as_ref());
+    half.map_or(f64::INFINITY, |history| {
+        optimal.deviation(&ErrorSample::of_motion(&optimum.model, history))
+    })
+}

@@ -1,0 +1,112 @@
+//! What a run is sure to need of the machine's memory, told before it begins to fill it.
+
+use std::fs;
+
+use crate::model::system::Fidelity;
+use crate::model::{Model, System};
+use crate::workflow::error::WorkflowError;
+
+/// Bytes of an element with its share of nodes, couplings, tangent and factors: dielectric blocks of 2048 to 16 384 elements took
+/// 133 000 at rest, 155 000 to 193 000 with the first step of a motion.
+const OF_ELEMENT: f64 = 1.2e5;
+/// Bytes of a second derivative of an interval in a program and in the solver: 300 were measured for the trunk without fill-in, 220
+/// for each entry of Jacobian and Hessian of a block of 64 elements with its factors.
+const OF_DERIVATIVE: f64 = 200.0;
+/// Bytes of an instant in tables and figures.
+const OF_INSTANT: f64 = 1e3;
+/// Bytes of a body at an instant: its pose, in the motion and in what is drawn.
+const OF_POSE: f64 = 192.0;
+
+/// Refuses a scene whose elements need more than there is.
+///
+/// # Errors
+/// They do.
+pub(crate) fn of_elements(system: &System) -> Result<(), WorkflowError> {
+    let elements = system.elements();
+    let unknowns = unknowns(system);
+    let what = format!("{elements} elements with about {unknowns} unknowns");
+    enough("scene", &what, elements as f64 * OF_ELEMENT)
+}
+
+/// Places and potentials of the nodes of finite elements, those that are fixed or given included.
+fn unknowns(system: &System) -> usize {
+    let of_muscles = system.muscles.iter().map(|muscle| match muscle.fidelity {
+        Fidelity::Lumped => 0,
+        Fidelity::FiniteElements(grid) => {
+            4 * grid.elements.map(|n| n + 1).iter().product::<usize>()
+        }
+    });
+    let of_blocks = system.solids.iter().map(|solid| {
+        let of_node = if solid.electrodes.is_empty() { 3 } else { 4 };
+        of_node * solid.mesh.nodes.len()
+    });
+    of_muscles.chain(of_blocks).sum()
+}
+
+/// Refuses a motion of too many steps.
+///
+/// # Errors
+/// Its instants need more than there is.
+pub(crate) fn of_motion(model: &Model, steps: usize) -> Result<(), WorkflowError> {
+    let motion = &model.action.motion;
+    let scalars = model.voltages.len() + model.potentials;
+    let numbers = 3 * motion.unknowns() + 2 * motion.coordinates + 2 * scalars;
+    let instant = 8.0 * numbers as f64 + OF_POSE * model.system.bodies.len() as f64 + OF_INSTANT;
+    let what = format!("a motion of {steps} steps");
+    enough("simulate.step", &what, steps as f64 * instant)
+}
+
+/// Refuses a program of too many intervals.
+///
+/// # Errors
+/// Its derivatives need more than there is.
+pub(crate) fn of_program(model: &Model, intervals: usize) -> Result<(), WorkflowError> {
+    let derivatives = model.action.layout().values(1) as f64;
+    let unknowns = model.action.motion.unknowns() + model.voltages.len() + model.potentials;
+    let what = format!(
+        "a program of {intervals} intervals with {unknowns} unknowns and {derivatives} second derivatives each"
+    );
+    let bytes = intervals as f64 * derivatives * OF_DERIVATIVE;
+    enough("control.intervals", &what, bytes)
+}
+
+fn enough(place: &str, what: &str, bytes: f64) -> Result<(), WorkflowError> {
+    match available() {
+        Some(available) if bytes > available => Err(WorkflowError::Problem {
+            place: place.to_owned(),
+            reason: format!(
+                "{what} needs {} of memory or more, and {} are free",
+                readable(bytes),
+                readable(available)
+            ),
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn readable(bytes: f64) -> String {
+    format!("{:.1} GB", bytes / 1e9)
+}
+
+/// Bytes that the machine and the group of this process leave; `None` where that is not known.
+fn available() -> Option<f64> {
+    let machine = fs::read_to_string("/proc/meminfo").ok();
+    let machine = machine.as_deref().and_then(of_machine);
+    let of_group = |name: &str| -> Option<f64> {
+        let text = fs::read_to_string(format!("/sys/fs/cgroup/{name}")).ok()?;
+        text.trim().parse().ok()
+    };
+    let group = of_group("memory.max").zip(of_group("memory.current"));
+    // What is cached is given back when it is needed.
+    let group = group.map(|(limit, used)| (limit - used).max(0.5 * limit));
+    [machine, group].into_iter().flatten().reduce(f64::min)
+}
+
+/// What `/proc/meminfo` says is available, in bytes.
+fn of_machine(text: &str) -> Option<f64> {
+    let line = text
+        .lines()
+        .find(|line| line.starts_with("MemAvailable:"))?;
+    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(1024.0 * kilobytes)
+}

@@ -1,0 +1,41 @@
+//! What is done with a problem, in memory: simulate, optimise, refine, verify.
+//!
+//! - `integrate`, `optimise`: a simulation, a control problem; `error`: why there is no result; `phase`: what is being done.
+//! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs.
+//! - `resimulate`: what an optimum is worth, by the `distance` of motions; `cure`: finer grids where it is none; `holding`: its end.
+//! - `second_start`, `infeasible`, `active`, `violations`: what is tried before a problem is called infeasible, and why it is.
+//! - `effects`, `reasons`, `stopwatch`: what a model consists of and why, what each term takes; `memory`: what is more than the machine has.
+//! - `motion`: between what is solved for and a trajectory.
+
+pub mod accuracy;
+pub(crate) mod active;
+pub(crate) mod cure;
+pub(crate) mod distance;
+pub(crate) mod effects;
+mod error;
+pub mod estimate;
+pub(crate) mod grids;
+pub(crate) mod holding;
+pub(crate) mod infeasible;
+pub(crate) mod integrate;
+pub(crate) mod memory;
+pub(crate) mod motion;
+pub(crate) mod optimise;
+pub(crate) mod phase;
+pub(crate) mod reasons;
+pub(crate) mod resimulate;
+pub(crate) mod second_start;
+pub(crate) mod stopwatch;
+pub(crate) mod violations;
+
+pub use active::{Active, active};
+pub use effects::{EffectCounts, Plan, effect_counts};
+pub use error::WorkflowError;
+pub use grids::{integrate_to, optimise_to};
+pub use integrate::{Simulated, grid, integrate};
+pub use motion::{solved, trajectory};
+pub use optimise::{Iterate, Optimum, SolveLimits, optimise};
+pub use phase::listen_to_phases;
+pub use reasons::{Absent, absent};
+pub use resimulate::{Cause, Resimulation};
+pub use violations::{Violation, violations};

@@ -1,0 +1,92 @@
+//! From coordinates and multipliers to what people look at: poses, joint coordinates, voltages by muscle.
+
+use crate::control::{Costates, Solution};
+use crate::dynamics::DiscreteTrajectory;
+use crate::dynamics::trajectory::Trajectory;
+use crate::math::Vector;
+use crate::model::Model;
+use crate::model::system::Joint;
+
+/// What is kept of a motion.
+pub fn solved(model: &Model, history: &DiscreteTrajectory, costates: Option<Costates>) -> Solution {
+    let motion = Trajectory::from_history(model, history);
+    // One value a joint, zero where a joint has no coordinate.
+    let by_joint = |row: Vec<f64>| {
+        let mut values = row.into_iter();
+        let value = |joint: &Joint| joint.has_coordinate().then(|| values.next()).flatten();
+        let joints = model.system.joints.iter();
+        joints.map(value).map(Option::unwrap_or_default).collect()
+    };
+    Solution {
+        coordinates: model.coordinates,
+        times: motion.times,
+        joints: motion.joints.into_iter().map(by_joint).collect(),
+        poses: motion.poses,
+        z: history.z.clone(),
+        multiplier_time: model.multiplier_time,
+        voltages: motion.voltages,
+        hold: None,
+        potentials: potentials(model, history),
+        costates,
+    }
+}
+
+/// The motion as tables and figures show it.
+pub fn trajectory(model: &Model, solved: &Solution) -> Trajectory {
+    let shown = |row: &Vec<f64>| {
+        let joints = row.iter().zip(&model.system.joints);
+        joints
+            .filter(|(_, joint)| joint.has_coordinate())
+            .map(|(&value, _)| value)
+            .collect()
+    };
+    Trajectory {
+        times: solved.times.clone(),
+        joints: solved.joints.iter().map(shown).collect(),
+        poses: solved.poses.clone(),
+        marks: marks(model, &solved.z),
+        voltages: solved.voltages.clone(),
+    }
+}
+
+/// Places of the markers at instants with coordinates z.
+fn marks(model: &Model, z: &[Vec<f64>]) -> Vec<Vec<Vector>> {
+    let mut instant = model.action.motion.instant();
+    let mut at = |z: &Vec<f64>| {
+        instant.z.copy_from_slice(z);
+        model.action.motion.place(&mut instant);
+        model.markers.iter().map(|&v| instant.x[v]).collect()
+    };
+    z.iter().map(&mut at).collect()
+}
+
+/// Potentials of a motion by interval; none where a scene has none.
+fn potentials(model: &Model, history: &DiscreteTrajectory) -> Vec<Vec<f64>> {
+    if model.potentials == 0 {
+        return Vec::new();
+    }
+    let rows = history.scalars.iter();
+    rows.map(|row| row[model.voltages.len()..].to_vec())
+        .collect()
+}
+
+/// Voltages and potentials of a motion that is kept, by interval.
+pub(crate) fn scalars(model: &Model, kept: &Solution) -> Vec<Vec<f64>> {
+    let row = |(k, voltages): (usize, &Vec<f64>)| {
+        let mut row = model.scalars(voltages);
+        row.extend(kept.potentials.get(k).into_iter().flatten());
+        row.resize(model.action.intervals.scalars, 0.0);
+        row
+    };
+    kept.voltages.iter().enumerate().map(row).collect()
+}
+
+/// The record of a motion that is kept.
+pub(crate) fn history(model: &Model, kept: &Solution) -> DiscreteTrajectory {
+    DiscreteTrajectory {
+        times: kept.times.clone(),
+        z: kept.z.clone(),
+        scalars: scalars(model, kept),
+        ..DiscreteTrajectory::default()
+    }
+}

@@ -1,0 +1,393 @@
+//! A control problem solved in memory: boundary, guess, program, solver.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use crate::control::problem::{Control, Duration, Guess};
+use crate::control::{BoundaryConditions, InitialGuess, Solution, Transcription, guess};
+use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
+use crate::ipopt::{self, Iteration, OptionValue, Options, SolverResult, Start, Status, interrupt};
+use crate::model::{Coordinates, Model, System};
+use crate::nlp::Nlp;
+use crate::workflow::active::{Active, active};
+use crate::workflow::error::WorkflowError;
+use crate::workflow::holding;
+use crate::workflow::memory;
+use crate::workflow::motion::solved;
+use crate::workflow::phase::phase;
+use crate::workflow::resimulate::{Cause, Resimulation, resimulate};
+use crate::workflow::second_start::{ITERATIONS, displaced, is_infeasible, one_of_both};
+use crate::workflow::violations::{Violation, violations};
+
+/// Rows named when a problem has no solution.
+const NAMED: usize = 5;
+/// A row that the solver could not make smaller than this does not hold.
+const HOLDS: f64 = 1e-6;
+/// Start from an earlier solution that was resampled and has no costates.
+const RESAMPLED: Start = Start::Primal { mu_init: 1e-2 };
+
+/// An earlier solution that violates the equations of another grid or duration by less lies on the right bounds: smooth voltages
+/// violate them by 1e-6 to 1e-4, those that jump at other instants by 4e-4 to 4e-2.
+const FITS: f64 = 2e-4;
+
+/// A rotation that ends farther from its chart, in rad, is solved again with a chart where it ended; how often at most.
+const FAR: f64 = std::f64::consts::FRAC_PI_3;
+const CHARTS: usize = 4;
+
+/// What a solve may take, in place of what its problem says.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SolveLimits {
+    /// Iterations of the solver.
+    pub iterations: Option<usize>,
+    /// Seconds, set-up included.
+    pub seconds: Option<f64>,
+}
+
+/// A control problem and how its solve ended.
+#[derive(Debug)]
+pub struct Optimum {
+    /// The model it was solved in.
+    pub model: Model,
+    /// Start and goal.
+    pub boundary: BoundaryConditions,
+    /// The motion: the optimal one, or the last iterate.
+    pub motion: Solution,
+    /// What the solver returned.
+    pub solution: SolverResult,
+    /// Interval in which the span of a muscle turns by a right angle or more, and the muscle: the discrete equations hold, but
+    /// describe no motion.
+    pub reversed: Option<(usize, usize)>,
+    /// The worst rows that do not hold; none of a solution.
+    pub violated: Vec<Violation>,
+    /// Greatest violation of an equation or limit, as the solver measures it.
+    pub infeasibility: f64,
+    /// Number of equations and limits.
+    pub constraints: usize,
+    /// Nonzeros of the Jacobian.
+    pub jacobian_nonzeros: usize,
+    /// Nonzeros of the lower triangle of the Hessian.
+    pub hessian_nonzeros: usize,
+    /// Seconds before the solver began.
+    pub setup: f64,
+    /// Durations in ms of the solution that it started from and of its first guess, where they differ.
+    pub stretched: Option<[f64; 2]>,
+    /// Its voltages put to the test, where the solver found a solution.
+    pub resimulation: Option<Resimulation>,
+    /// Seconds that the test took.
+    pub tested: f64,
+    /// How the first start ended, where a displaced second one found the optimum.
+    pub restarted: Option<Status>,
+    /// Bounds and limits that the motion reaches, the most frequent first; none of a solution.
+    pub active: Vec<Active>,
+}
+
+impl Optimum {
+    /// Whether it is an optimal motion: the solver found it, and a simulation under its voltages reproduces it.
+    pub fn is_solved(&self) -> bool {
+        self.meets_equations() && self.cause().is_none()
+    }
+
+    /// Holds the voltages of the goal after its end, where they are known and it is reproduced.
+    pub(crate) fn hold(&mut self) {
+        let Self {
+            model,
+            boundary,
+            motion,
+            resimulation: Some(tested),
+            ..
+        } = self
+        else {
+            return;
+        };
+        if tested.cause.is_none() {
+            tested.hold(model, boundary, motion);
+        }
+    }
+
+    /// Whether it meets the discrete equations, reproduced or not.
+    pub(crate) fn meets_equations(&self) -> bool {
+        self.solution.status.is_solved() && self.reversed.is_none()
+    }
+
+    /// Why a simulation does not reproduce it, where it does not.
+    pub fn cause(&self) -> Option<&Cause> {
+        self.resimulation.as_ref()?.cause.as_ref()
+    }
+
+    /// How it ended, in a word.
+    pub fn word(&self) -> &'static str {
+        match self.cause() {
+            _ if self.reversed.is_some() => "unresolved",
+            Some(_) => "not_reproduced",
+            None => self.solution.status.word(),
+        }
+    }
+}
+
+/// A point that the solver has come to.
+pub struct Iterate<'a> {
+    /// What the solver tells of it.
+    pub report: &'a Iteration,
+    /// The model.
+    pub model: &'a Model,
+    /// Its motion.
+    pub motion: &'a dyn Fn() -> Solution,
+}
+
+impl fmt::Debug for Iterate<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.report.fmt(f)
+    }
+}
+
+/// Solves a control problem, from an `earlier` solution where one is given; `observer` sees every iterate.
+///
+/// # Errors
+/// Start, goal, guess or an option of the solver is wrong. A problem without a solution is no error: see the status.
+pub fn optimise(
+    system: &System,
+    control: &Control,
+    earlier: Option<&Solution>,
+    allowed: SolveLimits,
+    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
+) -> Result<Optimum, WorkflowError> {
+    let began = Instant::now();
+    let watch = interrupt::watch(allowed.seconds);
+    phase("building the model, finding start and goal");
+    let (model, boundary) = resolve(system, control)?;
+    phase("building the program");
+    let Prepared {
+        mut program,
+        point,
+        start,
+        stretched,
+    } = prepare(&model, &boundary, control, earlier, Counted::Yes)?;
+    let setup = began.elapsed().as_secs_f64();
+    let options = Options {
+        tolerance: control.solver.tolerance,
+        max_iterations: allowed.iterations.unwrap_or(control.solver.max_iterations),
+        max_seconds: allowed.seconds.map(|s| (s - setup).max(0.0)),
+        start,
+        extra: linear_solver(&model, control),
+    };
+    phase("ordering and first factorisation");
+    tracing::info!(?start, variables = point.x.len(), "solve");
+    let mut solve =
+        |program: &mut Transcription<'_>, point: &ipopt::StartingPoint, options: &Options| {
+            let decoder = program.decoder();
+            let mut observer = |report: &Iteration, x: &[f64]| {
+                let motion = || solved(&model, &decoder.decode(x), None);
+                observer(&Iterate {
+                    report,
+                    model: &model,
+                    motion: &motion,
+                })
+            };
+            ipopt::solve(program, point, options, &mut observer)
+                .map_err(|error| WorkflowError::ipopt(&error))
+        };
+    let mut solution = solve(&mut program, &point, &options)?;
+    let mut restarted = None;
+    if is_infeasible(solution.status) && matches!(start, Start::Cold | Start::Simulated) {
+        phase("a second start from elsewhere");
+        let displaced = displaced(control, &boundary, model.sources.len());
+        let initial = guess(&model, &boundary, &displaced, interval(control), None);
+        let left = |limit: f64| (limit - began.elapsed().as_secs_f64()).max(0.0);
+        let options = Options {
+            max_iterations: options.max_iterations.min(ITERATIONS),
+            max_seconds: allowed.seconds.map(left),
+            ..options.clone()
+        };
+        let point = program.start(&initial);
+        let second = solve(&mut program, &point, &options)?;
+        restarted = second.status.is_solved().then_some(solution.status);
+        solution = one_of_both(solution, second);
+    }
+    for _ in 0..CHARTS {
+        let far = recentred(&model, &program.decode(&solution.x));
+        let Some(initial) = far.filter(|_| interrupt::stop().is_none()) else {
+            break;
+        };
+        phase("again, from where the first solution turned to");
+        program = Transcription::of_any(&model, &boundary, control, &initial);
+        let left = |limit: f64| (limit - began.elapsed().as_secs_f64()).max(0.0);
+        let options = Options {
+            max_seconds: allowed.seconds.map(left),
+            start: Start::PRIMAL,
+            ..options.clone()
+        };
+        let point = program.start(&initial);
+        solution = solve(&mut program, &point, &options)?;
+    }
+    drop(watch);
+    let history = program.decode(&solution.x);
+    let motion = Solution {
+        hold: boundary.rest[1].clone(),
+        ..solved(&model, &history, Some(program.costates(&solution.costates)))
+    };
+    let reversed = match solution.status.is_solved() {
+        true => reversed_muscle(&model, &history),
+        false => None,
+    };
+    let violated = match solution.status.is_solved() {
+        true => Vec::new(),
+        false => violations(&mut program, &solution.x, HOLDS, NAMED),
+    };
+    let is_motion = solution.status.is_solved() && reversed.is_none();
+    if is_motion {
+        phase("simulating under the optimal voltages");
+    }
+    let solved = Instant::now();
+    let resimulation =
+        is_motion.then(|| resimulate(&model, &boundary.start, &motion, control.solver.tolerance));
+    let tested = solved.elapsed().as_secs_f64();
+    let active = match solution.status.is_solved() {
+        true => Vec::new(),
+        false => active(&mut program, &solution.x, &model, control),
+    };
+    let infeasibility = program.violation(&solution.x);
+    let constraints = program.constraints().lower.len();
+    let jacobian_nonzeros = program.jacobian_structure().rows.len();
+    let hessian_nonzeros = program.hessian_structure().rows.len();
+    drop(program);
+    Ok(Optimum {
+        model,
+        boundary,
+        motion,
+        solution,
+        reversed,
+        violated,
+        infeasibility,
+        constraints,
+        jacobian_nonzeros,
+        hessian_nonzeros,
+        setup,
+        stretched,
+        resimulation,
+        tested,
+        restarted,
+        active,
+    })
+}
+
+/// The motion with charts where its bodies are, where it ends far from those that it has.
+fn recentred(model: &Model, history: &DiscreteTrajectory) -> Option<InitialGuess> {
+    let motion = &model.action.motion;
+    let is_far = |z: &Vec<f64>| motion.way_from_charts(z) > FAR;
+    history.z.iter().any(is_far).then(|| {
+        let z = history.z.iter().map(|z| {
+            let mut instant = motion.placed(z);
+            motion.recentre(&mut instant);
+            instant.z
+        });
+        InitialGuess {
+            history: DiscreteTrajectory {
+                z: z.collect(),
+                ..history.clone()
+            },
+            h: history.times[1],
+            costates: None,
+            stretched: None,
+        }
+    })
+}
+
+/// The program of a control problem with the point to start from and what that point is worth.
+pub(crate) struct Prepared<'m> {
+    pub(crate) program: Transcription<'m>,
+    pub(crate) point: ipopt::StartingPoint,
+    pub(crate) start: Start,
+    /// Durations in ms of the earlier solution and of the start, where they differ.
+    pub(crate) stretched: Option<[f64; 2]>,
+}
+
+/// Model and boundary of a control problem.
+pub(crate) fn resolve(
+    system: &System,
+    control: &Control,
+) -> Result<(Model, BoundaryConditions), WorkflowError> {
+    let (model, boundary) = BoundaryConditions::resolve(system, control, interval(control))
+        .map_err(|error| WorkflowError::boundary("control", &error))?;
+    holding::check(control, &model, &boundary)?;
+    Ok((model, boundary))
+}
+
+/// Interval length in ms, or its guess.
+fn interval(control: &Control) -> f64 {
+    control.duration.first() / control.intervals as f64
+}
+
+/// Whether a program with more equations than unknowns is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Counted {
+    /// It has no solution.
+    Yes,
+    /// Its derivatives exist all the same.
+    No,
+}
+
+/// Guess and program; an `earlier` solution in memory comes before the guess of the problem.
+pub(crate) fn prepare<'m>(
+    model: &'m Model,
+    boundary: &BoundaryConditions,
+    control: &Control,
+    earlier: Option<&Solution>,
+    counted: Counted,
+) -> Result<Prepared<'m>, WorkflowError> {
+    memory::of_program(model, control.intervals)?;
+    let named = match (&control.guess, earlier) {
+        (Guess::Solution(earlier), None) => {
+            Some(earlier.solution(model).map_err(WorkflowError::Earlier)?)
+        }
+        _ => None,
+    };
+    let earlier = earlier.or(named.as_deref());
+    let initial = guess(model, boundary, control, interval(control), earlier);
+    let mut program = match counted {
+        Counted::Yes => Transcription::new(model, boundary, control, &initial)
+            .map_err(|error| WorkflowError::boundary("control", &error))?,
+        Counted::No => Transcription::of_any(model, boundary, control, &initial),
+    };
+    let point = program.start(&initial);
+    let stretched = initial.stretched;
+    let is_same_grid =
+        |earlier: &Solution| earlier.intervals() == control.intervals && stretched.is_none();
+    let start = match (earlier, &point.costates) {
+        (None, _) if matches!(control.guess, Guess::Simulate(_)) => Start::Simulated,
+        (None, _) => Start::Cold,
+        (Some(earlier), Some(_)) if is_same_grid(earlier) => Start::PrimalDual,
+        (Some(_), Some(_)) if program.violation(&point.x) < FITS => Start::PrimalDual,
+        (Some(_), Some(_)) => Start::Centred,
+        (Some(earlier), None) if is_same_grid(earlier) => Start::PRIMAL,
+        (Some(_), None) => RESAMPLED,
+    };
+    Ok(Prepared {
+        program,
+        point,
+        start,
+        stretched,
+    })
+}
+
+/// Options of the linear solver: the ordering that was fastest for the kind of program, unless the problem names one.
+///
+/// Approximate minimum degree (0) where each instant is a small dense block or the duration is given; minimum fill (2)
+/// where a free duration couples all instants of a redundant program; nested dissection of SCOTCH (3) for the meshes of elastic
+/// blocks. Measurements: `benches/README.md`.
+fn linear_solver(model: &Model, control: &Control) -> BTreeMap<String, OptionValue> {
+    let free = matches!(control.duration, Duration::Free { .. });
+    let ordering = if !model.action.motion.of_nodes.is_empty() {
+        3
+    } else if free && model.coordinates == Coordinates::Redundant {
+        2
+    } else {
+        0
+    };
+    let mut options = control.solver.ipopt.clone();
+    options
+        .entry("mumps_pivot_order".to_owned())
+        .or_insert(OptionValue::Integer(ordering));
+    options
+}

@@ -1,0 +1,126 @@
+//! Why an effect is called for, and why another is not, in words.
+
+use serde::Serialize;
+
+use crate::control::problem::{Control, Duration};
+use crate::model::system::JointKind;
+use crate::model::{BodyLocation, Model};
+
+/// Something that a scene or a problem could call for and does not.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Absent {
+    /// Name of the effect, or of what is no unknown.
+    pub name: String,
+    /// Why it is not there.
+    pub why: String,
+}
+
+/// So many names are written out.
+const LISTED: usize = 6;
+
+/// What calls for a term that a model has.
+pub(crate) fn why(term: &str, model: &Model) -> String {
+    let reasons = model.present.iter().filter(|present| present.term == term);
+    let told = reasons.map(|present| {
+        let names: Vec<&str> = present.of.iter().map(String::as_str).collect();
+        format!("{} {}", present.why, listed(&names))
+    });
+    told.collect::<Vec<_>>().join("; ")
+}
+
+/// What a model has not, and what of the scene is no unknown.
+pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
+    let mut list = Vec::new();
+    let mut add = |name: String, why: String| list.push(Absent { name, why });
+    for left_out in &model.left_out {
+        add(left_out.term.to_owned(), left_out.why.to_owned());
+    }
+    let names = |sources: &[usize]| {
+        let names = sources.iter().map(|&s| model.sources[s].name.as_str());
+        listed(&names.collect::<Vec<_>>())
+    };
+    let (silent, cut): (Vec<usize>, Vec<usize>) = model
+        .reached
+        .iter()
+        .filter(|s| !model.voltages.contains(s))
+        .partition(|s| model.analysis.zero_voltage.contains(s));
+    if !silent.is_empty() {
+        let why = format!("0 V all the time at {}", names(&silent));
+        add("voltage".to_owned(), why);
+    }
+    if !cut.is_empty() {
+        let why = format!("no field at {} without the others", names(&cut));
+        add("voltage".to_owned(), why);
+    }
+    let joints = model.system.joints.iter();
+    for joint in joints.filter(|j| j.kind == JointKind::Fixed) {
+        let why = "it is fixed or locked: what it connects is one body";
+        add(format!("joint {}", joint.name), why.to_owned());
+    }
+    for (body, place) in model.system.bodies.iter().zip(&model.presolved.bodies) {
+        let b = model
+            .system
+            .bodies
+            .iter()
+            .position(|other| other.name == body.name);
+        let is_still = b.is_some_and(|b| model.presolved.immobile.bodies[b]);
+        let why = match place {
+            BodyLocation::Body(_) => continue,
+            BodyLocation::Ground if is_still => "it starts at rest and nothing moves it".to_owned(),
+            BodyLocation::Ground => "it is fixed to the ground".to_owned(),
+            BodyLocation::Welded { to, .. } => {
+                format!(
+                    "it is one body with {}",
+                    model.presolved.system.bodies[*to].name
+                )
+            }
+        };
+        add(format!("body {}", body.name), why);
+    }
+    for continuum in model.solids.iter().filter(|c| c.is_still) {
+        let why = "it starts at rest and nothing moves it";
+        add(format!("block {}", continuum.solid.name), why.to_owned());
+    }
+    if let Some(control) = control {
+        absent_of_control(model, control, &mut add);
+    }
+    list
+}
+
+fn absent_of_control(model: &Model, control: &Control, add: &mut impl FnMut(String, String)) {
+    let present = |source: &&usize| model.voltages.contains(source);
+    for source in control.given.keys().filter(present) {
+        let name = format!("unknown of the voltage of {}", model.sources[*source].name);
+        add(name, "the problem gives it".to_owned());
+    }
+    if let Duration::Given(_) = control.duration {
+        add(
+            "unknown duration".to_owned(),
+            "the problem gives it".to_owned(),
+        );
+    }
+    let weights = [
+        ("cost of effort", control.objective.effort),
+        ("cost of rates", control.objective.rate),
+        ("cost of duration", control.objective.duration),
+    ];
+    for (name, _) in weights.iter().filter(|(_, weight)| *weight == 0.0) {
+        add(
+            (*name).to_owned(),
+            "the objective names no weight".to_owned(),
+        );
+    }
+    if control.limits.is_empty() {
+        add("limits".to_owned(), "the problem names none".to_owned());
+    }
+}
+
+/// Names in a row: all of a few, the ends of many.
+fn listed(names: &[&str]) -> String {
+    match names {
+        [first, .., last] if names.len() > LISTED => {
+            format!("{first} … {last} ({})", names.len())
+        }
+        _ => names.join(", "),
+    }
+}
