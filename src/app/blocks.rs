@@ -65,8 +65,11 @@ impl BlockSizes {
 
     /// The same with the charges at the last instant observed and the number of instants written.
     pub(super) fn after(self, model: &Model, observed: &Observations, written: usize) -> Self {
-        let still = model.solids.iter().flat_map(SolidBlock::still_electrodes);
-        let still = still.map(|(block, electrode)| format!("{block}.{electrode}"));
+        let immobile = model
+            .solids
+            .iter()
+            .flat_map(SolidBlock::immobile_electrodes);
+        let immobile = immobile.map(|(block, electrode)| format!("{block}.{electrode}"));
         let driven = model.voltages.iter();
         let driven = driven.map(|&source| model.sources[source].name.clone());
         // Charges are observed in this order, in mC.
@@ -74,7 +77,7 @@ impl BlockSizes {
         let charges = columns.filter(|column| column.name.ends_with("_charge"));
         let last = charges.filter_map(|column| column.values.last());
         Self {
-            charges: still.chain(driven).zip(last.map(|q| q / 1e3)).collect(),
+            charges: immobile.chain(driven).zip(last.map(|q| q / 1e3)).collect(),
             instants_written: Some(written),
             ..self
         }

@@ -176,7 +176,7 @@ fn as_control(task: Task, system: &System) -> Control {
     match task {
         Task::Control(control) => *control,
         Task::Simulate(simulation) => {
-            let silent = simulation.question(system, simulation.step).zero_voltage;
+            let zero_voltage = simulation.question(system, simulation.step).zero_voltage;
             let Simulation {
                 step,
                 start,
@@ -186,7 +186,10 @@ fn as_control(task: Task, system: &System) -> Control {
             } = simulation;
             let row = voltages.at(0.0).to_vec();
             Control {
-                given: silent.into_iter().map(|source| (source, 0.0)).collect(),
+                given: zero_voltage
+                    .into_iter()
+                    .map(|source| (source, 0.0))
+                    .collect(),
                 ..without_goal(start, step, row, coordinates)
             }
         }

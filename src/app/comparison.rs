@@ -28,8 +28,8 @@ struct Apart {
     greatest: f64,
     /// That at its last instant.
     last: f64,
-    /// Length of the marker's way in the solution, to compare with.
-    way: f64,
+    /// Length of the marker's path in the solution, to compare with.
+    path_length: f64,
 }
 
 /// The motion of an earlier solution of a scene with the same joints and bodies; `None` where it is none, or where markers
@@ -77,7 +77,7 @@ impl Comparison {
             let mut apart = Apart {
                 greatest: 0.0,
                 last: 0.0,
-                way: 0.0,
+                path_length: 0.0,
             };
             let mut before = earlier.marks[0][m];
             for (&time, row) in earlier.times.iter().zip(&earlier.marks) {
@@ -86,7 +86,7 @@ impl Comparison {
                 };
                 apart.last = (place - row[m]).norm() / 1e3;
                 apart.greatest = apart.greatest.max(apart.last);
-                apart.way += (row[m] - before).norm() / 1e3;
+                apart.path_length += (row[m] - before).norm() / 1e3;
                 before = row[m];
             }
             apart
@@ -104,11 +104,11 @@ impl Comparison {
     pub(super) fn notes(&self) -> Vec<String> {
         let line = |(name, apart): (&String, &Apart)| {
             format!(
-                "{name}: at most {:.3} mm from the motion of {}, at its end {:.3} mm, after a way of {:.1} mm",
+                "{name}: at most {:.3} mm from the motion of {}, at its end {:.3} mm, after travelling {:.1} mm",
                 1e3 * apart.greatest,
                 self.solution,
                 1e3 * apart.last,
-                1e3 * apart.way
+                1e3 * apart.path_length
             )
         };
         self.markers.iter().map(line).collect()

@@ -72,13 +72,13 @@ pub(super) fn follow(
     let observed = observed(&model, &stops, &history);
     let shown = stops.iter().position(|stop| stop.lost.is_some());
     let shown = shown.unwrap_or(stops.len() - 1);
-    let still = still(&history, shown + 1);
-    let motion = Trajectory::from_history(&model, &still);
+    let shown_state = single_instant(&history, shown + 1);
+    let motion = Trajectory::from_history(&model, &shown_state);
     let rows = path.rows(stops[shown].fraction);
     let run = Run {
         system: &model.system,
         trajectory: &motion,
-        skins: &Skins::new(&model, &still),
+        skins: &Skins::new(&model, &shown_state),
         name: "rest",
         observations: &observed,
         comparison: None,
@@ -162,7 +162,7 @@ impl<'a> Stop<'a> {
 }
 
 /// The state at an instant, alone.
-fn still(history: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
+fn single_instant(history: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
     DiscreteTrajectory {
         times: vec![0.0],
         z: vec![history.z[k].clone()],
@@ -196,7 +196,7 @@ fn observed(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory) -> 
     Observations { columns }
 }
 
-/// `path.svg`: fraction of the voltages over the way of each marker, or of the coordinate that moves most; where stability is
+/// `path.svg`: fraction of the voltages over the distance of each marker from rest, or of the coordinate that moves most; where stability is
 /// lost it is marked.
 fn figure(
     model: &Model,
@@ -206,10 +206,10 @@ fn figure(
 ) -> String {
     let marks = Trajectory::from_history(model, history).marks;
     let reference = &model.coordinates_at(&vec![0.0; model.gauges.len()]);
-    let way = |m: usize, k: usize| (marks[k + 1][m] - marks[0][m]).norm();
+    let distance = |m: usize, k: usize| (marks[k + 1][m] - marks[0][m]).norm();
     let mut series = Vec::new();
-    let mut curve = |name: &str, m: usize, way: &dyn Fn(usize) -> f64| {
-        let place = |k: usize| [way(k), stops[k].fraction];
+    let mut curve = |name: &str, m: usize, distance: &dyn Fn(usize) -> f64| {
+        let place = |k: usize| [distance(k), stops[k].fraction];
         let points = (0..stops.len()).map(place).collect();
         series.push(Series::curve(name, points, style::hue(m)).marked(Mark::Disc));
         let lost = (0..stops.len()).filter(|&k| stops[k].lost.is_some());
@@ -226,7 +226,7 @@ fn figure(
         }
     };
     for (m, marker) in model.system.markers.iter().enumerate() {
-        curve(&marker.name, m, &|k| way(m, k));
+        curve(&marker.name, m, &|k| distance(m, k));
     }
     if model.system.markers.is_empty() {
         let far = |k: usize| {
@@ -236,7 +236,7 @@ fn figure(
         curve("largest change of a coordinate", 0, &far);
     }
     LinePlot::new(
-        Axis::linear("way from rest [mm]", Extent::FromZero),
+        Axis::linear("distance from rest [mm]", Extent::FromZero),
         Axis::linear("fraction of the voltages", Extent::FromZero),
         series,
     )

@@ -245,7 +245,7 @@ pub(super) fn lost(rest: &Rest, loss: StabilityLoss, folder: &Path) -> String {
         text.push_str(&format!(", {name} = {:.6} kV", v / 1e3));
     }
     if let Some(mode) = rest.softest_mode.as_ref().filter(|m| !m.moves.is_empty()) {
-        text.push_str(&format!("; what gives way: {}", mode.moves));
+        text.push_str(&format!("; softest motion: {}", mode.moves));
     }
     if let Some(field) = rest.largest_nominal_field.filter(|field| *field > 0.0) {
         text.push_str(&format!("; largest nominal field {:.3} MV/m", field / 1e6));

@@ -1,6 +1,6 @@
 //! What a task calls for: the question that it puts to the model.
 //!
-//! A source is silent where neither the task nor the states at its ends name a voltage other than zero; a body or a block is
+//! A source is at zero voltage where neither the task nor the states at its ends name a voltage other than zero; a body or a block is
 //! stirred where a start, a goal or a limit speaks of it.
 
 use std::collections::BTreeSet;
@@ -18,7 +18,7 @@ impl Simulation {
         spoken.of_start(&self.start);
         Analysis {
             coordinates: self.coordinates,
-            zero_voltage: silent(system, is_driven, [&self.start]),
+            zero_voltage: zero_voltage(system, is_driven, [&self.start]),
             stirred: Some(spoken.stirred),
             ..Analysis::of_motion(step)
         }
@@ -31,7 +31,7 @@ impl AtRest {
     pub fn question(&self, system: &System) -> Analysis {
         Analysis {
             coordinates: self.coordinates,
-            zero_voltage: silent(system, |s| self.voltages[s] != 0.0, []),
+            zero_voltage: zero_voltage(system, |s| self.voltages[s] != 0.0, []),
             ..Analysis::of_rest()
         }
     }
@@ -47,7 +47,7 @@ impl Control {
         self.limits.iter().for_each(|limit| spoken.of_limit(limit));
         Analysis {
             coordinates: self.coordinates,
-            zero_voltage: silent(system, is_sought, [&self.start, &self.goal]),
+            zero_voltage: zero_voltage(system, is_sought, [&self.start, &self.goal]),
             stirred: Some(spoken.stirred),
             ..Analysis::of_motion(interval)
         }
@@ -55,7 +55,7 @@ impl Control {
 }
 
 /// Sources whose voltage is zero all the time, and at rest before and after.
-fn silent<const N: usize>(
+fn zero_voltage<const N: usize>(
     system: &System,
     is_driven: impl Fn(usize) -> bool,
     ends: [&BoundaryState; N],
@@ -86,7 +86,7 @@ impl<'a> Spoken<'a> {
         }
     }
 
-    /// A start away from the reference configuration, or in motion. Sources that hold a state of rest are not silent, and
+    /// A start away from the reference configuration, or in motion. Sources that hold a state of rest are not at zero voltage, and
     /// move what they move.
     fn of_start(&mut self, state: &BoundaryState) {
         if let BoundaryState::JointAngles {

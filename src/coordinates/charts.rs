@@ -61,10 +61,10 @@ impl CoordinateMap {
     }
 
     /// Greatest angle in rad between a chart and the rotation of its joint.
-    pub fn way_from_charts(&self, z: &[f64]) -> f64 {
+    pub fn angle_from_charts(&self, z: &[f64]) -> f64 {
         self.tree
             .as_ref()
-            .map_or(0.0, |tree| tree.way_from_charts(z))
+            .map_or(0.0, |tree| tree.angle_from_charts(z))
     }
 
     /// Lets the joints with a chart follow given poses of the bodies: their charts and slides, the turns behind them zero.

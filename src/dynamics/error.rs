@@ -220,7 +220,7 @@ fn grown(load: Load) -> &'static str {
 /// What moves where an equilibrium is lost.
 fn moved(last: &Equilibrium) -> String {
     match &last.softest {
-        Some(mode) if !mode.moves.is_empty() => format!("; what gives way: {}", mode.moves),
+        Some(mode) if !mode.moves.is_empty() => format!("; softest motion: {}", mode.moves),
         _ => String::new(),
     }
 }

@@ -63,7 +63,7 @@ pub fn local_error(
     let points = places[0].len();
     let constant = constant(order);
     let switches = switches(model, history);
-    // By point: what is neglected, the way, and the sums of the differences of the two highest orders.
+    // By point: what is neglected, the distance, and the sums of the differences of the two highest orders.
     let mut sums = vec![[0.0; 4]; points];
     for k in 0..steps {
         let h = history.times[k + 1] - history.times[k];
@@ -82,9 +82,9 @@ pub fn local_error(
                 sum.norm()
             };
             let (highest, before) = (difference(&high), difference(&low));
-            let way = (places[k + 1][point] - places[k][point]).norm();
+            let distance = (places[k + 1][point] - places[k][point]).norm();
             sum[0] += constant * highest;
-            sum[1] += way;
+            sum[1] += distance;
             sum[2] += highest;
             sum[3] += before;
         }

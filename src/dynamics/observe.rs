@@ -159,9 +159,9 @@ impl<'m> Observer<'m> {
         model.action.motion.place(&mut self.here);
         self.before.clone_from(&self.here);
         let potential = energies(model, &self.here, &self.here, scalars, 1.0).potential;
-        let still = model.solids.iter();
-        let still = still.flat_map(|block| block.still_charges(&self.here.x, scalars));
-        let mut charges: Vec<f64> = still.collect();
+        let immobile = model.solids.iter();
+        let immobile = immobile.flat_map(|block| block.immobile_charges(&self.here.x, scalars));
+        let mut charges: Vec<f64> = immobile.collect();
         charges.extend(self.interval(scalars, 1.0).0);
         Ends { charges, potential }
     }
@@ -189,7 +189,7 @@ impl<'m> Observer<'m> {
             .model
             .solids
             .iter()
-            .flat_map(SolidBlock::still_electrodes);
+            .flat_map(SolidBlock::immobile_electrodes);
         for (block, electrode) in electrodes {
             add(format!("{block}_{electrode}_charge"), "mC");
         }
@@ -268,7 +268,7 @@ impl<'m> Observer<'m> {
         let ends = self.before.x.iter().zip(&self.here.x);
         let middles: Vec<Vector> = ends.map(|(a, b)| (a + b) * 0.5).collect();
         for block in &model.solids {
-            row.extend(block.still_charges(&middles, scalars));
+            row.extend(block.immobile_charges(&middles, scalars));
         }
         row.extend(charges);
         row.push(energies.kinetic);

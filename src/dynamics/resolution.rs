@@ -60,7 +60,7 @@ impl Balance {
         let ways = start.x.iter().zip(&end.x).map(|(x, y)| y - x);
         let work: f64 = ways
             .zip(a.iter().zip(b))
-            .map(|(way, (a, b))| way.dot(&(a + b)))
+            .map(|(displacement, (a, b))| displacement.dot(&(a + b)))
             .sum();
         // The forces of an interval carry its length, viscous ones included.
         let work = work / interval.h - viscous;

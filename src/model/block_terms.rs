@@ -17,7 +17,7 @@ impl Solids {
     fn elements(&self) -> impl Iterator<Item = (&SolidBlock, usize)> + '_ {
         self.list
             .iter()
-            .filter(|continuum| !continuum.is_still)
+            .filter(|continuum| !continuum.is_immobile)
             .flat_map(|continuum| (0..continuum.shapes.len()).map(move |e| (continuum, e)))
     }
 
@@ -40,7 +40,7 @@ impl Solids {
 
     /// Consistent masses, and the weight at each node.
     fn add_inertia(&self, terms: &mut Terms<'_>) {
-        let moving = || self.list.iter().filter(|continuum| !continuum.is_still);
+        let moving = || self.list.iter().filter(|continuum| !continuum.is_immobile);
         let is_heavy = |c: &&SolidBlock| c.solid.materials.iter().any(|m| m.density.is_some());
         for (vector, mass) in self.loads() {
             terms.weigh_vector(vector, mass);

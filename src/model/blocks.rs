@@ -10,13 +10,13 @@ use nalgebra::Vector3;
 /// All blocks, those of the scene taken out of the condensed system; every node of a muscle that nothing moves is held.
 pub(super) fn blocks(condensed: &mut Presolved) -> Vec<Solid> {
     let of_scene = std::mem::take(&mut condensed.system.solids);
-    let (system, still) = (&condensed.system, &condensed.immobile);
+    let (system, immobile) = (&condensed.system, &condensed.immobile);
     let muscles = system.muscles.iter().enumerate();
     let of_muscles = muscles.filter_map(|(source, muscle)| match muscle.fidelity {
         Fidelity::Lumped => None,
         Fidelity::FiniteElements(discretisation) => {
             let mut solid = block(source, muscle, &discretisation);
-            if still.muscles[source] {
+            if immobile.muscles[source] {
                 hold(&mut solid);
             }
             Some(solid)

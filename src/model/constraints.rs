@@ -31,7 +31,7 @@ pub(super) struct Builder<'a> {
     pub(super) continua: &'a Solids,
 }
 
-/// Constraints on their way to the action, with the names of their multipliers.
+/// Constraints collected for the action, with the names of their multipliers.
 #[derive(Default)]
 pub(super) struct Made {
     pub(super) effects: Vec<Box<dyn Term>>,
@@ -111,7 +111,7 @@ impl Builder<'_> {
         let named = self.system.joints.iter().map(|joint| joint.name.as_str());
         let named: Vec<&str> = named.collect();
         let is_glued = |glue: &Glue| glue.body.is_some();
-        let glued = self.continua.list.iter().filter(|c| !c.is_still);
+        let glued = self.continua.list.iter().filter(|c| !c.is_immobile);
         let glued = glued.filter(|c| c.solid.glued.iter().any(is_glued));
         let glued: Vec<&str> = glued.map(|c| c.solid.name.as_str()).collect();
         let (directors, ends) = (
@@ -194,7 +194,7 @@ impl Builder<'_> {
     }
 }
 
-/// Constraints on their way to groups; multipliers are numbered in the order of the names.
+/// Constraints collected for groups; multipliers are numbered in the order of the names.
 #[derive(Default)]
 struct Constraints {
     dots: Vec<Element<Orthogonality, 2, 1>>,

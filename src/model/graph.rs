@@ -214,7 +214,7 @@ impl Graph {
     }
 }
 
-/// Links of a tree on their way to a list.
+/// Links of a tree collected for a list.
 struct Links<'a> {
     reference: &'a [Pose],
     list: Vec<Link>,

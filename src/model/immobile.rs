@@ -18,7 +18,7 @@ pub struct Immobile {
     pub muscles: Vec<bool>,
 }
 
-/// What rests of a system whose silent sources drive nothing any more.
+/// What rests of a system whose sources at zero voltage drive nothing any more.
 pub(super) fn immobile(system: &System, question: &Analysis) -> Immobile {
     let counts = [
         system.bodies.len(),

@@ -264,7 +264,7 @@ impl Model {
         })
     }
 
-    /// Sources whose voltage would do something if none were silent.
+    /// Sources whose voltage would do something if none were at zero voltage.
     fn reached(system: &System, question: &Analysis) -> Vec<usize> {
         let question = Analysis {
             zero_voltage: BTreeSet::new(),

@@ -47,14 +47,14 @@ impl Presolved {
     /// What remains of a system for a question.
     pub fn new(system: &System, question: &Analysis) -> Self {
         let mut rest = system.clone();
-        silence(&mut rest, question);
-        let still = immobile::immobile(&rest, question);
-        for (solid, &is_still) in rest.solids.iter_mut().zip(&still.solids) {
-            if is_still {
+        set_to_zero(&mut rest, question);
+        let immobile = immobile::immobile(&rest, question);
+        for (solid, &is_immobile) in rest.solids.iter_mut().zip(&immobile.solids) {
+            if is_immobile {
                 hold(solid);
             }
         }
-        let group = groups(system, &still);
+        let group = groups(system, &immobile);
         let ground = system.bodies.len();
         let mut bodies = Vec::new();
         let mut of_group = vec![None; ground + 1];
@@ -101,7 +101,7 @@ impl Presolved {
             system: rest,
             bodies: places,
             joints,
-            immobile: still,
+            immobile,
         }
     }
 
@@ -165,7 +165,7 @@ impl Presolved {
 }
 
 /// Without voltage a muscle is passive and a driven electrode is grounded.
-fn silence(system: &mut System, question: &Analysis) {
+fn set_to_zero(system: &mut System, question: &Analysis) {
     for &source in &question.zero_voltage {
         if let Some(muscle) = system.muscles.get_mut(source) {
             let material = muscle.material;
@@ -209,14 +209,14 @@ pub(super) fn hold(solid: &mut Solid) {
 }
 
 /// The first body that each body is rigidly connected to, itself included; the number of bodies for those of the ground.
-fn groups(system: &System, still: &Immobile) -> Vec<usize> {
+fn groups(system: &System, immobile: &Immobile) -> Vec<usize> {
     let ground = system.bodies.len();
     let at = |b: Option<usize>| b.unwrap_or(ground);
     // The ground comes first in its group.
     let mut group: Vec<usize> = (0..ground).collect();
     group.push(ground);
-    for (b, &is_still) in still.bodies.iter().enumerate() {
-        if is_still {
+    for (b, &is_immobile) in immobile.bodies.iter().enumerate() {
+        if is_immobile {
             group[b] = ground;
         }
     }

@@ -21,7 +21,7 @@ pub struct SolidBlock {
     /// Whether a field reaches each element.
     pub is_dielectric: Vec<bool>,
     /// Whether all nodes rest on the ground, and no field is there.
-    pub is_still: bool,
+    pub is_immobile: bool,
 }
 
 impl SolidBlock {
@@ -96,20 +96,20 @@ impl SolidBlock {
     }
 
     /// Block and electrode of the electrodes that no voltage drives.
-    pub fn still_electrodes(&self) -> impl Iterator<Item = (&str, &str)> + '_ {
-        let all = self.solid.electrodes.iter().filter(|e| self.is_still(e));
+    pub fn immobile_electrodes(&self) -> impl Iterator<Item = (&str, &str)> + '_ {
+        let all = self.solid.electrodes.iter().filter(|e| self.is_immobile(e));
         all.map(|e| (self.solid.name.as_str(), e.name.as_str()))
     }
 
-    fn is_still(&self, electrode: &Electrode) -> bool {
+    fn is_immobile(&self, electrode: &Electrode) -> bool {
         !self.of_muscle && !matches!(electrode.potential, Potential::Driven { .. })
     }
 
     /// Charges −∂W/∂φ in mC of the electrodes that no voltage drives, with the nodes at vectors x.
-    pub fn still_charges(&self, x: &[Vector], scalars: &[f64]) -> Vec<f64> {
+    pub fn immobile_charges(&self, x: &[Vector], scalars: &[f64]) -> Vec<f64> {
         let electrodes = self.solid.electrodes.iter();
-        let still: Vec<_> = electrodes.filter(|e| self.is_still(e)).collect();
-        if still.is_empty() {
+        let immobile: Vec<_> = electrodes.filter(|e| self.is_immobile(e)).collect();
+        if immobile.is_empty() {
             return Vec::new();
         }
         let (places, potentials) = (self.places(x), self.potentials(scalars));
@@ -126,7 +126,7 @@ impl SolidBlock {
             }
         }
         let sum = |e: &&Electrode| -> f64 { e.nodes.iter().map(|&n| charges[n]).sum() };
-        still.iter().map(sum).collect()
+        immobile.iter().map(sum).collect()
     }
 
     /// Potentials of the nodes in V; zero where there is none.

@@ -1,4 +1,4 @@
-//! Elastic blocks on their way to effects: which vector each node of a mesh is, and where its potential comes from.
+//! Elastic blocks before they become terms: which vector each node of a mesh is, and where its potential comes from.
 //!
 //! A node glued to a body is a material point of it, a node held in all directions a point of the ground; all others have
 //! coordinates. Only nodes that an electric field reaches have a potential.
@@ -11,7 +11,7 @@ use crate::model::system::{Glue, Material, Potential, Solid};
 use crate::model::{ModelError, SolidBlock, field_extent};
 use std::collections::HashMap;
 
-/// Blocks on their way to effects: nodes, ties and potentials of all of them.
+/// Blocks before they become terms: nodes, ties and potentials of all of them.
 #[derive(Debug, Default)]
 pub(super) struct Solids {
     pub(super) list: Vec<SolidBlock>,
@@ -63,7 +63,7 @@ impl Solids {
                 let mut terms = vectors.list()[v].terms.iter();
                 terms.all(|term| term.carrier == Carrier::Ground)
             };
-            let is_still = !is_dielectric.contains(&true) && places.iter().all(on_ground);
+            let is_immobile = !is_dielectric.contains(&true) && places.iter().all(on_ground);
             out.list.push(SolidBlock {
                 solid,
                 vectors: places,
@@ -71,7 +71,7 @@ impl Solids {
                 terminals,
                 shapes,
                 is_dielectric,
-                is_still,
+                is_immobile,
             });
         }
         Ok(out)

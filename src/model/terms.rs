@@ -13,7 +13,7 @@ use crate::model::presolved::Presolved;
 use std::any::Any;
 use std::fmt;
 
-/// Terms of components on their way to the action.
+/// Terms of components collected for the action.
 pub struct Terms<'a> {
     condensed: &'a Presolved,
     reference: &'a [Pose],

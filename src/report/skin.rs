@@ -53,10 +53,10 @@ pub fn draw(
         }
     }
     faces.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let is_ghost = paint == Paint::Reference;
+    let is_reference = paint == Paint::Reference;
     let few = faces.len() < FEW;
     for (_, quad, sharp, corners, normal) in faces {
-        let strength = if is_ghost { 0.12 } else { 0.34 };
+        let strength = if is_reference { 0.12 } else { 0.34 };
         let shade = strength * (1.0 - normal.dot(&light).max(0.0));
         let sheet = corners.map(|corner| view.place(&corner));
         let patch = |corners: &[CanvasPoint; 4], colour: Colour| {
@@ -89,7 +89,7 @@ pub fn draw(
                 continue;
             }
             let ends = [sheet[i], sheet[next]];
-            if let Some(stroke) = edge(fill, sharp[i], length(ends), is_ghost) {
+            if let Some(stroke) = edge(fill, sharp[i], length(ends), is_reference) {
                 canvas.line(&ends, stroke);
             }
         }
@@ -123,8 +123,8 @@ fn patches(corners: &[CanvasPoint; 4], values: &[f64; 4]) -> Vec<([CanvasPoint; 
 }
 
 /// How an edge is drawn: strong where it is the body's, faint where it is an element's.
-fn edge(fill: Colour, is_sharp: bool, length: f64, is_ghost: bool) -> Option<Stroke> {
-    match (is_ghost, is_sharp) {
+fn edge(fill: Colour, is_sharp: bool, length: f64, is_reference: bool) -> Option<Stroke> {
+    match (is_reference, is_sharp) {
         (true, true) => Some(Stroke::solid(style::REFERENCE, 0.6)),
         (true, false) => None,
         (false, true) => Some(Stroke::solid(fill.mix(style::INK, 0.55), 0.7)),

@@ -77,7 +77,7 @@ impl Skins {
         let mut parts = Vec::new();
         for continuum in &model.solids {
             let muscle = continuum.of_muscle.then(|| muscles.next()).flatten();
-            parts.push(Skin::still(continuum, muscle));
+            parts.push(Skin::immobile(continuum, muscle));
         }
         let places = parts.iter().map(|(skin, _)| skin.reference.len()).sum();
         let instants = shown(&history.times, places);
@@ -125,7 +125,7 @@ impl Skins {
 
 impl Skin {
     /// A surface at no instants yet, and the nodes of the mesh that its corners are.
-    fn still(continuum: &SolidBlock, muscle: Option<usize>) -> (Self, Vec<usize>) {
+    fn immobile(continuum: &SolidBlock, muscle: Option<usize>) -> (Self, Vec<usize>) {
         let mesh = &continuum.solid.mesh;
         let mut nodes = Vec::new();
         let mut corner = HashMap::new();

@@ -18,7 +18,7 @@ pub struct Judged {
     pub limits: Vec<Option<SequenceLimit>>,
     /// Whether all methods have the one limit.
     pub is_shared: bool,
-    /// What an error is small against: the way of the markers in mm, the size of the objective; 1 where errors are relative.
+    /// What an error is small against: the path length of the markers in mm, the size of the objective; 1 where errors are relative.
     pub scale: f64,
     /// Errors by method and point, in mm or relative; none of a point without an answer.
     pub errors: Vec<Vec<Option<f64>>>,
@@ -187,7 +187,7 @@ fn order(points: &[Done<'_>], errors: &[Option<f64>], floor: f64) -> Option<f64>
     observed_order(&shown, floor)
 }
 
-/// The way of the markers, as far as any of them gets from its start, or at rest from the reference configuration, in mm; 1
+/// The path length of the markers, as far as any of them gets from its start, or at rest from the reference configuration, in mm; 1
 /// for what is relative.
 fn scale(results: &Results<'_>, measure: StudyMeasure) -> f64 {
     let seen = || {
@@ -197,7 +197,7 @@ fn scale(results: &Results<'_>, measure: StudyMeasure) -> f64 {
             .flatten()
             .filter_map(|done| done.seen.as_ref())
     };
-    let way = |seen: &Observed| {
+    let path_length = |seen: &Observed| {
         let from = match measure {
             StudyMeasure::Place => &seen.reference,
             _ => &seen.places[0],
@@ -213,8 +213,8 @@ fn scale(results: &Results<'_>, measure: StudyMeasure) -> f64 {
         | StudyMeasure::Path
         | StudyMeasure::Place
         | StudyMeasure::ResimulatedEnd
-        | StudyMeasure::ResimulatedPath => match seen().map(way).fold(0.0, f64::max) {
-            way if way > 0.0 => way,
+        | StudyMeasure::ResimulatedPath => match seen().map(path_length).fold(0.0, f64::max) {
+            length if length > 0.0 => length,
             _ => 1.0,
         },
         _ => 1.0,

@@ -123,7 +123,7 @@ fn prices(study: &Study, results: &Results<'_>, judged: &[Judged]) -> Option<Str
     (!rows.is_empty()).then(|| {
         format!(
             "## What accuracy costs\n\nSeconds, between points by a straight line in the diagram; the cheapest is bold, `–` was not \
-             reached. Accuracies of places are relative to the way of the markers.\n\n| error | at most | {} |\n|:--|:--|{}\n{rows}",
+             reached. Accuracies of places are relative to the path length of the markers.\n\n| error | at most | {} |\n|:--|:--|{}\n{rows}",
             names.join(" | "),
             "--:|".repeat(names.len())
         )

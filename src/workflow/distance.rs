@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::model::system::JointKind;
 
 /// Ways that count as none, in rad and in lengths of the system.
-const NO_WAY: f64 = 1e-3;
+const NO_LENGTH: f64 = 1e-3;
 
 /// How far an instant is from another, or how long a way is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -35,19 +35,19 @@ impl Distance {
         out
     }
 
-    /// The longest way of a joint, and of a body or a node, along a motion.
-    pub(crate) fn way(model: &Model, motion: &Solution) -> Self {
-        let mut ways: Vec<(Kind, f64)> = Vec::new();
+    /// The longest path of a joint, and of a body or a node, along a motion.
+    pub(crate) fn path_length(model: &Model, motion: &Solution) -> Self {
+        let mut lengths: Vec<(Kind, f64)> = Vec::new();
         for k in 1..motion.times.len() {
             each(model, motion, k - 1, motion, k, |i, kind, apart| {
-                ways.resize(ways.len().max(i + 1), (kind, 0.0));
-                ways[i] = (kind, ways[i].1 + apart);
+                lengths.resize(lengths.len().max(i + 1), (kind, 0.0));
+                lengths[i] = (kind, lengths[i].1 + apart);
             });
         }
         let mut out = Self::default();
-        for (kind, way) in ways {
+        for (kind, path_length) in lengths {
             let part = out.part(kind);
-            *part = part.max(way);
+            *part = part.max(path_length);
         }
         out
     }
@@ -66,10 +66,10 @@ impl Distance {
     }
 
     /// The greater part of a way that this is, of its angle or of its length.
-    pub(crate) fn over(self, way: Self, model: &Model) -> f64 {
+    pub(crate) fn over(self, path_length: Self, model: &Model) -> f64 {
         let length = metres(model);
-        let turned = self.angle / way.angle.max(NO_WAY);
-        turned.max(self.length / way.length.max(NO_WAY * length))
+        let turned = self.angle / path_length.angle.max(NO_LENGTH);
+        turned.max(self.length / path_length.length.max(NO_LENGTH * length))
     }
 
     fn part(&mut self, kind: Kind) -> &mut f64 {

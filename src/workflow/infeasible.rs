@@ -20,7 +20,7 @@ const ITERATIONS: usize = 200;
 /// Seconds of that solve: those of the solve before, and no less than this.
 const PATIENCE: f64 = 2.0;
 /// Of the length of the system in the duration: markers that are slower than this rest.
-const STILL: f64 = 1e-4;
+const SLOW: f64 = 1e-4;
 
 /// What is known of a problem whose solve found no motion, line by line; `seconds` are left of the time allowed.
 pub(crate) fn explain(
@@ -67,7 +67,7 @@ fn miss(control: &Control, optimum: &Optimum) -> Option<String> {
     let (what, _) = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let speed = |v: &usize| (end.x[*v] - before.x[*v]).norm() / h;
     let fastest = model.markers.iter().map(speed).fold(0.0, f64::max);
-    let is_slow = fastest < STILL * model.length() / motion.times[n];
+    let is_slow = fastest < SLOW * model.length() / motion.times[n];
     let moves = match is_slow {
         true => String::new(),
         false => format!(

@@ -275,7 +275,7 @@ pub fn optimise(
 /// The motion with charts where its bodies are, where it ends far from those that it has.
 fn recentred(model: &Model, history: &DiscreteTrajectory) -> Option<InitialGuess> {
     let motion = &model.action.motion;
-    let is_far = |z: &Vec<f64>| motion.way_from_charts(z) > FAR;
+    let is_far = |z: &Vec<f64>| motion.angle_from_charts(z) > FAR;
     history.z.iter().any(is_far).then(|| {
         let z = history.z.iter().map(|z| {
             let mut instant = motion.placed(z);

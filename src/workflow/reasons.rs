@@ -39,13 +39,13 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
         let names = sources.iter().map(|&s| model.sources[s].name.as_str());
         listed(&names.collect::<Vec<_>>())
     };
-    let (silent, cut): (Vec<usize>, Vec<usize>) = model
+    let (zero_voltage, cut): (Vec<usize>, Vec<usize>) = model
         .reached
         .iter()
         .filter(|s| !model.voltages.contains(s))
         .partition(|s| model.analysis.zero_voltage.contains(s));
-    if !silent.is_empty() {
-        let why = format!("0 V all the time at {}", names(&silent));
+    if !zero_voltage.is_empty() {
+        let why = format!("0 V all the time at {}", names(&zero_voltage));
         add("voltage".to_owned(), why);
     }
     if !cut.is_empty() {
@@ -63,10 +63,12 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
             .bodies
             .iter()
             .position(|other| other.name == body.name);
-        let is_still = b.is_some_and(|b| model.presolved.immobile.bodies[b]);
+        let is_immobile = b.is_some_and(|b| model.presolved.immobile.bodies[b]);
         let why = match place {
             BodyLocation::Body(_) => continue,
-            BodyLocation::Ground if is_still => "it starts at rest and nothing moves it".to_owned(),
+            BodyLocation::Ground if is_immobile => {
+                "it starts at rest and nothing moves it".to_owned()
+            }
             BodyLocation::Ground => "it is fixed to the ground".to_owned(),
             BodyLocation::Welded { to, .. } => {
                 format!(
@@ -77,7 +79,7 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
         };
         add(format!("body {}", body.name), why);
     }
-    for continuum in model.solids.iter().filter(|c| c.is_still) {
+    for continuum in model.solids.iter().filter(|c| c.is_immobile) {
         let why = "it starts at rest and nothing moves it";
         add(format!("block {}", continuum.solid.name), why.to_owned());
     }

@@ -24,10 +24,10 @@ const HELD: usize = 5;
 const SAME: (f64, f64) = (1e-4, 1e2);
 /// A distance that grows by this factor within one step is no growth of rounding.
 const JUMP: f64 = 1e3;
-/// Estimated errors along the motion, as parts of its way, from which on it is warned, and refused.
+/// Estimated errors along the motion, as parts of its path length, from which on it is warned, and refused.
 const COARSE: f64 = 0.05;
 const TOO_COARSE: f64 = 0.25;
-/// A drift from the goal, as a part of the way, from which on it is not held.
+/// A drift from the goal, as a part of the path length, from which on it is not held.
 const DRIFTS: f64 = 0.05;
 
 /// What became of optimal voltages.
@@ -35,11 +35,11 @@ const DRIFTS: f64 = 0.05;
 pub struct Resimulation {
     /// Greatest deviation from the optimal motion at its instants, with its step.
     pub deviation: Distance,
-    /// The longest way of a joint, and of a body or node, along the optimal motion.
-    pub way: Distance,
+    /// The longest path of a joint, and of a body or node, along the optimal motion.
+    pub path_length: Distance,
     /// The same voltages with finer steps.
     pub finer: Vec<Finer>,
-    /// Estimated greatest distance of the optimal motion from the one that its voltages drive, as a part of the way; absent
+    /// Estimated greatest distance of the optimal motion from the one that its voltages drive, as a part of the path length; absent
     /// where a simulation ended early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<f64>,
@@ -105,7 +105,7 @@ pub enum Cause {
     },
     /// The grid does not resolve the motion.
     Coarse {
-        /// Estimated error as a part of the way.
+        /// Estimated error as a part of the path length.
         error: f64,
         /// Greatest distance from the optimum with finer steps.
         distance: Distance,
@@ -119,11 +119,11 @@ pub(crate) fn resimulate(
     optimal: &Solution,
     tolerance: f64,
 ) -> Resimulation {
-    let way = Distance::way(model, optimal);
+    let path_length = Distance::path_length(model, optimal);
     let own = Repeat::of(model, start, optimal, 1);
     let mut out = Resimulation {
         deviation: own.greatest(),
-        way,
+        path_length,
         finer: Vec::new(),
         error: None,
         held: None,
@@ -137,7 +137,7 @@ pub(crate) fn resimulate(
         return out;
     }
     let mut error = match own.is_halved {
-        true => own.greatest().over(way, model),
+        true => own.greatest().over(path_length, model),
         false => 0.0_f64,
     };
     for steps in [2, 4] {
@@ -154,7 +154,7 @@ pub(crate) fn resimulate(
         }
         // Errors of second order leave this part of the deviation.
         let square = (steps * steps) as f64;
-        let left = square / (square - 1.0) * deviation.over(way, model);
+        let left = square / (square - 1.0) * deviation.over(path_length, model);
         error = error.max(left);
         if steps == 2 {
             out.half = Some(repeat.history);
@@ -204,7 +204,7 @@ impl Resimulation {
 
     /// Whether the goal is held: its voltages are known, and under them the system stays.
     pub(crate) fn is_held(&self, model: &Model) -> bool {
-        let stays = |drift: Distance| drift.over(self.way, model) <= DRIFTS;
+        let stays = |drift: Distance| drift.over(self.path_length, model) <= DRIFTS;
         self.failure.is_none() && self.drift.is_some_and(stays)
     }
 
@@ -212,14 +212,14 @@ impl Resimulation {
     pub(crate) fn warning(&self) -> Option<String> {
         if let (None, None, Some(failure)) = (&self.cause, self.error, &self.failure) {
             return Some(format!(
-                "the optimal voltages could not be put to the test: {failure}"
+                "the motion under the optimal voltages could not be simulated: {failure}"
             ));
         }
         let error = self.error.filter(|&e| e > COARSE && self.cause.is_none())?;
         let Finer { deviation, .. } = self.finer.last()?;
         Some(format!(
-            "the intervals are long for this motion: with finer steps the same voltages lead up to {:.0} % of the way beside it \
-             ({deviation}); take more of them, or --accuracy",
+            "the intervals are long for this motion: with finer steps under the same voltages the motion with finer steps deviates from it by up to \
+             {:.0} % of the path length ({deviation}); use more intervals, or --accuracy",
             100.0 * error
         ))
     }
@@ -347,8 +347,8 @@ impl Cause {
                  grows at a rate of {rate:.3} 1/s"
             ),
             Self::Coarse { error, distance } => format!(
-                "the intervals do not resolve the motion: with finer steps the same voltages lead up to {:.0} % of the way beside \
-                 it ({distance})",
+                "the intervals do not resolve the motion: under the same voltages the motion with finer steps deviates \
+                 from it by up to {:.0} % of the path length ({distance})",
                 100.0 * error
             ),
         }

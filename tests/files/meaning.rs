@@ -2,9 +2,9 @@
 
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
 use proboscis::control::problem::{BoundaryState, PathConstraint, Task};
+use proboscis::files::expand;
 use proboscis::files::read_problem;
 use proboscis::files::read_scene;
-use proboscis::files::expand;
 use proboscis::model::system::{JointKind, Shape, System, VACUUM_PERMITTIVITY};
 use std::fs;
 use std::path::Path;

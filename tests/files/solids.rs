@@ -2,9 +2,9 @@
 
 use crate::scene::{Case, check, folder, mistake};
 use proboscis::control::problem::Task;
+use proboscis::files::expand;
 use proboscis::files::read_problem;
 use proboscis::files::read_scene;
-use proboscis::files::expand;
 use proboscis::model::system::{ElementKind, Potential};
 use std::fs;
 

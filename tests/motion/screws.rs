@@ -214,7 +214,7 @@ fn charts_are_exchanged_and_the_configuration_stays() {
             taken[model.coordinate_count()..],
             other[model.coordinate_count()..]
         );
-        assert!(motion.way_from_charts(&taken) > 1.0);
+        assert!(motion.angle_from_charts(&taken) > 1.0);
         let (a, b) = (placed(&model, &z), placed(&model, &taken));
         for (a, b) in a.x.iter().zip(&b.x) {
             assert!((a - b).amax() < 1e-12 * 300.0);

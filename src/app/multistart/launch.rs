@@ -15,7 +15,7 @@ pub(super) fn folder_of(folder: &Path, start: usize) -> PathBuf {
     folder.join(FOLDER).join(format!("{start:02}"))
 }
 
-/// A start on its way.
+/// A start that runs.
 pub(super) struct Running {
     pub(super) start: usize,
     pub(super) seed: Option<u64>,

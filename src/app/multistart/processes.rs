@@ -17,7 +17,7 @@ pub(super) const PATIENCE: Duration = Duration::from_millis(10);
 /// Time that processes have to end in good order after Ctrl-C.
 pub(super) const GRACE: Duration = Duration::from_secs(3);
 
-/// The starts on their way; none of them outlives this list.
+/// The starts that run; none of them outlives this list.
 pub(super) struct All(Vec<Running>);
 
 impl Drop for All {

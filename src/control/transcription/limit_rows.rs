@@ -16,7 +16,7 @@ pub(in crate::control) enum Site {
     Intervals,
 }
 
-/// A limit or goal on its way to rows.
+/// A limit or goal before it becomes rows.
 #[derive(Clone, Debug)]
 pub(super) struct LimitRow {
     pub(super) bounded: BoundedQuantity,

@@ -142,25 +142,29 @@ impl Alpha {
         v[i] * (1.0 - ratio) + alpha[i] * (h * (1.0 - 0.5 * ratio))
     }
 
-    /// Average of the accelerations α at the end, when the vector has gone `way` in the step.
-    fn average(&self, i: usize, h: f64, way: Vector) -> Vector {
+    /// Average of the accelerations α at the end, when the vector has gone `displacement` in the step.
+    fn average(&self, i: usize, h: f64, displacement: Vector) -> Vector {
         let [v, _, alpha] = &self.state;
-        (way - v[i] * h) / (self.beta * h * h) - alpha[i] * ((0.5 - self.beta) / self.beta)
+        (displacement - v[i] * h) / (self.beta * h * h) - alpha[i] * ((0.5 - self.beta) / self.beta)
     }
 
-    /// Acceleration of vector `i` at the end of a step in which it has gone `way`.
-    pub(super) fn acceleration(&self, i: usize, h: f64, way: Vector) -> Vector {
+    /// Acceleration of vector `i` at the end of a step in which it has gone `displacement`.
+    pub(super) fn acceleration(&self, i: usize, h: f64, displacement: Vector) -> Vector {
         let [_, a, alpha] = &self.state;
-        let averages = self.average(i, h, way) * (1.0 - self.alpha_m) + alpha[i] * self.alpha_m;
+        let averages =
+            self.average(i, h, displacement) * (1.0 - self.alpha_m) + alpha[i] * self.alpha_m;
         (averages - a[i] * self.alpha_f) / (1.0 - self.alpha_f)
     }
 
     /// Carries on after a step in which the vectors went from `x` to `y`.
     pub(super) fn accept(&mut self, h: f64, x: &[Vector], y: &[Vector]) {
         for i in 0..x.len() {
-            let way = y[i] - x[i];
-            let rate = way * (self.gamma / self.beta / h) + self.carried_rate(i, h);
-            let (acceleration, average) = (self.acceleration(i, h, way), self.average(i, h, way));
+            let displacement = y[i] - x[i];
+            let rate = displacement * (self.gamma / self.beta / h) + self.carried_rate(i, h);
+            let (acceleration, average) = (
+                self.acceleration(i, h, displacement),
+                self.average(i, h, displacement),
+            );
             let [v, a, alpha] = &mut self.state;
             (v[i], a[i], alpha[i]) = (rate, acceleration, average);
         }
