@@ -1,4 +1,4 @@
-//! Structure: what a scene does not call for leaves no trace, and imports go downwards.
+//! Structure: what a scene does not call for leaves no trace, imports go downwards, documents name what exists.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -6,6 +6,7 @@ mod common;
 mod absent;
 mod circles;
 mod condensed;
+mod documents;
 mod floors;
 mod lengths;
 mod sources;
