@@ -16,15 +16,19 @@
 
 mod charts;
 mod configuration;
+mod interval;
 mod map;
 mod pattern;
 mod pull_back;
 mod reduced;
+mod scratch;
 mod tree;
 
 pub use configuration::Configuration;
+pub use interval::Interval;
 pub use map::{CoordinateMap, NodePlace};
 pub use pattern::{BlockPattern, StepPattern};
 pub use pull_back::Destination;
-pub use reduced::{Interval, Reduced, Scratch};
+pub use reduced::Reduced;
+pub use scratch::Scratch;
 pub use tree::{CHART, Link, LinkKind, Tree};

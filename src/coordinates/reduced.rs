@@ -1,11 +1,13 @@
 //! A functional seen through coordinates.
 
 use crate::coordinates::configuration::Configuration;
+use crate::coordinates::interval::Interval;
 use crate::coordinates::map::CoordinateMap;
 use crate::coordinates::pattern::StepPattern;
 use crate::coordinates::pull_back::{Destination, PullBack, Site};
-use crate::functional::{BlockMask, Blocks, Functional, Horizon, Order, Output, Part, Sample};
-use crate::math::{Matrix, Vector};
+use crate::coordinates::scratch::{Carried, Scratch};
+use crate::functional::{BlockMask, Blocks, Functional, Horizon, Order, Part, Sample};
+use crate::math::Vector;
 
 /// Sums over intervals and instants as functions of the coordinates z of the instants and the scalars of the intervals.
 #[derive(Debug)]
@@ -20,111 +22,6 @@ pub struct Reduced {
     instant_plan: PullBack,
     curvature: Vec<[usize; 2]>,
     layout: StepPattern,
-}
-
-/// What an interval is asked with, besides its two instants.
-#[derive(Clone, Copy, Debug)]
-pub struct Interval<'a> {
-    /// Scalars: voltages, then potentials.
-    pub scalars: &'a [f64],
-    /// Their rates along the direction; read at level `Third` only.
-    pub along: &'a [f64],
-    /// Length in ms.
-    pub h: f64,
-    /// Whether the length is an argument.
-    pub horizon: Horizon,
-    /// Which blocks are asked for.
-    pub sides: BlockMask,
-    /// Weights of the measures of the site.
-    pub weights: &'a [f64],
-}
-
-impl<'a> Interval<'a> {
-    /// A given interval, all blocks.
-    pub fn given(scalars: &'a [f64], h: f64) -> Self {
-        Self {
-            scalars,
-            along: &[],
-            h,
-            horizon: Horizon::Given,
-            sides: BlockMask::ALL,
-            weights: &[],
-        }
-    }
-
-    /// What effects read of it.
-    pub fn frame(&self, [a, b]: [&'a Configuration; 2]) -> Sample<'a> {
-        Sample {
-            vectors: [&a.x, &b.x],
-            along: [&a.w, &b.w],
-            scalars: self.scalars,
-            scalars_along: self.along,
-            h: self.h,
-            horizon: self.horizon,
-            sides: self.sides,
-            weights: self.weights,
-        }
-    }
-}
-
-/// Storage that one evaluation needs, allocated once for each thread.
-///
-/// In a sweep over a horizon the blocks of an instant are summed over both neighbouring intervals before they are pulled
-/// back: [`Scratch::carry`] after each interval, and [`Reduced::pull_back_last`] at the end.
-#[derive(Clone, Debug)]
-pub struct Scratch {
-    /// Derivatives of the last interval.
-    pub interval: Output,
-    /// Derivatives of the last instant.
-    pub instant: Output,
-    carried: [Carried; 2],
-    local: Vec<f64>,
-}
-
-/// Blocks (k+1, k+1) of the interval before.
-#[derive(Clone, Debug)]
-struct Carried {
-    full: Vec<Matrix>,
-    isotropic: Vec<f64>,
-}
-
-impl Carried {
-    fn new(blocks: &Blocks) -> Self {
-        Self {
-            full: vec![Matrix::zeros(); blocks.full.len()],
-            isotropic: vec![0.0; blocks.isotropic.len()],
-        }
-    }
-
-    /// Adds the carried blocks to those of the first instant, and takes those of the second.
-    fn exchange(&mut self, blocks: &mut Blocks) {
-        for (carried, block) in self.full.iter_mut().zip(&mut blocks.full) {
-            block[0] += std::mem::replace(carried, block[3]);
-        }
-        for (carried, block) in self.isotropic.iter_mut().zip(&mut blocks.isotropic) {
-            block[0] += std::mem::replace(carried, block[3]);
-        }
-    }
-}
-
-impl Scratch {
-    /// Forgets carried blocks, before a sweep.
-    pub fn start(&mut self) {
-        for carried in &mut self.carried {
-            carried.full.fill(Matrix::zeros());
-            carried.isotropic.fill(0.0);
-        }
-    }
-
-    /// Moves the blocks of the second instant of the interval evaluated last to the next interval.
-    pub fn carry(&mut self, level: Order) {
-        if level >= Order::Hessian {
-            self.carried[0].exchange(&mut self.interval.plain.blocks);
-        }
-        if level == Order::Third {
-            self.carried[1].exchange(&mut self.interval.contracted.blocks);
-        }
-    }
 }
 
 impl Reduced {

@@ -4,7 +4,8 @@
 //! scattered once; so the cost of scattering does not grow with the number of effects.
 
 use crate::coordinates::pattern::{BlockPattern, StepPattern};
-use crate::coordinates::pull_back::{Destination, Site};
+use crate::coordinates::pull_back::destination::{Destination, Site};
+use crate::coordinates::pull_back::lanes::{Lanes, image, load, scaled, sum, take};
 use crate::coordinates::tree::{LANES, TangentColumns};
 use crate::functional::BlockMask;
 use crate::math::Matrix;
@@ -195,47 +196,6 @@ impl<'a> Ends<'a> {
         let [a, b] = self.of(side);
         [a, b, self.columns_l[side / 2], self.columns_l[side % 2]]
     }
-}
-
-/// Four neighbouring columns of a vector: its three rows.
-type Lanes = [f64x4; 3];
-
-/// The columns from `at` of a vector.
-#[inline]
-fn take(columns: &[f64], first: usize, stride: usize, at: usize) -> Lanes {
-    let row = |i: usize| load(columns, first + i * stride + at);
-    [row(0), row(1), row(2)]
-}
-
-#[inline]
-fn load(values: &[f64], at: usize) -> f64x4 {
-    let lanes: [f64; LANES] = values[at..at + LANES]
-        .try_into()
-        .expect("rows are padded to whole lanes");
-    f64x4::from(lanes)
-}
-
-/// m b.
-#[inline]
-fn image(m: &Matrix, b: &Lanes) -> Lanes {
-    let row = |i: usize| {
-        b[0] * f64x4::splat(m[(i, 0)])
-            + b[1] * f64x4::splat(m[(i, 1)])
-            + b[2] * f64x4::splat(m[(i, 2)])
-    };
-    [row(0), row(1), row(2)]
-}
-
-/// c b.
-#[inline]
-fn scaled(c: f64, b: &Lanes) -> Lanes {
-    let c = f64x4::splat(c);
-    [b[0] * c, b[1] * c, b[2] * c]
-}
-
-#[inline]
-fn sum(a: &Lanes, b: &Lanes) -> Lanes {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 impl Articulated {

@@ -3,7 +3,7 @@
 use crate::coordinates::map::LinearPart;
 use crate::coordinates::pattern::StepPattern;
 use crate::coordinates::pull_back::articulated::Ends;
-use crate::coordinates::pull_back::{Destination, Site};
+use crate::coordinates::pull_back::destination::{Destination, Site};
 use crate::coordinates::tree::TangentColumns;
 use crate::functional::BlockMask;
 use crate::math::{Matrix, Vector};

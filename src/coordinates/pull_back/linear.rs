@@ -2,7 +2,7 @@
 
 use crate::coordinates::map::LinearPart;
 use crate::coordinates::pattern::StepPattern;
-use crate::coordinates::pull_back::{Destination, Site};
+use crate::coordinates::pull_back::destination::{Destination, Site};
 use crate::functional::BlockMask;
 use crate::math::Matrix;
 

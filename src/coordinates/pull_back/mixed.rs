@@ -2,7 +2,7 @@
 
 use crate::coordinates::map::{CoordinateMap, Dependence};
 use crate::coordinates::pattern::StepPattern;
-use crate::coordinates::pull_back::{Destination, Site};
+use crate::coordinates::pull_back::destination::{Destination, Site};
 use crate::functional::Part;
 use crate::math::Vector;
 

@@ -1,7 +1,9 @@
 //! Pᵀ H P and its derivative along a direction, block by block into prepared slots.
 
 mod articulated;
+mod destination;
 mod joined;
+mod lanes;
 mod linear;
 mod mixed;
 
@@ -10,6 +12,8 @@ use crate::coordinates::map::{CoordinateMap, Dependence};
 use crate::coordinates::pattern::StepPattern;
 use crate::functional::{BlockMask, Couplings, Part};
 use articulated::{BlockDestination, Ends, Groups, Pair};
+pub use destination::Destination;
+pub(super) use destination::Site;
 use joined::{Block, Joined};
 use linear::Linear;
 use mixed::Mixed;
@@ -24,18 +28,6 @@ pub(super) struct PullBack {
     mixed: Mixed,
     /// (slot, place).
     scalars: Vec<(usize, usize)>,
-}
-
-/// Where the blocks of one interval go in the values: places of the four blocks, of both mixed blocks and of scalars;
-/// mixed blocks and scalars without a place (`usize::MAX`) go nowhere.
-#[derive(Clone, Copy, Debug)]
-pub struct Destination {
-    /// (k, k), (k, k+1), (k+1, k), (k+1, k+1).
-    pub blocks: [usize; 4],
-    /// (z_k, s), (z_{k+1}, s).
-    pub mixed: [usize; 2],
-    /// (s, s).
-    pub scalars: usize,
 }
 
 impl PullBack {
@@ -218,36 +210,4 @@ fn columns(ends: [&Configuration; 2]) -> ([&[f64]; 2], [&[f64]; 2]) {
         ends.map(|e| e.columns.as_slice()),
         ends.map(|e| e.columns_l.as_slice()),
     )
-}
-
-/// Where a sum lives in time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Site {
-    /// Scalars are those of the interval.
-    Intervals,
-    /// Scalars are multipliers, unknowns of the instant itself.
-    Instants,
-}
-
-impl Site {
-    /// Places of the coupling of coordinate `row` and scalar `s`: a block of its own for an interval, both triangles of
-    /// (z, z) for an instant.
-    fn mixed(
-        self,
-        layout: &mut StepPattern,
-        motion: &CoordinateMap,
-        row: usize,
-        s: usize,
-    ) -> Vec<usize> {
-        match self {
-            Self::Intervals => vec![layout.mixed.slot(row, s)],
-            Self::Instants => {
-                let multiplier = motion.coordinates + s;
-                vec![
-                    layout.same.slot(row, multiplier),
-                    layout.same.slot(multiplier, row),
-                ]
-            }
-        }
-    }
 }

@@ -1,0 +1,49 @@
+//! What an interval is asked with.
+
+use crate::coordinates::configuration::Configuration;
+use crate::functional::{BlockMask, Horizon, Sample};
+
+/// What an interval is asked with, besides its two instants.
+#[derive(Clone, Copy, Debug)]
+pub struct Interval<'a> {
+    /// Scalars: voltages, then potentials.
+    pub scalars: &'a [f64],
+    /// Their rates along the direction; read at level `Third` only.
+    pub along: &'a [f64],
+    /// Length in ms.
+    pub h: f64,
+    /// Whether the length is an argument.
+    pub horizon: Horizon,
+    /// Which blocks are asked for.
+    pub sides: BlockMask,
+    /// Weights of the measures of the site.
+    pub weights: &'a [f64],
+}
+
+impl<'a> Interval<'a> {
+    /// A given interval, all blocks.
+    pub fn given(scalars: &'a [f64], h: f64) -> Self {
+        Self {
+            scalars,
+            along: &[],
+            h,
+            horizon: Horizon::Given,
+            sides: BlockMask::ALL,
+            weights: &[],
+        }
+    }
+
+    /// What effects read of it.
+    pub fn frame(&self, [a, b]: [&'a Configuration; 2]) -> Sample<'a> {
+        Sample {
+            vectors: [&a.x, &b.x],
+            along: [&a.w, &b.w],
+            scalars: self.scalars,
+            scalars_along: self.along,
+            h: self.h,
+            horizon: self.horizon,
+            sides: self.sides,
+            weights: self.weights,
+        }
+    }
+}
