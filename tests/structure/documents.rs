@@ -54,8 +54,9 @@ fn links_lead_to_files() {
 
 #[test]
 fn sources_that_documents_name_exist() {
-    let files: BTreeSet<String> = ["src", "tests", "benches"]
-        .iter()
+    let files: BTreeSet<String> = ["src", "tests", "benches", "examples"]
+        .into_iter()
+        .filter(|folder| root().join(folder).exists())
         .flat_map(|folder| {
             let path = move |source: Source| format!("/{folder}/{}", source.name);
             sources(folder).into_iter().map(path)
