@@ -3,7 +3,8 @@
 
 mod common;
 
-use common::cases::{all_limits, branched, control, rest_to_rest};
+use common::cases::{all_limits, control, rest_to_rest};
+use common::systems::branched;
 use common::trunk;
 use proboscis::control::problem::{Control, Duration, Objective};
 use proboscis::control::{BoundaryConditions, Transcription, guess};

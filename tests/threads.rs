@@ -2,8 +2,9 @@
 
 mod common;
 
-use common::cases::{blocks, control, open_end, rest_to_rest};
+use common::cases::{control, open_end, rest_to_rest};
 use common::solid::{DRIVEN, electrode, held};
+use common::systems::blocks;
 use common::trunk;
 use nalgebra::Vector3;
 use proboscis::control::problem::Control;

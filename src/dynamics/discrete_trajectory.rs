@@ -1,6 +1,6 @@
 //! The record of a motion: coordinates, momenta and voltages on a time grid.
 
-use crate::dynamics::StepperReport;
+use crate::dynamics::step_report::StepperReport;
 
 /// N + 1 instants and N intervals.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -9,7 +9,7 @@
 
 #![expect(non_snake_case, reason = "notation of the law")]
 
-use crate::dynamics::DiscreteTrajectory;
+use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
 use crate::math::{Matrix, Vector};
 use crate::model::system::{ElectricConstants, Fidelity};
 use crate::model::{Model, SolidBlock};

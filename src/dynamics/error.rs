@@ -1,7 +1,7 @@
 //! Why a step or an equilibrium was not found.
 
+use crate::dynamics::rest::{Equilibrium, Instability, Load};
 use crate::dynamics::spans::NOTHING;
-use crate::dynamics::{Equilibrium, Instability, Load};
 use crate::ipopt::Status;
 use thiserror::Error;
 

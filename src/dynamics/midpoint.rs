@@ -9,9 +9,10 @@
 //! with the potentials φ of the interval, which have no inertia, by Gauss's law.
 
 use crate::coordinates::{Configuration as Place, Interval, Scratch};
+use crate::dynamics::equations::Equations;
 use crate::dynamics::resolution::{Balance, typical_energy};
 use crate::dynamics::solving::Solving;
-use crate::dynamics::stepper::{Equations, Steps};
+use crate::dynamics::stepper::Steps;
 use crate::dynamics::tangent::EntryList;
 use crate::functional::{BlockMask, Order};
 use crate::math::Vector;

@@ -9,48 +9,42 @@
 //!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest`: its softest mode.
 
 mod anderson;
-mod continuation;
+mod controlled;
 mod discrete_trajectory;
 mod domain;
-mod equilibrium;
+mod equations;
 mod error;
-mod instability;
 mod kinetic;
 mod local_error;
 mod midpoint;
-mod minimum;
+mod momenta;
 mod observe;
-mod ramp;
 mod resolution;
-mod settle;
+mod rest;
 mod simulate;
-mod softest;
 mod solving;
 mod spans;
-mod stable;
 mod stages;
-mod statics;
+mod step_report;
 mod stepper;
 mod tangent;
 pub mod trajectory;
 
-use continuation::{LimitPoint, limit_point};
-
-pub use continuation::{Continuation, continuation};
 pub use discrete_trajectory::{DiscreteTrajectory, Reading};
 pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
-pub use equilibrium::{Equilibrium, Route, StabilityLoss, equilibrium};
+pub use equations::Equations;
 pub use error::{EquilibriumError, StepError};
-pub use instability::Instability;
 pub use local_error::{LocalError, local_error};
 pub use midpoint::{Midpoint, Stepper};
 pub use observe::{Energies, energies, observations};
-pub use ramp::Load;
 pub use resolution::Balance;
+pub use rest::{
+    Continuation, Equilibrium, Instability, Load, Mode, Route, Softening, StabilityLoss,
+    continuation, equilibrium, stable_equilibrium,
+};
 pub use simulate::{Start, StepControl, simulate, simulate_by, simulate_within};
-pub use softest::{Mode, Softening};
 pub use solving::{Integrator, Newton, Solving};
 pub use spans::{muscle_without_length, reversed_muscle};
-pub use stable::stable_equilibrium;
 pub use stages::Stages;
-pub use stepper::{Equations, StepperReport, Steps};
+pub use step_report::StepperReport;
+pub use stepper::Steps;

@@ -8,7 +8,7 @@
 //! takes as much as it does work.
 
 use crate::coordinates::{Configuration, Interval};
-use crate::dynamics::StepError;
+use crate::dynamics::error::StepError;
 use crate::functional::Kind;
 use crate::math::Vector;
 use crate::model::Model;

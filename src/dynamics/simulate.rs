@@ -1,9 +1,10 @@
 //! Simulation: step after step, recorded.
 
 use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
-use crate::dynamics::observe::vector_momenta;
+use crate::dynamics::equations::Equations;
+use crate::dynamics::momenta::vector_momenta;
 use crate::dynamics::solving::{Integrator, Solving};
-use crate::dynamics::stepper::{Equations, Steps};
+use crate::dynamics::stepper::Steps;
 use crate::dynamics::{StepError, Stepper};
 use crate::kinematics::{Carrier, MaterialVector};
 use crate::math::Vector;

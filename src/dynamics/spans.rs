@@ -5,7 +5,7 @@
 //! a step may have passed through zero, and an element that is sound in the middle may be crushed.
 
 use crate::coordinates::{Configuration, Interval};
-use crate::dynamics::DiscreteTrajectory;
+use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
 use crate::functional::Kind;
 use crate::model::Model;
 use crate::model::system::Fidelity;

@@ -1,15 +1,16 @@
 //! One step forward: Newton on the equations of a method, and halves of the step where it fails.
 
-use crate::coordinates::Configuration as Place;
-use crate::dynamics::StepError;
 use crate::dynamics::anderson::Anderson;
+use crate::dynamics::controlled::{Controlled, factor};
+use crate::dynamics::equations::Equations;
+use crate::dynamics::error::StepError;
 use crate::dynamics::resolution::{Balance, turned};
 use crate::dynamics::solving::Newton;
 use crate::dynamics::spans;
+use crate::dynamics::step_report::StepperReport;
 use crate::dynamics::tangent::Tangent;
 use crate::functional::Order;
 use crate::ipopt::interrupt;
-use crate::model::Model;
 use std::time::Instant;
 
 /// Limit of Newton iterations in one step.
@@ -25,112 +26,6 @@ const LEFT: f64 = 1e-10;
 const SLOW: f64 = 0.75;
 /// Limit of iterations with a reused tangent.
 const REUSED: usize = 40;
-
-/// What the steps cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StepperReport {
-    /// Steps taken, halved ones included.
-    pub steps: usize,
-    /// Newton iterations.
-    pub iterations: usize,
-    /// Steps that had to be halved.
-    pub halved: usize,
-    /// Factorisations of the tangent.
-    pub factorisations: usize,
-    /// Seconds in the rows and the tangent.
-    pub assembly: f64,
-    /// Seconds in factorisations.
-    pub factorisation: f64,
-    /// Seconds in solutions with them.
-    pub solution: f64,
-    /// Energy in mJ that the steps made, or lost where negative, where the method has a balance of energy.
-    pub made: f64,
-    /// Greatest energy in mJ that one step exchanged.
-    pub exchanged: f64,
-}
-
-/// The equations that lead from one instant to the next.
-pub trait Equations {
-    /// Takes the voltages of a step that begins.
-    fn begin(&mut self, voltages: &[f64]);
-
-    /// First guess of the unknowns of a step of `h` ms.
-    fn guess(&mut self, h: f64);
-
-    /// Writes the residual; at level `Hessian` also the values of the tangent.
-    fn evaluate(&mut self, level: Order, h: f64, residual: &mut [f64]);
-
-    /// Values of the tangent.
-    fn values(&self) -> &[f64];
-
-    /// Subtracts an update from the unknowns.
-    fn update(&mut self, update: &[f64]);
-
-    /// Undoes what a failed attempt changed in the state.
-    fn restore(&mut self);
-
-    /// The model.
-    fn model(&self) -> &Model;
-
-    /// Places the end of the step where the last update put it.
-    fn place_end(&mut self);
-
-    /// The start and the end of the step.
-    fn ends(&self) -> [&Place; 2];
-
-    /// Energy balance of the step that the last update led to, where the method has one.
-    fn balance(&mut self, _h: f64) -> Option<Balance> {
-        None
-    }
-
-    /// Local error of the step that the last update led to, relative to the sizes of the coordinates; zero where the method
-    /// has no estimate.
-    fn local_error(&self, _h: f64) -> f64 {
-        0.0
-    }
-
-    /// Makes the end of the step the state, unless the momentum does not exist there.
-    fn accept(&mut self, h: f64) -> bool;
-
-    /// Name of an unknown.
-    fn unknown_name(&self, unknown: usize) -> String;
-
-    /// Time in ms.
-    fn time(&self) -> f64;
-
-    /// Coordinates and multipliers now.
-    fn coordinates(&self) -> &[f64];
-
-    /// Momentum of each coordinate now.
-    fn momentum(&self) -> &[f64];
-
-    /// Voltages and potentials of the last interval.
-    fn scalars(&self) -> &[f64];
-
-    /// Multipliers at the start of the step, where the method knows them there.
-    fn multipliers(&self) -> &[f64];
-
-    /// Work in mJ that forces without a potential did over the last step, where its ends alone do not tell.
-    fn work(&self) -> Option<f64> {
-        None
-    }
-}
-
-/// A step of controlled length.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Controlled {
-    /// Its length in ms.
-    pub(super) taken: f64,
-    /// Length in ms that the next one may have.
-    pub(super) next: f64,
-    /// Multipliers at its start.
-    pub(super) multipliers: Vec<f64>,
-}
-
-/// Factor of a step whose local error, of third order, is `used` of what is allowed per time, with some room.
-fn factor(used: f64) -> f64 {
-    (0.9 / used.sqrt()).max(0.1)
-}
 
 /// State at one instant and the means to go on from it.
 #[derive(Debug)]

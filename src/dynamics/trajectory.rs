@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::dynamics::DiscreteTrajectory;
+use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
 use crate::kinematics::Pose;
 use crate::model::Model;
 use crate::model::system::{Attachment, Joint, JointKind, System};

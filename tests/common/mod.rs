@@ -9,6 +9,7 @@ pub mod random;
 pub mod random_goals;
 pub mod signals;
 pub mod solid;
+pub mod systems;
 pub mod trunk;
 
 use nalgebra::{Matrix3, SVector, Vector3};

@@ -3,8 +3,9 @@
 //! Newton ends when an update is below 1e-9, so the error left is of order 1e-18 and rounding decides. Rows are scaled by
 //! the largest entry of their kind in the Jacobian, so a row of 1e-12 moves a coordinate of order one by 1e-12.
 
-use crate::common::cases::{BRANCHED_VOLTAGES, blocks, branched, control, hold, joints};
+use crate::common::cases::{control, hold, joints};
 use crate::common::random::Random;
+use crate::common::systems::{BRANCHED_VOLTAGES, blocks, branched};
 use crate::common::trunk;
 use proboscis::control::problem::{BoundaryState, Duration};
 use proboscis::control::{BoundaryConditions, Row, Transcription, guess};

@@ -135,7 +135,7 @@ fn dense(system: &System, coordinates: Coordinates) -> nalgebra::DMatrix<f64> {
 
 #[test]
 fn potentials_have_symmetric_second_derivatives() {
-    let viscous = crate::common::cases::branched();
+    let viscous = crate::common::systems::branched();
     let mut conservative = viscous.clone();
     for muscle in &mut conservative.muscles {
         muscle.material.viscosity = None;

@@ -1,8 +1,9 @@
 //! The interval length as a variable: at its guess the program is the one with that length given, and the derivative of
 //! the action of an interval with h is minus its discrete energy.
 
-use crate::common::cases::{BRANCHED_VOLTAGES, branched, cases};
+use crate::common::cases::cases;
 use crate::common::random::Random;
+use crate::common::systems::{BRANCHED_VOLTAGES, branched};
 use proboscis::control::problem::Duration;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::functional::{BlockMask, Horizon, Kind, Order, Sample};

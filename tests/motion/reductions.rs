@@ -1,6 +1,7 @@
 //! Joint coordinates and directors with multipliers tell the same motion.
 
-use crate::common::cases::{blocks, hold};
+use crate::common::cases::hold;
+use crate::common::systems::blocks;
 use crate::common::{distance, motion, placed, trunk};
 use crate::tree::{JOINTS, RATES, VOLTAGES, tree, undamped};
 use nalgebra::Vector3;

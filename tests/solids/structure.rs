@@ -1,8 +1,9 @@
 //! A block costs what it holds: coordinates of its free nodes, potentials where a field is, and nothing else.
 
-use crate::common::cases::{GRAVITY, blocks, control, open_end};
+use crate::common::cases::{control, open_end};
 use crate::common::random::Random;
 use crate::common::solid::{DRIVEN, block, electrode, held, system};
+use crate::common::systems::{GRAVITY, blocks};
 use nalgebra::Vector3;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::coordinates::Interval;

@@ -2,7 +2,8 @@
 //!
 //! It writes to standard output from C, so the solve runs in a child process: this very test, told so by its environment.
 
-use crate::common::cases::{branched, control, rest_to_rest};
+use crate::common::cases::{control, rest_to_rest};
+use crate::common::systems::branched;
 use crate::common::trunk;
 use proboscis::control::problem::{Control, Objective};
 use proboscis::control::{BoundaryConditions, Transcription, guess};

@@ -1,7 +1,8 @@
 //! What is absent changes no bit.
 
-use crate::common::cases::{GRAVITY, branched, control};
+use crate::common::cases::control;
 use crate::common::random::Random;
+use crate::common::systems::{GRAVITY, branched};
 use crate::trace::with_program;
 use proboscis::control::BoundaryConditions;
 use proboscis::control::problem::{BoundaryState, Control, PathConstraint};

@@ -7,7 +7,7 @@ use crate::sources::{Source, sources};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Folders in which circles are left.
-const LEFT: [&str; 3] = ["coordinates", "dynamics", "model"];
+const LEFT: [&str; 1] = ["model"];
 
 /// A file or an item in it: `["files", "units", "unit", "Unit"]`.
 type Path = Vec<String>;

@@ -1,8 +1,9 @@
 //! What a scene does not call for is not solved for: welded and fixed bodies, what nothing moves, sources without voltage,
 //! inertia and friction at rest. Counts have closed forms, and numbers are those of the scene without it to the last bit.
 
-use crate::common::cases::{GRAVITY, blocks, branched, cases, control, hold, joints};
+use crate::common::cases::{cases, control, hold, joints};
 use crate::common::solid::{DRIVEN, block, electrode, held};
+use crate::common::systems::{GRAVITY, blocks, branched};
 use crate::common::{at_reference, motion, placed, trunk};
 use crate::welded::cuboid;
 use nalgebra::Vector3;

@@ -1,8 +1,9 @@
 //! An effect that a scene does not call for leaves no trace: variables, rows and nonzeros have closed forms, and numbers
 //! are those of a scene in which the effect never existed.
 
-use crate::common::cases::{GRAVITY, branched, control, rest_to_rest};
+use crate::common::cases::{control, rest_to_rest};
 use crate::common::random::Random;
+use crate::common::systems::{GRAVITY, branched};
 use crate::common::trunk;
 use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, PathConstraint};
 use proboscis::control::{BoundaryConditions, Transcription, guess};

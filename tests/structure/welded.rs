@@ -1,6 +1,7 @@
 //! Welded and fixed bodies leave no unknown.
 
-use crate::common::cases::{GRAVITY, branched, joints};
+use crate::common::cases::joints;
+use crate::common::systems::{GRAVITY, branched};
 use crate::common::{bare, body, joint, placed, trunk};
 use crate::condensed::{BOTH, moved, names, under};
 use nalgebra::{Matrix3, Vector3};

@@ -2,7 +2,7 @@
 
 use crate::coordinates::Destination;
 use crate::dynamics::stages::rule::Rule;
-use crate::dynamics::stages::{StagePoint, Stages};
+use crate::dynamics::stages::state::{StagePoint, Stages};
 use crate::functional::BlockMask;
 use crate::math::Matrix;
 

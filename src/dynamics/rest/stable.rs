@@ -7,13 +7,15 @@
 //!
 //! The first stable one is the answer.
 
-use crate::dynamics::continuation::crossings;
-use crate::dynamics::equilibrium::{Grown, Route, StabilityLoss, at_limit, begin, grow, unloaded};
-use crate::dynamics::minimum::minimise;
-use crate::dynamics::ramp::{Load, Ramp};
-use crate::dynamics::softest::softest;
-use crate::dynamics::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
-use crate::dynamics::{Equilibrium, EquilibriumError, LimitPoint, limit_point};
+use crate::dynamics::error::EquilibriumError;
+use crate::dynamics::rest::arc::{LimitPoint, crossings, limit_point};
+use crate::dynamics::rest::equilibrium::{Equilibrium, Route, StabilityLoss};
+use crate::dynamics::rest::growth::{Grown, at_limit, begin, grow, unloaded};
+use crate::dynamics::rest::instability::Load;
+use crate::dynamics::rest::minimum::minimise;
+use crate::dynamics::rest::ramp::Ramp;
+use crate::dynamics::rest::softest::softest;
+use crate::dynamics::rest::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
 use crate::ipopt::interrupt;
 use crate::model::{Coordinates, Model};
 

@@ -1,7 +1,8 @@
 //! The softest mode of a state of rest: along which direction its potential energy rises least or falls, what moves there,
 //! and what makes it soft.
 
-use crate::dynamics::statics::Statics;
+use crate::dynamics::rest::mode::{Mode, Softening};
+use crate::dynamics::rest::statics::Statics;
 use crate::math::random::Random;
 use crate::model::system::Fidelity;
 use crate::model::{Coordinates, Freedom, Model, Screw};
@@ -15,28 +16,6 @@ const STEPS: usize = 30;
 const NAMED: f64 = 0.5;
 /// So many parts are named at most.
 const LISTED: usize = 3;
-
-/// What makes a mode soft: the smallest of the three parts of its stiffness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Softening {
-    /// The forces of voltages, as in pull-in.
-    Voltages,
-    /// Weights, as in collapse.
-    Weight,
-    /// Elastic forces, as in buckling.
-    Elastic,
-}
-
-/// The softest mode of a state of rest.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mode {
-    /// Change of each coordinate; the largest is 1 (rad, or lengths of the system).
-    pub direction: Vec<f64>,
-    /// What moves most, in words: joints, or bodies, or a node of a block, then the muscle whose stretch changes most.
-    pub moves: String,
-    /// What makes it soft.
-    pub softening: Softening,
-}
 
 /// Whether the stiffness in joint coordinates can be looked at eigenvalue by eigenvalue.
 fn is_small(model: &Model) -> bool {

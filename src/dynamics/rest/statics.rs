@@ -7,7 +7,7 @@
 //! coordinate may be added to the tangent, which makes any state's tangent that of a minimum.
 
 use crate::coordinates::{Configuration, Interval, Scratch};
-use crate::dynamics::EquilibriumError;
+use crate::dynamics::error::EquilibriumError;
 use crate::dynamics::tangent::{EntryList, Tangent};
 use crate::functional::Order;
 use crate::ipopt::interrupt;

@@ -1,15 +1,7 @@
 //! Loads that grow along a path of equilibria: first the weights, then the voltages.
 
-use crate::dynamics::statics::Statics;
-
-/// What grows along a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Load {
-    /// The weights, without voltages.
-    Weight,
-    /// The voltages, under all weights.
-    Voltages,
-}
+use crate::dynamics::rest::instability::Load;
+use crate::dynamics::rest::statics::Statics;
 
 /// A load that grows, and the voltages when all of it acts.
 #[derive(Clone, Copy, Debug)]

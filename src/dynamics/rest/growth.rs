@@ -1,122 +1,18 @@
 //! Static equilibrium on the path of growing loads: the weights first, then the voltages in steps of V², cut when Newton
 //! fails.
 
-use crate::dynamics::ramp::{Load, Ramp};
-use crate::dynamics::softest::{Mode, softest, stiffness};
-use crate::dynamics::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
-use crate::dynamics::{EquilibriumError, Instability, LimitPoint, limit_point};
+use crate::dynamics::error::EquilibriumError;
+use crate::dynamics::rest::arc::{LimitPoint, limit_point};
+use crate::dynamics::rest::equilibrium::{Equilibrium, Route, StabilityLoss};
+use crate::dynamics::rest::instability::Load;
+use crate::dynamics::rest::ramp::Ramp;
+use crate::dynamics::rest::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
 use crate::model::{Floating, Model};
 
 /// Part of a load that is tried first, in V² for voltages.
 const FIRST: f64 = 0.25;
 /// Load increments below this end the path.
 const SMALLEST: f64 = 1e-6;
-
-/// A state of rest.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Equilibrium {
-    /// Coordinates and multipliers.
-    pub z: Vec<f64>,
-    /// Voltages and potentials.
-    pub scalars: Vec<f64>,
-    /// Eigenvalues of the stiffness in joint coordinates, ascending, in N mm/rad or N/mm; empty in redundant coordinates
-    /// and for elastic blocks.
-    pub stiffness: Vec<f64>,
-    /// Number of directions in which the potential energy falls, by the inertia of the tangent; `None` where the
-    /// factorisation does not tell.
-    pub unstable: Option<usize>,
-    /// The softest mode; `None` at the points of a path, and where nothing moves.
-    pub softest: Option<Mode>,
-    /// How it was found.
-    pub route: Route,
-    /// Newton iterations over all loads.
-    pub iterations: usize,
-}
-
-/// How an equilibrium was found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Route {
-    /// On the path of growing loads: the weights, then the voltages.
-    Loads,
-    /// On the path that goes on beyond the point where growing loads lose their equilibrium, and comes back to all loads.
-    Beyond(StabilityLoss),
-    /// At a minimum of the potential energy, downhill from a state where the path ends or is unstable.
-    Minimum(StabilityLoss),
-}
-
-/// Where the path of growing loads loses its stable equilibrium.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StabilityLoss {
-    /// The load that grew.
-    pub load: Load,
-    /// Its fraction.
-    pub fraction: f64,
-    /// How, where that was found.
-    pub kind: Option<Instability>,
-}
-
-impl Equilibrium {
-    /// Whether the equilibrium is stable; `None` where that is not known.
-    pub fn is_stable(&self) -> Option<bool> {
-        match self.stiffness.first() {
-            Some(&smallest) => Some(smallest > 0.0),
-            None => self.unstable.map(|count| count == 0),
-        }
-    }
-
-    /// Where growing loads lose the stable equilibrium, if it does not lie on their path.
-    pub fn loss(&self) -> Option<StabilityLoss> {
-        match self.route {
-            Route::Loads => None,
-            Route::Beyond(loss) | Route::Minimum(loss) => Some(loss),
-        }
-    }
-
-    /// Stiffness, stability and softest mode of a model's state of rest: `z` of coordinates and multipliers, `scalars` of
-    /// voltages and potentials.
-    pub fn of_state(model: &Model, z: &[f64], scalars: &[f64]) -> Self {
-        let mut statics = Statics::new(model);
-        let (voltages, potentials) = scalars.split_at(model.voltages.len());
-        let state = statics.state(z, potentials);
-        Self::new(&mut statics, &state, voltages, Route::Loads)
-    }
-
-    /// A state of rest of a model, from coordinates with multipliers and potentials.
-    pub(super) fn new(
-        statics: &mut Statics<'_>,
-        state: &[f64],
-        voltages: &[f64],
-        route: Route,
-    ) -> Self {
-        let state = &statics.recentred(state);
-        let point = Self::on_path(statics, state, voltages, route);
-        Self {
-            softest: softest(statics, state, voltages),
-            ..point
-        }
-    }
-
-    /// The same without its softest mode.
-    pub(super) fn on_path(
-        statics: &mut Statics<'_>,
-        state: &[f64],
-        voltages: &[f64],
-        route: Route,
-    ) -> Self {
-        let m = statics.model.action.motion.unknowns();
-        statics.evaluate(state, voltages);
-        let is_known = statics.factor().is_ok();
-        Self {
-            z: statics.configuration(state),
-            scalars: voltages.iter().chain(&state[m..]).copied().collect(),
-            stiffness: stiffness(statics),
-            unstable: is_known.then(|| statics.unstable()).flatten(),
-            softest: None,
-            route,
-            iterations: statics.iterations,
-        }
-    }
-}
 
 /// The static equilibrium under constant voltages (by scalar of an interval) on the path of growing loads from `start`,
 /// stable or not.

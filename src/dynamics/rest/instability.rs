@@ -1,6 +1,13 @@
-//! How equilibria are lost.
+//! Loads that grow, and how equilibria are lost under them.
 
-use crate::dynamics::ramp::Load;
+/// What grows along a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Load {
+    /// The weights, without voltages.
+    Weight,
+    /// The voltages, under all weights.
+    Voltages,
+}
 
 /// How an equilibrium under a growing load is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,25 +4,22 @@
 //! path is K ẏ = −ḟ b. A step follows it by Δs and comes back to the path in the plane normal to it. The path has a
 //! limit point (pull-in) where ḟ = 0; where a pivot of K changes its sign elsewhere, it meets another path (buckling).
 
-use crate::dynamics::EquilibriumError;
-use crate::dynamics::equilibrium::{Equilibrium, Route};
-use crate::dynamics::instability::Instability;
-use crate::dynamics::ramp::{Load, Ramp};
+use crate::dynamics::rest::instability::Instability;
+use crate::dynamics::rest::ramp::Ramp;
+use crate::dynamics::rest::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
 use crate::dynamics::spans::shortest;
-use crate::dynamics::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
 use crate::ipopt::interrupt;
-use crate::model::Model;
 
 /// Limit of corrections in one step.
 const CORRECTIONS: usize = 12;
 /// Convergence of a correction, relative to angles of one radian and the length of the system.
 const UPDATE: f64 = 1e-11;
 /// First step along the path, in units of the fraction and of strains.
-const FIRST: f64 = 0.02;
+pub(super) const FIRST: f64 = 0.02;
 /// Largest step.
-const LARGEST: f64 = 0.1;
+pub(super) const LARGEST: f64 = 0.1;
 /// Steps below this end the path.
-const SMALLEST: f64 = 1e-7;
+pub(super) const SMALLEST: f64 = 1e-7;
 /// Limit of steps in the search of a limit point.
 const STEPS: usize = 200;
 /// How often the step over a branching point is halved.
@@ -43,17 +40,17 @@ pub(super) struct LimitPoint {
 
 /// A point of the path.
 #[derive(Clone, Debug)]
-struct PathPoint {
-    state: RestState,
-    fraction: f64,
+pub(super) struct PathPoint {
+    pub(super) state: RestState,
+    pub(super) fraction: f64,
     /// Unit tangent: state, then fraction.
-    tangent: (Vec<f64>, f64),
-    unstable: Option<usize>,
+    pub(super) tangent: (Vec<f64>, f64),
+    pub(super) unstable: Option<usize>,
 }
 
 /// The path from a state of equilibrium on.
-struct Path<'s, 'm> {
-    statics: &'s mut Statics<'m>,
+pub(super) struct Path<'s, 'm> {
+    pub(super) statics: &'s mut Statics<'m>,
     ramp: Ramp<'s>,
     weights: Vec<f64>,
 }
@@ -84,7 +81,7 @@ impl Path<'_, '_> {
     }
 
     /// The point at a state of equilibrium; its tangent goes on along `before`, or towards larger fractions.
-    fn point(
+    pub(super) fn point(
         &mut self,
         state: RestState,
         fraction: f64,
@@ -104,7 +101,7 @@ impl Path<'_, '_> {
     }
 
     /// The point at the arc length `step` from another; `None` where the corrections do not converge.
-    fn advance(&mut self, from: &PathPoint, step: f64) -> Option<PathPoint> {
+    pub(super) fn advance(&mut self, from: &PathPoint, step: f64) -> Option<PathPoint> {
         let (direction, ahead) = &from.tangent;
         let predicted = from.state.iter().zip(direction);
         let mut state: RestState = predicted.map(|(y, t)| y + step * t).collect();
@@ -135,7 +132,7 @@ impl Path<'_, '_> {
     }
 
     /// The zero of ḟ between a point and the one a step later.
-    fn turn(&mut self, before: &PathPoint, step: f64, after: &PathPoint) -> PathPoint {
+    pub(super) fn turn(&mut self, before: &PathPoint, step: f64, after: &PathPoint) -> PathPoint {
         let (mut low, mut high) = (0.0, step);
         let (mut at_low, mut at_high) = (before.tangent.1, after.tangent.1);
         let mut best = if at_low.abs() < at_high.abs() {
@@ -169,7 +166,7 @@ impl Path<'_, '_> {
 
 impl Path<'_, '_> {
     /// The last stable point between a stable point and the unstable one a step later.
-    fn switch(&mut self, before: &PathPoint, step: f64) -> PathPoint {
+    pub(super) fn switch(&mut self, before: &PathPoint, step: f64) -> PathPoint {
         let (mut low, mut high) = (0.0, step);
         let mut best = before.clone();
         for _ in 0..HALVINGS {
@@ -186,7 +183,7 @@ impl Path<'_, '_> {
     }
 }
 
-fn path<'s, 'm>(statics: &'s mut Statics<'m>, ramp: Ramp<'s>) -> Path<'s, 'm> {
+pub(super) fn path<'s, 'm>(statics: &'s mut Statics<'m>, ramp: Ramp<'s>) -> Path<'s, 'm> {
     let weights = statics.weights();
     Path {
         statics,
@@ -290,79 +287,4 @@ pub(super) fn crossings(
         step = (1.5 * step).min(LARGEST);
     }
     found
-}
-
-/// Equilibria along a path.
-#[derive(Clone, Debug)]
-pub struct Continuation {
-    /// Fraction of the voltages at each point.
-    pub fractions: Vec<f64>,
-    /// The equilibria.
-    pub points: Vec<Equilibrium>,
-    /// Index of the last point before each loss of stability, the exact fraction there, and its kind.
-    pub lost: Vec<(usize, f64, Instability)>,
-    /// The equilibria there.
-    pub limits: Vec<Equilibrium>,
-}
-
-/// Follows the path of equilibria from zero voltage by arc length for `steps` points, past limit points.
-///
-/// # Errors
-/// There is no equilibrium without voltages, or nothing holds the system.
-pub fn continuation(
-    model: &Model,
-    start: &[f64],
-    voltages: &[f64],
-    steps: usize,
-) -> Result<Continuation, EquilibriumError> {
-    // At zero voltage nothing depends on the fraction to first order: the path starts a little further.
-    let beginning: Vec<f64> = voltages.iter().map(|v| v * FIRST).collect();
-    let first = crate::dynamics::stable_equilibrium(model, start, &beginning)?;
-    let mut statics = Statics::new(model);
-    let state = statics.state(&first.z, &first.scalars[voltages.len()..]);
-    let ramp = Ramp {
-        load: Load::Voltages,
-        voltages,
-    };
-    let mut path = path(&mut statics, ramp);
-    let mut out = Continuation {
-        fractions: vec![FIRST],
-        points: vec![first],
-        lost: Vec::new(),
-        limits: Vec::new(),
-    };
-    let Some(mut here) = path.point(state, FIRST, None) else {
-        return Ok(out);
-    };
-    let mut step = FIRST;
-    while out.points.len() < steps {
-        let Some(next) = path.advance(&here, step) else {
-            step *= 0.5;
-            if step < SMALLEST {
-                break;
-            }
-            continue;
-        };
-        let index = out.points.len() - 1;
-        let limit = if here.tangent.1 > 0.0 && next.tangent.1 <= 0.0 {
-            Some((path.turn(&here, step, &next), Instability::PullIn))
-        } else if let (Some(0), Some(1..)) = (here.unstable, next.unstable) {
-            Some((path.switch(&here, step), Instability::Buckling))
-        } else {
-            None
-        };
-        let mut rest = |point: &PathPoint| {
-            let loaded: Vec<f64> = voltages.iter().map(|v| v * point.fraction).collect();
-            Equilibrium::on_path(path.statics, &point.state, &loaded, Route::Loads)
-        };
-        if let Some((point, kind)) = limit {
-            out.limits.push(rest(&point));
-            out.lost.push((index, point.fraction, kind));
-        }
-        out.points.push(rest(&next));
-        out.fractions.push(next.fraction);
-        here = next;
-        step = (1.5 * step).min(LARGEST);
-    }
-    Ok(out)
 }

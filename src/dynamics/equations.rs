@@ -1,0 +1,73 @@
+//! The equations of a step, which every time stepping method has.
+
+use crate::coordinates::Configuration;
+use crate::dynamics::resolution::Balance;
+use crate::functional::Order;
+use crate::model::Model;
+
+/// The equations that lead from one instant to the next.
+pub trait Equations {
+    /// Takes the voltages of a step that begins.
+    fn begin(&mut self, voltages: &[f64]);
+
+    /// First guess of the unknowns of a step of `h` ms.
+    fn guess(&mut self, h: f64);
+
+    /// Writes the residual; at level `Hessian` also the values of the tangent.
+    fn evaluate(&mut self, level: Order, h: f64, residual: &mut [f64]);
+
+    /// Values of the tangent.
+    fn values(&self) -> &[f64];
+
+    /// Subtracts an update from the unknowns.
+    fn update(&mut self, update: &[f64]);
+
+    /// Undoes what a failed attempt changed in the state.
+    fn restore(&mut self);
+
+    /// The model.
+    fn model(&self) -> &Model;
+
+    /// Places the end of the step where the last update put it.
+    fn place_end(&mut self);
+
+    /// The start and the end of the step.
+    fn ends(&self) -> [&Configuration; 2];
+
+    /// Energy balance of the step that the last update led to, where the method has one.
+    fn balance(&mut self, _h: f64) -> Option<Balance> {
+        None
+    }
+
+    /// Local error of the step that the last update led to, relative to the sizes of the coordinates; zero where the method
+    /// has no estimate.
+    fn local_error(&self, _h: f64) -> f64 {
+        0.0
+    }
+
+    /// Makes the end of the step the state, unless the momentum does not exist there.
+    fn accept(&mut self, h: f64) -> bool;
+
+    /// Name of an unknown.
+    fn unknown_name(&self, unknown: usize) -> String;
+
+    /// Time in ms.
+    fn time(&self) -> f64;
+
+    /// Coordinates and multipliers now.
+    fn coordinates(&self) -> &[f64];
+
+    /// Momentum of each coordinate now.
+    fn momentum(&self) -> &[f64];
+
+    /// Voltages and potentials of the last interval.
+    fn scalars(&self) -> &[f64];
+
+    /// Multipliers at the start of the step, where the method knows them there.
+    fn multipliers(&self) -> &[f64];
+
+    /// Work in mJ that forces without a potential did over the last step, where its ends alone do not tell.
+    fn work(&self) -> Option<f64> {
+        None
+    }
+}

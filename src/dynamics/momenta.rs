@@ -1,0 +1,97 @@
+//! Rates and momenta: of coordinates, of vectors, and of the whole system.
+
+use crate::coordinates::Configuration;
+use crate::kinematics::{Carrier, MaterialVector, Pose};
+use crate::math::Vector;
+use crate::model::Model;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+/// Eigenvalues of the mass matrix below this fraction of the largest belong to coordinates without inertia.
+const MASSLESS: f64 = 1e-13;
+
+/// Rates of the coordinates with given momenta at a placed instant; coordinates without inertia rest.
+pub(super) fn rates(model: &Model, instant: &mut Configuration, momentum: &[f64]) -> Vec<f64> {
+    let n = momentum.len();
+    if momentum.iter().all(|&p| p == 0.0) {
+        return vec![0.0; n];
+    }
+    let mut mass = DMatrix::<f64>::zeros(n, n);
+    let mut unit = vec![0.0; n];
+    for i in 0..n {
+        unit[i] = 1.0;
+        let column = model.action.momentum(instant, &unit);
+        mass.column_mut(i).copy_from_slice(&column);
+        unit[i] = 0.0;
+    }
+    let p = DVector::from_column_slice(momentum);
+    let SymmetricEigen {
+        eigenvectors: q,
+        eigenvalues,
+    } = SymmetricEigen::new(mass);
+    let smallest = MASSLESS * eigenvalues.amax();
+    let mut modes = q.tr_mul(&p);
+    for (mode, &value) in modes.iter_mut().zip(&eigenvalues) {
+        *mode = if value > smallest { *mode / value } else { 0.0 };
+    }
+    (q * modes).iter().copied().collect()
+}
+
+/// Momenta ∂T/∂ẋ of all vectors at a placed instant with these rates of the coordinates.
+pub(super) fn moving(model: &Model, instant: &mut Configuration, rates: &[f64]) -> Vec<Vector> {
+    instant.l.fill(0.0);
+    instant.l[..rates.len()].copy_from_slice(rates);
+    model.action.motion.along(instant);
+    vector_momenta(model, &instant.x, &instant.w)
+}
+
+/// Momenta ∂T/∂ẋ of vectors x with rates v.
+pub(super) fn vector_momenta(model: &Model, x: &[Vector], v: &[Vector]) -> Vec<Vector> {
+    let mut momenta = vec![Vector::zeros(); x.len()];
+    for effect in &model.action.intervals.effects {
+        effect.momentum(x, v, &mut momenta);
+    }
+    momenta
+}
+
+/// Where bodies and vectors are.
+pub(super) struct Places<'a> {
+    pub(super) poses: &'a [Pose],
+    pub(super) x: &'a [Vector],
+    pub(super) pulls: &'a [[Vector; 2]],
+}
+
+/// Linear momentum Σ c π and angular momentum about the origin Σ x × π of a list of momenta π of vectors x, with c the part
+/// of a translation that x takes: 1 for a point, 0 for a direction or a span. Momenta of masses count with the whole of
+/// their vectors, impulses of forces with the part on bodies: what pulls at the ground does not move the system. A force on a
+/// joint coordinate pulls at both bodies of the joint.
+pub(super) fn momentum_maps(
+    vectors: &[MaterialVector],
+    places: &Places<'_>,
+    momenta: &[Vector],
+    impulses: &[Vector],
+) -> [Vector; 2] {
+    let (mut linear, mut angular) = (Vector::zeros(), Vector::zeros());
+    let each = vectors
+        .iter()
+        .zip(places.x)
+        .zip(momenta.iter().zip(impulses));
+    for ((vector, x), (momentum, impulse)) in each {
+        for term in &vector.terms {
+            let (place, total) = match term.carrier {
+                Carrier::Body(body) => (term.at(&places.poses[body]), momentum + impulse),
+                Carrier::Ground => (term.at(&Pose::GROUND), *momentum),
+                // A vector that effects read holds no more than one node, and nothing else beside it.
+                Carrier::Node(_) => (*x, momentum + impulse),
+                Carrier::Joint(coordinate) => {
+                    let [force, torque] = places.pulls[coordinate];
+                    linear += force * impulse.x;
+                    angular += torque * impulse.x;
+                    continue;
+                }
+            };
+            linear += total * term.centre;
+            angular += place.cross(&total);
+        }
+    }
+    [linear, angular]
+}

@@ -1,0 +1,23 @@
+//! The softest mode of a state of rest, and what makes it soft.
+
+/// What makes a mode soft: the smallest of the three parts of its stiffness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Softening {
+    /// The forces of voltages, as in pull-in.
+    Voltages,
+    /// Weights, as in collapse.
+    Weight,
+    /// Elastic forces, as in buckling.
+    Elastic,
+}
+
+/// The softest mode of a state of rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// Change of each coordinate; the largest is 1 (rad, or lengths of the system).
+    pub direction: Vec<f64>,
+    /// What moves most, in words: joints, or bodies, or a node of a block, then the muscle whose stretch changes most.
+    pub moves: String,
+    /// What makes it soft.
+    pub softening: Softening,
+}

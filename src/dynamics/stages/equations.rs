@@ -1,0 +1,237 @@
+//! The equations of a step of every rule.
+
+use crate::coordinates::Configuration;
+use crate::dynamics::equations::Equations;
+use crate::dynamics::momenta::vector_momenta;
+use crate::dynamics::stages::lobatto::lagrange;
+use crate::dynamics::stages::rule::Rule;
+use crate::dynamics::stages::state::{StagePoint, Stages, frame};
+use crate::functional::{Kind, Order};
+use crate::math::Vector;
+use crate::model::Model;
+
+impl Equations for Stages<'_> {
+    fn begin(&mut self, voltages: &[f64]) {
+        for sample in &mut self.samples {
+            sample.scalars[..voltages.len()].copy_from_slice(voltages);
+        }
+    }
+
+    /// The polynomial through the last points, carried on.
+    fn guess(&mut self, h: f64) {
+        let times: Vec<f64> = self.trail.iter().map(|(time, _)| *time).collect();
+        let points = self.rule.points();
+        let m = self.model.action.motion.unknowns();
+        let (start, others) = self.points.split_at_mut(1);
+        for (point, at) in others.iter_mut().zip(points.into_iter().skip(1)) {
+            point.z[..m].fill(0.0);
+            point.z[m..].copy_from_slice(&start[0].z[m..]);
+            let weights = lagrange(&times, self.time + at * h);
+            for ((_, u), weight) in self.trail.iter().zip(weights) {
+                for (z, u) in point.z.iter_mut().zip(u) {
+                    *z += u * weight;
+                }
+            }
+        }
+        let driven = self.model.voltages.len();
+        self.saved.0.clone_from(&self.multipliers);
+        for (saved, sample) in self.saved.1.iter_mut().zip(&self.samples) {
+            saved.copy_from_slice(&sample.scalars[driven..]);
+        }
+    }
+
+    fn evaluate(&mut self, level: Order, h: f64, residual: &mut [f64]) {
+        self.sample(level, h);
+        let model = self.model;
+        let action = &model.action;
+        let motion = &action.motion;
+        let (n, m) = (motion.coordinates, motion.unknowns());
+        residual.fill(0.0);
+        if level >= Order::Hessian {
+            self.values.fill(0.0);
+        }
+        let last = self.points.len() - 1;
+        for point in 0..=last {
+            self.forces(point);
+        }
+        self.add_carried(h);
+        for (i, multipliers) in self.multipliers.iter().enumerate() {
+            let at = self.rule.row(i + 1);
+            self.points[at].z[n..m].copy_from_slice(multipliers);
+        }
+        for at in 0..=last {
+            let instant = &mut self.points[at];
+            let values = &mut self.values[self.places.same(at)..];
+            action.evaluate_instant(level, instant, &[], &mut self.scratch);
+            action.pull_back_instant(level, instant, 0, &mut self.scratch, values);
+            if at > 0 {
+                let rows = &mut residual[(at - 1) * m + n..at * m];
+                rows.copy_from_slice(&self.scratch.instant.plain.rows);
+            }
+        }
+        for point in 1..=last {
+            let at = self.rule.row(point);
+            let rows = &mut residual[(point - 1) * m..(point - 1) * m + n];
+            if at == 0 {
+                rows.copy_from_slice(&self.momentum);
+            }
+            let instant = &self.points[at];
+            motion.pull_back(&instant.columns, &instant.forces, rows);
+        }
+        let driven = model.voltages.len();
+        let gauss = residual[last * m..].chunks_mut(model.potentials.max(1));
+        for (rows, sample) in gauss.zip(&self.samples) {
+            rows.copy_from_slice(&sample.out.plain.rows[driven..]);
+        }
+        if level >= Order::Hessian {
+            self.tangent_of_points(h);
+            if model.potentials > 0 {
+                self.tangent_of_potentials();
+            }
+        }
+    }
+
+    fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    fn update(&mut self, update: &[f64]) {
+        let motion = &self.model.action.motion;
+        let (n, m) = (motion.coordinates, motion.unknowns());
+        let points = self.points[1..].iter_mut().zip(&mut self.multipliers);
+        for ((point, multipliers), update) in points.zip(update.chunks(m)) {
+            for (z, update) in point.z[..n].iter_mut().zip(update) {
+                *z -= update;
+            }
+            for (multiplier, update) in multipliers.iter_mut().zip(&update[n..]) {
+                *multiplier -= update;
+            }
+        }
+        let driven = self.model.voltages.len();
+        let updates = update[(self.points.len() - 1) * m..].chunks(self.model.potentials.max(1));
+        for (sample, update) in self.samples.iter_mut().zip(updates) {
+            for (potential, update) in sample.scalars[driven..].iter_mut().zip(update) {
+                *potential -= update;
+            }
+        }
+    }
+
+    fn restore(&mut self) {
+        self.multipliers.clone_from(&self.saved.0);
+        let driven = self.model.voltages.len();
+        for (saved, sample) in self.saved.1.iter().zip(&mut self.samples) {
+            sample.scalars[driven..].copy_from_slice(saved);
+        }
+    }
+
+    fn model(&self) -> &Model {
+        self.model
+    }
+
+    fn place_end(&mut self) {
+        if let Some(end) = self.points.last_mut() {
+            self.model.action.motion.place(end);
+        }
+    }
+
+    fn ends(&self) -> [&Configuration; 2] {
+        [&self.points[0], &self.points[self.points.len() - 1]]
+    }
+
+    fn accept(&mut self, h: f64) -> bool {
+        self.sample(Order::Gradient, h);
+        let model = self.model;
+        let last = self.points.len() - 1;
+        let forces = self
+            .samples
+            .iter()
+            .flat_map(|s| &s.out.plain.forces)
+            .flatten();
+        if !forces.into_iter().all(|f| f.iter().all(|c| c.is_finite())) {
+            return false;
+        }
+        if self.dissipates {
+            let effects = model.action.intervals.effects.iter();
+            let forces: Vec<_> = effects.filter(|e| e.kind() == Kind::VirtualWork).collect();
+            let work = |sample: &StagePoint| {
+                let [a, b] = &sample.x;
+                let frame = frame([a, b], &sample.scalars, h);
+                let work: f64 = forces.iter().map(|e| e.energy(&frame)).sum();
+                work * sample.weights.quadrature
+            };
+            self.work = Some(self.samples.iter().map(work).sum());
+        }
+        let momenta: Vec<Vector> = match &mut self.rule {
+            Rule::Galerkin(_) => {
+                self.forces(last);
+                self.points[last].forces.clone()
+            }
+            Rule::Euler(momenta) => {
+                let [a, b] = &self.samples[0].out.plain.forces;
+                for (momentum, (a, b)) in momenta.iter_mut().zip(a.iter().zip(b)) {
+                    *momentum = (b - a) * 0.5;
+                }
+                momenta.clone()
+            }
+            Rule::Alpha(alpha) => {
+                let [start, end] = [&self.points[0].x, &self.points[1].x];
+                alpha.accept(h, start, end);
+                vector_momenta(model, end, alpha.rates())
+            }
+        };
+        let motion = &model.action.motion;
+        self.remember(h);
+        if motion.recentre(&mut self.points[last]) {
+            self.follow_charts();
+        }
+        self.momentum.fill(0.0);
+        motion.pull_back(&self.points[last].columns, &momenta, &mut self.momentum);
+        if let Rule::Galerkin(_) = self.rule {
+            let (n, m) = (motion.coordinates, motion.unknowns());
+            let multipliers = &self.multipliers[last - 1];
+            self.points[last].z[n..m].copy_from_slice(multipliers);
+        }
+        self.points.swap(0, last);
+        self.time += h;
+        true
+    }
+
+    fn unknown_name(&self, unknown: usize) -> String {
+        let m = self.model.action.motion.unknowns();
+        let of_points = m * (self.points.len() - 1);
+        match unknown.checked_sub(of_points) {
+            None => self.model.unknown_name(unknown % m),
+            Some(potential) => {
+                let potential = potential % self.model.potentials;
+                self.model.unknown_name(m + potential)
+            }
+        }
+    }
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn coordinates(&self) -> &[f64] {
+        &self.points[0].z
+    }
+
+    fn momentum(&self) -> &[f64] {
+        &self.momentum
+    }
+
+    fn scalars(&self) -> &[f64] {
+        &self.samples[self.samples.len() - 1].scalars
+    }
+
+    fn multipliers(&self) -> &[f64] {
+        match self.rule {
+            Rule::Galerkin(_) => &self.multipliers[0],
+            Rule::Euler(_) | Rule::Alpha(_) => &[],
+        }
+    }
+
+    fn work(&self) -> Option<f64> {
+        self.work
+    }
+}

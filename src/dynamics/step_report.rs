@@ -1,0 +1,24 @@
+//! What the steps of a simulation cost.
+
+/// What the steps cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepperReport {
+    /// Steps taken, halved ones included.
+    pub steps: usize,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Steps that had to be halved.
+    pub halved: usize,
+    /// Factorisations of the tangent.
+    pub factorisations: usize,
+    /// Seconds in the rows and the tangent.
+    pub assembly: f64,
+    /// Seconds in factorisations.
+    pub factorisation: f64,
+    /// Seconds in solutions with them.
+    pub solution: f64,
+    /// Energy in mJ that the steps made, or lost where negative, where the method has a balance of energy.
+    pub made: f64,
+    /// Greatest energy in mJ that one step exchanged.
+    pub exchanged: f64,
+}
