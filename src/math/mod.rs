@@ -1,11 +1,13 @@
-//! Numbers that carry their derivatives, and numbers drawn at random; numbers as people read them.
+//! Numbers that carry their derivatives, numbers drawn at random, numbers as people read them, and disjoint sets of them.
 
 mod digits;
 mod jet;
 pub mod random;
+mod sets;
 
 pub use digits::significant;
 pub use jet::Jet;
+pub use sets::DisjointSets;
 
 /// A vector of space.
 pub type Vector = nalgebra::Vector3<f64>;

@@ -1,6 +1,7 @@
 //! How the elements of a mesh hang together: faces of one element only, connected parts.
 
 use super::Mesh;
+use crate::math::DisjointSets;
 use std::collections::HashMap;
 
 /// Corners of the six faces of a hexahedron, counter-clockwise seen from outside: lower, upper, then the sides.
@@ -34,23 +35,17 @@ impl Mesh {
 
     /// Elements of each connected part, ascending, parts by their first element; elements that share a node are connected.
     pub fn parts(&self) -> Vec<Vec<usize>> {
-        // A forest over the nodes: each points to a lower one of its part, or to itself.
-        let mut root: Vec<usize> = (0..self.nodes.len()).collect();
+        let mut sets = DisjointSets::new(self.nodes.len());
         for nodes in &self.hexahedra {
-            let first = find(&mut root, nodes[0]);
-            let lowest = nodes.iter().fold(first, |lowest, &node| {
-                let other = find(&mut root, node);
-                let (low, high) = (lowest.min(other), lowest.max(other));
-                root[high] = low;
-                low
-            });
-            root[nodes[0]] = lowest;
+            for &node in &nodes[1..] {
+                sets.join(nodes[0], node);
+            }
         }
         let mut part_of = HashMap::new();
         let mut parts: Vec<Vec<usize>> = Vec::new();
         for (element, nodes) in self.hexahedra.iter().enumerate() {
             let part = *part_of
-                .entry(find(&mut root, nodes[0]))
+                .entry(sets.smallest(nodes[0]))
                 .or_insert(parts.len());
             if part == parts.len() {
                 parts.push(Vec::new());
@@ -59,13 +54,4 @@ impl Mesh {
         }
         parts
     }
-}
-
-/// The root of a node; the way there is halved for the next time.
-fn find(root: &mut [usize], mut node: usize) -> usize {
-    while root[node] != node {
-        root[node] = root[root[node]];
-        node = root[node];
-    }
-    node
 }

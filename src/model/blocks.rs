@@ -3,7 +3,7 @@
 use crate::math::Matrix;
 use crate::mesh::grid::Grid;
 use crate::model::joints::triad;
-use crate::model::presolved::{Presolved, hold};
+use crate::model::presolved::{Presolved, clamp};
 use crate::model::system::{Discretisation, Electrode, Fidelity, Glue, Muscle, Potential, Solid};
 use nalgebra::Vector3;
 
@@ -17,7 +17,7 @@ pub(super) fn blocks(condensed: &mut Presolved) -> Vec<Solid> {
         Fidelity::FiniteElements(discretisation) => {
             let mut solid = block(source, muscle, &discretisation);
             if immobile.muscles[source] {
-                hold(&mut solid);
+                clamp(&mut solid);
             }
             Some(solid)
         }

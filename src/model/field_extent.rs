@@ -1,5 +1,6 @@
 //! How far electric fields reach: which elements have one, and which voltages do something.
 
+use crate::math::DisjointSets;
 use crate::model::system::{Potential, Solid, System};
 use std::collections::{BTreeSet, HashMap};
 
@@ -31,41 +32,30 @@ pub(super) fn dielectric(solid: &Solid) -> Vec<bool> {
     }
     // Nodes, then elements.
     let count = mesh.nodes.len();
-    let mut part: Vec<usize> = (0..count + mesh.hexahedra.len()).collect();
-    fn root(part: &mut [usize], mut node: usize) -> usize {
-        while part[node] != node {
-            part[node] = part[part[node]];
-            node = part[node];
-        }
-        node
-    }
-    let join = |part: &mut [usize], a: usize, b: usize| {
-        let (a, b) = (root(part, a), root(part, b));
-        part[a.max(b)] = a.min(b);
-    };
+    let mut parts = DisjointSets::new(count + mesh.hexahedra.len());
     for (e, nodes) in mesh.hexahedra.iter().enumerate().filter(|(e, _)| is[*e]) {
         for &node in nodes.iter().filter(|node| !held.contains_key(node)) {
-            join(&mut part, node, count + e);
+            parts.join(node, count + e);
         }
     }
     for electrode in &solid.electrodes {
         if electrode.potential == Potential::Floating {
             for pair in electrode.nodes.windows(2) {
-                join(&mut part, pair[0], pair[1]);
+                parts.join(pair[0], pair[1]);
             }
         }
     }
     let mut potentials: HashMap<usize, Vec<Potential>> = HashMap::new();
     for (e, nodes) in mesh.hexahedra.iter().enumerate().filter(|(e, _)| is[*e]) {
         for potential in nodes.iter().filter_map(|node| held.get(node)) {
-            let seen = potentials.entry(root(&mut part, count + e)).or_default();
+            let seen = potentials.entry(parts.smallest(count + e)).or_default();
             if !seen.contains(potential) {
                 seen.push(*potential);
             }
         }
     }
     let mut reached = |e: usize| {
-        let seen = potentials.get(&root(&mut part, count + e));
+        let seen = potentials.get(&parts.smallest(count + e));
         is[e] && seen.is_some_and(|seen| seen.len() > 1)
     };
     (0..mesh.hexahedra.len()).map(&mut reached).collect()

@@ -3,6 +3,7 @@
 //! In the reference configuration muscles and blocks are free of stress, so that weight and electric fields are the only
 //! forces. Bodies hang together by joints, muscles and glue, and the ground hangs together with nothing.
 
+use crate::math::DisjointSets;
 use crate::model::analysis::Analysis;
 use crate::model::field_extent;
 use crate::model::system::System;
@@ -34,18 +35,25 @@ pub(super) fn immobile(system: &System, question: &Analysis) -> Immobile {
         };
     };
     let (first_solid, first_muscle) = (of_bodies, of_bodies + of_solids);
-    let mut parts = Parts::new(counts.iter().sum());
+    let count = counts.iter().sum();
+    let mut parts = DisjointSets::new(count);
+    // The ground, which is no part, hangs together with nothing.
+    let mut join = |a: Option<usize>, b: usize| {
+        if let Some(a) = a {
+            parts.join(a, b);
+        }
+    };
     for joint in &system.joints {
-        parts.join(joint.parent, Some(joint.child));
+        join(joint.parent, joint.child);
     }
     for (m, muscle) in system.muscles.iter().enumerate() {
         for end in [&muscle.from, &muscle.to] {
-            parts.join(end.body, Some(first_muscle + m));
+            join(end.body, first_muscle + m);
         }
     }
     for (s, solid) in system.solids.iter().enumerate() {
         for glue in &solid.glued {
-            parts.join(glue.body, Some(first_solid + s));
+            join(glue.body, first_solid + s);
         }
     }
     let weighs = system.gravity.is_some();
@@ -54,7 +62,7 @@ pub(super) fn immobile(system: &System, question: &Analysis) -> Immobile {
         let points = component.points();
         let bodies: Vec<usize> = points.iter().filter_map(|point| point.body).collect();
         for pair in bodies.windows(2) {
-            parts.join(Some(pair[0]), Some(pair[1]));
+            join(Some(pair[0]), pair[1]);
         }
         if component.is_prestressed() {
             moved.extend(bodies);
@@ -79,38 +87,15 @@ pub(super) fn immobile(system: &System, question: &Analysis) -> Immobile {
             moved.push(first_muscle + m);
         }
     }
+    let set_of = parts.all();
+    let mut is_moved = vec![false; count];
     for part in moved {
-        let root = parts.of[part];
-        parts.moved[root] = true;
+        is_moved[set_of[part]] = true;
     }
-    let rests = |from: usize, count: usize| (from..from + count).map(|i| !parts.moved[parts.of[i]]);
+    let rests = |from: usize, count: usize| (from..from + count).map(|i| !is_moved[set_of[i]]);
     Immobile {
         bodies: rests(0, of_bodies).collect(),
         solids: rests(first_solid, of_solids).collect(),
         muscles: rests(first_muscle, of_muscles).collect(),
-    }
-}
-
-/// Which parts hang together.
-struct Parts {
-    of: Vec<usize>,
-    moved: Vec<bool>,
-}
-
-impl Parts {
-    fn new(count: usize) -> Self {
-        Self {
-            of: (0..count).collect(),
-            moved: vec![false; count],
-        }
-    }
-
-    /// Two parts hang together; the ground, `None`, with nothing.
-    fn join(&mut self, a: Option<usize>, b: Option<usize>) {
-        let (Some(a), Some(b)) = (a, b) else { return };
-        let (a, b) = (self.of[a], self.of[b]);
-        for of in self.of.iter_mut().filter(|of| **of == a) {
-            *of = b;
-        }
     }
 }

@@ -4,7 +4,7 @@
 //! The muscles, blocks and markers of the condensed system are those of the scene in its order; bodies and joints are fewer.
 
 use crate::kinematics::Pose;
-use crate::math::{Matrix, Vector};
+use crate::math::{DisjointSets, Matrix, Vector};
 use crate::model::analysis::Analysis;
 use crate::model::immobile::{self, Immobile};
 use crate::model::system::{
@@ -51,7 +51,7 @@ impl Presolved {
         let immobile = immobile::immobile(&rest, question);
         for (solid, &is_immobile) in rest.solids.iter_mut().zip(&immobile.solids) {
             if is_immobile {
-                hold(solid);
+                clamp(solid);
             }
         }
         let group = groups(system, &immobile);
@@ -201,7 +201,7 @@ fn set_to_zero(system: &mut System, question: &Analysis) {
 }
 
 /// Holds all nodes of a block.
-pub(super) fn hold(solid: &mut Solid) {
+pub(super) fn clamp(solid: &mut Solid) {
     solid.supports = vec![Support {
         nodes: (0..solid.mesh.nodes.len()).collect(),
         held: [true; 3],
@@ -211,49 +211,36 @@ pub(super) fn hold(solid: &mut Solid) {
 /// The first body that each body is rigidly connected to, itself included; the number of bodies for those of the ground.
 fn groups(system: &System, immobile: &Immobile) -> Vec<usize> {
     let ground = system.bodies.len();
-    let at = |b: Option<usize>| b.unwrap_or(ground);
-    // The ground comes first in its group.
-    let mut group: Vec<usize> = (0..ground).collect();
-    group.push(ground);
+    // The ground is number 0 of the sets, so that it names what hangs on it; body b is number b + 1.
+    let at = |body: Option<usize>| body.map_or(0, |b| b + 1);
+    let mut sets = DisjointSets::new(ground + 1);
     for (b, &is_immobile) in immobile.bodies.iter().enumerate() {
         if is_immobile {
-            group[b] = ground;
+            sets.join(0, at(Some(b)));
         }
     }
-    let join = |group: &mut Vec<usize>, a: usize, b: usize| {
-        let (a, b) = (group[a], group[b]);
-        let to = match a == ground || b == ground {
-            true => ground,
-            false => a.min(b),
-        };
-        for g in group.iter_mut().filter(|g| **g == a || **g == b) {
-            *g = to;
-        }
-    };
+    let before = sets.clone().all();
     let fixed = |joint: &&Joint| joint.kind == JointKind::Fixed;
-    let before = group.clone();
     for joint in system.joints.iter().filter(fixed) {
-        join(&mut group, at(joint.parent), joint.child);
+        sets.join(at(joint.parent), at(Some(joint.child)));
     }
+    let group = sets.all();
     // A group that a moving joint closes on itself stays as it is: its joint says what a start has to fit.
-    let is_closed = |group: &[usize], joint: &Joint| {
-        let within = |group: &[usize]| group[at(joint.parent)] == group[joint.child];
-        within(group) && !within(&before)
-    };
+    let within =
+        |group: &[usize], joint: &Joint| group[at(joint.parent)] == group[at(Some(joint.child))];
     let moving = system.joints.iter().filter(|joint| !fixed(joint));
     let closed: Vec<usize> = moving
-        .filter(|joint| is_closed(&group, joint))
-        .map(|joint| group[joint.child])
+        .filter(|joint| within(&group, joint) && !within(&before, joint))
+        .map(|joint| group[at(Some(joint.child))])
         .collect();
-    (0..=ground)
-        .map(|b| {
-            if closed.contains(&group[b]) {
-                before[b]
-            } else {
-                group[b]
-            }
-        })
-        .collect()
+    let first = |number: usize| {
+        let sets = match closed.contains(&group[number]) {
+            true => &before,
+            false => &group,
+        };
+        sets[number].checked_sub(1).unwrap_or(ground)
+    };
+    (1..=ground).chain([0]).map(first).collect()
 }
 
 /// A joint between bodies of the condensed system; `None` where it is within one.

@@ -52,13 +52,7 @@ pub fn controls_csv(trajectory: &Trajectory, system: &System, origin: &Origin) -
 
 /// Rows of text cells as CSV under a line that names the origin; the first row is the header.
 pub fn cells_csv(rows: &[Vec<String>], origin: &Origin) -> String {
-    let mut text = format!("# {}\n", origin.line());
-    for row in rows {
-        let cells: Vec<_> = row.iter().map(|cell| quoted(cell)).collect();
-        text.push_str(&cells.join(","));
-        text.push('\n');
-    }
-    text
+    csv_under(&origin.line(), rows.iter().cloned())
 }
 
 /// Rows of cells as text in columns: the first to the left, the others to the right.
@@ -85,23 +79,25 @@ pub fn aligned(rows: &[Vec<String>]) -> String {
     text
 }
 
-fn csv<R>(
-    origin: &str,
-    header: impl Iterator<Item = String>,
-    rows: impl Iterator<Item = R>,
-) -> String
+/// Rows of numbers as CSV under a line and a header; empty cells where there is no number.
+fn csv<R>(line: &str, header: impl Iterator<Item = String>, rows: impl Iterator<Item = R>) -> String
 where
     R: Iterator<Item = f64>,
 {
-    let header: Vec<_> = header.map(|name| quoted(&name)).collect();
-    let mut text = format!("# {origin}\n{}\n", header.join(","));
+    // The shortest decimal that reads back as the same number.
+    let cell = |value: f64| match value.is_finite() {
+        true => format!("{value:?}"),
+        false => String::new(),
+    };
+    let rows = rows.map(|row| row.map(cell).collect());
+    csv_under(line, [header.collect()].into_iter().chain(rows))
+}
+
+/// Rows of cells, separated by commas, under a line of comment.
+fn csv_under(line: &str, rows: impl Iterator<Item = Vec<String>>) -> String {
+    let mut text = format!("# {line}\n");
     for row in rows {
-        // The shortest decimal that reads back as the same number.
-        let cell = |value: f64| match value.is_finite() {
-            true => format!("{value:?}"),
-            false => String::new(),
-        };
-        let cells: Vec<_> = row.map(cell).collect();
+        let cells: Vec<_> = row.iter().map(|cell| quoted(cell)).collect();
         text.push_str(&cells.join(","));
         text.push('\n');
     }

@@ -8,7 +8,7 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::files::lay_out;
 use crate::ipopt::interrupt;
 use crate::report::atomic::{self, WriteError};
-use crate::report::table::aligned;
+use crate::report::table::{aligned, cells_csv};
 use serde::Serialize;
 use std::fs::{self};
 use std::path::Path;
@@ -37,7 +37,7 @@ pub(super) fn write(
     began: Instant,
 ) -> Result<CommandOutput, CommandError> {
     let origin = request.origin(true);
-    let csv = format!("# {}\n{}", origin.line(), csv(ended));
+    let csv = cells_csv(&cells(ended), &origin);
     atomic::write(&folder.join("starts.csv"), csv.as_bytes())?;
     // Of the starts that found the best optimum the first, whatever the last digits say.
     let first = ended.iter().find(|one| one.optimum == Some(1));
@@ -108,25 +108,31 @@ pub(super) fn rows(ended: &[Ended]) -> Vec<Vec<String>> {
 }
 
 /// The table as `starts.csv`; cells of what does not exist are empty.
-pub(super) fn csv(ended: &[Ended]) -> String {
-    let mut text = "start,seed,status,objective,iterations,seconds [s],optimum\n".to_owned();
-    for one in ended {
-        let cells = [
+fn cells(ended: &[Ended]) -> Vec<Vec<String>> {
+    let header = [
+        "start",
+        "seed",
+        "status",
+        "objective",
+        "iterations",
+        "seconds [s]",
+        "optimum",
+    ];
+    let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:?}"));
+    let count = |value: Option<usize>| value.map_or_else(String::new, |v| v.to_string());
+    let row = |one: &Ended| {
+        vec![
             one.start.to_string(),
             one.seed.map_or_else(String::new, |seed| seed.to_string()),
             one.status.clone(),
-            one.objective
-                .map_or_else(String::new, |value| format!("{value:?}")),
-            one.iterations
-                .map_or_else(String::new, |count| count.to_string()),
-            format!("{:?}", one.seconds),
-            one.optimum
-                .map_or_else(String::new, |number| number.to_string()),
-        ];
-        text.push_str(&cells.join(","));
-        text.push('\n');
-    }
-    text
+            number(one.objective),
+            count(one.iterations),
+            number(Some(one.seconds)),
+            count(one.optimum),
+        ]
+    };
+    let header = header.map(str::to_owned).to_vec();
+    [header].into_iter().chain(ended.iter().map(row)).collect()
 }
 
 /// Copies the files of a start, its summary last and with the table of all.

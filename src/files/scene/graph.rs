@@ -3,6 +3,7 @@
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::spec::BodySpec;
+use crate::math::DisjointSets;
 use crate::model::system::Joint;
 
 /// Every body hangs on the ground or together with a free one, and no free one hangs on the ground.
@@ -48,17 +49,9 @@ pub(crate) fn tree_freedoms(bodies: usize, joints: &[Joint]) -> Option<usize> {
 
 /// The part of each body, and of the ground in the last entry, as the smallest number in it.
 fn parts(bodies: usize, joints: &[Joint]) -> Vec<usize> {
-    let mut parts: Vec<usize> = (0..=bodies).collect();
-    loop {
-        let before = parts.clone();
-        for joint in joints {
-            let parent = joint.parent.unwrap_or(bodies);
-            let least = parts[parent].min(parts[joint.child]);
-            parts[parent] = least;
-            parts[joint.child] = least;
-        }
-        if parts == before {
-            return parts;
-        }
+    let mut sets = DisjointSets::new(bodies + 1);
+    for joint in joints {
+        sets.join(joint.parent.unwrap_or(bodies), joint.child);
     }
+    sets.all()
 }
