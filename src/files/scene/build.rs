@@ -11,7 +11,7 @@ use crate::files::scene::expand::expanded;
 use crate::files::scene::graph::check_connected;
 use crate::files::scene::marker::marker;
 use crate::files::scene::material::materials;
-use crate::files::scene::muscle::{MOST_ELEMENTS, ModelSpec, fidelity, muscle, positive_sides};
+use crate::files::scene::muscle::{MOST_ELEMENTS, fidelity, muscle, positive_sides};
 use crate::files::scene::names::{find_body, find_material, names};
 use crate::files::scene::point::vector;
 use crate::files::scene::solid::solid;
@@ -189,14 +189,7 @@ fn check_chain(
     if let Some(pair) = &chain.muscles {
         let scope = scope.key("muscles");
         find_material(&pair.material, materials, &scope.key("material"))?;
-        let model = ModelSpec {
-            model: pair.model,
-            elements: pair.elements,
-            layers: pair.layers,
-            element: pair.element,
-            material: &pair.material,
-        };
-        fidelity(&model, materials, &scope)?;
+        fidelity(&pair.model(), materials, &scope)?;
         let arm = scope.key("arm").positive(&pair.arm)?;
         let rest_length = scope.key("rest_length").positive(&pair.rest_length)?;
         if !(reach + arm + rest_length).is_finite() {

@@ -4,7 +4,7 @@ use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::names::{attachment, find_compressible, find_material};
 use crate::files::scene::point::PointSpec;
-use crate::files::scene::spec::{MuscleModel, MuscleSpec};
+use crate::files::scene::spec::{ModelSpec, MuscleModel, MuscleSpec};
 use crate::files::scene::spec_solids::ElementSpec;
 use crate::files::units::quantity::{Length, Quantity};
 use crate::model::system::{Discretisation, ElementKind, Fidelity, Material, Muscle};
@@ -23,14 +23,7 @@ pub(crate) fn muscle(
     scope: &Scope<'_>,
 ) -> Result<Muscle, SceneError> {
     let material = find_material(&spec.material, materials, &scope.key("material"))?;
-    let model = ModelSpec {
-        model: spec.model,
-        elements: spec.elements,
-        layers: spec.layers,
-        element: spec.element,
-        material: &spec.material,
-    };
-    let fidelity = fidelity(&model, materials, scope)?;
+    let fidelity = fidelity(&spec.model(), materials, scope)?;
     if spec.section_inertia && fidelity != Fidelity::Lumped {
         let found = "\"section_inertia\" of a muscle of finite elements";
         let expected = "no such key, as all inertia of finite elements counts";
@@ -66,15 +59,6 @@ pub(crate) fn muscle(
         section_inertia: spec.section_inertia,
         fidelity,
     })
-}
-
-/// The keys of a muscle or of a pair that say how it is modelled.
-pub(crate) struct ModelSpec<'a> {
-    pub(crate) model: MuscleModel,
-    pub(crate) elements: Option<[usize; 3]>,
-    pub(crate) layers: Option<usize>,
-    pub(crate) element: Option<ElementSpec>,
-    pub(crate) material: &'a str,
 }
 
 /// How a muscle is modelled; the keys stand in `scope`.

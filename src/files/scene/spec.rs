@@ -200,37 +200,83 @@ pub struct AxisSpec {
 #[serde(deny_unknown_fields)]
 pub struct Nothing {}
 
-/// A muscle between two points.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MuscleSpec {
-    /// Unique name.
-    pub name: String,
-    /// Model; `lumped` where not written.
-    #[serde(default)]
-    pub model: MuscleModel,
-    /// Elements along both sides of the cross-section and along the span; of `finite_elements` only.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub elements: Option<[usize; 3]>,
-    /// Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub layers: Option<usize>,
-    /// Which hexahedron; of `finite_elements` only.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub element: Option<ElementSpec>,
-    /// Name of the material.
-    pub material: String,
-    /// Sides of the rectangular cross-section at rest, SI unit m.
-    pub cross_section: [Quantity<Length>; 2],
-    /// Thickness of one layer at rest, SI unit m.
-    pub layer_thickness: Quantity<Length>,
-    /// Start.
-    pub from: PointSpec,
-    /// End.
-    pub to: PointSpec,
-    /// Whether the inertia of the changing cross-section is called for.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub section_inertia: bool,
+/// Declares what is written of stacked muscles: the keys that all have, and those of their places.
+macro_rules! stacked {
+    ($(#[$about:meta])* $name:ident { $($first:tt)* } { $($last:tt)* }) => {
+        $(#[$about])*
+        #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct $name {
+            $($first)*
+            /// Model; `lumped` where not written.
+            #[serde(default)]
+            pub model: MuscleModel,
+            /// Elements along both sides of the cross-section and along the span; of `finite_elements` only.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            pub elements: Option<[usize; 3]>,
+            /// Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            pub layers: Option<usize>,
+            /// Which hexahedron; of `finite_elements` only.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            pub element: Option<ElementSpec>,
+            /// Name of the material.
+            pub material: String,
+            /// Sides of the rectangular cross-section at rest, SI unit m.
+            pub cross_section: [Quantity<Length>; 2],
+            /// Thickness of one layer at rest, SI unit m.
+            pub layer_thickness: Quantity<Length>,
+            $($last)*
+        }
+
+        impl $name {
+            /// The keys that say how it is modelled.
+            pub(crate) fn model(&self) -> ModelSpec<'_> {
+                ModelSpec {
+                    model: self.model,
+                    elements: self.elements,
+                    layers: self.layers,
+                    element: self.element,
+                    material: &self.material,
+                }
+            }
+        }
+    };
+}
+
+stacked! {
+    /// A muscle between two points.
+    MuscleSpec {
+        /// Unique name.
+        pub name: String,
+    } {
+        /// Start.
+        pub from: PointSpec,
+        /// End.
+        pub to: PointSpec,
+        /// Whether the inertia of the changing cross-section is called for.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        pub section_inertia: bool,
+    }
+}
+
+stacked! {
+    /// A pair of muscles at a joint of a chain.
+    PairSpec {
+        /// Distance from the long axis, SI unit m.
+        pub arm: Quantity<Length>,
+        /// Length at rest, SI unit m.
+        pub rest_length: Quantity<Length>,
+    } {}
+}
+
+/// The keys of a muscle or of a pair that say how it is modelled.
+pub(crate) struct ModelSpec<'a> {
+    pub(crate) model: MuscleModel,
+    pub(crate) elements: Option<[usize; 3]>,
+    pub(crate) layers: Option<usize>,
+    pub(crate) element: Option<ElementSpec>,
+    pub(crate) material: &'a str,
 }
 
 /// How a muscle is modelled.
@@ -285,32 +331,4 @@ pub struct ChainSpec {
     /// Name of a marker at the end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tip_marker: Option<String>,
-}
-
-/// A pair of muscles at a joint of a chain.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PairSpec {
-    /// Model; `lumped` where not written.
-    #[serde(default)]
-    pub model: MuscleModel,
-    /// Elements along both sides of the cross-section and along the span; of `finite_elements` only.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub elements: Option<[usize; 3]>,
-    /// Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub layers: Option<usize>,
-    /// Which hexahedron; of `finite_elements` only.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub element: Option<ElementSpec>,
-    /// Name of the material.
-    pub material: String,
-    /// Distance from the long axis, SI unit m.
-    pub arm: Quantity<Length>,
-    /// Length at rest, SI unit m.
-    pub rest_length: Quantity<Length>,
-    /// Sides of the rectangular cross-section at rest, SI unit m.
-    pub cross_section: [Quantity<Length>; 2],
-    /// Thickness of one layer at rest, SI unit m.
-    pub layer_thickness: Quantity<Length>,
 }
