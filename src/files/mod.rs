@@ -50,6 +50,9 @@ pub struct Loaded {
 }
 
 /// Reads a problem file and its scene, with overrides such as `control.intervals=80` or `scene.gravity=[0,0,0]`.
+///
+/// # Errors
+/// A file cannot be read, is no JSON, or says what does not make sense; the error has its place.
 pub fn read_problem(path: &Path, overrides: &[String]) -> Result<Loaded, SceneError> {
     let overrides: Vec<Override> = overrides
         .iter()
@@ -99,12 +102,18 @@ pub fn read_problem(path: &Path, overrides: &[String]) -> Result<Loaded, SceneEr
 }
 
 /// Reads a scene file.
+///
+/// # Errors
+/// As of [`read_problem`].
 pub fn read_scene(path: &Path) -> Result<System, SceneError> {
     let document = Document::read(path)?;
     build_scene(&document.parse()?, &Scope::of(&document))
 }
 
 /// The JSON text of a scene file without shorthand, checked.
+///
+/// # Errors
+/// As of [`read_problem`].
 pub fn expand(path: &Path) -> Result<String, SceneError> {
     let document = Document::read(path)?;
     let scene: SceneSpec = document.parse()?;

@@ -23,6 +23,9 @@ impl Grid {
 
     /// A box of layers, lengths in mm: along each direction layers `(thickness, elements)` from the lower side to the
     /// upper, whose thicknesses sum to the size (to 1e-9 of it); planes are equally spaced within a layer.
+    ///
+    /// # Errors
+    /// Thicknesses do not sum to the size.
     pub fn layers(
         origin: Vector3<f64>,
         size: Vector3<f64>,

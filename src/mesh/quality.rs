@@ -17,6 +17,9 @@ impl Mesh {
     /// Checks that there is an element, that each one has eight nodes that exist, differ, are finite and are those of no
     /// other element, that its determinant is positive at the corners and at the Gauss points, and that regions and sets
     /// exist.
+    ///
+    /// # Errors
+    /// One of these does not hold.
     pub fn check(&self) -> Result<(), MeshError> {
         self.check_elements(ElementName::Index)?;
         if self.regions.len() != self.hexahedra.len() {

@@ -26,6 +26,9 @@ pub struct WriteError {
 /// The bytes go to a partial file of the same folder, reach the disk, and take the name at last.
 /// After a failure the old file is intact and the partial one gone. Only a process that is killed leaves it behind:
 /// see [`tidy`].
+///
+/// # Errors
+/// The file cannot be written.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     replace(path, bytes).map_err(|cause| WriteError {
         path: path.to_owned(),

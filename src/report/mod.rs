@@ -34,6 +34,9 @@ use crate::report::atomic::WriteError;
 /// Writes tables, figures and page into a folder, which is made where it is missing; the files written, in order.
 ///
 /// A figure of what does not exist (voltages of no muscles, energies that were not observed) is not written.
+///
+/// # Errors
+/// A file cannot be written.
 pub fn write_run(folder: &Path, run: &Run<'_>) -> Result<Vec<PathBuf>, WriteError> {
     let Run {
         system,
@@ -92,6 +95,9 @@ pub fn write_run(folder: &Path, run: &Run<'_>) -> Result<Vec<PathBuf>, WriteErro
 }
 
 /// Writes table, figure and page of a state of rest, a motion of one instant, into a folder that exists.
+///
+/// # Errors
+/// A file cannot be written.
 pub fn write_still(folder: &Path, table: &str, run: &Run<'_>) -> Result<(), WriteError> {
     let csv = table::trajectory_csv(run.observations, run.origin);
     let svg = pose::svg(run.system, run.trajectory, run.skins, run.held, run.origin);

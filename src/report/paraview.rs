@@ -112,6 +112,9 @@ pub struct Series<'a> {
 
 impl<'a> Series<'a> {
     /// An empty series in a folder, which is made where it is missing.
+    ///
+    /// # Errors
+    /// The folder cannot be made.
     pub fn build(folder: &Path, name: &str, origin: &'a Origin) -> Result<Self, WriteError> {
         std::fs::create_dir_all(folder).map_err(|cause| WriteError {
             path: folder.to_owned(),
@@ -127,6 +130,9 @@ impl<'a> Series<'a> {
     }
 
     /// The same with the instants in a folder of their own, which is made where it is missing.
+    ///
+    /// # Errors
+    /// The folder cannot be made.
     pub fn within(self, folder: &str) -> Result<Self, WriteError> {
         let path = self.folder.join(folder);
         if let Err(cause) = std::fs::create_dir_all(&path) {
@@ -140,6 +146,9 @@ impl<'a> Series<'a> {
     }
 
     /// Writes the solids at a time in s as the next file; its path.
+    ///
+    /// # Errors
+    /// The file cannot be written.
     pub fn add(
         &mut self,
         time: f64,
@@ -157,6 +166,9 @@ impl<'a> Series<'a> {
     }
 
     /// Writes the list of the instants so far; its path.
+    ///
+    /// # Errors
+    /// The file cannot be written.
     pub fn finish(&self) -> Result<PathBuf, WriteError> {
         let path = self.folder.join(format!("{}.pvd", self.name));
         atomic::write(&path, pvd(&self.instants, self.origin).as_bytes())?;

@@ -172,6 +172,9 @@ impl<M: PhysicalQuantity> Quantity<M> {
     }
 
     /// Reads a text such as `50 mm`; the error says what was found instead.
+    ///
+    /// # Errors
+    /// The text is no number with a unit that is known here.
     pub fn try_from_text(text: &str) -> Result<Self, String> {
         let (number, tail) = split_number(text.trim_start());
         let number: f64 = number
@@ -219,6 +222,9 @@ impl<M: PhysicalQuantity> Quantity<M> {
     }
 
     /// Value in the units inside, read as one kind; the error says what was found instead.
+    ///
+    /// # Errors
+    /// Its unit is of another kind.
     pub fn value_as(&self, kind: &Kind) -> Result<f64, String> {
         match self.unit {
             Some(unit) if !kind.dimensions.contains(&unit.dimension) => {

@@ -34,6 +34,9 @@ const SECTION: &str = "a section such as $Nodes";
 /// # Panics
 ///
 /// Where the unit is not a positive number.
+///
+/// # Errors
+/// The file cannot be read, or is no mesh of hexahedra that can be computed with.
 pub fn read(path: &Path, unit: f64) -> Result<Mesh, MeshError> {
     let file = path.display().to_string();
     match std::fs::read(path) {
@@ -46,6 +49,9 @@ pub fn read(path: &Path, unit: f64) -> Result<Mesh, MeshError> {
 }
 
 /// Reads the bytes of a file, see [`read`]; errors call it `file`.
+///
+/// # Errors
+/// As of [`read`].
 pub fn parse(bytes: &[u8], file: &str, unit: f64) -> Result<Mesh, MeshError> {
     assert!(
         unit > 0.0 && unit.is_finite(),
