@@ -245,7 +245,7 @@ fn row(n: usize, viscosity: Option<f64>) -> String {
     let mumps = peer.report().factorisation / peer.report().factorisations as f64;
     drop(peer);
     let reuse = Solving {
-        newton: Newton::Reused,
+        newton: Newton::Modified,
         ..Solving::default()
     };
     let mut reused = Stepper::new(&model, &start.z, &start.momentum, reuse);

@@ -1,7 +1,7 @@
 //! Random goals of the elephant trunk: how many are solved, how fast, and what several starting points add.
 //!
 //! `cargo bench --bench goals -- [GOALS] [--write]`: so many goals of rest, 200 where not said, half as many places of the tip
-//! and an eighth as many goals in haste; with `--write` tables and figure go to `results/gallery/random_goals/`. Each solve is a process, as a user starts it.
+//! and an eighth as many goals on a short horizon; with `--write` tables and figure go to `results/gallery/random_goals/`. Each solve is a process, as a user starts it.
 
 #[path = "../tests/common/random_goals.rs"]
 mod random_goals;
@@ -57,7 +57,7 @@ const GROUPS: [Group; 3] = [
         part: 2,
     },
     Group {
-        name: "haste",
+        name: "short horizon",
         kind: Kind::Rest,
         duration: 0.15,
         part: 8,
@@ -266,7 +266,7 @@ fn report(once: &[Ended], several: &[Ended], chosen: &[usize]) -> String {
          200 iterations.\n\n\
          * *rest*: equilibria under twelve random voltages within the bounds, in 0.6 s;\n\
          * *tip*: places of the tip in such equilibria, to be reached at rest in any posture, in 0.6 s;\n\
-         * *haste*: goals of rest in 0.15 s: whether there is an answer is not known.\n\n\
+         * *short horizon*: goals of rest in 0.15 s: whether there is an answer is not known.\n\n\
          Every solve is a process; as many ran at once as there are cores, on a machine that other programs shared.\n\n\
          ## From the guess of the problem\n\n\
          | goals | solved | others, by their word | iterations: 10 %, median, 90 %, most | seconds: 10 %, median, 90 %, most | deviation simulated forward, rad |\n\

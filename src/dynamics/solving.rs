@@ -51,8 +51,8 @@ pub enum Newton {
     /// In every iteration: few iterations, each with a factorisation.
     #[default]
     Full,
-    /// Only where the last factorisation, of an iteration or of a step before, converges too slowly.
-    Reused,
+    /// The modified Newton method: only where the last factorisation, of an iteration or of a step before, converges too slowly.
+    Modified,
 }
 
 /// The method and how its equations are solved.

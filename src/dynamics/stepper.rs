@@ -196,13 +196,13 @@ impl<E: Equations> Steps<E> {
         self.equations.guess(h);
         let mut residuals = Vec::with_capacity(ITERATIONS);
         // A tangent of another step length is another matrix.
-        let mut reused = self.newton == Newton::Reused && self.factored == Some(h);
+        let mut reused = self.newton == Newton::Modified && self.factored == Some(h);
         self.stale = reused;
         let mut last = f64::INFINITY;
         self.anderson.start();
         let limit = match self.newton {
             Newton::Full => ITERATIONS,
-            Newton::Reused => REUSED,
+            Newton::Modified => REUSED,
         };
         for _ in 0..limit {
             self.go_on(h)?;
@@ -236,7 +236,7 @@ impl<E: Equations> Steps<E> {
             };
             let is_close = match self.newton {
                 Newton::Full => size < UPDATE,
-                Newton::Reused => size * (rate / (1.0 - rate)).max(size) < LEFT,
+                Newton::Modified => size * (rate / (1.0 - rate)).max(size) < LEFT,
             };
             if is_close && (rate < 1.0 || size < UPDATE) {
                 if self.accept(h)? {
@@ -245,7 +245,7 @@ impl<E: Equations> Steps<E> {
                 residuals.push(f64::NAN);
                 break;
             }
-            reused = self.newton == Newton::Reused && (rate < SLOW || last == f64::INFINITY);
+            reused = self.newton == Newton::Modified && (rate < SLOW || last == f64::INFINITY);
             last = size;
         }
         self.equations.restore();
@@ -375,14 +375,14 @@ impl<E: Equations> Steps<E> {
         let began = Instant::now();
         match self.newton {
             Newton::Full => self.tangent.solve(&mut self.residual),
-            Newton::Reused => self.tangent.solve_roughly(&mut self.residual),
+            Newton::Modified => self.tangent.solve_roughly(&mut self.residual),
         }
         self.report.solution += began.elapsed().as_secs_f64();
         let mut size: f64 = 0.0;
         for (update, scale) in self.residual.iter().zip(&self.scales) {
             size = size.max((update / scale).abs());
         }
-        if self.newton == Newton::Reused {
+        if self.newton == Newton::Modified {
             self.anderson.improve(&mut self.residual);
         }
         self.equations.update(&self.residual);

@@ -245,7 +245,7 @@ fn bodies_glued_to_elements_rest_in_both_coordinates() {
 
 #[test]
 fn an_infeasible_problem_is_explained() {
-    // In haste: the voltages are at their bound most of the time, and the tip falls short.
+    // A short horizon: the voltages are at their bound most of the time, and the tip falls short.
     let goal = json!({ "rest_at_voltages": { "muscle1": 1500 } });
     let mut problem = trunk(1, goal, json!([]));
     problem["control"]["duration"] = json!("0.016 s");

@@ -206,7 +206,7 @@ pub(crate) fn list(x: &[Vector; 8]) -> Vec<f64> {
     x.iter().flat_map(|x| [x.x, x.y, x.z]).collect()
 }
 
-// Laws of one element.
+// Properties of one element.
 
 /// The forces, or the charges, of an element at a state.
 pub(crate) fn forces<F: Field>(

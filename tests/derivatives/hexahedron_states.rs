@@ -68,7 +68,7 @@ fn fields_are_means_of_the_law() {
     );
 }
 
-// Laws of patches and states.
+// Properties of patches and states.
 
 /// A cube of seven hexahedra around a distorted inner one, after MacNeal & Harder, Finite Elem. Anal. Des. 1, 3–20 (1985).
 fn patch() -> (Vec<Vector>, Vec<[usize; 8]>) {

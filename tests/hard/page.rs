@@ -194,7 +194,7 @@ fn conclusion<'a>(sections: impl Iterator<Item = (&'a &'static str, &'a String)>
     let verdicts: Vec<&str> = sections.map(|(_, text)| line(text, "Verdict: ")).collect();
     let count = |verdict: Verdict| verdicts.iter().filter(|v| **v == verdict.words()).count();
     format!(
-        "**Conclusion.** The laws of all {} cases hold: {} end with the right answer, {} with right answers as far as there are any \
+        "**Conclusion.** The asserted properties of all {} cases hold: {} end with the right answer, {} with right answers as far as there are any \
          and an explained refusal beyond, {} with an explained refusal.\n\n",
         verdicts.len(),
         count(Verdict::Answer),

@@ -309,7 +309,7 @@ fn pictures_show_blocks() {
     assert!(told.is_solved, "{told:?}");
     let text = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap();
     let svg = text("configuration.svg");
-    // Three faces of the cube and its ghost, cut where the potential changes.
+    // Three faces of the cube and its reference shape, cut where the potential changes.
     assert!(svg.matches("<polygon").count() > 40);
     assert!(svg.contains("voltage [kV]") && svg.contains("path of corner"));
     assert!(!svg.contains("NaN"));

@@ -123,7 +123,7 @@ fn nodes_count_x_first() {
 
 proptest! {
     #[test]
-    fn boxes_obey_the_laws(
+    fn boxes_have_the_properties(
         elements in prop::array::uniform3(1_usize..5),
         origin in prop::array::uniform3(-10.0..10.0_f64),
         size in prop::array::uniform3(0.1..10.0_f64),

@@ -37,9 +37,9 @@ impl<'m> Transcription<'m> {
         let values = &mut self.values;
         let mut square = 0.0;
         if let Some(middle) = self.middle {
-            let ghost = &mut self.halo;
-            ghost.z.copy_from_slice(&self.instants[middle].z);
-            ghost.l.copy_from_slice(&self.instants[middle].l);
+            let halo = &mut self.halo;
+            halo.z.copy_from_slice(&self.instants[middle].z);
+            halo.l.copy_from_slice(&self.instants[middle].l);
             let (left, right) = self.instants.split_at_mut(middle);
             let (end, right) = right.split_last_mut().expect("a stretch has an end");
             let (values_left, values_right) = values.split_at_mut(layout.same_at(middle));
@@ -48,7 +48,7 @@ impl<'m> Transcription<'m> {
                 shared,
                 first: 0,
                 instants: left,
-                end: ghost,
+                end: halo,
                 bench,
                 values: values_left,
                 rows: rows_left,

@@ -109,7 +109,7 @@ pub(crate) fn newton(system: &System) -> Newton {
     let mut muscles = system.muscles.iter();
     let of_muscles = muscles.any(|muscle| muscle.fidelity != Fidelity::Lumped);
     match of_muscles || !system.solids.is_empty() {
-        true => Newton::Reused,
+        true => Newton::Modified,
         false => Newton::Full,
     }
 }

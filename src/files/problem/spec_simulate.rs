@@ -37,7 +37,7 @@ pub struct SimulateSpec {
     /// The method; the midpoint variational integrator where not written.
     #[serde(default)]
     pub integrator: Option<IntegratorSpec>,
-    /// When the tangent of a step is factorised; where not written `reused` with finite elements, otherwise `full`.
+    /// When the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`.
     #[serde(default)]
     pub newton: Option<NewtonSpec>,
     /// Who factorises it; the one that is fastest as a rule where not written.
@@ -104,7 +104,9 @@ impl Visitor<'_> for StepVisitor {
 pub enum NewtonSpec {
     /// In every iteration.
     Full,
-    /// Only where the last factorisation converges too slowly: for large meshes, whose factorisation is the cost.
+    /// Modified Newton, only where the last factorisation converges too slowly: for large meshes, whose factorisation is the cost.
+    Modified,
+    /// The former name of `modified`.
     Reused,
 }
 
@@ -112,7 +114,7 @@ impl From<NewtonSpec> for Newton {
     fn from(spec: NewtonSpec) -> Self {
         match spec {
             NewtonSpec::Full => Self::Full,
-            NewtonSpec::Reused => Self::Reused,
+            NewtonSpec::Modified | NewtonSpec::Reused => Self::Modified,
         }
     }
 }
