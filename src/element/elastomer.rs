@@ -4,7 +4,7 @@ use super::dispatch::{Task, dispatch};
 use super::dual::Dual;
 use super::geometry::ElementGeometry;
 use super::lanes::Lanes;
-use super::law::{Field, Volume};
+use super::law::{Field, Passive, Volume};
 use super::local::{Local, Output, Pair};
 use super::state::ElementState;
 use super::variations::Variations;
@@ -28,11 +28,21 @@ pub struct Elastomer<F> {
     pub lame_lambda: f64,
     /// Where λ/2 ln²J is evaluated.
     pub volume: Volume,
-    /// The electric part: [`Passive`](crate::element::Passive) or [`Dielectric`](crate::element::Dielectric).
+    /// The electric part: [`Passive`] or [`Dielectric`](crate::element::Dielectric).
     pub field: F,
 }
 
 impl<F: Field> Elastomer<F> {
+    /// The law without the field.
+    pub fn passive(&self) -> Elastomer<Passive> {
+        Elastomer {
+            shear_modulus: self.shear_modulus,
+            lame_lambda: self.lame_lambda,
+            volume: self.volume,
+            field: Passive,
+        }
+    }
+
     /// Energy W in mJ of the hexahedron `shape` with nodes at `x` in mm and their potentials in V.
     pub fn energy(
         &self,

@@ -45,6 +45,9 @@ pub trait Field: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     fn constants(&self, potentials: &Self::Potentials) -> Option<(Dielectric, [f64; 8])>;
 
     /// The derivatives by potentials, where there are any.
+    fn derivatives(local: &Self::Local) -> Option<&ElectricDerivatives>;
+
+    /// Where the derivatives by potentials are written.
     fn electric(local: &mut Self::Local) -> Option<&mut ElectricDerivatives>;
 }
 
@@ -54,6 +57,11 @@ impl Field for Passive {
 
     #[inline(always)]
     fn constants(&self, (): &()) -> Option<(Dielectric, [f64; 8])> {
+        None
+    }
+
+    #[inline(always)]
+    fn derivatives((): &()) -> Option<&ElectricDerivatives> {
         None
     }
 
@@ -70,6 +78,11 @@ impl Field for Dielectric {
     #[inline(always)]
     fn constants(&self, potentials: &[f64; 8]) -> Option<(Dielectric, [f64; 8])> {
         Some((*self, *potentials))
+    }
+
+    #[inline(always)]
+    fn derivatives(local: &ElectricDerivatives) -> Option<&ElectricDerivatives> {
+        Some(local)
     }
 
     #[inline(always)]

@@ -21,30 +21,33 @@ impl<L> Default for Batches<L> {
 }
 
 impl<L: Default + Send> Batches<L> {
-    /// `add` takes what `compute` makes of each element, in their order.
+    /// `add` takes each element with what `compute` makes of it, in their order; where nothing is kept there is nothing to compute
+    /// ahead.
+    #[inline(always)]
     pub(super) fn each<E: Sync>(
         &self,
         elements: &[E],
         compute: impl Fn(&E, &mut L) + Sync,
-        mut add: impl FnMut(usize, &mut L),
+        mut add: impl FnMut(&E, &L),
     ) {
-        let kept = self.0.try_lock();
-        let (true, Ok(mut locals)) = (elements.len() >= PARALLEL, kept) else {
+        let is_large = size_of::<L>() > 0 && elements.len() >= PARALLEL;
+        let kept = is_large.then(|| self.0.try_lock());
+        let Some(Ok(mut locals)) = kept else {
             let mut local = L::default();
-            for (index, element) in elements.iter().enumerate() {
+            for element in elements {
                 compute(element, &mut local);
-                add(index, &mut local);
+                add(element, &local);
             }
             return;
         };
         locals.resize_with(STRETCH.min(elements.len()), L::default);
-        for (k, stretch) in elements.chunks(STRETCH).enumerate() {
+        for stretch in elements.chunks(STRETCH) {
             let pairs = stretch.par_iter().with_min_len(LEAST);
             pairs
                 .zip(locals.par_iter_mut())
                 .for_each(|(element, local)| compute(element, local));
-            for (i, local) in locals[..stretch.len()].iter_mut().enumerate() {
-                add(k * STRETCH + i, local);
+            for (element, local) in stretch.iter().zip(locals.iter()) {
+                add(element, local);
             }
         }
     }

@@ -11,24 +11,34 @@
 //! follow from coordinates is none of its business.
 
 mod batches;
+mod border;
 mod couplings;
-mod element_field;
+mod derivatives;
+mod element_fields;
+mod formulas;
 mod group;
-mod group_term;
 mod hexahedra;
 mod inertia;
+mod kernel;
+mod measured;
 mod paths;
+mod scalar_arg;
+mod scatter;
 mod slots;
 mod stencil;
 mod term;
 mod viscous_hexahedra;
 
 pub use couplings::{BlockMask, Blocks, Couplings, Part};
-pub use element_field::ElementField;
-pub use group::{Element, Group};
-pub use hexahedra::{Electrical, Hexahedra, Hexahedron, ScalarArg};
+pub use derivatives::Derivatives;
+pub use element_fields::{ElementField, ElementFields};
+pub use formulas::{Element, Formulas};
+pub use group::Group;
+pub use hexahedra::{Electrical, Hexahedra, Hexahedron, Variations};
 pub use inertia::{Inertia, Mass};
+pub use kernel::{Kernel, Scatter};
 pub use paths::{Path, Paths};
+pub use scalar_arg::ScalarArg;
 pub use stencil::{Stencil, VectorArg};
 pub use term::{Functional, Horizon, Kind, Measure, Order, Output, Sample, Term};
-pub use viscous_hexahedra::{ViscousHexahedra, ViscousHexahedron};
+pub use viscous_hexahedra::{ViscousHexahedra, ViscousHexahedron, ViscousVariations};

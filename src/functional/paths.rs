@@ -1,4 +1,4 @@
-//! Functions of the length of a path of any number of spans: `−h W(L)`, L = Σ |r̄ᵢ|, at the midpoint of an interval.
+//! Functions of the length of a path of any number of spans: `W(L)`, L = Σ |r̄ᵢ|, at the midpoint of an interval.
 //!
 //! With the directions uᵢ = r̄ᵢ/|r̄ᵢ| and Kᵢ = (1 − uᵢ uᵢᵀ)/|r̄ᵢ|
 //!
@@ -13,8 +13,9 @@
 //! ```
 
 use crate::energy::Cable;
-use crate::functional::{Couplings, Horizon, Kind, Order, Output, Part, Sample, Term};
+use crate::functional::{Derivatives, Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Matrix, Vector};
+use std::cell::Cell;
 
 /// A path and the energy of its length.
 #[derive(Clone, Debug)]
@@ -25,14 +26,12 @@ pub struct Path {
     pub spans: Vec<usize>,
 }
 
-/// Paths under one name.
-#[derive(Clone, Debug)]
-pub struct Paths {
-    name: String,
-    paths: Vec<Path>,
-}
+/// The kind of elements that are paths: one argument a span, as many as a path has.
+#[derive(Debug)]
+pub enum Paths {}
 
 /// A span at the midpoint of an interval, and its rates along the direction.
+#[derive(Clone, Copy)]
 struct Span {
     /// r̄/|r̄|.
     direction: Vector,
@@ -44,14 +43,17 @@ struct Span {
     stretch: f64,
 }
 
+fn middle(vector: usize, vectors: [&[Vector]; 2]) -> Vector {
+    (vectors[0][vector] + vectors[1][vector]) * 0.5
+}
+
 impl Span {
-    fn new(vector: usize, level: Order, frame: &Sample<'_>) -> Self {
-        let middle = |v: [&[Vector]; 2]| (v[0][vector] + v[1][vector]) * 0.5;
-        let r = middle(frame.vectors);
+    fn new(vector: usize, order: Order, sample: &Sample<'_>) -> Self {
+        let r = middle(vector, sample.vectors);
         let length = r.norm();
         let direction = r / length;
-        let w = match level {
-            Order::Third => middle(frame.along),
+        let w = match order {
+            Order::Third => middle(vector, sample.along),
             _ => Vector::zeros(),
         };
         let stretch = direction.dot(&w);
@@ -78,116 +80,151 @@ impl Span {
 }
 
 impl Path {
-    fn length(&self, frame: &Sample<'_>) -> f64 {
+    fn length(&self, sample: &Sample<'_>) -> f64 {
         let spans = self.spans.iter();
-        spans
-            .map(|&v| ((frame.vectors[0][v] + frame.vectors[1][v]) * 0.5).norm())
-            .sum()
+        spans.map(|&v| middle(v, sample.vectors).norm()).sum()
+    }
+}
+
+/// A taut path at a sample.
+struct Taut<'a> {
+    path: &'a Path,
+    sample: &'a Sample<'a>,
+    order: Order,
+    /// W′.
+    tension: f64,
+    /// W″.
+    stiffness: f64,
+    /// L_w.
+    stretch: f64,
+    /// The span whose row was asked for last: rows are read one after the other.
+    row: Cell<Option<(usize, Span)>>,
+}
+
+impl Taut<'_> {
+    fn span(&self, i: usize) -> Span {
+        Span::new(self.path.spans[i], self.order, self.sample)
     }
 
-    /// Adds `−h` times the forces, and by the length of the interval.
-    fn add_force(frame: &Sample<'_>, vector: usize, force: &Vector, part: &mut Part) {
-        for side in 0..2 {
-            part.forces[side][vector] -= force * (0.5 * frame.h);
-            if frame.horizon == Horizon::Free {
-                part.horizon_forces[side][vector] -= force * 0.5;
-            }
+    fn row_span(&self, i: usize) -> Span {
+        let kept = self.row.get().filter(|&(row, _)| row == i);
+        let (_, span) = kept.unwrap_or_else(|| (i, self.span(i)));
+        self.row.set(Some((i, span)));
+        span
+    }
+}
+
+impl Derivatives for Taut<'_> {
+    fn force(&self, i: usize) -> Vector {
+        self.row_span(i).direction * self.tension
+    }
+
+    fn row(&self, _s: usize) -> f64 {
+        0.0
+    }
+
+    fn block(&self, i: usize, j: usize) -> Matrix {
+        let (a, b) = (self.row_span(i), self.span(j));
+        let mut block = a.direction * b.direction.transpose() * self.stiffness;
+        if i == j {
+            block += a.curvature() * self.tension;
+        }
+        block
+    }
+
+    fn column(&self, _i: usize, _s: usize) -> Vector {
+        Vector::zeros()
+    }
+
+    fn entry(&self, _s: usize, _t: usize) -> f64 {
+        0.0
+    }
+}
+
+/// Rates of the derivatives of a taut path along the direction.
+struct Rates<'a>(&'a Taut<'a>);
+
+impl Derivatives for Rates<'_> {
+    fn force(&self, i: usize) -> Vector {
+        let (path, a) = (self.0, self.0.row_span(i));
+        a.direction * (path.stiffness * path.stretch) + a.turn * path.tension
+    }
+
+    fn row(&self, _s: usize) -> f64 {
+        0.0
+    }
+
+    fn block(&self, i: usize, j: usize) -> Matrix {
+        let (path, a, b) = (self.0, self.0.row_span(i), self.0.span(j));
+        let turned = a.turn * b.direction.transpose() + a.direction * b.turn.transpose();
+        let mut rate = turned * path.stiffness;
+        if i == j {
+            rate += a.curvature() * (path.stiffness * path.stretch);
+            rate += a.curvature_rate() * path.tension;
+        }
+        rate
+    }
+
+    fn column(&self, _i: usize, _s: usize) -> Vector {
+        Vector::zeros()
+    }
+
+    fn entry(&self, _s: usize, _t: usize) -> f64 {
+        0.0
+    }
+}
+
+impl Kernel for Paths {
+    type Element = Path;
+    type Storage = ();
+
+    fn vectors(path: &Path) -> usize {
+        path.spans.len()
+    }
+
+    fn scalars(_: &Path) -> usize {
+        0
+    }
+
+    fn vector(path: &Path, i: usize) -> VectorArg {
+        VectorArg {
+            vector: path.spans[i],
+            stencil: Stencil::Mid,
         }
     }
 
-    fn add_block(frame: &Sample<'_>, slot: u32, block: &Matrix, part: &mut Part) {
-        let to = &mut part.blocks.full[slot as usize];
-        for side in (0..4).filter(|&side| frame.sides.blocks[side]) {
-            to[side] -= block * (0.25 * frame.h);
-        }
+    fn scalar(_: &Path, _s: usize) -> Option<(usize, f64)> {
+        None
     }
 
-    fn evaluate(&self, level: Order, frame: &Sample<'_>, slots: &[u32], out: &mut Output) {
-        let [_, tension, stiffness] = self.energy.of_length(self.length(frame));
+    fn energy(path: &Path, sample: &Sample<'_>) -> f64 {
+        path.energy.of_length(path.length(sample))[0]
+    }
+
+    fn derivatives<S: Scatter>(
+        path: &Path,
+        order: Order,
+        sample: &Sample<'_>,
+        (): &(),
+        to: &mut S,
+    ) {
+        let [_, tension, stiffness] = path.energy.of_length(path.length(sample));
         if tension == 0.0 {
             return;
         }
-        let span = |&vector: &usize| Span::new(vector, level, frame);
-        let stretch: f64 = match level {
-            Order::Third => self.spans.iter().map(|v| span(v).stretch).sum(),
-            _ => 0.0,
+        let mut taut = Taut {
+            path,
+            sample,
+            order,
+            tension,
+            stiffness,
+            stretch: 0.0,
+            row: Cell::new(None),
         };
-        let rows = slots.chunks_exact(self.spans.len());
-        for ((i, v), row) in self.spans.iter().enumerate().zip(rows) {
-            let a = span(v);
-            Self::add_force(frame, *v, &(a.direction * tension), &mut out.plain);
-            if level == Order::Third {
-                let rate = a.direction * (stiffness * stretch) + a.turn * tension;
-                Self::add_force(frame, *v, &rate, &mut out.contracted);
-            }
-            if level < Order::Hessian {
-                continue;
-            }
-            for ((j, other), &slot) in self.spans.iter().enumerate().zip(row) {
-                let b = span(other);
-                let (u, v) = (&a.direction, b.direction.transpose());
-                let mut block = u * v * stiffness;
-                if i == j {
-                    block += a.curvature() * tension;
-                }
-                Self::add_block(frame, slot, &block, &mut out.plain);
-                if level == Order::Third {
-                    let mut rate = (a.turn * v + u * b.turn.transpose()) * stiffness;
-                    if i == j {
-                        rate += a.curvature() * (stiffness * stretch);
-                        rate += a.curvature_rate() * tension;
-                    }
-                    Self::add_block(frame, slot, &rate, &mut out.contracted);
-                }
-            }
-        }
-    }
-}
-
-impl Paths {
-    /// Paths under one name.
-    pub fn new(name: &str, paths: Vec<Path>) -> Self {
-        Self {
-            name: name.to_owned(),
-            paths,
-        }
-    }
-}
-
-impl Term for Paths {
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn elements(&self) -> usize {
-        self.paths.len()
-    }
-
-    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
-        for Path { spans, .. } in &self.paths {
-            for &a in spans {
-                slots.extend(spans.iter().map(|&b| couplings.add_full(a, b) as u32));
-            }
-        }
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Potential
-    }
-
-    fn energy(&self, frame: &Sample<'_>) -> f64 {
-        let energy = |path: &Path| path.energy.of_length(path.length(frame))[0];
-        self.paths.iter().map(energy).sum()
-    }
-
-    fn momentum(&self, _x: &[Vector], _v: &[Vector], _out: &mut [Vector]) {}
-
-    fn evaluate(&self, level: Order, frame: &Sample<'_>, slots: &[u32], out: &mut Output) {
-        let mut slots = slots;
-        for path in &self.paths {
-            let (own, rest) = slots.split_at(path.spans.len() * path.spans.len());
-            path.evaluate(level, frame, own, out);
-            slots = rest;
+        to.plain(&taut);
+        if order == Order::Third {
+            taut.stretch = (0..path.spans.len()).map(|i| taut.span(i).stretch).sum();
+            to.along(&taut, &Rates(&taut));
         }
     }
 }

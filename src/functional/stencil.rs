@@ -1,5 +1,7 @@
 //! Where in time an argument is read: the midpoint rule, and nothing else.
 
+use crate::math::Vector;
+
 /// How an argument samples a vector over one interval `[t_k, t_{k+1}]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stencil {
@@ -45,4 +47,17 @@ pub struct VectorArg {
     pub vector: usize,
     /// Where in time.
     pub stencil: Stencil,
+}
+
+impl VectorArg {
+    /// Its value, from the vectors at both instants of an interval of length h.
+    #[inline]
+    pub fn read(self, h: f64, vectors: [&[Vector]; 2]) -> Vector {
+        let [a, b] = self.stencil.weights(h);
+        match self.stencil {
+            Stencil::Here => vectors[0][self.vector],
+            Stencil::Next => vectors[1][self.vector],
+            _ => vectors[0][self.vector] * a + vectors[1][self.vector] * b,
+        }
+    }
 }

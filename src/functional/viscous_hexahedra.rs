@@ -1,12 +1,11 @@
-//! Viscosity of finite elements: the virtual work `−h Σ δx̄·f(x̄, v)` of the stress σ = η d.
+//! Viscosity of finite elements: the virtual work `−Σ δx̄·f(x̄, v)` of the stress σ = η d.
 //!
 //! The forces are linear in the velocities, so the work over an interval does not depend on its length: there is nothing to
 //! derive by it.
 
 use crate::element::{ElementGeometry, Viscosity, ViscousContraction, ViscousLocal};
-use crate::functional::batches::Batches;
 use crate::functional::hexahedra::middle;
-use crate::functional::{Couplings, Kind, Order, Output, Sample, Term};
+use crate::functional::{Derivatives, Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Matrix, Vector};
 
 /// One viscous hexahedron.
@@ -20,159 +19,170 @@ pub struct ViscousHexahedron {
     pub nodes: [usize; 8],
 }
 
-/// Viscous hexahedra.
+/// The kind of elements that are viscous hexahedra; arguments are the virtual displacements of the nodes, their places and their
+/// velocities.
 #[derive(Debug)]
-pub struct ViscousHexahedra {
-    name: String,
-    elements: Vec<ViscousHexahedron>,
-    locals: Batches<ViscousLocal>,
+pub enum ViscousHexahedra {}
+
+/// Nodes of an element.
+const NODES: usize = 8;
+
+/// Derivatives of the virtual work, and of its contraction.
+#[derive(Debug, Default)]
+pub struct ViscousVariations {
+    plain: ViscousLocal,
+    along: ViscousContraction,
 }
 
-/// Difference quotients over the interval.
-fn rates(vectors: [&[Vector]; 2], nodes: &[usize; 8], h: f64) -> [Vector; 8] {
-    nodes.map(|v| (vectors[1][v] - vectors[0][v]) / h)
+/// Node and reading of an argument: 0 virtual displacement, 1 place, 2 velocity.
+#[inline(always)]
+fn node(i: usize) -> (usize, usize) {
+    (i % NODES, i / NODES)
 }
 
-/// Signs of x_k and x_{k+1} in a difference.
-const SIGNS: [f64; 2] = [-1.0, 1.0];
-
-/// Slots of an element: all pairs of its nodes.
-fn of(slots: &[u32], element: usize) -> &[u32] {
-    &slots[64 * element..64 * (element + 1)]
+impl ViscousHexahedron {
+    /// Places and velocities of the nodes.
+    fn state(&self, sample: &Sample<'_>) -> [[Vector; NODES]; 2] {
+        let [x, y] = sample.vectors;
+        let rates = self.nodes.map(|v| (y[v] - x[v]) / sample.h);
+        [middle(sample.vectors, &self.nodes), rates]
+    }
 }
 
-impl ViscousHexahedra {
-    /// Hexahedra under one name.
-    pub fn new(name: &str, elements: Vec<ViscousHexahedron>) -> Self {
-        Self {
-            name: name.to_owned(),
-            elements,
-            locals: Batches::default(),
+/// Of the virtual work: rows are virtual displacements, columns places and velocities.
+impl Derivatives for ViscousLocal {
+    #[inline(always)]
+    fn force(&self, i: usize) -> Vector {
+        -self.forces[i]
+    }
+
+    #[inline(always)]
+    fn block(&self, i: usize, j: usize) -> Matrix {
+        match node(j) {
+            (j, 1) => -self.by_place[i][j],
+            (j, _) => -self.by_velocity[i][j],
         }
     }
 
-    fn state(element: &ViscousHexahedron, frame: &Sample<'_>) -> [[Vector; 8]; 2] {
-        let x = middle(frame.vectors, &element.nodes);
-        [x, rates(frame.vectors, &element.nodes, frame.h)]
+    fn row(&self, _s: usize) -> f64 {
+        0.0
     }
 
-    /// Adds what `block(i, j, row, col)` gives of the nodes i, j at the instants k + row, k + col.
-    fn add_blocks(
-        slots: &[u32],
-        frame: &Sample<'_>,
-        blocks: &mut [[Matrix; 4]],
-        block: impl Fn(usize, usize, usize, usize) -> Matrix,
+    fn column(&self, _i: usize, _s: usize) -> Vector {
+        Vector::zeros()
+    }
+
+    fn entry(&self, _s: usize, _t: usize) -> f64 {
+        0.0
+    }
+}
+
+/// Of the virtual work of the direction: rows and columns are places and velocities.
+impl Derivatives for ViscousContraction {
+    #[inline(always)]
+    fn force(&self, i: usize) -> Vector {
+        match node(i) {
+            (i, 1) => -self.by_place[i],
+            (i, _) => -self.by_velocity[i],
+        }
+    }
+
+    #[inline(always)]
+    fn block(&self, i: usize, j: usize) -> Matrix {
+        match (node(i), node(j)) {
+            ((i, 1), (j, 1)) => -self.place_place[i][j],
+            ((i, 1), (j, _)) => -self.place_velocity[i][j],
+            ((i, _), (j, _)) => -self.place_velocity[j][i].transpose(),
+        }
+    }
+
+    fn row(&self, _s: usize) -> f64 {
+        0.0
+    }
+
+    fn column(&self, _i: usize, _s: usize) -> Vector {
+        Vector::zeros()
+    }
+
+    fn entry(&self, _s: usize, _t: usize) -> f64 {
+        0.0
+    }
+}
+
+impl Kernel for ViscousHexahedra {
+    type Element = ViscousHexahedron;
+    type Storage = ViscousVariations;
+
+    const VIRTUAL: usize = NODES;
+    const READINGS: usize = 3;
+    const BY_DURATION: bool = false;
+
+    /// Forces are linear in the velocities.
+    #[inline(always)]
+    fn couples(i: usize, j: usize) -> bool {
+        node(i).1 != node(j).1 || node(i).1 == 1
+    }
+
+    #[inline(always)]
+    fn vectors(_: &ViscousHexahedron) -> usize {
+        NODES
+    }
+
+    #[inline(always)]
+    fn scalars(_: &ViscousHexahedron) -> usize {
+        0
+    }
+
+    #[inline(always)]
+    fn vector(element: &ViscousHexahedron, i: usize) -> VectorArg {
+        let (node, reading) = node(i);
+        VectorArg {
+            vector: element.nodes[node],
+            stencil: match reading {
+                2 => Stencil::Rate,
+                _ => Stencil::Mid,
+            },
+        }
+    }
+
+    fn scalar(_: &ViscousHexahedron, _s: usize) -> Option<(usize, f64)> {
+        None
+    }
+
+    fn energy(element: &ViscousHexahedron, sample: &Sample<'_>) -> f64 {
+        let [x, v] = element.state(sample);
+        -sample.h * element.law.power(&element.shape, &x, &v)
+    }
+
+    fn prepare(
+        element: &ViscousHexahedron,
+        order: Order,
+        sample: &Sample<'_>,
+        ViscousVariations { plain, along }: &mut ViscousVariations,
     ) {
-        for (i, row) in slots.chunks_exact(8).enumerate() {
-            for (j, &slot) in row.iter().enumerate() {
-                for side in (0..4).filter(|&side| frame.sides.blocks[side]) {
-                    blocks[slot as usize][side] += block(i, j, side / 2, side % 2);
-                }
-            }
+        let ViscousHexahedron { shape, law, nodes } = element;
+        let [x, v] = element.state(sample);
+        match order {
+            Order::Gradient => law.forces(shape, &x, &v, &mut plain.forces),
+            _ => law.tangent(shape, &x, &v, plain),
+        }
+        if order == Order::Third {
+            let w = middle(sample.along, nodes);
+            law.contraction(shape, &x, &v, &w, along);
         }
     }
 
-    fn add(
-        &self,
-        index: usize,
-        local: &ViscousLocal,
-        level: Order,
-        frame: &Sample<'_>,
-        slots: &[u32],
-        out: &mut Output,
+    #[inline(always)]
+    fn derivatives<S: Scatter>(
+        _: &ViscousHexahedron,
+        order: Order,
+        _: &Sample<'_>,
+        ViscousVariations { plain, along }: &ViscousVariations,
+        to: &mut S,
     ) {
-        let h = frame.h;
-        for (&v, force) in self.elements[index].nodes.iter().zip(&local.forces) {
-            out.plain.forces[0][v] -= force * (0.5 * h);
-            out.plain.forces[1][v] -= force * (0.5 * h);
-        }
-        if level >= Order::Hessian {
-            let blocks = &mut out.plain.blocks.full;
-            Self::add_blocks(of(slots, index), frame, blocks, |i, j, _, col| {
-                local.by_place[i][j] * (-0.25 * h) - local.by_velocity[i][j] * (0.5 * SIGNS[col])
-            });
-        }
-    }
-
-    fn add_contraction(
-        &self,
-        index: usize,
-        s: &ViscousContraction,
-        frame: &Sample<'_>,
-        slots: &[u32],
-        out: &mut Output,
-    ) {
-        let h = frame.h;
-        for (i, &v) in self.elements[index].nodes.iter().enumerate() {
-            for (side, sign) in SIGNS.into_iter().enumerate() {
-                out.contracted.forces[side][v] -=
-                    s.by_place[i] * (0.5 * h) + s.by_velocity[i] * sign;
-            }
-        }
-        let blocks = &mut out.contracted.blocks.full;
-        Self::add_blocks(of(slots, index), frame, blocks, |i, j, row, col| {
-            s.place_place[i][j] * (-0.25 * h)
-                - s.place_velocity[i][j] * (0.5 * SIGNS[col])
-                - s.place_velocity[j][i].transpose() * (0.5 * SIGNS[row])
-        });
-    }
-}
-
-impl Term for ViscousHexahedra {
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn elements(&self) -> usize {
-        self.elements.len()
-    }
-
-    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
-        for ViscousHexahedron { nodes, .. } in &self.elements {
-            for &a in nodes {
-                slots.extend(nodes.map(|b| couplings.add_full(a, b) as u32));
-            }
-        }
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::VirtualWork
-    }
-
-    fn energy(&self, frame: &Sample<'_>) -> f64 {
-        let work = |element: &ViscousHexahedron| {
-            let [x, v] = Self::state(element, frame);
-            -frame.h * element.law.power(&element.shape, &x, &v)
-        };
-        self.elements.iter().map(work).sum()
-    }
-
-    fn momentum(&self, _x: &[Vector], _v: &[Vector], _out: &mut [Vector]) {}
-
-    fn evaluate(&self, level: Order, frame: &Sample<'_>, slots: &[u32], out: &mut Output) {
-        let compute = |element: &ViscousHexahedron, local: &mut ViscousLocal| {
-            let [x, v] = Self::state(element, frame);
-            match level {
-                Order::Gradient => element
-                    .law
-                    .forces(&element.shape, &x, &v, &mut local.forces),
-                _ => element.law.tangent(&element.shape, &x, &v, local),
-            }
-        };
-        self.locals.each(&self.elements, compute, |index, local| {
-            self.add(index, local, level, frame, slots, out);
-        });
-        if level < Order::Third {
-            return;
-        }
-        let mut contraction = ViscousContraction::default();
-        for (index, element) in self.elements.iter().enumerate() {
-            let [x, v] = Self::state(element, frame);
-            let w = middle(frame.along, &element.nodes);
-            element
-                .law
-                .contraction(&element.shape, &x, &v, &w, &mut contraction);
-            self.add_contraction(index, &contraction, frame, slots, out);
+        to.plain(plain);
+        if order == Order::Third {
+            to.along(plain, along);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Constraints that redundant coordinates leave open: rigid bodies and joints, times their multipliers.
 
 use crate::energy::{Coincidence, Energy, Orthogonality};
-use crate::functional::{Element, Group, Stencil, Term, VectorArg};
+use crate::functional::{Element, Formulas, Group, Stencil, Term, VectorArg};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::joints::triad;
@@ -70,7 +70,7 @@ impl Made {
         for name in names {
             plan::note(&mut self.present, term, why, name);
         }
-        let group = Group::instants(term, scale, elements);
+        let group = Group::<Formulas<E, M, NV, NS>>::instants(term, scale, elements);
         self.effects.push(Box::new(group));
     }
 }

@@ -4,7 +4,9 @@ use crate::element::FieldPoint;
 use crate::energy::{
     Angle, Energy, OutsideBox, PositionComponent, Projection, SquaredDistance, SquaredField,
 };
-use crate::functional::{Element, ElementField, Group, Measure, Stencil, VectorArg};
+use crate::functional::{
+    Element, ElementField, ElementFields, Formulas, Group, Measure, Stencil, VectorArg,
+};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::joints::{JointCoordinate as Gauge, JointReading};
@@ -118,11 +120,16 @@ impl Known<'_> {
                         Some(point) => continuum.shapes[element].gradients_at(point),
                         None => continuum.central_gradients(element)?,
                     };
-                    Box::new(ElementField::new(
-                        FieldPoint { gradients, limit },
-                        continuum.nodes(element),
-                        continuum.terminals(element),
+                    let field = ElementField {
+                        point: FieldPoint { gradients, limit },
+                        nodes: continuum.nodes(element),
+                        terminals: continuum.terminals(element),
                         at,
+                    };
+                    Box::new(Group::<ElementFields>::intervals(
+                        "measure",
+                        1.0,
+                        vec![field],
                     ))
                 }
             },
@@ -151,7 +158,9 @@ fn instant<E: Energy<M> + 'static, const M: usize, const NV: usize>(
         scalars: [],
     };
     let elements = vec![element];
-    Box::new(Group::<E, M, NV, 0>::instants("measure", 1.0, elements))
+    Box::new(Group::<Formulas<E, M, NV, 0>>::instants(
+        "measure", 1.0, elements,
+    ))
 }
 
 fn interval<E: Energy<M> + 'static, const M: usize, const NV: usize, const NS: usize>(
@@ -165,5 +174,7 @@ fn interval<E: Energy<M> + 'static, const M: usize, const NV: usize, const NS: u
         scalars,
     };
     let elements = vec![element];
-    Box::new(Group::<E, M, NV, NS>::intervals("measure", 1.0, elements))
+    Box::new(Group::<Formulas<E, M, NV, NS>>::intervals(
+        "measure", 1.0, elements,
+    ))
 }

@@ -3,8 +3,8 @@
 
 use crate::energy::{Energy, Gravity};
 use crate::functional::{
-    Electrical, Element, Group, Hexahedra, Hexahedron, Inertia, Mass, Path, Paths, Stencil, Term,
-    VectorArg, ViscousHexahedra, ViscousHexahedron,
+    Electrical, Element, Formulas, Group, Hexahedra, Hexahedron, Inertia, Mass, Path, Paths,
+    Stencil, Term, VectorArg, ViscousHexahedra, ViscousHexahedron,
 };
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::model::attachment::Attachment;
@@ -51,24 +51,21 @@ impl Member for Mass {
     }
 }
 
-impl<F: Electrical + 'static> Member for Hexahedron<F>
-where
-    Hexahedra<F>: Term,
-{
+impl<F: Electrical> Member for Hexahedron<F> {
     fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        Box::new(Hexahedra::new(name, list))
+        Box::new(Group::<Hexahedra<F>>::intervals(name, -1.0, list))
     }
 }
 
 impl Member for ViscousHexahedron {
     fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        Box::new(ViscousHexahedra::new(name, list))
+        Box::new(Group::<ViscousHexahedra>::intervals(name, 1.0, list))
     }
 }
 
 impl Member for Path {
     fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        Box::new(Paths::new(name, list))
+        Box::new(Group::<Paths>::intervals(name, -1.0, list))
     }
 }
 
@@ -86,7 +83,9 @@ where
         // The action has the kinetic energy less the potential one; a virtual work is added.
         let scale = if KINETIC || E::VIRTUAL > 0 { 1.0 } else { -1.0 };
         let elements = list.into_iter().map(|Self(element)| element).collect();
-        Box::new(Group::intervals(name, scale, elements))
+        Box::new(Group::<Formulas<E, M, NV, NS>>::intervals(
+            name, scale, elements,
+        ))
     }
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::{SVector, Vector3};
 use proboscis::coordinates::Reduced;
 use proboscis::energy::Energy;
-use proboscis::functional::{Element, Functional, Group, Stencil, Term, VectorArg};
+use proboscis::functional::{Element, Formulas, Functional, Group, Stencil, Term, VectorArg};
 use proboscis::kinematics::MaterialVector;
 use proboscis::math::Jet;
 use proboscis::model::Model;
@@ -40,7 +40,7 @@ pub fn with_control<E: Energy<4> + 'static>(
         }],
         scalars: [0],
     };
-    let control = Group::<E, 4, 1, 1>::intervals("control", -1.0, vec![element]);
+    let control = Group::<Formulas<E, 4, 1, 1>>::intervals("control", -1.0, vec![element]);
     let Reduced {
         motion,
         intervals,

@@ -1,0 +1,125 @@
+//! Derivatives by the length of an interval, from those by arguments.
+//!
+//! With v = Δ/h and Π the projection on the rates, for G = h E(y, Δ/h)
+//!
+//! ```text
+//! ∂G/∂h = E − ∇E·Πv,     ∂/∂h (∇G) = ∇E − ∇²E Πv − Π∇E  (through the stencil weights),     ∂²G/∂h² = Πv·∇²E Πv / h.
+//! ```
+
+use crate::functional::{Derivatives, Kernel, Sample, Stencil};
+use crate::math::Vector;
+
+/// Rates that an element reads.
+pub(super) struct Rates<'a, K: Kernel> {
+    element: &'a K::Element,
+    vectors: [&'a [Vector]; 2],
+    h: f64,
+}
+
+impl<'a, K: Kernel> Rates<'a, K> {
+    /// Rates Πv of the vectors.
+    pub(super) fn new(element: &'a K::Element, sample: &Sample<'a>) -> Self {
+        Self {
+            element,
+            vectors: sample.vectors,
+            h: sample.h,
+        }
+    }
+
+    /// Their own rates along the direction.
+    pub(super) fn along(element: &'a K::Element, sample: &Sample<'a>) -> Self {
+        Self {
+            element,
+            vectors: sample.along,
+            h: sample.h,
+        }
+    }
+
+    /// Arguments that are rates, with their values.
+    fn list(&self) -> impl Iterator<Item = (usize, Vector)> {
+        let count = K::vectors(self.element) * K::READINGS;
+        (K::VIRTUAL..count).filter_map(|j| {
+            let arg = K::vector(self.element, j);
+            (arg.stencil == Stencil::Rate).then(|| (j, arg.read(self.h, self.vectors)))
+        })
+    }
+
+    /// Rows of argument `i` of ∇²E Πv.
+    fn block<D: Derivatives>(&self, d: &D, i: usize) -> Vector {
+        let mut sum = Vector::zeros();
+        for (j, v) in self.list() {
+            let block = d.block(i, j);
+            for c in 0..3 {
+                sum += block.column(c) * v[c];
+            }
+        }
+        sum
+    }
+
+    /// Row of scalar `s` of ∇²E Πv.
+    fn entry<D: Derivatives>(&self, d: &D, s: usize) -> f64 {
+        self.list().map(|(j, v)| d.column(j, s).dot(&v)).sum()
+    }
+
+    /// Πu·∇²E Πv of the rates u of this element and `v`.
+    pub(super) fn form<D: Derivatives>(&self, d: &D, v: &Self) -> f64 {
+        let mut sum = 0.0;
+        for (i, u) in self.list() {
+            let product = v.block(d, i);
+            for c in 0..3 {
+                sum += u[c] * product[c];
+            }
+        }
+        sum
+    }
+}
+
+/// ∂/∂h (∇G) of an element.
+pub(super) struct Border<'a, K: Kernel, D> {
+    pub(super) plain: &'a D,
+    pub(super) v: &'a Rates<'a, K>,
+}
+
+impl<K: Kernel, D: Derivatives> Border<'_, K, D> {
+    /// By argument `i`.
+    pub(super) fn force(&self, i: usize) -> Vector {
+        let force = self.plain.force(i);
+        let by_h = force - self.v.block(self.plain, i);
+        match K::vector(self.v.element, i).stencil {
+            Stencil::Rate => by_h - force,
+            _ => by_h,
+        }
+    }
+
+    /// By scalar `s`.
+    pub(super) fn row(&self, s: usize) -> f64 {
+        self.plain.row(s) - self.v.entry(self.plain, s)
+    }
+}
+
+/// The same contracted with the direction.
+pub(super) struct BorderAlong<'a, K: Kernel, D, W> {
+    pub(super) plain: &'a D,
+    pub(super) along: &'a W,
+    pub(super) v: &'a Rates<'a, K>,
+    /// Rates of v along the direction.
+    pub(super) w: &'a Rates<'a, K>,
+}
+
+impl<K: Kernel, D: Derivatives, W: Derivatives> BorderAlong<'_, K, D, W> {
+    /// By argument `i`.
+    pub(super) fn force(&self, i: usize) -> Vector {
+        let force = self.along.force(i);
+        let by_h = force - self.v.block(self.along, i) - self.w.block(self.plain, i);
+        match K::vector(self.v.element, i).stencil {
+            Stencil::Rate => by_h - force,
+            _ => by_h,
+        }
+    }
+
+    /// By scalar `s`.
+    pub(super) fn row(&self, s: usize) -> f64 {
+        let through_rates = self.v.entry(self.along, s) + self.w.entry(self.plain, s);
+        self.along.row(s) - through_rates
+    }
+}

@@ -1,0 +1,100 @@
+//! The true electric field at a point of a finite element: a quantity of the intervals.
+
+use crate::element::{FieldPoint, SpatialField};
+use crate::functional::{
+    Derivatives, Kernel, Order, Sample, ScalarArg, Scatter, Stencil, VectorArg,
+};
+use crate::math::{Matrix, Vector};
+
+/// |e|²/E² at a point of an element, with the nodes at one time of an interval and the potentials of the interval.
+#[derive(Clone, Debug)]
+pub struct ElementField {
+    /// The point.
+    pub point: FieldPoint,
+    /// Vectors of the nodes.
+    pub nodes: [usize; 8],
+    /// Where the potentials of the nodes come from.
+    pub terminals: [ScalarArg; 8],
+    /// When the nodes are read.
+    pub at: Stencil,
+}
+
+/// The kind of elements that are fields at points.
+#[derive(Debug)]
+pub enum ElementFields {}
+
+impl ElementField {
+    fn field(&self, sample: &Sample<'_>) -> SpatialField {
+        let read = |vector| {
+            let arg = VectorArg {
+                vector,
+                stencil: self.at,
+            };
+            arg.read(sample.h, sample.vectors)
+        };
+        let potentials = self.terminals.map(|arg| arg.read(sample.scalars));
+        self.point.at(&self.nodes.map(read), &potentials)
+    }
+}
+
+/// The arguments are the nodes, and the scalars their potentials.
+impl Derivatives for SpatialField {
+    fn force(&self, i: usize) -> Vector {
+        self.by_place(i)
+    }
+
+    fn row(&self, s: usize) -> f64 {
+        self.by_potential(s)
+    }
+
+    fn block(&self, i: usize, j: usize) -> Matrix {
+        self.by_places(i, j)
+    }
+
+    fn column(&self, i: usize, s: usize) -> Vector {
+        self.by_place_and_potential(i, s)
+    }
+
+    fn entry(&self, s: usize, t: usize) -> f64 {
+        self.by_potentials(s, t)
+    }
+}
+
+impl Kernel for ElementFields {
+    type Element = ElementField;
+    type Storage = ();
+
+    fn vectors(element: &ElementField) -> usize {
+        element.nodes.len()
+    }
+
+    fn scalars(element: &ElementField) -> usize {
+        element.terminals.len()
+    }
+
+    fn vector(element: &ElementField, i: usize) -> VectorArg {
+        VectorArg {
+            vector: element.nodes[i],
+            stencil: element.at,
+        }
+    }
+
+    fn scalar(element: &ElementField, s: usize) -> Option<(usize, f64)> {
+        element.terminals[s].scalar
+    }
+
+    fn energy(element: &ElementField, sample: &Sample<'_>) -> f64 {
+        element.field(sample).value()
+    }
+
+    /// First and second derivatives: a quantity is asked for no others.
+    fn derivatives<S: Scatter>(
+        element: &ElementField,
+        _: Order,
+        sample: &Sample<'_>,
+        (): &(),
+        to: &mut S,
+    ) {
+        to.plain(&element.field(sample));
+    }
+}

@@ -1,0 +1,198 @@
+//! Elements of a formula: a fixed number of arguments, and jets on the stack.
+
+use crate::energy::Energy;
+use crate::functional::{Derivatives, Kernel, Order, Sample, Scatter, Stencil, VectorArg};
+use crate::math::{Jet, Matrix, Vector};
+use nalgebra::{SMatrix, SVector};
+use std::fmt;
+use std::marker::PhantomData;
+
+/// One element: a formula and what it reads.
+#[derive(Clone, Debug)]
+pub struct Element<E, const NV: usize, const NS: usize> {
+    /// The formula.
+    pub energy: E,
+    /// Vectors, in the order of the arguments.
+    pub vectors: [VectorArg; NV],
+    /// Scalars of the site, after the vectors.
+    pub scalars: [usize; NS],
+}
+
+/// Elements of one formula of `M = 3 NV + NS` arguments.
+pub struct Formulas<E, const M: usize, const NV: usize, const NS: usize>(PhantomData<E>);
+
+impl<E, const M: usize, const NV: usize, const NS: usize> fmt::Debug for Formulas<E, M, NV, NS> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "formulas of {M} arguments")
+    }
+}
+
+/// Gradient and Hessian by M arguments, NV vectors first.
+struct OfJet<'a, const M: usize, const NV: usize>(&'a SVector<f64, M>, &'a SMatrix<f64, M, M>);
+
+impl<const M: usize, const NV: usize> Derivatives for OfJet<'_, M, NV> {
+    #[inline(always)]
+    fn force(&self, i: usize) -> Vector {
+        self.0.fixed_rows::<3>(3 * i).into()
+    }
+
+    #[inline(always)]
+    fn row(&self, s: usize) -> f64 {
+        self.0[3 * NV + s]
+    }
+
+    #[inline(always)]
+    fn block(&self, i: usize, j: usize) -> Matrix {
+        self.1.fixed_view::<3, 3>(3 * i, 3 * j).into()
+    }
+
+    #[inline(always)]
+    fn column(&self, i: usize, s: usize) -> Vector {
+        self.1.fixed_view::<3, 1>(3 * i, 3 * NV + s).into()
+    }
+
+    #[inline(always)]
+    fn entry(&self, s: usize, t: usize) -> f64 {
+        self.1[(3 * NV + s, 3 * NV + t)]
+    }
+}
+
+impl<E, const M: usize, const NV: usize, const NS: usize> Formulas<E, M, NV, NS>
+where
+    E: Energy<M>,
+{
+    /// Arguments at the sample and their rates along its direction; a virtual displacement takes the rate as value.
+    #[inline]
+    fn arguments(
+        element: &Element<E, NV, NS>,
+        order: Order,
+        sample: &Sample<'_>,
+    ) -> (SVector<f64, M>, SVector<f64, M>) {
+        const { assert!(M == 3 * NV + NS) };
+        let mut p = SVector::<f64, M>::zeros();
+        let mut w = SVector::<f64, M>::zeros();
+        for (i, arg) in element.vectors.iter().enumerate() {
+            let is_virtual = i < E::VIRTUAL;
+            if !is_virtual {
+                let value = arg.read(sample.h, sample.vectors);
+                p.fixed_rows_mut::<3>(3 * i).copy_from(&value);
+            }
+            if order == Order::Third {
+                let rate = arg.read(sample.h, sample.along);
+                let to = if is_virtual { &mut p } else { &mut w };
+                to.fixed_rows_mut::<3>(3 * i).copy_from(&rate);
+            }
+        }
+        for (i, &s) in element.scalars.iter().enumerate() {
+            p[3 * NV + i] = sample.scalars[s];
+            if order == Order::Third {
+                w[3 * NV + i] = sample.scalars_along[s];
+            }
+        }
+        (p, w)
+    }
+
+    #[inline(always)]
+    fn hand<const ORDER: usize>(
+        element: &Element<E, NV, NS>,
+        order: Order,
+        sample: &Sample<'_>,
+        to: &mut impl Scatter,
+    ) {
+        let (p, w) = Self::arguments(element, order, sample);
+        let jet: Jet<M, ORDER> = element.energy.jet(&p, &w);
+        let plain = OfJet::<M, NV>(&jet.gradient, &jet.hessian);
+        to.plain(&plain);
+        if order < Order::Third {
+            return;
+        }
+        if E::VIRTUAL > 0 {
+            // At δx = w the virtual work itself is the contraction with the costates.
+            to.along(&plain, &plain);
+        } else {
+            let along = OfJet::<M, NV>(&jet.gradient_w, &jet.hessian_w);
+            to.along(&plain, &along);
+        }
+    }
+}
+
+impl<E, const M: usize, const NV: usize, const NS: usize> Kernel for Formulas<E, M, NV, NS>
+where
+    E: Energy<M> + 'static,
+{
+    type Element = Element<E, NV, NS>;
+    type Storage = ();
+
+    const DEGREE: usize = E::DEGREE;
+    const VIRTUAL: usize = E::VIRTUAL;
+    const ISOTROPIC: bool = E::ISOTROPIC;
+
+    fn couples(i: usize, j: usize) -> bool {
+        E::couples(i, j)
+    }
+
+    #[inline(always)]
+    fn vectors(_: &Self::Element) -> usize {
+        NV
+    }
+
+    #[inline(always)]
+    fn scalars(_: &Self::Element) -> usize {
+        NS
+    }
+
+    #[inline(always)]
+    fn vector(element: &Self::Element, i: usize) -> VectorArg {
+        element.vectors[i]
+    }
+
+    #[inline(always)]
+    fn scalar(element: &Self::Element, s: usize) -> Option<(usize, f64)> {
+        Some((element.scalars[s], 1.0))
+    }
+
+    fn energy(element: &Self::Element, sample: &Sample<'_>) -> f64 {
+        let (mut p, w) = Self::arguments(element, Order::Gradient, sample);
+        for (i, arg) in element.vectors.iter().enumerate().take(E::VIRTUAL) {
+            let step = sample.vectors[1][arg.vector] - sample.vectors[0][arg.vector];
+            p.fixed_rows_mut::<3>(3 * i).copy_from(&step);
+        }
+        element.energy.jet::<1>(&p, &w).value
+    }
+
+    fn momentum(
+        element: &Self::Element,
+        scale: f64,
+        x: &[Vector],
+        v: &[Vector],
+        out: &mut [Vector],
+    ) {
+        let mut p = SVector::<f64, M>::zeros();
+        let is_rate = |arg: &VectorArg| arg.stencil == Stencil::Rate;
+        for (i, arg) in element.vectors.iter().enumerate() {
+            let value = if is_rate(arg) { v } else { x }[arg.vector];
+            p.fixed_rows_mut::<3>(3 * i).copy_from(&value);
+        }
+        let gradient = element.energy.jet::<1>(&p, &SVector::zeros()).gradient;
+        for (i, arg) in element.vectors.iter().enumerate() {
+            if is_rate(arg) {
+                out[arg.vector] += gradient.fixed_rows::<3>(3 * i) * scale;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn derivatives<S: Scatter>(
+        element: &Self::Element,
+        order: Order,
+        sample: &Sample<'_>,
+        (): &(),
+        to: &mut S,
+    ) {
+        match (order, E::VIRTUAL) {
+            (Order::Gradient, _) => Self::hand::<1>(element, order, sample, to),
+            (Order::Third, 0) => Self::hand::<3>(element, order, sample, to),
+            _ => Self::hand::<2>(element, order, sample, to),
+        }
+    }
+}

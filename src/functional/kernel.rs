@@ -1,0 +1,87 @@
+//! Elements of one kind: what one reads, and how its derivatives are made.
+
+use crate::functional::{Derivatives, Order, Sample, VectorArg};
+use crate::math::Vector;
+use std::fmt::Debug;
+
+/// Receives the derivatives of one element.
+pub trait Scatter {
+    /// Those of its scalar.
+    fn plain<D: Derivatives>(&mut self, plain: &D);
+
+    /// Those of its scalar contracted with the direction, after those of the scalar itself.
+    fn along<D: Derivatives, W: Derivatives>(&mut self, plain: &D, along: &W);
+}
+
+/// What elements of one kind are: which arguments an element has, and the derivatives of its scalar E by them.
+///
+/// E is an energy in mJ, a virtual work δx·f in mJ of forces without a potential, or the value of a quantity. An element has `n`
+/// vectors of the list. Argument `i` reads vector `i mod n`, so that node forces of an element that reads places and velocities
+/// of its nodes share their couplings. How arguments follow from instants, which rows of a virtual work are equations, and where
+/// an entry lies is known to the group of the elements alone.
+pub trait Kernel: Debug + Send + Sync + 'static {
+    /// One element.
+    type Element: Send + Sync;
+
+    /// What [`prepare`](Self::prepare) keeps of one element; `()` where nothing is worth it.
+    type Storage: Debug + Default + Send;
+
+    /// Polynomial degree of E: derivatives above it vanish and are never asked for.
+    const DEGREE: usize = usize::MAX;
+
+    /// How many leading arguments are virtual displacements: 0 for an energy; otherwise E is linear in them and has no scalars.
+    const VIRTUAL: usize = 0;
+
+    /// How many arguments there are for each vector of an element.
+    const READINGS: usize = 1;
+
+    /// Whether second derivatives between two vectors are multiples of the identity.
+    const ISOTROPIC: bool = false;
+
+    /// Whether h E over an interval depends on its length h where places are kept: not where E is of degree one in rates.
+    const BY_DURATION: bool = true;
+
+    /// Names of the two parts of its energy in reports, where it has parts.
+    const PARTS: Option<[&'static str; 2]> = None;
+
+    /// Whether the arguments `i` and `j` meet in second derivatives.
+    fn couples(_i: usize, _j: usize) -> bool {
+        true
+    }
+
+    /// Number n of vectors of an element.
+    fn vectors(element: &Self::Element) -> usize;
+
+    /// Number of its scalars.
+    fn scalars(element: &Self::Element) -> usize;
+
+    /// What argument `i` reads, of n times [`READINGS`](Self::READINGS).
+    fn vector(element: &Self::Element, i: usize) -> VectorArg;
+
+    /// Scalar of the site that argument `s` depends on, and the factor of it; `None` for a constant.
+    fn scalar(element: &Self::Element, s: usize) -> Option<(usize, f64)>;
+
+    /// E at a sample; the work over the interval where E is a virtual work.
+    fn energy(element: &Self::Element, sample: &Sample<'_>) -> f64;
+
+    /// The first of the [parts](Self::PARTS) of the energy.
+    fn first_part(element: &Self::Element, sample: &Sample<'_>) -> f64 {
+        Self::energy(element, sample)
+    }
+
+    /// Adds the momenta ∂E/∂ẋ times `scale` at vectors x with rates v, where E is a kinetic energy.
+    fn momentum(_: &Self::Element, _scale: f64, _x: &[Vector], _v: &[Vector], _: &mut [Vector]) {}
+
+    /// Computes what takes time and needs no order: many elements are prepared on all cores.
+    fn prepare(_: &Self::Element, _: Order, _: &Sample<'_>, _storage: &mut Self::Storage) {}
+
+    /// Hands over the derivatives up to an order. At [`Third`](Order::Third) virtual displacements are the direction, so that E
+    /// is its own contraction with costates.
+    fn derivatives<S: Scatter>(
+        element: &Self::Element,
+        order: Order,
+        sample: &Sample<'_>,
+        storage: &Self::Storage,
+        to: &mut S,
+    );
+}

@@ -1,0 +1,106 @@
+//! Elements of one kind as a quantity that is read by itself.
+
+use crate::functional::scatter::{ALL, Places};
+use crate::functional::slots::Slots;
+use crate::functional::{
+    Couplings, Derivatives, Group, Kernel, Measure, Order, Part, Sample, Scatter,
+};
+use crate::math::Vector;
+
+/// The gradient of a quantity.
+struct Gradient<'a, K: Kernel> {
+    places: Places<'a, K>,
+    c: f64,
+    forces: &'a mut [Vec<Vector>; 2],
+    rows: &'a mut [f64],
+}
+
+impl<K: Kernel> Scatter for Gradient<'_, K> {
+    fn plain<D: Derivatives>(&mut self, d: &D) {
+        let derivatives = (|i| d.force(i), |s| d.row(s));
+        let to = (&mut *self.forces, &mut *self.rows);
+        self.places.first(self.c, ALL, derivatives, to);
+    }
+
+    fn along<D: Derivatives, W: Derivatives>(&mut self, _: &D, _: &W) {}
+}
+
+/// The gradient and Hessian of a quantity times a weight.
+struct Weighted<'a, K: Kernel> {
+    places: Places<'a, K>,
+    c: f64,
+    part: &'a mut Part,
+}
+
+impl<K: Kernel> Scatter for Weighted<'_, K> {
+    fn plain<D: Derivatives>(&mut self, d: &D) {
+        let part = &mut *self.part;
+        let derivatives = (|i| d.force(i), |s| d.row(s));
+        let to = (&mut part.forces, part.rows.as_mut_slice());
+        self.places.first(self.c, ALL, derivatives, to);
+        if K::DEGREE >= 2 {
+            self.places.second(self.c, (ALL, ALL), d, part);
+        }
+    }
+
+    fn along<D: Derivatives, W: Derivatives>(&mut self, _: &D, _: &W) {}
+}
+
+impl<K: Kernel> Measure for Group<K> {
+    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
+        self.register(couplings, slots);
+    }
+
+    fn vectors(&self) -> Vec<usize> {
+        let of = |e| (0..K::vectors(e)).map(move |a| K::vector(e, a).vector);
+        self.elements.iter().flat_map(of).collect()
+    }
+
+    fn scalars(&self) -> Vec<usize> {
+        let of = |e| (0..K::scalars(e)).filter_map(move |s| K::scalar(e, s));
+        let scalars = self.elements.iter().flat_map(of).map(|(scalar, _)| scalar);
+        let mut scalars: Vec<usize> = scalars.collect();
+        scalars.sort_unstable();
+        scalars.dedup();
+        scalars
+    }
+
+    fn reads(&self, side: usize) -> bool {
+        let of = |e| (0..K::vectors(e) * K::READINGS).map(move |i| K::vector(e, i));
+        let mut args = self.elements.iter().flat_map(of);
+        args.any(|arg| arg.stencil.reads(side))
+    }
+
+    fn value(&self, sample: &Sample<'_>) -> f64 {
+        let value = |element| K::energy(element, sample);
+        self.scale * self.elements.iter().map(value).sum::<f64>()
+    }
+
+    fn gradient(&self, sample: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]) {
+        let order = Order::Gradient;
+        for element in &self.elements {
+            let mut storage = K::Storage::default();
+            K::prepare(element, order, sample, &mut storage);
+            let mut gradient = Gradient::<K> {
+                places: Places::new(element, Slots::default(), sample),
+                c: self.scale,
+                forces,
+                rows,
+            };
+            K::derivatives(element, order, sample, &storage, &mut gradient);
+        }
+    }
+
+    fn add_weighted(&self, weight: f64, sample: &Sample<'_>, slots: &[u32], part: &mut Part) {
+        let c = self.scale * weight;
+        let order = Order::Hessian;
+        self.each(order, sample, slots, |element, places, storage| {
+            let mut weighted = Weighted {
+                places,
+                c,
+                part: &mut *part,
+            };
+            K::derivatives(element, order, sample, storage, &mut weighted);
+        });
+    }
+}

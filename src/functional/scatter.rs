@@ -1,0 +1,150 @@
+//! The one loop that adds derivatives of elements to forces, blocks and couplings.
+
+use crate::functional::slots::Slots;
+use crate::functional::{BlockMask, Derivatives, Kernel, Part, Sample};
+use crate::math::Vector;
+use std::ops::Range;
+
+/// All arguments.
+pub(super) const ALL: Range<usize> = 0..usize::MAX;
+
+/// What one element reads, and where its derivatives lie.
+pub(super) struct Places<'a, K: Kernel> {
+    element: &'a K::Element,
+    slots: Slots<'a>,
+    h: f64,
+    mask: BlockMask,
+}
+
+impl<'a, K: Kernel> Places<'a, K> {
+    #[inline(always)]
+    pub(super) fn new(element: &'a K::Element, slots: Slots<'a>, sample: &Sample<'_>) -> Self {
+        Self {
+            element,
+            slots,
+            h: sample.h,
+            mask: sample.sides,
+        }
+    }
+
+    /// Adds c times first derivatives of the arguments `rows`, and of the scalars.
+    #[inline(always)]
+    pub(super) fn first(
+        &self,
+        c: f64,
+        rows: Range<usize>,
+        (force, row): (impl Fn(usize) -> Vector, impl Fn(usize) -> f64),
+        (forces, sums): (&mut [Vec<Vector>; 2], &mut [f64]),
+    ) {
+        for i in 0..K::vectors(self.element) * K::READINGS {
+            if !rows.contains(&i) {
+                continue;
+            }
+            let arg = K::vector(self.element, i);
+            let weights = arg.stencil.weights(self.h);
+            let force = force(i) * c;
+            for (side, forces) in forces.iter_mut().enumerate() {
+                if arg.stencil.reads(side) {
+                    forces[arg.vector] += force * weights[side];
+                }
+            }
+        }
+        for s in 0..K::scalars(self.element) {
+            if let Some((at, factor)) = K::scalar(self.element, s) {
+                sums[at] += c * factor * row(s);
+            }
+        }
+    }
+
+    /// Adds c times second derivatives between the arguments `rows` and `columns`, with scalars, and between them.
+    #[inline(always)]
+    pub(super) fn second<D: Derivatives>(
+        &self,
+        c: f64,
+        (rows, columns): (Range<usize>, Range<usize>),
+        d: &D,
+        part: &mut Part,
+    ) {
+        let vectors = K::vectors(self.element);
+        for a in 0..vectors {
+            for b in 0..vectors {
+                let Some(slot) = self.slots.vectors(a, b) else {
+                    continue;
+                };
+                for k in 0..K::READINGS {
+                    for l in 0..K::READINGS {
+                        let (i, j) = (k * vectors + a, l * vectors + b);
+                        if rows.contains(&i) && columns.contains(&j) && K::couples(i, j) {
+                            self.block(c, (i, j), slot, d, part);
+                        }
+                    }
+                }
+            }
+            for k in 0..K::READINGS {
+                let i = k * vectors + a;
+                if rows.contains(&i) {
+                    self.columns(c, i, d, part);
+                }
+            }
+        }
+        for s in 0..K::scalars(self.element) {
+            self.entries(c, s, d, part);
+        }
+    }
+
+    /// Adds the block of two arguments.
+    #[inline(always)]
+    fn block<D: Derivatives>(
+        &self,
+        c: f64,
+        (i, j): (usize, usize),
+        slot: usize,
+        d: &D,
+        part: &mut Part,
+    ) {
+        let weights = |i: usize| K::vector(self.element, i).stencil.weights(self.h);
+        let (wi, wj) = (weights(i), weights(j));
+        let block = d.block(i, j);
+        for side in 0..4 {
+            let weight = c * wi[side / 2] * wj[side % 2];
+            if !self.mask.blocks[side] || weight == 0.0 {
+                continue;
+            }
+            if K::ISOTROPIC {
+                part.blocks.isotropic[slot][side] += weight * block[(0, 0)];
+            } else {
+                part.blocks.full[slot][side] += block * weight;
+            }
+        }
+    }
+
+    /// Adds the blocks of an argument and all scalars.
+    #[inline(always)]
+    fn columns<D: Derivatives>(&self, c: f64, i: usize, d: &D, part: &mut Part) {
+        let vectors = K::vectors(self.element);
+        let weights = K::vector(self.element, i).stencil.weights(self.h);
+        for s in 0..K::scalars(self.element) {
+            let slot = self.slots.mixed(i % vectors, s);
+            if let (Some(slot), Some((_, factor))) = (slot, K::scalar(self.element, s)) {
+                let column = d.column(i, s) * (c * factor);
+                part.blocks.mixed[slot][0] += column * weights[0];
+                part.blocks.mixed[slot][1] += column * weights[1];
+            }
+        }
+    }
+
+    /// Adds the entries of a scalar and all others.
+    #[inline(always)]
+    fn entries<D: Derivatives>(&self, c: f64, s: usize, d: &D, part: &mut Part) {
+        let Some((_, factor)) = K::scalar(self.element, s) else {
+            return;
+        };
+        for t in 0..K::scalars(self.element) {
+            if let Some(slot) = self.slots.scalars(s, t)
+                && let Some((_, other)) = K::scalar(self.element, t)
+            {
+                part.blocks.scalars[slot] += c * factor * other * d.entry(s, t);
+            }
+        }
+    }
+}
