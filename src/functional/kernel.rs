@@ -72,7 +72,7 @@ pub trait Kernel: Debug + Send + Sync + 'static {
     /// Adds the momenta ∂E/∂ẋ times `scale` at vectors x with rates v, where E is a kinetic energy.
     fn momentum(_: &Self::Element, _scale: f64, _x: &[Vector], _v: &[Vector], _: &mut [Vector]) {}
 
-    /// Computes what takes time and needs no order: many elements are prepared on all cores.
+    /// Computes what takes time: many elements are prepared on all cores, before derivatives are handed over in their order.
     fn prepare(_: &Self::Element, _: Order, _: &Sample<'_>, _storage: &mut Self::Storage) {}
 
     /// Hands over the derivatives up to an order. At [`Third`](Order::Third) virtual displacements are the direction, so that E

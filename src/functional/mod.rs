@@ -1,4 +1,4 @@
-//! Sums of effects over the intervals and instants of a horizon: indices and time, no physics.
+//! Sums of terms over the intervals and instants of a horizon: indices and time, no physics.
 //!
 //! The discrete action of the midpoint rule is a sum over intervals `[t_k, t_{k+1}]` and instants `t_k`,
 //!
@@ -6,9 +6,11 @@
 //! Ŝ = Σ_k h [ T(v_k) − V(x̄_k, s_k) ] − h₀ Σ_k λ_k·g(x_k),     x̄ = (x_k + x_{k+1})/2,   v = (x_{k+1} − x_k)/h,
 //! ```
 //!
-//! of material vectors x, interval scalars s (voltages) and multipliers λ. An [`Effect`] answers for one term of the
-//! sum on one interval: its forces ∂Ŝ/∂x, the blocks of ∂²Ŝ/∂x², and both contracted with a direction. How vectors
-//! follow from coordinates is none of its business.
+//! of material vectors x, interval scalars s (voltages) and multipliers λ. A [`Term`] answers for its
+//! summands on one interval: forces ∂Ŝ/∂x, the blocks of ∂²Ŝ/∂x², and both contracted with a direction. How vectors follow from
+//! coordinates is none of its business.
+//!
+//! All terms but [`Inertia`] are a [`Group`] of elements of one kind, a [`Kernel`], whose [`Derivatives`] one loop adds up.
 
 mod batches;
 mod border;
