@@ -47,6 +47,7 @@ pub mod element;
 pub mod energy;
 pub mod files;
 pub mod functional;
+pub mod interface;
 pub mod ipopt;
 pub mod kinematics;
 pub mod math;
@@ -56,4 +57,39 @@ pub mod nlp;
 pub mod report;
 pub mod sparse;
 pub mod study;
+pub mod units;
 pub mod workflow;
+
+pub use control::{EarlierSolution, Signal, Solution};
+pub use dynamics::Integrator;
+pub use interface::{
+    Carrier, Control, Error, GROUND, Handle, Input, Motion, Optimum, Part, Result, Simulation,
+    State,
+};
+pub use kinematics::Pose;
+pub use mesh::Mesh;
+pub use mesh::grid::Grid;
+pub use model::components::{Spring, Tendon};
+pub use model::system::{
+    Attachment, Body, Electrode, Glue, Joint, JointKind, Marker, Material, Muscle, Potential,
+    Shape, Solid, Support,
+};
+pub use model::{Component, System, SystemError};
+pub use nlp::Nlp;
+
+/// All that a program needs: `use proboscis::prelude::*;`.
+pub mod prelude {
+    pub use crate::units::*;
+    pub use crate::{
+        Attachment, Body, Carrier, Component, Control, Error, GROUND, Grid, Handle, Input,
+        Integrator, Joint, JointKind, Marker, Material, Motion, Muscle, Optimum, Part, Potential,
+        Result, Signal, Simulation, Solid, Spring, State, System, Tendon, X, Y, Z,
+    };
+}
+
+/// Direction x.
+pub const X: nalgebra::Vector3<f64> = nalgebra::Vector3::new(1.0, 0.0, 0.0);
+/// Direction y.
+pub const Y: nalgebra::Vector3<f64> = nalgebra::Vector3::new(0.0, 1.0, 0.0);
+/// Direction z.
+pub const Z: nalgebra::Vector3<f64> = nalgebra::Vector3::new(0.0, 0.0, 1.0);

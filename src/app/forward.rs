@@ -5,14 +5,12 @@ use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
 use crate::app::comparison::{self, Comparison};
-use crate::app::domain;
 use crate::app::error::CommandError;
 use crate::app::fields;
 use crate::app::folder::make_folder;
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::solution_file;
-use crate::app::steps;
 use crate::app::summary::{self, MEASURED, Seconds, Summary};
 use crate::app::unfinished::Unfinished;
 use crate::app::words::counted;
@@ -22,11 +20,13 @@ use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
+use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::grids::integrate_to;
 use crate::workflow::integrate::{Simulated, grid, integrate};
 use crate::workflow::motion::{solved, trajectory};
 use crate::workflow::phase::phase;
+use crate::workflow::steps;
 
 /// Simulates and writes the folder; a motion that ends early is kept as far as it went.
 pub(super) fn simulation(

@@ -4,14 +4,13 @@
 //! - `multistart`: a control problem from several guesses, each in a process of its own.
 //! - `inspect`, `sparsity`, `check`, `templates`: the other commands.
 //! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
-//! - `accuracy_table`, `blocks`, `comparison`, `domain`, `extent`, `steps`: what is told of a result.
+//! - `accuracy_table`, `blocks`, `comparison`, `extent`: what is told of a result.
 //! - `rest_observed`, `rest_refused`, `rest_words`, `words`, `folder`, `progress`, `request`, `error`: what commands share.
 
 mod accuracy_table;
 mod blocks;
 mod check;
 mod comparison;
-mod domain;
 mod error;
 mod extent;
 mod fields;
@@ -30,7 +29,6 @@ mod rest_words;
 mod solution_file;
 mod solve;
 mod sparsity;
-mod steps;
 mod summary;
 mod task;
 mod templates;

@@ -2,7 +2,6 @@
 
 use std::time::Instant;
 
-use crate::app::domain;
 use crate::app::error::CommandError;
 use crate::app::fields;
 use crate::app::folder::make_folder;
@@ -26,6 +25,7 @@ use crate::report::origin::Origin;
 use crate::report::skins::Skins;
 use crate::report::{Run, atomic, style, write_still};
 use crate::workflow::WorkflowError;
+use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::phase::phase;
 

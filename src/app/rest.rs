@@ -3,7 +3,6 @@
 use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
-use crate::app::domain;
 use crate::app::error::CommandError;
 use crate::app::fields;
 use crate::app::folder::make_folder;
@@ -27,6 +26,7 @@ use crate::model::{Model, System};
 use crate::report::skins::Skins;
 use crate::report::{Run, write_still};
 use crate::workflow::WorkflowError;
+use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::memory;
 use crate::workflow::phase::phase;

@@ -5,7 +5,6 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
-use crate::app::domain;
 use crate::app::error::CommandError;
 use crate::app::fields;
 use crate::app::folder::make_folder;
@@ -26,6 +25,7 @@ use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::workflow::accuracy::{Accuracy, Refined};
 use crate::workflow::cure::{Cured, reproduced};
+use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::grids::optimise_to;
 use crate::workflow::holding;

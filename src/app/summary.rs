@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use crate::app::blocks::BlockSizes;
 use crate::app::comparison::Comparison;
-use crate::app::domain::Outside;
 use crate::app::followed::Followed;
 use crate::app::request::CommandInput;
 use crate::app::rest_words::Rest;
@@ -15,6 +14,7 @@ use crate::dynamics::{DiscreteTrajectory, LocalError};
 use crate::files::lay_out;
 use crate::report::atomic::{self, WriteError};
 use crate::workflow::accuracy::Accuracy;
+use crate::workflow::domain::Outside;
 use crate::workflow::effects::Plan;
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::violations::Violation;

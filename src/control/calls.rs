@@ -12,8 +12,7 @@ use crate::model::{Analysis, InitiallyMoving};
 impl Simulation {
     /// The question of a motion in steps of `step` ms.
     pub fn question(&self, system: &System, step: f64) -> Analysis {
-        let drives = self.voltages.rows();
-        let is_driven = |s: usize| drives.iter().any(|row| row[s] != 0.0);
+        let is_driven = |s: usize| self.voltages.drive(s);
         let mut spoken = Spoken::new(system);
         spoken.of_start(&self.start);
         Analysis {

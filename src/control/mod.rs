@@ -13,6 +13,7 @@ mod numbering;
 mod objective;
 pub mod problem;
 mod resample;
+mod signal;
 mod solution;
 mod transcription;
 
@@ -24,5 +25,6 @@ pub use guess::{InitialGuess, guess};
 pub use limits::{BoundedQuantity, Limits, When};
 pub use numbering::{Numbering, Row, Variable};
 pub use objective::Cost;
+pub use signal::Signal;
 pub use solution::{Costates, Solution};
 pub use transcription::Transcription;

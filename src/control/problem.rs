@@ -1,11 +1,12 @@
 //! What is asked of a system: simulate it, find its equilibrium, or steer it. Units g, mm, ms, N, V.
 
-use crate::control::Earlier;
+use crate::control::{Earlier, Signal};
 use crate::dynamics::Solving;
 use crate::ipopt::OptionValue;
 use crate::model::system::{ElectricConstants, Muscle};
 use crate::model::{Coordinates, Region, System};
 use nalgebra::Vector3;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -94,6 +95,8 @@ pub enum Voltages {
         /// The solution they were read from; none of a table in the problem.
         solution: Option<PathBuf>,
     },
+    /// A function of time for each source.
+    Signals(Vec<Signal>),
 }
 
 /// Voltages after the end of a solution or table.
@@ -109,35 +112,43 @@ impl Voltages {
     /// The solution that they are from.
     pub fn solution(&self) -> Option<&Path> {
         match self {
-            Self::Constant(_) => None,
+            Self::Constant(_) | Self::Signals(_) => None,
             Self::Sampled { solution, .. } => solution.as_deref(),
         }
     }
 
     /// Voltages of the sources at a time in ms.
-    pub fn at(&self, time: f64) -> &[f64] {
+    pub fn at(&self, time: f64) -> Cow<'_, [f64]> {
         match self {
-            Self::Constant(row) => row,
+            Self::Constant(row) => Cow::Borrowed(row),
+            Self::Signals(signals) => signals.iter().map(|signal| signal.at(time)).collect(),
             Self::Sampled { ends, rows, .. } => {
                 let k = ends.iter().position(|&end| time < end);
-                &rows[k.unwrap_or(ends.len())]
+                Cow::Borrowed(&rows[k.unwrap_or(ends.len())])
             }
         }
     }
 
-    /// All rows of voltages there are.
-    pub fn rows(&self) -> Vec<&[f64]> {
+    /// Whether the voltage of a source is ever other than zero.
+    pub fn drive(&self, source: usize) -> bool {
         match self {
-            Self::Constant(row) => vec![row],
-            Self::Sampled { rows, .. } => rows.iter().map(Vec::as_slice).collect(),
+            Self::Constant(row) => row[source] != 0.0,
+            Self::Sampled { rows, .. } => rows.iter().any(|row| row[source] != 0.0),
+            Self::Signals(signals) => !signals[source].is_zero(),
         }
     }
 
-    /// Times in ms at which they may switch.
-    pub fn switches(&self) -> &[f64] {
+    /// Times in ms at which they may switch, or have a corner.
+    pub fn switches(&self) -> Cow<'_, [f64]> {
         match self {
-            Self::Constant(_) => &[],
-            Self::Sampled { ends, .. } => ends,
+            Self::Constant(_) => Cow::Borrowed(&[]),
+            Self::Sampled { ends, .. } => Cow::Borrowed(ends),
+            Self::Signals(signals) => {
+                let mut times: Vec<f64> = signals.iter().flat_map(Signal::corners).collect();
+                times.sort_by(f64::total_cmp);
+                times.dedup();
+                Cow::Owned(times)
+            }
         }
     }
 }
@@ -342,4 +353,22 @@ pub struct Solver {
     pub max_iterations: usize,
     /// Options passed to Ipopt by name.
     pub ipopt: BTreeMap<String, OptionValue>,
+}
+
+impl Default for Solver {
+    /// Tolerance 10⁻¹⁰, 500 iterations.
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-10,
+            max_iterations: 500,
+            ipopt: BTreeMap::new(),
+        }
+    }
+}
+
+impl Simulation {
+    /// Tolerance of steps of no given length, where none is asked for.
+    pub const TOLERANCE: f64 = 1e-3;
+    /// The first step that a tolerance controls, as a part of the duration.
+    pub const FIRST: f64 = 1e-2;
 }

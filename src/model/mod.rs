@@ -4,6 +4,8 @@ mod analysis;
 mod attachment;
 mod block_terms;
 mod blocks;
+mod bodies;
+mod check;
 mod component;
 pub mod components;
 mod constraints;
@@ -27,6 +29,7 @@ pub mod system;
 mod terms;
 
 pub use analysis::{Analysis, InitiallyMoving};
+pub use check::SystemError;
 pub use component::Component;
 pub use error::ModelError;
 pub use floating::Floating;

@@ -1,10 +1,10 @@
 //! What a scene means: bodies, joints, muscles and markers in g, mm, ms, N, V, names resolved.
 
-use crate::kinematics::Pose;
 use crate::mesh::Mesh;
 pub use crate::model::attachment::Attachment;
+pub use crate::model::bodies::{Body, Shape, directors_along};
 use crate::model::components::Components;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 /// A mechanical system; `None` for a body index is the ground.
 #[derive(Clone, Debug, PartialEq)]
@@ -111,47 +111,6 @@ impl System {
         }
         sources
     }
-}
-
-/// A rigid body in the reference configuration.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Body {
-    /// Unique name.
-    pub name: String,
-    /// Mass in g.
-    pub mass: f64,
-    /// Principal moments of inertia about the centre of mass in g mm².
-    pub inertia: [f64; 3],
-    /// Centre of mass in mm.
-    pub centre: Vector3<f64>,
-    /// Principal axes as columns: the directors d₁, d₂, d₃.
-    pub directors: Matrix3<f64>,
-    /// Shape, for pictures.
-    pub shape: Shape,
-}
-
-/// Outline of a body about its centre, in its director frame, in mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
-    /// Cylinder along d₃.
-    Cylinder {
-        /// Length along d₃.
-        length: f64,
-        /// Radius.
-        radius: f64,
-    },
-    /// Box with edges along the directors.
-    Box {
-        /// Edge lengths.
-        size: [f64; 3],
-    },
-    /// Sphere.
-    Sphere {
-        /// Radius.
-        radius: f64,
-    },
-    /// Not drawn.
-    None,
 }
 
 /// A joint at a point of the reference configuration.
@@ -361,12 +320,22 @@ pub struct Marker {
 /// Permittivity of vacuum in N/V² (F/m), CODATA value in the decimals of the reference solutions.
 pub const VACUUM_PERMITTIVITY: f64 = 8.854_187_817e-12;
 
-impl Body {
-    /// Pose in the reference configuration.
-    pub fn pose(&self) -> Pose {
-        Pose {
-            centre: self.centre,
-            directors: self.directors,
+impl ElectricConstants {
+    /// A dielectric of this relative permittivity whose polarisation is linear in the reference field.
+    pub fn first_order(ratio: f64) -> Self {
+        Self {
+            c1: -(ratio - 1.0) * VACUUM_PERMITTIVITY,
+            c2: (ratio - 1.0) * VACUUM_PERMITTIVITY / 2.0,
+            permittivity: VACUUM_PERMITTIVITY,
+        }
+    }
+
+    /// An ideal dielectric of this relative permittivity.
+    pub fn ideal(ratio: f64) -> Self {
+        Self {
+            c1: 0.0,
+            c2: 0.0,
+            permittivity: ratio * VACUUM_PERMITTIVITY,
         }
     }
 }
@@ -392,5 +361,16 @@ impl Muscle {
     /// Mass in g; `None` where the material has no density.
     pub fn mass(&self) -> Option<f64> {
         self.material.density.map(|rho| rho * self.volume())
+    }
+}
+
+/// Gives the driven electrodes their sources, in the order of the blocks; the first one is `first`.
+pub fn number_sources(solids: &mut [Solid], first: usize) {
+    let mut next = first;
+    for electrode in solids.iter_mut().flat_map(|solid| &mut solid.electrodes) {
+        if let Potential::Driven { source, .. } = &mut electrode.potential {
+            *source = next;
+            next += 1;
+        }
     }
 }

@@ -257,7 +257,7 @@ fn expected(points: &[Done<'_>], measure: StudyMeasure) -> Option<f64> {
             Voltages::Constant(_) => {
                 Some((task.step / point.size, task.solving.integrator.order()))
             }
-            Voltages::Sampled { .. } => None,
+            Voltages::Sampled { .. } | Voltages::Signals(_) => None,
         },
         _ => None,
     };

@@ -95,7 +95,7 @@ pub fn integrate_to(
     // Sampled voltages may change within a step.
     let order = match task.voltages {
         Voltages::Constant(_) => OF_MOTION,
-        Voltages::Sampled { .. } => OF_CONTROL,
+        Voltages::Sampled { .. } | Voltages::Signals(_) => OF_CONTROL,
     };
     refine(
         wanted,

@@ -66,14 +66,15 @@ pub fn integrate(
     let setup = began.elapsed().as_secs_f64();
     phase("ordering and first factorisation");
     let observer = |history: &DiscreteTrajectory| observer(&model, history);
-    let scalars = |from: f64, to: f64| model.scalars(task.voltages.at(0.5 * (from + to)));
+    let scalars = |from: f64, to: f64| model.scalars(&task.voltages.at(0.5 * (from + to)));
+    let switches = task.voltages.switches();
     let (history, failure) = match task.tolerance {
         Some(tolerance) => {
             let control = StepControl {
                 duration: task.duration,
                 first: h,
                 tolerance,
-                switches: task.voltages.switches(),
+                switches: &switches,
             };
             simulate_within(task.solving, &model, &start, control, scalars, observer)
         }

@@ -5,12 +5,14 @@
 //! - `resimulate`: what an optimum is worth, by the `distance` of motions; `cure`: finer grids where it is none; `holding`: its end.
 //! - `second_start`, `infeasible`, `active`, `violations`: what is tried before a problem is called infeasible, and why it is.
 //! - `effects`, `reasons`, `stopwatch`: what a model consists of and why, what each term takes; `memory`: what is more than the machine has.
+//! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material.
 //! - `motion`: between what is solved for and a trajectory.
 
 pub mod accuracy;
 pub(crate) mod active;
 pub(crate) mod cure;
 pub(crate) mod distance;
+pub(crate) mod domain;
 pub(crate) mod effects;
 mod error;
 pub mod estimate;
@@ -25,6 +27,7 @@ pub(crate) mod phase;
 pub(crate) mod reasons;
 pub(crate) mod resimulate;
 pub(crate) mod second_start;
+pub(crate) mod steps;
 pub(crate) mod stopwatch;
 pub(crate) mod violations;
 

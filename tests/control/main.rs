@@ -11,6 +11,7 @@ mod final_time;
 mod goals;
 mod guesses;
 mod held_ends;
+mod interface;
 mod limits;
 mod optimality;
 mod reference;

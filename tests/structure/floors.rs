@@ -14,7 +14,7 @@ const FLOORS: [&[&str]; 13] = [
     &["dynamics"],
     &["control"],
     &["workflow", "files"],
-    &["report"],
+    &["report", "interface"],
     &["app"],
     &["study"],
 ];

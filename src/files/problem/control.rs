@@ -190,14 +190,15 @@ pub(crate) fn objective(spec: &ObjectiveSpec, scope: &Scope<'_>) -> Result<Objec
 }
 
 pub(crate) fn solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<Solver, SceneError> {
-    let tolerance = spec.tolerance.unwrap_or(1e-10);
+    let default = Solver::default();
+    let tolerance = spec.tolerance.unwrap_or(default.tolerance);
     if tolerance <= 0.0 {
         let expected = "a positive tolerance";
         return Err(scope
             .key("tolerance")
             .wrong(tolerance.to_string(), expected));
     }
-    let max_iterations = spec.max_iterations.unwrap_or(500);
+    let max_iterations = spec.max_iterations.unwrap_or(default.max_iterations);
     if i32::try_from(max_iterations).is_err() {
         let expected = "a number of iterations below 2147483648";
         let place = scope.key("max_iterations");

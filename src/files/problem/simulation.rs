@@ -12,14 +12,8 @@ use crate::files::problem::voltages::over_time;
 use crate::model::system::{Fidelity, System};
 use std::collections::BTreeMap;
 
-/// Tolerance of steps of no given length, where none is written.
-pub(crate) const TOLERANCE: f64 = 1e-3;
-
 /// Tolerances below this ask for more than rounding allows.
 pub(crate) const LEAST_TOLERANCE: f64 = 1e-9;
-
-/// The first step that a tolerance controls, as a part of the duration.
-pub(crate) const FIRST: f64 = 1e-2;
 
 /// Most steps of a simulation.
 pub(crate) const MOST_STEPS: f64 = 1e8;
@@ -73,14 +67,14 @@ pub(crate) fn step(
             let expected = "a step, such as \"10 ms\": only the midpoint rule chooses its steps";
             return Err(scope.wrong(found, expected));
         }
-        let tolerance = spec.tolerance.unwrap_or(TOLERANCE);
+        let tolerance = spec.tolerance.unwrap_or(Simulation::TOLERANCE);
         if !(LEAST_TOLERANCE..1.0).contains(&tolerance) {
             let expected = format!("a tolerance from {LEAST_TOLERANCE:.0e} to below 1");
             return Err(scope
                 .key("tolerance")
                 .wrong(tolerance.to_string(), expected));
         }
-        return Ok((FIRST * duration, Some(tolerance)));
+        return Ok((Simulation::FIRST * duration, Some(tolerance)));
     };
     let place = scope.key("step");
     let step = place.positive(written)?;

@@ -6,7 +6,7 @@ use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::point::vector;
 use crate::files::scene::spec::BodySpec;
-use crate::model::system::{Body, Shape};
+use crate::model::system::{Body, Shape, directors_along};
 
 /// Rounding of moments that satisfy the triangle inequality with equality.
 const ROUNDING: f64 = 1e-12;
@@ -16,7 +16,7 @@ pub(crate) fn body(spec: &BodySpec, scope: &Scope<'_>) -> Result<Body, SceneErro
     let mass = scope.key("mass").positive(&spec.mass)?;
     let (shape, directors) = shape(spec, scope)?;
     let inertia = match &spec.inertia {
-        None => solid_inertia(mass, &shape),
+        None => shape.inertia(mass),
         Some(_) => explicit_inertia(spec, &directors, scope)?,
     };
     if !inertia
@@ -79,22 +79,6 @@ fn shape(spec: &BodySpec, scope: &Scope<'_>) -> Result<(Shape, Matrix3<f64>), Sc
     Ok((Shape::None, Matrix3::identity()))
 }
 
-/// Principal moments of a homogeneous solid in its director frame in g mm².
-fn solid_inertia(mass: f64, shape: &Shape) -> [f64; 3] {
-    match *shape {
-        Shape::Cylinder { length, radius } => {
-            let transverse = mass * (3.0 * radius.powi(2) + length.powi(2)) / 12.0;
-            [transverse, transverse, mass * radius.powi(2) / 2.0]
-        }
-        Shape::Box { size } => {
-            let [a, b, c] = size.map(|side| side.powi(2));
-            [b + c, c + a, a + b].map(|sum| mass * sum / 12.0)
-        }
-        Shape::Sphere { radius } => [0.4 * mass * radius.powi(2); 3],
-        Shape::None => [0.0; 3],
-    }
-}
-
 /// Moments about the ground axes, put in the order of the directors.
 fn explicit_inertia(
     spec: &BodySpec,
@@ -119,14 +103,6 @@ fn explicit_inertia(
         return Err(scope.wrong(found, expected));
     }
     Ok((permuted * moments).into())
-}
-
-/// Right-handed directors with d₃ along a unit axis; a permutation of the ground axes for one of them.
-fn directors_along(axis: &Vector3<f64>) -> Matrix3<f64> {
-    let least = (axis.iamax() + 1) % 3;
-    let helper = Vector3::ith(least, 1.0);
-    let first = (helper - axis * axis[least]).normalize();
-    Matrix3::from_columns(&[first, axis.cross(&first), *axis])
 }
 
 /// A direction of length one.

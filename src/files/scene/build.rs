@@ -6,7 +6,6 @@ use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::body::{body, unit_axis};
 use crate::files::scene::components::{spring, tendon};
-use crate::files::scene::electrodes::number_sources;
 use crate::files::scene::expand::expanded;
 use crate::files::scene::graph::check_connected;
 use crate::files::scene::marker::marker;
@@ -18,7 +17,7 @@ use crate::files::scene::solid::solid;
 use crate::files::scene::spec::{AxisSpec, ChainSpec, JointSpec, SceneSpec};
 use crate::files::units::quantity::{Damping, RotationalDamping};
 use crate::model::components::Components;
-use crate::model::system::{Joint, JointKind, Material, System};
+use crate::model::system::{Joint, JointKind, Material, System, number_sources};
 
 /// Longest chain that the shorthand writes out.
 const LONGEST_CHAIN: usize = 1000;

@@ -8,7 +8,7 @@ use crate::files::scene::mesh::Meshed;
 use crate::files::scene::nodes::{AXES, extent, in_plane, nodes, place, planes_near};
 use crate::files::scene::spec_solids::{PotentialSpec, SolidSpec, StackSpec};
 use crate::mesh::Mesh;
-use crate::model::system::{Electrode, Potential, Solid};
+use crate::model::system::{Electrode, Potential};
 
 /// A voltage that has no number yet, see [`number_sources`].
 const DRIVEN: Potential = Potential::Driven {
@@ -54,17 +54,6 @@ pub(crate) fn electrodes(
         return Err(place.wrong("floating electrodes only", expected));
     }
     Ok(placed.electrodes)
-}
-
-/// Gives the driven electrodes their sources, in the order of the blocks; the first one is `first`.
-pub(crate) fn number_sources(solids: &mut [Solid], first: usize) {
-    let mut next = first;
-    for electrode in solids.iter_mut().flat_map(|solid| &mut solid.electrodes) {
-        if let Potential::Driven { source, .. } = &mut electrode.potential {
-            *source = next;
-            next += 1;
-        }
-    }
 }
 
 /// Electrodes with the owner of each node.

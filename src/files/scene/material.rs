@@ -89,16 +89,8 @@ fn electric(
         })),
         (Some(ratio), None, None) if ratio >= 1.0 => {
             Ok(Some(match spec.dielectric.unwrap_or_default() {
-                Dielectric::FirstOrder => ElectricConstants {
-                    c1: -(ratio - 1.0) * VACUUM_PERMITTIVITY,
-                    c2: (ratio - 1.0) * VACUUM_PERMITTIVITY / 2.0,
-                    permittivity: VACUUM_PERMITTIVITY,
-                },
-                Dielectric::Ideal => ElectricConstants {
-                    c1: 0.0,
-                    c2: 0.0,
-                    permittivity: ratio * VACUUM_PERMITTIVITY,
-                },
+                Dielectric::FirstOrder => ElectricConstants::first_order(ratio),
+                Dielectric::Ideal => ElectricConstants::ideal(ratio),
             }))
         }
         (Some(ratio), None, None) => {

@@ -11,7 +11,7 @@ const FINE: f64 = 0.01;
 const BALANCED: f64 = 0.05;
 
 /// A warning where the steps make or lose energy of their own.
-pub(super) fn unbalanced(history: &DiscreteTrajectory) -> Option<String> {
+pub(crate) fn unbalanced(history: &DiscreteTrajectory) -> Option<String> {
     let report = history.report;
     let part = report.made / report.exchanged;
     let count = history.intervals();
@@ -27,7 +27,7 @@ pub(super) fn unbalanced(history: &DiscreteTrajectory) -> Option<String> {
 }
 
 /// A warning where the steps do not resolve the motion well, or are too few to tell.
-pub(super) fn told(
+pub(crate) fn told(
     error: Option<LocalError>,
     history: &DiscreteTrajectory,
     task: &Simulation,
@@ -79,7 +79,7 @@ fn rounded(step: f64) -> f64 {
 }
 
 /// The number of steps, and between what their lengths lie where a tolerance controls them.
-pub(super) fn counted(history: &DiscreteTrajectory, task: &Simulation) -> String {
+pub(crate) fn counted(history: &DiscreteTrajectory, task: &Simulation) -> String {
     let count = history.intervals().to_string();
     let lengths = history.times.windows(2).map(|ends| ends[1] - ends[0]);
     let ends = (f64::INFINITY, 0.0_f64);

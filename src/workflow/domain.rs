@@ -9,7 +9,7 @@ const LISTED: usize = 4;
 
 /// A muscle or block outside the domain of its first-order dielectric.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Outside {
+pub(crate) struct Outside {
     /// The muscle or block.
     name: String,
     /// Largest stretch.
@@ -23,7 +23,7 @@ pub(super) struct Outside {
 }
 
 /// As `summary.json` has it.
-pub(super) fn told(list: &[OutOfDomain]) -> Vec<Outside> {
+pub(crate) fn told(list: &[OutOfDomain]) -> Vec<Outside> {
     let outside = |one: &OutOfDomain| Outside {
         name: one.name.clone(),
         stretch: one.stretch,
@@ -35,7 +35,7 @@ pub(super) fn told(list: &[OutOfDomain]) -> Vec<Outside> {
 }
 
 /// One note; with times where there is a motion.
-pub(super) fn note(list: &[Outside], moves: bool) -> Option<String> {
+pub(crate) fn note(list: &[Outside], moves: bool) -> Option<String> {
     if list.is_empty() {
         return None;
     }

@@ -1,0 +1,187 @@
+//! Voltages as functions of time.
+
+use std::f64::consts::TAU;
+
+/// A voltage in V as a function of the time in ms.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Signal {
+    /// The same all the time.
+    Constant(f64),
+    /// Linear between two values, constant before and after.
+    Ramp {
+        /// Value up to the start in V.
+        from: f64,
+        /// Value from the end on in V.
+        to: f64,
+        /// Time at which it begins in ms.
+        start: f64,
+        /// Time that it takes in ms; a step where it is zero.
+        duration: f64,
+    },
+    /// `mean + amplitude sin(2π f t + phase)`.
+    Sine {
+        /// Mean in V.
+        mean: f64,
+        /// Amplitude in V.
+        amplitude: f64,
+        /// Frequency f in 1/ms.
+        frequency: f64,
+        /// Phase in rad.
+        phase: f64,
+    },
+    /// Linear between values at times, constant before and after.
+    Table {
+        /// Times in ms, growing, one or more.
+        times: Vec<f64>,
+        /// A value in V at each.
+        values: Vec<f64>,
+    },
+}
+
+impl Signal {
+    /// A ramp from the beginning.
+    pub fn ramp(from: f64, to: f64, duration: f64) -> Self {
+        Self::Ramp {
+            from,
+            to,
+            start: 0.0,
+            duration,
+        }
+    }
+
+    /// The value at a time.
+    pub fn at(&self, time: f64) -> f64 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Ramp {
+                from,
+                to,
+                start,
+                duration,
+            } => match time - start {
+                late if late >= *duration => *to,
+                early if early <= 0.0 => *from,
+                part => from + (to - from) * part / duration,
+            },
+            Self::Sine {
+                mean,
+                amplitude,
+                frequency,
+                phase,
+            } => mean + amplitude * (TAU * frequency * time + phase).sin(),
+            Self::Table { times, values } => {
+                let next = times.partition_point(|&t| t <= time);
+                match (next.checked_sub(1), times.get(next)) {
+                    (None, _) => values[0],
+                    (Some(last), None) => values[last],
+                    (Some(before), Some(&end)) => {
+                        let part = (time - times[before]) / (end - times[before]);
+                        values[before] + (values[next] - values[before]) * part
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether it is zero all the time.
+    pub fn is_zero(&self) -> bool {
+        match self {
+            Self::Constant(value) => *value == 0.0,
+            Self::Ramp { from, to, .. } => *from == 0.0 && *to == 0.0,
+            Self::Sine {
+                mean, amplitude, ..
+            } => *mean == 0.0 && *amplitude == 0.0,
+            Self::Table { values, .. } => values.iter().all(|&value| value == 0.0),
+        }
+    }
+
+    /// Whether all its numbers are finite, its times grow, and it has a value.
+    pub fn is_sound(&self) -> bool {
+        match self {
+            Self::Constant(value) => value.is_finite(),
+            Self::Ramp {
+                from,
+                to,
+                start,
+                duration,
+            } => [from, to, start, duration].iter().all(|v| v.is_finite()) && *duration >= 0.0,
+            Self::Sine {
+                mean,
+                amplitude,
+                frequency,
+                phase,
+            } => [mean, amplitude, frequency, phase]
+                .iter()
+                .all(|v| v.is_finite()),
+            Self::Table { times, values } => {
+                let all = || times.iter().chain(values);
+                let grows = times.windows(2).all(|pair| pair[0] < pair[1]);
+                !times.is_empty()
+                    && times.len() == values.len()
+                    && grows
+                    && all().all(|v| v.is_finite())
+            }
+        }
+    }
+
+    /// Times in ms at which it is not smooth.
+    pub fn corners(&self) -> Vec<f64> {
+        match self {
+            Self::Constant(_) | Self::Sine { .. } => Vec::new(),
+            Self::Ramp {
+                start, duration, ..
+            } => vec![*start, start + duration],
+            Self::Table { times, .. } => times.clone(),
+        }
+    }
+}
+
+impl From<f64> for Signal {
+    fn from(value: f64) -> Self {
+        Self::Constant(value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::control::Signal;
+
+    #[test]
+    fn signals_are_what_they_say() {
+        let ramp = Signal::Ramp {
+            from: 100.0,
+            to: 300.0,
+            start: 10.0,
+            duration: 20.0,
+        };
+        let table = Signal::Table {
+            times: vec![10.0, 30.0],
+            values: vec![100.0, 300.0],
+        };
+        for (time, expected) in [
+            (0.0, 100.0),
+            (10.0, 100.0),
+            (15.0, 150.0),
+            (30.0, 300.0),
+            (99.0, 300.0),
+        ] {
+            assert_eq!(ramp.at(time), expected);
+            assert_eq!(table.at(time), expected);
+        }
+        let step = Signal::ramp(0.0, 5.0, 0.0);
+        assert_eq!([step.at(-1.0), step.at(0.0)], [0.0, 5.0]);
+        let sine = Signal::Sine {
+            mean: 2.0,
+            amplitude: 3.0,
+            frequency: 0.25,
+            phase: 0.0,
+        };
+        assert!((sine.at(1.0) - 5.0).abs() < 1e-12 && (sine.at(3.0) + 1.0).abs() < 1e-12);
+        assert!(ramp.is_sound() && !Signal::ramp(0.0, f64::NAN, 1.0).is_sound());
+        let unsorted = Signal::Table {
+            times: vec![1.0, 1.0],
+            values: vec![0.0, 0.0],
+        };
+        assert!(!unsorted.is_sound() && unsorted.is_zero());
+    }
+}

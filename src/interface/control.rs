@@ -1,0 +1,275 @@
+//! Optimal control problems.
+
+use crate::control::problem::{self, Duration, Guess, Hold, Objective, PathConstraint, Solver};
+use crate::control::{Earlier, EarlierSolution};
+use crate::dynamics::out_of_domain;
+use crate::interface::error::{Result, require};
+use crate::interface::handle::Handle;
+use crate::interface::motion::Motion;
+use crate::interface::optimum::Optimum;
+use crate::interface::state::State;
+use crate::model::System;
+use crate::model::system::{Joint, Muscle};
+use crate::nlp::Nlp;
+use crate::workflow::cure::{Cured, reproduced};
+use crate::workflow::domain;
+use crate::workflow::holding;
+use crate::workflow::motion::{history, trajectory};
+use crate::workflow::optimise::{Counted, Prepared, SolveLimits, prepare, resolve};
+use crate::workflow::resimulate::{Cause, Resimulation};
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::ops::RangeInclusive;
+
+/// An optimal control problem: voltages that steer a system from rest to rest.
+#[derive(Clone, Debug)]
+pub struct Control {
+    duration: Duration,
+    intervals: usize,
+    start: State,
+    goal: State,
+    voltage_bounds: [f64; 2],
+    objective: Objective,
+    limits: Vec<PathConstraint>,
+    guess: Guess,
+    max_seconds: Option<f64>,
+}
+
+impl Control {
+    /// Over a given duration in ms in so many intervals, from rest without voltages to the reference configuration.
+    pub fn over(duration: f64, intervals: usize) -> Self {
+        Self {
+            duration: Duration::Given(duration),
+            intervals,
+            start: State::rest(),
+            goal: State::Reference,
+            voltage_bounds: [0.0, f64::INFINITY],
+            objective: Objective::default(),
+            limits: Vec::new(),
+            guess: Guess::Interpolate,
+            max_seconds: None,
+        }
+    }
+
+    /// A free duration between bounds in ms; the solver starts in their middle.
+    pub fn over_free(duration: RangeInclusive<f64>, intervals: usize) -> Self {
+        let (min, max) = (*duration.start(), *duration.end());
+        let guess = 0.5 * (min + max);
+        Self {
+            duration: Duration::Free { min, max, guess },
+            ..Self::over(guess, intervals)
+        }
+    }
+
+    /// Another start.
+    pub fn start(self, start: State) -> Self {
+        Self { start, ..self }
+    }
+
+    /// The goal, at rest.
+    pub fn goal(self, goal: State) -> Self {
+        Self { goal, ..self }
+    }
+
+    /// Bounds of all voltages in V; from 0 to infinity where nothing is said.
+    pub fn voltage_bounds(self, lower: f64, upper: f64) -> Self {
+        let voltage_bounds = [lower, upper];
+        Self {
+            voltage_bounds,
+            ..self
+        }
+    }
+
+    /// Minimises Σ h |V|², V in kV and h in s, with a weight.
+    pub fn effort(mut self, weight: f64) -> Self {
+        self.objective.effort = weight;
+        self
+    }
+
+    /// Minimises Σ |ΔV|²/h of the changes of the voltages, with a weight.
+    pub fn rate(mut self, weight: f64) -> Self {
+        self.objective.rate = weight;
+        self
+    }
+
+    /// Minimises the duration in s, with a weight.
+    pub fn time(mut self, weight: f64) -> Self {
+        self.objective.duration = weight;
+        self
+    }
+
+    /// Greatest true electric field of muscles in V/mm.
+    pub fn field_below(mut self, muscles: &[Handle<Muscle>], max: f64) -> Self {
+        let limit = |muscle: &Handle<Muscle>| PathConstraint::ElectricField {
+            muscle: muscle.index(),
+            max,
+        };
+        self.limits.extend(muscles.iter().map(limit));
+        self
+    }
+
+    /// Range of the stretch of a muscle.
+    pub fn stretch_within(mut self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
+        self.limits.push(PathConstraint::Stretch {
+            muscle: muscle.index(),
+            min: *range.start(),
+            max: *range.end(),
+        });
+        self
+    }
+
+    /// Range of the coordinate of a joint in rad or mm.
+    pub fn joint_within(mut self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
+        self.limits.push(PathConstraint::JointAngle {
+            joint: joint.index(),
+            min: *range.start(),
+            max: *range.end(),
+        });
+        self
+    }
+
+    /// Starts from an earlier solution, also of another grid or goal.
+    pub fn starting_from(self, earlier: impl EarlierSolution + 'static) -> Self {
+        let guess = Guess::Solution(Earlier::new(earlier));
+        Self { guess, ..self }
+    }
+
+    /// Stops the solver after so many seconds.
+    pub fn max_seconds(self, seconds: f64) -> Self {
+        let max_seconds = Some(seconds);
+        Self {
+            max_seconds,
+            ..self
+        }
+    }
+
+    /// Solves; an optimum that a simulation under its voltages does not reproduce is solved again on finer grids.
+    ///
+    /// # Errors
+    /// System or problem make no sense, or start or goal do not exist. A problem without a solution is no error: see
+    /// [`Optimum::is_solved`].
+    pub fn solve(&self, system: &System) -> Result<Optimum> {
+        let system = &system.checked()?;
+        let control = self.resolve(system)?;
+        let allowed = SolveLimits {
+            iterations: None,
+            seconds: self.max_seconds,
+        };
+        let Cured {
+            optimum: mut found,
+            iterations,
+            note,
+        } = reproduced(system, &control, allowed, &mut |_, _| {
+            ControlFlow::Continue(())
+        })?;
+        found.hold();
+        let model = &found.model;
+        let tested = found.resimulation.as_ref();
+        let outside = domain::told(&out_of_domain(model, &history(model, &found.motion)));
+        let message = match found.is_solved() {
+            true => None,
+            false => Some(
+                found
+                    .cause()
+                    .map_or_else(|| found.word().replace('_', " "), Cause::told),
+            ),
+        };
+        let warnings = [
+            note,
+            tested.and_then(Resimulation::warning),
+            holding::warning(&control, model, &found.boundary, tested),
+            domain::note(&outside, true),
+        ];
+        Ok(Optimum {
+            status: found.word(),
+            objective: found.solution.objective,
+            iterations,
+            message,
+            motion: Motion {
+                system: model.system.clone(),
+                trajectory: trajectory(model, &found.motion),
+                warnings: warnings.into_iter().flatten().collect(),
+            },
+            is_solved: found.is_solved(),
+            solution: found.motion,
+        })
+    }
+
+    /// Hands the transcription to `read` as a nonlinear program, with the point where the solver would start.
+    ///
+    /// # Errors
+    /// As of [`Control::solve`].
+    pub fn with_program<R>(
+        &self,
+        system: &System,
+        read: impl FnOnce(&mut dyn Nlp, &[f64]) -> R,
+    ) -> Result<R> {
+        let system = &system.checked()?;
+        let control = self.resolve(system)?;
+        let (model, boundary) = resolve(system, &control)?;
+        let Prepared {
+            mut program, point, ..
+        } = prepare(&model, &boundary, &control, None, Counted::Yes)?;
+        Ok(read(&mut program, &point.x))
+    }
+
+    fn resolve(&self, system: &System) -> Result<problem::Control> {
+        let positive = |v: f64| v > 0.0 && v.is_finite();
+        let (first, bounds) = match self.duration {
+            Duration::Given(duration) => (duration, [duration; 2]),
+            Duration::Free { min, max, guess } => (guess, [min, max]),
+        };
+        let holds = positive(first) && bounds.map(positive) == [true; 2] && bounds[0] <= bounds[1];
+        let found = || format!("a duration within {bounds:?} ms");
+        require(holds, "control", found, "positive numbers that grow")?;
+        let found = || "no interval".to_owned();
+        require(self.intervals > 0, "control", found, "one or more")?;
+        let [lower, upper] = self.voltage_bounds;
+        let found = || format!("voltages within {:?} V", self.voltage_bounds);
+        require(lower < upper, "control", found, "bounds that grow")?;
+        let sources = system.sources();
+        let found = || "a system without a muscle that takes a voltage".to_owned();
+        let takes = sources.iter().any(|source| source.takes_voltage);
+        require(takes, "control", found, "a muscle with a permittivity")?;
+        let weights = &self.objective;
+        let weights = [weights.effort, weights.rate, weights.duration];
+        let holds = weights.iter().all(|w| *w >= 0.0 && w.is_finite()) && weights != [0.0; 3];
+        let found = || format!("weights {weights:?} of effort, rate and time");
+        require(holds, "control", found, "weights of which one is positive")?;
+        for limit in &self.limits {
+            let holds = match *limit {
+                PathConstraint::ElectricField { muscle, max } => {
+                    muscle < system.muscles.len() && max > 0.0
+                }
+                PathConstraint::Stretch { muscle, min, max } => {
+                    muscle < system.muscles.len() && min < max
+                }
+                PathConstraint::JointAngle { joint, min, max } => {
+                    let joint = system.joints.get(joint);
+                    joint.is_some_and(Joint::has_coordinate) && min < max
+                }
+                PathConstraint::BlockField { .. } | PathConstraint::Marker { .. } => true,
+            };
+            require(
+                holds,
+                "limit",
+                || format!("{limit:?}"),
+                "a range of a part of the system",
+            )?;
+        }
+        Ok(problem::Control {
+            duration: self.duration,
+            intervals: self.intervals,
+            start: self.start.resolve(system, sources.len())?,
+            goal: self.goal.resolve(system, sources.len())?,
+            voltage_bounds: self.voltage_bounds,
+            given: BTreeMap::new(),
+            hold: Hold::Reported,
+            objective: self.objective,
+            limits: self.limits.clone(),
+            coordinates: None,
+            guess: self.guess.clone(),
+            solver: Solver::default(),
+        })
+    }
+}

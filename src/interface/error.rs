@@ -1,0 +1,62 @@
+//! Why there is no result.
+
+use crate::dynamics::StepError;
+use crate::interface::Motion;
+use crate::model::SystemError;
+use crate::workflow::WorkflowError;
+use thiserror::Error;
+
+/// Why there is no result.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// The system makes no sense.
+    #[error(transparent)]
+    System(#[from] SystemError),
+    /// What is asked of it makes no sense.
+    #[error("{what}: {found}, expected {expected}")]
+    Problem {
+        /// What is asked.
+        what: &'static str,
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// What is asked of it does not exist, or the run was interrupted before there was a result.
+    #[error(transparent)]
+    Workflow(#[from] WorkflowError),
+    /// A step of a simulation failed; the motion so far is kept.
+    #[error("{source}")]
+    Step {
+        /// Why.
+        source: StepError,
+        /// The motion up to there.
+        motion: Box<Motion>,
+    },
+    /// A simulation was interrupted; the motion so far is kept.
+    #[error("interrupted at {} ms", .motion.times().last().unwrap_or(&0.0))]
+    Interrupted {
+        /// The motion up to there.
+        motion: Box<Motion>,
+    },
+}
+
+/// A result, or why there is none.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Fails where something does not hold.
+pub(super) fn require(
+    holds: bool,
+    what: &'static str,
+    found: impl FnOnce() -> String,
+    expected: &'static str,
+) -> Result<()> {
+    match holds {
+        true => Ok(()),
+        false => Err(Error::Problem {
+            what,
+            found: found(),
+            expected,
+        }),
+    }
+}

@@ -1,0 +1,106 @@
+//! Parts of a system are named by handles.
+
+use crate::model::system::{Body, number_sources};
+use crate::model::{System, SystemError};
+use std::fmt;
+use std::marker::PhantomData;
+
+/// A part of a system.
+pub struct Handle<P> {
+    index: usize,
+    part: PhantomData<fn() -> P>,
+}
+
+impl<P> Handle<P> {
+    pub(super) fn new(index: usize) -> Self {
+        Self {
+            index,
+            part: PhantomData,
+        }
+    }
+
+    /// Its index in the list of its kind in the [`System`].
+    pub fn index(self) -> usize {
+        self.index
+    }
+}
+
+impl<P> Clone for Handle<P> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<P> Copy for Handle<P> {}
+
+impl<P> PartialEq for Handle<P> {
+    fn eq(&self, other: &Self) -> bool {
+        self.index == other.index
+    }
+}
+
+impl<P> Eq for Handle<P> {}
+
+impl<P> fmt::Debug for Handle<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Handle({})", self.index)
+    }
+}
+
+/// What carries a point: a body or the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Carrier(pub(super) Option<usize>);
+
+/// The ground.
+pub const GROUND: Carrier = Carrier(None);
+
+impl From<Handle<Body>> for Carrier {
+    fn from(body: Handle<Body>) -> Self {
+        Self(Some(body.index))
+    }
+}
+
+/// A kind of part that a system has.
+pub trait Part: Sized {
+    /// Takes it into a system; its index in the list of its kind.
+    fn join(self, system: &mut System) -> usize;
+}
+
+impl System {
+    /// A system without parts or gravity.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            bodies: Vec::new(),
+            joints: Vec::new(),
+            muscles: Vec::new(),
+            solids: Vec::new(),
+            markers: Vec::new(),
+            gravity: None,
+            components: crate::model::components::Components::default(),
+        }
+    }
+
+    /// Adds a part; one without a name is called by its kind and number, such as `muscle1`.
+    pub fn add<P: Part>(&mut self, part: P) -> Handle<P> {
+        Handle::new(part.join(self))
+    }
+}
+
+impl System {
+    /// A copy whose electrodes have their sources, if it makes sense.
+    pub(super) fn checked(&self) -> Result<Self, SystemError> {
+        self.check()?;
+        let mut system = self.clone();
+        number_sources(&mut system.solids, self.muscles.len());
+        Ok(system)
+    }
+}
+
+/// The name, or kind and number where it is empty.
+pub(super) fn named(name: String, kind: &str, others: usize) -> String {
+    match name.is_empty() {
+        true => format!("{kind}{}", others + 1),
+        false => name,
+    }
+}

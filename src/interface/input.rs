@@ -1,0 +1,54 @@
+//! What takes a voltage.
+
+use crate::interface::error::{Error, Result};
+use crate::interface::handle::Handle;
+use crate::model::System;
+use crate::model::system::{Muscle, Potential, Solid};
+
+/// What takes a voltage: a muscle, or a driven electrode of a solid by its name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Input {
+    /// A muscle.
+    Muscle(Handle<Muscle>),
+    /// A driven electrode.
+    Electrode(Handle<Solid>, String),
+}
+
+impl From<Handle<Muscle>> for Input {
+    fn from(muscle: Handle<Muscle>) -> Self {
+        Self::Muscle(muscle)
+    }
+}
+
+impl From<(Handle<Solid>, &str)> for Input {
+    fn from((solid, electrode): (Handle<Solid>, &str)) -> Self {
+        Self::Electrode(solid, electrode.to_owned())
+    }
+}
+
+impl Input {
+    /// Its place in the list of sources of a system.
+    ///
+    /// # Errors
+    /// The system has no such muscle or electrode.
+    pub(super) fn source(&self, system: &System) -> Result<usize> {
+        let found = match self {
+            Self::Muscle(muscle) => {
+                let index = muscle.index();
+                (index < system.muscles.len()).then_some(index)
+            }
+            Self::Electrode(solid, name) => system.solids.get(solid.index()).and_then(|solid| {
+                let electrode = solid.electrodes.iter().find(|e| e.name == *name)?;
+                match electrode.potential {
+                    Potential::Driven { source, .. } => Some(source),
+                    Potential::Given(_) | Potential::Floating => None,
+                }
+            }),
+        };
+        found.ok_or_else(|| Error::Problem {
+            what: "voltage",
+            found: format!("{self:?}"),
+            expected: "a muscle or a driven electrode of the system",
+        })
+    }
+}

@@ -1,0 +1,50 @@
+//! Elastomers, built with defaults.
+
+use crate::model::system::{ElectricConstants, Material};
+
+impl Material {
+    /// A neo-Hookean elastomer with a shear modulus in MPa, without density, permittivity or viscosity so far.
+    pub fn elastomer(shear_modulus: f64) -> Self {
+        Self {
+            density: None,
+            shear_modulus,
+            lame_lambda: None,
+            electric: None,
+            viscosity: None,
+        }
+    }
+
+    /// Density in g/mm³.
+    pub fn density(self, density: f64) -> Self {
+        let density = Some(density);
+        Self { density, ..self }
+    }
+
+    /// Relative permittivity of a dielectric whose polarisation is linear in the reference field (c₁ = −(ε_r − 1) ε₀,
+    /// c₂ = (ε_r − 1) ε₀/2).
+    pub fn relative_permittivity(self, ratio: f64) -> Self {
+        let electric = Some(ElectricConstants::first_order(ratio));
+        Self { electric, ..self }
+    }
+
+    /// Relative permittivity of an ideal dielectric.
+    pub fn ideal_dielectric(self, ratio: f64) -> Self {
+        let electric = Some(ElectricConstants::ideal(ratio));
+        Self { electric, ..self }
+    }
+
+    /// Viscosity in MPa ms.
+    pub fn viscosity(self, viscosity: f64) -> Self {
+        let viscosity = Some(viscosity);
+        Self { viscosity, ..self }
+    }
+
+    /// Poisson ratio, which finite elements need: λ = 2 μ ν/(1 − 2 ν).
+    pub fn poisson_ratio(self, ratio: f64) -> Self {
+        let lame_lambda = Some(2.0 * self.shear_modulus * ratio / (1.0 - 2.0 * ratio));
+        Self {
+            lame_lambda,
+            ..self
+        }
+    }
+}

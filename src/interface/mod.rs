@@ -1,0 +1,25 @@
+//! The library as a program uses it: systems built part by part, simulated and steered in memory.
+//!
+//! - `handle`, `parts`, `material`: systems and their parts, with defaults; checked when they are used.
+//! - `input`, `state`, `simulation`, `control`: what is asked of a system.
+//! - `motion`, `optimum`, `error`: what comes back.
+
+mod control;
+mod error;
+mod handle;
+mod input;
+mod material;
+mod motion;
+mod optimum;
+mod parts;
+mod simulation;
+mod state;
+
+pub use control::Control;
+pub use error::{Error, Result};
+pub use handle::{Carrier, GROUND, Handle, Part};
+pub use input::Input;
+pub use motion::Motion;
+pub use optimum::Optimum;
+pub use simulation::Simulation;
+pub use state::State;

@@ -1,0 +1,68 @@
+//! What a motion shows.
+
+use crate::dynamics::trajectory::Trajectory;
+use crate::interface::handle::Handle;
+use crate::interface::input::Input;
+use crate::kinematics::Pose;
+use crate::model::System;
+use crate::model::system::{Body, Joint, Marker};
+use nalgebra::Vector3;
+
+/// A motion: N + 1 instants and the N intervals between them.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    pub(super) system: System,
+    pub(super) trajectory: Trajectory,
+    /// What is to be known of it: steps that do not resolve it, muscles outside the domain of their material.
+    pub(super) warnings: Vec<String>,
+}
+
+impl Motion {
+    /// Instants in ms.
+    pub fn times(&self) -> &[f64] {
+        &self.trajectory.times
+    }
+
+    /// Places of a marker in mm, by instant.
+    pub fn position(&self, marker: Handle<Marker>) -> Vec<Vector3<f64>> {
+        self.trajectory.path(marker.index())
+    }
+
+    /// Coordinate of a revolute or prismatic joint in rad or mm, by instant; nothing of another joint.
+    pub fn joint(&self, joint: Handle<Joint>) -> Vec<f64> {
+        let joints = &self.system.joints;
+        if !joints[joint.index()].has_coordinate() {
+            return Vec::new();
+        }
+        let before = joints[..joint.index()].iter();
+        let column = before.filter(|joint| joint.has_coordinate()).count();
+        let rows = self.trajectory.joints.iter();
+        rows.map(|row| row[column]).collect()
+    }
+
+    /// Poses of a body, by instant.
+    pub fn pose(&self, body: Handle<Body>) -> Vec<Pose> {
+        let rows = self.trajectory.poses.iter();
+        rows.map(|row| row[body.index()]).collect()
+    }
+
+    /// Start in ms and voltage in V of each interval; nothing of what takes no voltage.
+    pub fn voltage(&self, input: impl Into<Input>) -> Vec<(f64, f64)> {
+        let Ok(source) = input.into().source(&self.system) else {
+            return Vec::new();
+        };
+        let rows = self.trajectory.voltages.iter();
+        let starts = self.trajectory.times.iter();
+        starts.zip(rows).map(|(&t, row)| (t, row[source])).collect()
+    }
+
+    /// What is to be known of it: steps that do not resolve it, muscles outside the domain of their material.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// All of it, as tables and figures read it.
+    pub fn trajectory(&self) -> &Trajectory {
+        &self.trajectory
+    }
+}

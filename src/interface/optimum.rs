@@ -1,0 +1,29 @@
+//! Optimal motions.
+
+use crate::control::Solution;
+use crate::interface::motion::Motion;
+
+/// What the solver found: an optimal motion, or its last iterate.
+#[derive(Clone, Debug)]
+pub struct Optimum {
+    /// How it ended, in a word: `solved`, `not_reproduced`, `infeasible`, ….
+    pub status: &'static str,
+    /// Value of the objective.
+    pub objective: f64,
+    /// Iterations over all grids.
+    pub iterations: usize,
+    /// Why it is no optimum, where it is none.
+    pub message: Option<String>,
+    /// The motion with its voltages.
+    pub motion: Motion,
+    pub(super) is_solved: bool,
+    /// All that a later solve can start from, see [`Control::starting_from`](crate::interface::Control::starting_from).
+    pub solution: Solution,
+}
+
+impl Optimum {
+    /// Whether it meets the optimality conditions and a simulation under its voltages reproduces it.
+    pub fn is_solved(&self) -> bool {
+        self.is_solved
+    }
+}

@@ -1,0 +1,370 @@
+//! Bodies, joints, muscles, markers, springs and tendons, built with defaults.
+
+use crate::interface::handle::{Carrier, Handle, Part, named};
+use crate::mesh::Mesh;
+use crate::model::Component;
+use crate::model::System;
+use crate::model::components::{Other, Spring, Tendon};
+use crate::model::system::{
+    Attachment, Body, Discretisation, Electrode, ElementKind, Fidelity, Joint, JointKind, Marker,
+    Material, Muscle, Potential, Shape, Solid, Support, directors_along,
+};
+use nalgebra::{Matrix3, Vector3};
+use std::sync::Arc;
+
+fn attachment(carrier: impl Into<Carrier>, at: Vector3<f64>) -> Attachment {
+    Attachment {
+        body: carrier.into().0,
+        at,
+    }
+}
+
+impl Body {
+    fn of(shape: Shape) -> Self {
+        Self {
+            name: String::new(),
+            mass: 0.0,
+            inertia: [0.0; 3],
+            centre: Vector3::zeros(),
+            directors: Matrix3::identity(),
+            shape,
+        }
+    }
+
+    /// A homogeneous cylinder along z, lengths in mm.
+    pub fn cylinder(length: f64, radius: f64) -> Self {
+        Self::of(Shape::Cylinder { length, radius })
+    }
+
+    /// A homogeneous box with edges along the axes, lengths in mm.
+    pub fn cuboid(size: [f64; 3]) -> Self {
+        Self::of(Shape::Box { size })
+    }
+
+    /// A homogeneous sphere, radius in mm.
+    pub fn sphere(radius: f64) -> Self {
+        Self::of(Shape::Sphere { radius })
+    }
+
+    /// Mass in g; the moments of inertia follow from the shape.
+    pub fn mass(self, mass: f64) -> Self {
+        let inertia = self.shape.inertia(mass);
+        Self {
+            mass,
+            inertia,
+            ..self
+        }
+    }
+
+    /// Principal moments of inertia in g mm² in place of those of its shape.
+    pub fn inertia(self, inertia: [f64; 3]) -> Self {
+        Self { inertia, ..self }
+    }
+
+    /// Centre of mass in mm.
+    pub fn at(self, centre: Vector3<f64>) -> Self {
+        Self { centre, ..self }
+    }
+
+    /// Direction of the third director, which is the axis of a cylinder.
+    pub fn along(self, axis: Vector3<f64>) -> Self {
+        let directors = directors_along(&axis.normalize());
+        Self { directors, ..self }
+    }
+
+    /// A name of its own.
+    pub fn named(self, name: impl Into<String>) -> Self {
+        let name = name.into();
+        Self { name, ..self }
+    }
+}
+
+impl Part for Body {
+    fn join(mut self, system: &mut System) -> usize {
+        self.name = named(self.name, "body", system.bodies.len());
+        system.bodies.push(self);
+        system.bodies.len() - 1
+    }
+}
+
+impl Joint {
+    /// A hinge about an axis.
+    pub fn revolute(axis: Vector3<f64>) -> JointKind {
+        let axis = axis.normalize();
+        JointKind::Revolute { axis }
+    }
+
+    /// A slide along an axis.
+    pub fn prismatic(axis: Vector3<f64>) -> JointKind {
+        let axis = axis.normalize();
+        JointKind::Prismatic { axis }
+    }
+
+    /// Place in mm, in the reference configuration.
+    pub fn at(self, at: Vector3<f64>) -> Self {
+        Self { at, ..self }
+    }
+
+    /// Damping of its coordinate: N mm ms of an angle, N ms/mm of a displacement.
+    pub fn damping(self, damping: f64) -> Self {
+        let damping = Some(damping);
+        Self { damping, ..self }
+    }
+
+    /// A name of its own.
+    pub fn named(self, name: impl Into<String>) -> Self {
+        let name = name.into();
+        Self { name, ..self }
+    }
+}
+
+impl JointKind {
+    /// The joint between a parent and a child, at the origin.
+    pub fn between(self, parent: impl Into<Carrier>, child: Handle<Body>) -> Joint {
+        Joint {
+            name: String::new(),
+            kind: self,
+            parent: parent.into().0,
+            child: child.index(),
+            at: Vector3::zeros(),
+            damping: None,
+        }
+    }
+}
+
+impl Part for Joint {
+    fn join(mut self, system: &mut System) -> usize {
+        self.name = named(self.name, "joint", system.joints.len());
+        system.joints.push(self);
+        system.joints.len() - 1
+    }
+}
+
+impl Muscle {
+    /// A stack of a material, which still needs its ends, its section and its layers.
+    pub fn of(material: &Material) -> Self {
+        let nowhere = attachment(super::GROUND, Vector3::zeros());
+        Self {
+            name: String::new(),
+            from: nowhere,
+            to: nowhere,
+            cross_section: [0.0; 2],
+            layer_thickness: 0.0,
+            material: *material,
+            section_inertia: false,
+            fidelity: Fidelity::Lumped,
+        }
+    }
+
+    /// Where it starts: a body or the ground, and a place in mm.
+    pub fn from(self, carrier: impl Into<Carrier>, at: Vector3<f64>) -> Self {
+        let from = attachment(carrier, at);
+        Self { from, ..self }
+    }
+
+    /// Where it ends.
+    pub fn to(self, carrier: impl Into<Carrier>, at: Vector3<f64>) -> Self {
+        let to = attachment(carrier, at);
+        Self { to, ..self }
+    }
+
+    /// Sides of its rectangular cross-section at rest in mm.
+    pub fn section(self, width: f64, depth: f64) -> Self {
+        let cross_section = [width, depth];
+        Self {
+            cross_section,
+            ..self
+        }
+    }
+
+    /// Thickness of one layer at rest in mm.
+    pub fn layer(self, thickness: f64) -> Self {
+        Self {
+            layer_thickness: thickness,
+            ..self
+        }
+    }
+
+    /// Trilinear hexahedra in place of one stretch: elements across both sides and along the span, each along the span a layer of
+    /// the model. The material needs its Poisson ratio.
+    pub fn finite_elements(self, elements: [usize; 3]) -> Self {
+        let discretisation = Discretisation {
+            elements,
+            layers: elements[2],
+            element: ElementKind::Hex8,
+        };
+        Self {
+            fidelity: Fidelity::FiniteElements(discretisation),
+            ..self
+        }
+    }
+
+    /// A name of its own.
+    pub fn named(self, name: impl Into<String>) -> Self {
+        let name = name.into();
+        Self { name, ..self }
+    }
+}
+
+impl Part for Muscle {
+    fn join(mut self, system: &mut System) -> usize {
+        self.name = named(self.name, "muscle", system.muscles.len());
+        system.muscles.push(self);
+        system.muscles.len() - 1
+    }
+}
+
+impl Marker {
+    /// A point of a body or of the ground, in mm.
+    pub fn on(carrier: impl Into<Carrier>, at: Vector3<f64>) -> Self {
+        Self {
+            name: String::new(),
+            point: attachment(carrier, at),
+            solid: None,
+        }
+    }
+
+    /// The node of a solid that is nearest to a place in mm.
+    pub fn on_solid(solid: Handle<Solid>, at: Vector3<f64>) -> Self {
+        Self {
+            solid: Some(solid.index()),
+            ..Self::on(super::GROUND, at)
+        }
+    }
+
+    /// A name of its own.
+    pub fn named(self, name: impl Into<String>) -> Self {
+        let name = name.into();
+        Self { name, ..self }
+    }
+}
+
+impl Part for Marker {
+    fn join(mut self, system: &mut System) -> usize {
+        self.name = named(self.name, "marker", system.markers.len());
+        system.markers.push(self);
+        system.markers.len() - 1
+    }
+}
+
+impl Spring {
+    /// A spring between two points in mm, without force in the reference configuration, without stiffness or damping so far.
+    pub fn between(
+        from: (impl Into<Carrier>, Vector3<f64>),
+        to: (impl Into<Carrier>, Vector3<f64>),
+    ) -> Self {
+        Self {
+            name: String::new(),
+            rest_length: (to.1 - from.1).norm(),
+            from: attachment(from.0, from.1),
+            to: attachment(to.0, to.1),
+            stiffness: None,
+            damping: None,
+        }
+    }
+
+    /// Stiffness in N/mm.
+    pub fn stiffness(self, stiffness: f64) -> Self {
+        let stiffness = Some(stiffness);
+        Self { stiffness, ..self }
+    }
+
+    /// Damping in N ms/mm.
+    pub fn damping(self, damping: f64) -> Self {
+        let damping = Some(damping);
+        Self { damping, ..self }
+    }
+
+    /// Length without force in mm.
+    pub fn rest_length(self, rest_length: f64) -> Self {
+        Self {
+            rest_length,
+            ..self
+        }
+    }
+}
+
+impl Part for Spring {
+    fn join(mut self, system: &mut System) -> usize {
+        let springs = &mut system.components.springs;
+        self.name = named(self.name, "spring", springs.len());
+        springs.push(self);
+        springs.len() - 1
+    }
+}
+
+impl Part for Tendon {
+    fn join(mut self, system: &mut System) -> usize {
+        let tendons = &mut system.components.tendons;
+        self.name = named(self.name, "tendon", tendons.len());
+        tendons.push(self);
+        tendons.len() - 1
+    }
+}
+
+impl Part for Arc<dyn Component> {
+    fn join(self, system: &mut System) -> usize {
+        let others = &mut system.components.others;
+        others.push(Other(self));
+        others.len() - 1
+    }
+}
+
+impl Part for Solid {
+    fn join(mut self, system: &mut System) -> usize {
+        self.name = named(self.name, "solid", system.solids.len());
+        system.solids.push(self);
+        system.solids.len() - 1
+    }
+}
+
+impl Solid {
+    /// A solid of one material on a mesh.
+    pub fn on(mesh: Mesh, material: &Material) -> Self {
+        Self {
+            name: String::new(),
+            materials: vec![*material; mesh.region_names.len()],
+            mesh,
+            element: ElementKind::Hex8,
+            electrodes: Vec::new(),
+            supports: Vec::new(),
+            glued: Vec::new(),
+            velocities: Vec::new(),
+        }
+    }
+
+    /// Nodes of a set of the mesh, such as `z_min`; none where there is no such set, which a check of the system tells.
+    fn nodes(&self, set: &str) -> Vec<usize> {
+        self.mesh.sets.get(set).cloned().unwrap_or_default()
+    }
+
+    /// Holds the nodes of a set of the mesh, such as `z_min`.
+    pub fn clamped(mut self, set: &str) -> Self {
+        let nodes = self.nodes(set);
+        self.supports.push(Support {
+            nodes,
+            held: [true; 3],
+        });
+        self
+    }
+
+    /// An electrode on the nodes of a set of the mesh.
+    pub fn electrode(mut self, name: &str, set: &str, potential: Potential) -> Self {
+        self.electrodes.push(Electrode {
+            name: name.to_owned(),
+            nodes: self.nodes(set),
+            potential,
+        });
+        self
+    }
+}
+
+impl Potential {
+    /// Zero.
+    pub const GROUNDED: Self = Self::Given(0.0);
+    /// The voltage that is given or looked for under the name of the electrode.
+    pub const DRIVEN: Self = Self::Driven {
+        source: 0,
+        factor: 1.0,
+    };
+}

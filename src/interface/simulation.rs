@@ -1,0 +1,164 @@
+//! Simulations.
+
+use crate::control::Signal;
+use crate::control::problem::{self, Voltages};
+use crate::dynamics::trajectory::Trajectory;
+use crate::dynamics::{Integrator, Newton, Solving, local_error, out_of_domain};
+use crate::interface::error::{Error, Result, require};
+use crate::interface::input::Input;
+use crate::interface::motion::Motion;
+use crate::interface::state::State;
+use crate::ipopt::interrupt;
+use crate::model::System;
+use crate::model::system::{Fidelity, Muscle};
+use crate::workflow::integrate::{Simulated, integrate};
+use crate::workflow::{domain, steps};
+use std::ops::ControlFlow;
+
+/// A simulation under given voltages.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    duration: f64,
+    step: Option<f64>,
+    start: State,
+    voltages: Vec<(Input, Signal)>,
+    integrator: Integrator,
+}
+
+impl Simulation {
+    /// Over a duration in ms, from the reference configuration at rest, without voltages, by the midpoint variational integrator
+    /// with steps that a tolerance of 10⁻³ controls.
+    pub fn over(duration: f64) -> Self {
+        Self {
+            duration,
+            step: None,
+            start: State::Reference,
+            voltages: Vec::new(),
+            integrator: Integrator::default(),
+        }
+    }
+
+    /// Equal steps in ms.
+    pub fn step(self, step: f64) -> Self {
+        let step = Some(step);
+        Self { step, ..self }
+    }
+
+    /// Another start.
+    pub fn start(self, start: State) -> Self {
+        Self { start, ..self }
+    }
+
+    /// The voltage of a muscle or electrode: a constant in V or a [`Signal`]; its value in the middle of each step acts during
+    /// the step.
+    pub fn voltage(mut self, input: impl Into<Input>, signal: impl Into<Signal>) -> Self {
+        self.voltages.push((input.into(), signal.into()));
+        self
+    }
+
+    /// Another method; it needs a step of given length.
+    pub fn integrator(self, integrator: Integrator) -> Self {
+        Self { integrator, ..self }
+    }
+
+    /// Simulates.
+    ///
+    /// # Errors
+    /// System or simulation make no sense, a step fails, or Ctrl-C is pressed where
+    /// [`interrupt`](crate::ipopt::interrupt) listens.
+    pub fn run(&self, system: &System) -> Result<Motion> {
+        let system = &system.checked()?;
+        let task = self.resolve(system)?;
+        let run = integrate(system, &task, |_, _| match interrupt::requested() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        })?;
+        let is_whole = run
+            .history
+            .times
+            .last()
+            .is_some_and(|&end| end >= self.duration * (1.0 - 1e-12));
+        let motion = motion(&run, &task);
+        match run.failure {
+            Some(source) => Err(Error::Step {
+                source,
+                motion: Box::new(motion),
+            }),
+            None if !is_whole => Err(Error::Interrupted {
+                motion: Box::new(motion),
+            }),
+            None => Ok(motion),
+        }
+    }
+
+    fn resolve(&self, system: &System) -> Result<problem::Simulation> {
+        let positive = |v: f64| v > 0.0 && v.is_finite();
+        let length = || format!("a duration of {} ms", self.duration);
+        require(
+            positive(self.duration),
+            "simulation",
+            length,
+            "a positive one",
+        )?;
+        if let Some(step) = self.step {
+            let holds = positive(step) && step <= self.duration;
+            let found = || format!("steps of {step} ms");
+            require(
+                holds,
+                "simulation",
+                found,
+                "positive steps within the duration",
+            )?;
+        }
+        let controlled = self.step.is_none();
+        let holds = !controlled || self.integrator == Integrator::Midpoint;
+        let found = || format!("{} without a step", self.integrator.name());
+        let expected = "a step: only the midpoint rule chooses its steps";
+        require(holds, "simulation", found, expected)?;
+        let sources = system.sources().len();
+        let mut signals = vec![Signal::Constant(0.0); sources];
+        for (input, signal) in &self.voltages {
+            let found = || format!("{signal:?} of {input:?}");
+            let expected = "finite numbers, and times that grow";
+            require(signal.is_sound(), "simulation", found, expected)?;
+            signals[input.source(system)?] = signal.clone();
+        }
+        let of_elements = |muscle: &Muscle| muscle.fidelity != Fidelity::Lumped;
+        let has_elements = !system.solids.is_empty() || system.muscles.iter().any(of_elements);
+        Ok(problem::Simulation {
+            duration: self.duration,
+            step: self
+                .step
+                .unwrap_or(problem::Simulation::FIRST * self.duration),
+            tolerance: controlled.then_some(problem::Simulation::TOLERANCE),
+            start: self.start.resolve(system, sources)?,
+            voltages: Voltages::Signals(signals),
+            coordinates: None,
+            solving: Solving {
+                integrator: self.integrator,
+                newton: match has_elements {
+                    true => Newton::Modified,
+                    false => Newton::Full,
+                },
+                backend: None,
+            },
+        })
+    }
+}
+
+/// What is shown of a run.
+fn motion(run: &Simulated, task: &problem::Simulation) -> Motion {
+    let error = local_error(&run.model, &run.history, task.solving.integrator.order());
+    let trajectory = Trajectory::from_history(&run.model, &run.history);
+    let outside = domain::told(&out_of_domain(&run.model, &run.history));
+    let warnings = [
+        steps::told(error, &run.history, task),
+        steps::unbalanced(&run.history),
+        domain::note(&outside, true),
+    ];
+    Motion {
+        system: run.model.system.clone(),
+        trajectory,
+        warnings: warnings.into_iter().flatten().collect(),
+    }
+}

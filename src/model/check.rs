@@ -1,0 +1,236 @@
+//! Whether a system makes sense: what a reader of files checks entry by entry, for systems that are made by a program.
+
+use crate::model::system::{Attachment, JointKind, System};
+use std::collections::BTreeSet;
+use thiserror::Error;
+
+/// A part of a system that makes no sense.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{part}: {found}, expected {expected}")]
+pub struct SystemError {
+    /// Name of the part.
+    pub part: String,
+    /// What was found.
+    pub found: String,
+    /// What was expected.
+    pub expected: String,
+}
+
+/// Rounding of moments that satisfy the triangle inequality with equality, and of unit vectors.
+const ROUNDING: f64 = 1e-12;
+
+/// Collects nothing: the first mistake is the answer.
+fn require(
+    holds: bool,
+    part: &str,
+    found: impl FnOnce() -> String,
+    expected: &str,
+) -> Result<(), SystemError> {
+    match holds {
+        true => Ok(()),
+        false => Err(SystemError {
+            part: part.to_owned(),
+            found: found(),
+            expected: expected.to_owned(),
+        }),
+    }
+}
+
+fn positive(part: &str, what: &str, value: f64) -> Result<(), SystemError> {
+    let holds = value > 0.0 && value.is_finite();
+    require(
+        holds,
+        part,
+        || format!("{what} {value}"),
+        "a positive number",
+    )
+}
+
+impl System {
+    /// Checks names, masses, lengths, axes, materials, and that parts refer to bodies that exist.
+    ///
+    /// # Errors
+    /// The first part that makes no sense.
+    pub fn check(&self) -> Result<(), SystemError> {
+        self.check_names()?;
+        self.check_bodies()?;
+        self.check_joints()?;
+        self.check_muscles()?;
+        for component in self.components.iter() {
+            for point in component.points() {
+                self.check_point(component.name(), &point)?;
+            }
+        }
+        for solid in &self.solids {
+            let sound = solid.mesh.check();
+            require(
+                sound.is_ok(),
+                &solid.name,
+                || sound.map_or_else(|error| error.to_string(), |()| String::new()),
+                "a mesh that can be computed with",
+            )?;
+            let sets = solid.electrodes.iter().map(|e| &e.nodes);
+            for nodes in sets.chain(solid.supports.iter().map(|s| &s.nodes)) {
+                require(
+                    !nodes.is_empty() && nodes.iter().all(|&n| n < solid.mesh.nodes.len()),
+                    &solid.name,
+                    || "an electrode or support without nodes".to_owned(),
+                    "the name of a set of the mesh",
+                )?;
+            }
+            for material in &solid.materials {
+                positive(&solid.name, "shear modulus", material.shear_modulus)?;
+                require(
+                    material.lame_lambda.is_some_and(f64::is_finite),
+                    &solid.name,
+                    || "a material without Poisson ratio".to_owned(),
+                    "one, as finite elements are compressible",
+                )?;
+            }
+        }
+        for marker in &self.markers {
+            self.check_point(&marker.name, &marker.point)?;
+            require(
+                marker.solid.is_none_or(|s| s < self.solids.len()),
+                &marker.name,
+                || "a solid that the system does not have".to_owned(),
+                "one of its solids",
+            )?;
+        }
+        Ok(())
+    }
+
+    fn check_names(&self) -> Result<(), SystemError> {
+        let bodies = self.bodies.iter().map(|part| &part.name);
+        let joints = self.joints.iter().map(|part| &part.name);
+        let muscles = self.muscles.iter().map(|part| &part.name);
+        let solids = self.solids.iter().map(|part| &part.name);
+        let markers = self.markers.iter().map(|part| &part.name);
+        let lists: [Vec<&String>; 4] = [
+            bodies.collect(),
+            joints.collect(),
+            muscles.chain(solids).collect(),
+            markers.collect(),
+        ];
+        for list in lists {
+            let mut seen = BTreeSet::new();
+            for name in list {
+                let is_new = seen.insert(name);
+                require(
+                    is_new && !name.is_empty(),
+                    name,
+                    || "a name that another part of its kind has, or none".to_owned(),
+                    "a name of its own",
+                )?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_bodies(&self) -> Result<(), SystemError> {
+        for body in &self.bodies {
+            positive(&body.name, "mass", body.mass)?;
+            for moment in body.inertia {
+                positive(&body.name, "moment of inertia", moment)?;
+            }
+            let largest = body.inertia.iter().fold(0.0_f64, |m, &v| m.max(v));
+            let sum: f64 = body.inertia.iter().sum();
+            require(
+                sum - 2.0 * largest >= -ROUNDING * largest,
+                &body.name,
+                || format!("moments of inertia {:?}", body.inertia),
+                "moments of which none is larger than the sum of the two others",
+            )?;
+            let gram = body.directors.tr_mul(&body.directors);
+            let is_rotation = (gram - nalgebra::Matrix3::identity()).amax() < 1e-9
+                && body.directors.determinant() > 0.0;
+            require(
+                is_rotation && body.centre.iter().all(|x| x.is_finite()),
+                &body.name,
+                || "a pose that is no rotation and finite place".to_owned(),
+                "a direction that is not zero, and a finite place",
+            )?;
+        }
+        Ok(())
+    }
+
+    fn check_joints(&self) -> Result<(), SystemError> {
+        for joint in &self.joints {
+            for body in joint.parent.into_iter().chain([joint.child]) {
+                self.check_body(&joint.name, body)?;
+            }
+            require(
+                joint.parent != Some(joint.child),
+                &joint.name,
+                || "one body on both sides".to_owned(),
+                "two bodies, or a body and the ground",
+            )?;
+            if let JointKind::Revolute { axis } | JointKind::Prismatic { axis } = joint.kind {
+                require(
+                    (axis.norm() - 1.0).abs() < ROUNDING,
+                    &joint.name,
+                    || format!("the axis {:?}", axis.as_slice()),
+                    "a direction",
+                )?;
+            }
+            if let Some(damping) = joint.damping {
+                positive(&joint.name, "damping", damping)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_muscles(&self) -> Result<(), SystemError> {
+        for muscle in &self.muscles {
+            let name = &muscle.name;
+            self.check_point(name, &muscle.from)?;
+            self.check_point(name, &muscle.to)?;
+            positive(name, "length", muscle.length())?;
+            require(
+                muscle.from.body != muscle.to.body,
+                name,
+                || "one body at both ends".to_owned(),
+                "two bodies, or a body and the ground",
+            )?;
+            for side in muscle.cross_section {
+                positive(name, "side of the cross-section", side)?;
+            }
+            positive(name, "layer thickness", muscle.layer_thickness)?;
+            let material = &muscle.material;
+            positive(name, "shear modulus", material.shear_modulus)?;
+            for value in material.density.into_iter().chain(material.viscosity) {
+                positive(name, "density or viscosity", value)?;
+            }
+            if muscle.fidelity.elements() > 0 {
+                require(
+                    material.lame_lambda.is_some_and(f64::is_finite),
+                    name,
+                    || "a material without Poisson ratio".to_owned(),
+                    "one, as finite elements are compressible",
+                )?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_body(&self, part: &str, body: usize) -> Result<(), SystemError> {
+        require(
+            body < self.bodies.len(),
+            part,
+            || format!("body {body} of {}", self.bodies.len()),
+            "a body of the system",
+        )
+    }
+
+    fn check_point(&self, part: &str, point: &Attachment) -> Result<(), SystemError> {
+        if let Some(body) = point.body {
+            self.check_body(part, body)?;
+        }
+        require(
+            point.at.iter().all(|x| x.is_finite()),
+            part,
+            || format!("the place {:?}", point.at.as_slice()),
+            "a finite place",
+        )
+    }
+}
