@@ -39,12 +39,14 @@
 //! | [`files`], [`report`] | files in and files out |
 //! | [`app`], [`study`] | what the commands do with one problem, and with many variants of it |
 
+#[cfg(feature = "cli")]
 pub mod app;
 pub mod control;
 pub mod coordinates;
 pub mod dynamics;
 pub mod element;
 pub mod energy;
+#[cfg(feature = "files")]
 pub mod files;
 pub mod functional;
 pub mod interface;
@@ -54,8 +56,10 @@ pub mod math;
 pub mod mesh;
 pub mod model;
 pub mod nlp;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod sparse;
+#[cfg(feature = "cli")]
 pub mod study;
 pub mod units;
 pub mod workflow;

@@ -14,9 +14,12 @@ use crate::nlp::Nlp;
 use crate::workflow::cure::{Cured, reproduced};
 use crate::workflow::domain;
 use crate::workflow::holding;
+use crate::workflow::infeasible::explain;
+use crate::workflow::memory;
 use crate::workflow::motion::{history, trajectory};
 use crate::workflow::optimise::{Counted, Prepared, SolveLimits, prepare, resolve};
 use crate::workflow::resimulate::{Cause, Resimulation};
+use crate::workflow::second_start::is_infeasible;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::ops::RangeInclusive;
@@ -150,6 +153,7 @@ impl Control {
     /// [`Optimum::is_solved`].
     pub fn solve(&self, system: &System) -> Result<Optimum> {
         let system = &system.checked()?;
+        memory::of_elements(system)?;
         let control = self.resolve(system)?;
         let allowed = SolveLimits {
             iterations: None,
@@ -174,6 +178,10 @@ impl Control {
                     .map_or_else(|| found.word().replace('_', " "), Cause::told),
             ),
         };
+        let reasons = match is_infeasible(found.solution.status) {
+            true => explain(system, &control, &found, self.max_seconds),
+            false => Vec::new(),
+        };
         let warnings = [
             note,
             tested.and_then(Resimulation::warning),
@@ -188,7 +196,7 @@ impl Control {
             motion: Motion {
                 system: model.system.clone(),
                 trajectory: trajectory(model, &found.motion),
-                warnings: warnings.into_iter().flatten().collect(),
+                warnings: warnings.into_iter().flatten().chain(reasons).collect(),
             },
             is_solved: found.is_solved(),
             solution: found.motion,

@@ -12,7 +12,7 @@ use crate::ipopt::interrupt;
 use crate::model::System;
 use crate::model::system::{Fidelity, Muscle};
 use crate::workflow::integrate::{Simulated, integrate};
-use crate::workflow::{domain, steps};
+use crate::workflow::{domain, memory, steps};
 use std::ops::ControlFlow;
 
 /// A simulation under given voltages.
@@ -68,6 +68,7 @@ impl Simulation {
     /// [`interrupt`](crate::ipopt::interrupt) listens.
     pub fn run(&self, system: &System) -> Result<Motion> {
         let system = &system.checked()?;
+        memory::of_elements(system)?;
         let task = self.resolve(system)?;
         let run = integrate(system, &task, |_, _| match interrupt::requested() {
             true => ControlFlow::Break(()),

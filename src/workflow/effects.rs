@@ -109,7 +109,7 @@ struct Unknowns {
 }
 
 /// Names of the effects that couple two unknowns: coordinates by entry, scalars of the site behind them.
-pub(crate) fn coupling(model: &Model, i: usize, j: usize) -> Vec<String> {
+pub fn coupling(model: &Model, i: usize, j: usize) -> Vec<String> {
     let pair = [i.min(j) as u32, i.max(j) as u32];
     let couple = each(model).filter(|coupled| coupled.pairs.binary_search(&pair).is_ok());
     couple.map(|c| c.effect.name().to_owned()).collect()

@@ -32,13 +32,14 @@ pub(crate) mod stopwatch;
 pub(crate) mod violations;
 
 pub use active::{Active, active};
-pub use effects::{EffectCounts, Plan, effect_counts};
+pub use effects::{EffectCounts, Plan, coupling, effect_counts};
 pub use error::WorkflowError;
 pub use grids::{integrate_to, optimise_to};
 pub use integrate::{Simulated, grid, integrate};
 pub use motion::{solved, trajectory};
-pub use optimise::{Iterate, Optimum, SolveLimits, optimise};
+pub use optimise::{Counted, Iterate, Optimum, SolveLimits, optimise};
 pub use phase::listen_to_phases;
 pub use reasons::{Absent, absent};
-pub use resimulate::{Cause, Resimulation};
+pub use resimulate::{Cause, Resimulation, under_constant_voltages};
+pub use steps::counted;
 pub use violations::{Violation, violations};

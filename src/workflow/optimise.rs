@@ -321,7 +321,7 @@ fn interval(control: &Control) -> f64 {
 
 /// Whether a program with more equations than unknowns is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Counted {
+pub enum Counted {
     /// It has no solution.
     Yes,
     /// Its derivatives exist all the same.

@@ -356,7 +356,7 @@ impl Cause {
 }
 
 /// The motion under the constant voltages of the goal, for `durations` times as long as the optimal one.
-pub(crate) fn under_constant_voltages(
+pub fn under_constant_voltages(
     model: &Model,
     boundary: &BoundaryConditions,
     optimal: &Solution,

@@ -79,7 +79,7 @@ fn rounded(step: f64) -> f64 {
 }
 
 /// The number of steps, and between what their lengths lie where a tolerance controls them.
-pub(crate) fn counted(history: &DiscreteTrajectory, task: &Simulation) -> String {
+pub fn counted(history: &DiscreteTrajectory, task: &Simulation) -> String {
     let count = history.intervals().to_string();
     let lengths = history.times.windows(2).map(|ends| ends[1] - ends[0]);
     let ends = (f64::INFINITY, 0.0_f64);
