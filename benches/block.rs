@@ -258,7 +258,7 @@ fn row(n: usize, viscosity: Option<f64>) -> String {
     format!(
         "| {n} × {n} × {} | {} | {} | {} | {setup:.2} | {assembly:.3} | {factorisation:.3} | {mumps:.3} | {solution:.3} | {ratio:.2} | {step:.2} | {average:.3} | {:.2}, {:.2} | {}, {} |\n",
         4 * n,
-        model.action.motion.unknowns() + model.potentials,
+        model.variables.unknown_count(),
         if viscosity.is_some() { "yes" } else { "no" },
         reused.solver(),
         average / factorisation,

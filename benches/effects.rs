@@ -99,10 +99,10 @@ impl Variant {
     fn sizes(&self) -> [usize; 2] {
         let model = &self.model;
         let (motion, layout) = (&model.action.motion, model.action.layout());
-        let (n, driven) = (motion.coordinates, model.voltages.len());
+        let (n, algebraic) = (motion.coordinates, model.variables.algebraic());
         let crossed = |&&(i, j): &&(usize, usize)| (i < n) != (j < n);
-        let of_potential = |&&(_, s): &&(usize, usize)| s >= driven;
-        let both = |&&(s, t): &&(usize, usize)| s >= driven && t >= driven;
+        let of_potential = |&&(_, s): &&(usize, usize)| algebraic.contains(&s);
+        let both = |&&(s, t): &&(usize, usize)| [s, t].iter().all(|s| algebraic.contains(s));
         let scalars = layout.scalars.entries().iter().filter(both);
         let entries = layout.cross.entries().len()
             + layout.same.entries().iter().filter(crossed).count()
@@ -110,7 +110,7 @@ impl Variant {
             + scalars
                 .map(|(s, t)| if s == t { 1 } else { 2 })
                 .sum::<usize>();
-        [motion.unknowns() + model.potentials, entries]
+        [model.variables.unknown_count(), entries]
     }
 }
 
@@ -457,7 +457,8 @@ fn by_hand(system: &System, volts: &[f64]) -> Variant {
         Box::new(Inertia::new("rods", rods)),
         Box::new(Group::<_, 4, 1, 1>::intervals("muscles", -1.0, cells)),
     ];
-    let intervals = Functional::new(effects, Vec::new(), list.len(), model.voltages.len());
+    let scalars = model.action.intervals.scalars;
+    let intervals = Functional::new(effects, Vec::new(), list.len(), scalars);
     let instants = Functional::new(Vec::new(), Vec::new(), list.len(), 0);
     model.action = Reduced::new(model.action.motion.clone(), intervals, instants);
     variant

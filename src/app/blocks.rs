@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::dynamics::trajectory::Observations;
 use crate::kinematics::Carrier;
-use crate::model::{Model, SolidBlock};
+use crate::model::{Model, Role, SolidBlock};
 
 /// A block, or a muscle of finite elements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -57,7 +57,7 @@ impl BlockSizes {
             nodes: sum(|b| b.nodes),
             elements: sum(|b| b.elements),
             unknowns: sum(|b| b.unknowns),
-            potentials: model.potentials,
+            potentials: model.variables.count(Role::Potential),
             blocks,
             ..Self::default()
         })
@@ -70,14 +70,14 @@ impl BlockSizes {
             .iter()
             .flat_map(SolidBlock::immobile_electrodes);
         let immobile = immobile.map(|(block, electrode)| format!("{block}.{electrode}"));
-        let driven = model.voltages.iter();
-        let driven = driven.map(|&source| model.sources[source].name.clone());
+        let voltages = model.variables.with(Role::Voltage).iter();
+        let sources = voltages.map(|voltage| voltage.name.clone());
         // Charges are observed in this order, in mC.
         let columns = observed.columns.iter();
         let charges = columns.filter(|column| column.name.ends_with("_charge"));
         let last = charges.filter_map(|column| column.values.last());
         Self {
-            charges: immobile.chain(driven).zip(last.map(|q| q / 1e3)).collect(),
+            charges: immobile.chain(sources).zip(last.map(|q| q / 1e3)).collect(),
             instants_written: Some(written),
             ..self
         }
@@ -96,7 +96,8 @@ impl BlockSize {
         };
         let scalars = continuum.terminals.iter().flatten();
         let scalars = scalars.filter_map(|terminal| terminal.scalar.map(|(s, _)| s));
-        let potentials: BTreeSet<usize> = scalars.filter(|&s| s >= model.voltages.len()).collect();
+        let all = model.variables.range(Role::Potential);
+        let potentials: BTreeSet<usize> = scalars.filter(|s| all.contains(s)).collect();
         Self {
             nodes: continuum.solid.mesh.nodes.len(),
             elements: continuum.shapes.len(),

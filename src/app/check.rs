@@ -8,7 +8,7 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::control::problem::{
     BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, Task, Voltages,
 };
-use crate::control::{Row, Transcription, Variable};
+use crate::control::{Column, Row, Transcription};
 use crate::files::read_problem;
 use crate::ipopt::interrupt::TimeLimit;
 use crate::mesh::Mesh;
@@ -101,16 +101,16 @@ fn sizes(program: &Transcription<'_>, model: &Model) -> Vec<f64> {
     let size = (edge / model.length()).min(1.0);
     let of_bodies = model.action.motion.of_bodies;
     let n = model.coordinate_count();
-    let of = |variable: &Variable| match *variable {
-        Variable::Unknown { i, .. } if (of_bodies..n).contains(&i) => size,
+    let of = |column: &Column| match *column {
+        Column::Instant { i, .. } if (of_bodies..n).contains(&i) => size,
         _ => 1.0,
     };
-    program.unknowns().variables.iter().map(of).collect()
+    program.unknowns().columns.iter().map(of).collect()
 }
 
 /// The variables that are looked at: all, or so many by chance that their differences take some minutes.
 fn columns(program: &Transcription<'_>, noise: &mut Noise) -> Vec<usize> {
-    let count = program.unknowns().variables.len();
+    let count = program.unknowns().columns.len();
     let entries = program.jacobian_structure().rows.len();
     let share = WORK / (count as f64 * entries as f64);
     let is_taken = |_: &usize| share >= 1.0 || noise.next().abs() < share;
@@ -120,19 +120,19 @@ fn columns(program: &Transcription<'_>, noise: &mut Noise) -> Vec<usize> {
 /// Names of the effects that couple the unknowns of a row and a column.
 fn coupling(program: &Transcription<'_>, model: &Model, row: &str, column: &str) -> Vec<String> {
     let n = model.coordinate_count();
-    let of_variable = |variable: &Variable| match *variable {
-        Variable::Unknown { i, .. } => Some(i),
-        Variable::Scalar { s, .. } => Some(n + s),
-        Variable::Horizon => None,
+    let of_column = |column: &Column| match *column {
+        Column::Instant { i, .. } => Some(i),
+        Column::Interval { s, .. } => Some(n + s),
+        Column::Horizon => None,
     };
     let mut entries = HashMap::new();
-    for (i, variable) in program.unknowns().variables.iter().enumerate() {
-        entries.insert(program.variable_name(i), of_variable(variable));
+    for (i, column) in program.unknowns().columns.iter().enumerate() {
+        entries.insert(program.variable_name(i), of_column(column));
     }
     for (r, kind) in program.unknowns().rows.iter().enumerate() {
         let entry = match *kind {
-            Row::Equation { i, .. } => Some(i),
-            Row::Gauss { s, .. } => Some(n + s),
+            Row::Instant { i, .. } => Some(i),
+            Row::Interval { s, .. } => Some(n + s),
             Row::Limit { .. } => None,
         };
         entries.insert(program.constraint_name(r), entry);

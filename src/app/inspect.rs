@@ -9,7 +9,7 @@ use crate::app::sparsity;
 use crate::app::words::key;
 use crate::control::problem::{Control, Task};
 use crate::files::read_problem;
-use crate::model::{Model, System};
+use crate::model::{Model, Role, System};
 use crate::nlp::Nlp;
 use crate::report::atomic;
 use crate::report::table;
@@ -56,14 +56,15 @@ const MEASURED: f64 = 5e-3;
 fn of_model(model: &Model, control: Option<&Control>) -> String {
     let plan = Plan::of(model, control, MEASURED);
     let system = &model.system;
+    let count = |role| model.variables.count(role);
     let mut sizes = vec![
         ("bodies", system.bodies.len()),
         ("joints", system.joints.len()),
         ("muscles", system.muscles.len()),
         ("markers", system.markers.len()),
-        ("coordinates of an instant", model.coordinate_count()),
-        ("multipliers of an instant", model.multiplier_names.len()),
-        ("voltages of an interval", model.voltages.len()),
+        ("coordinates of an instant", count(Role::Coordinate)),
+        ("multipliers of an instant", count(Role::Multiplier)),
+        ("voltages of an interval", count(Role::Voltage)),
     ];
     let components = &system.components;
     let kinds = [

@@ -18,7 +18,7 @@ use crate::dynamics::{
     out_of_domain,
 };
 use crate::ipopt::{Status, interrupt};
-use crate::model::{Model, System};
+use crate::model::{Model, Role, System};
 use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Mark, Series};
 use crate::report::origin::Origin;
@@ -181,9 +181,10 @@ fn observed(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory) -> 
     };
     let each = |value: &dyn Fn(&Stop<'_>) -> f64| stops.iter().map(value).collect();
     add("fraction".to_owned(), "", each(&|stop| stop.fraction));
-    for (s, &source) in model.voltages.iter().enumerate() {
+    let voltages = model.variables.with(Role::Voltage);
+    for (voltage, s) in voltages.iter().zip(model.variables.range(Role::Voltage)) {
         let values = each(&|stop| stop.rest.scalars[s]);
-        add(model.sources[source].name.clone(), "V", values);
+        add(voltage.name.clone(), "V", values);
     }
     for mut column in at_rest(observations(model, history)).columns {
         column.values.remove(0);

@@ -7,7 +7,7 @@ use crate::control::limits::Limits;
 use crate::control::problem::{BoundaryState, Control, Rest};
 use crate::dynamics::{Equilibrium, Start, muscle_without_length, stable_equilibrium};
 use crate::functional::Order;
-use crate::model::{Analysis, Coordinates, Graph, Model, Presolved, Quantity, System};
+use crate::model::{Analysis, Coordinates, Graph, Model, Presolved, Quantity, Role, System};
 
 impl BoundaryConditions {
     /// Builds the model of a control problem and resolves its start and goal.
@@ -241,7 +241,7 @@ fn check_constraints(model: &Model, z: &[f64], place: &'static str) -> Result<()
     if value > 1e-9 * model.length() {
         return Err(BoundaryError::Inconsistent {
             place,
-            name: model.multiplier_names[worst].clone(),
+            name: model.variables.with(Role::Multiplier)[worst].name.clone(),
             value,
         });
     }

@@ -13,7 +13,7 @@ use crate::coordinates::Configuration;
 use crate::energy::{Energy, OutsideBox, SquaredDistance};
 use crate::functional::Sample;
 use crate::math::significant;
-use crate::model::{Coordinates, Model, Quantity, Region};
+use crate::model::{Coordinates, Model, Quantity, Region, Time};
 
 /// Refuses limits that contradict each other, and a start or goal of which it is known that it breaks a limit. `scalars` are voltages and potentials of states of
 /// rest at start and goal.
@@ -92,15 +92,16 @@ impl<'a> End<'a> {
             .zip(charts)
             .for_each(|(value, chart)| *value = *chart);
         model.action.motion.vectors(&mut instant);
-        let given = |s: usize| control.given.get(model.voltages.get(s)?).copied();
-        let all = model.voltages.len() + model.potentials;
         Self {
             model,
             instant,
             known: coordinates[..count].iter().map(Option::is_some).collect(),
             scalars: match scalars {
                 Some(scalars) => scalars.into_iter().map(Some).collect(),
-                None => (0..all).map(given).collect(),
+                None => {
+                    let variables = model.variables.of(Time::Interval).iter();
+                    variables.map(|variable| control.given(variable)).collect()
+                }
             },
             angles: BTreeMap::new(),
             places: BTreeMap::new(),

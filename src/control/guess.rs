@@ -7,7 +7,7 @@ use crate::control::resample::{self, Grids};
 use crate::control::solution::{Costates, Solution};
 use crate::dynamics::{DiscreteTrajectory, simulate};
 use crate::kinematics::Pose;
-use crate::model::{Coordinates, Graph, Model};
+use crate::model::{Coordinates, Graph, Model, Role};
 use nalgebra::Rotation3;
 use std::ops::ControlFlow;
 
@@ -59,7 +59,7 @@ pub fn guess(
             while history.intervals() < intervals {
                 history.z.push(history.z[history.z.len() - 1].clone());
                 let last = history.scalars.last().cloned();
-                let still = || with_potentials(model, scalars(0.0, h));
+                let still = || model.variables.scalars(&scalars(0.0, h));
                 history.scalars.push(last.unwrap_or_else(still));
             }
             InitialGuess {
@@ -120,7 +120,7 @@ fn interpolate(
     let history = DiscreteTrajectory {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),
         z: z.collect(),
-        scalars: vec![with_potentials(model, scalars); intervals],
+        scalars: vec![model.variables.scalars(&scalars); intervals],
         ..DiscreteTrajectory::default()
     };
     InitialGuess {
@@ -129,12 +129,6 @@ fn interpolate(
         costates: None,
         stretched: None,
     }
-}
-
-/// Voltages, and potentials of zero, from which Gauss's laws, linear in them, are solved at once.
-fn with_potentials(model: &Model, mut voltages: Vec<f64>) -> Vec<f64> {
-    voltages.resize(voltages.len() + model.potentials, 0.0);
-    voltages
 }
 
 /// Joint coordinates of a state, where they tell all of it.
@@ -194,16 +188,19 @@ fn from_solution(
         true => resample::coordinates(solved, grids, motion, model.multiplier_time),
         false => (0..=intervals).map(along_joints).collect(),
     };
-    let has_potentials = solved
-        .potentials
-        .iter()
-        .all(|row| row.len() == model.potentials);
+    // Gauss's laws are linear in potentials: from zero they are solved at once.
+    let potentials = model.variables.range(Role::Potential);
+    let mut rows = solved.potentials.iter();
+    let has_potentials =
+        !solved.potentials.is_empty() && rows.all(|row| row.len() == potentials.len());
     let scalars = |k: usize| {
-        let scalars = model.scalars(&grids.mean(&solved.voltages, k));
-        match has_potentials && !solved.potentials.is_empty() {
-            true => [scalars, grids.mean(&solved.potentials, k)].concat(),
-            false => with_potentials(model, scalars),
+        let mut scalars = model
+            .variables
+            .scalars(&model.scalars(&grids.mean(&solved.voltages, k)));
+        if has_potentials {
+            scalars[potentials.clone()].copy_from_slice(&grids.mean(&solved.potentials, k));
         }
+        scalars
     };
     let history = DiscreteTrajectory {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),

@@ -23,7 +23,7 @@ pub use earlier::{Earlier, EarlierSolution};
 pub use error::BoundaryError;
 pub use guess::{InitialGuess, guess};
 pub use limits::{BoundedQuantity, Limits, When};
-pub use numbering::{Numbering, Row, Variable};
+pub use numbering::{Column, Numbering, Row};
 pub use objective::Cost;
 pub use signal::Signal;
 pub use solution::{Costates, Solution};

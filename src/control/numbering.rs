@@ -1,21 +1,23 @@
-//! Which unknowns and equations a horizon has: the one place that drops what is given.
+//! Which columns and rows a horizon has: the one place that drops what is given.
 //!
-//! Interleaved step by step: coordinates and multipliers of instant k, then the scalars of interval k; the interval
-//! length last. Given coordinates and voltages are no variables; the constraints of an instant are equations only where one of its
-//! coordinates is a variable.
+//! Interleaved step by step: the variables of instant k, then those of interval k; the interval length last. A variable has a column
+//! unless start, goal or problem give its value, and a row if its role has an equation; the constraints of an instant are rows
+//! only where one of its coordinates has a column.
 
-/// A variable.
+use crate::model::{Role, Time, Variable, Variables};
+
+/// A variable of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Variable {
-    /// Coordinate or multiplier `i` of instant `k`.
-    Unknown {
+pub enum Column {
+    /// Variable `i` of instant `k`.
+    Instant {
         /// Instant.
         k: usize,
         /// Entry of z.
         i: usize,
     },
-    /// Scalar `s` of interval `k`: a voltage, or a potential.
-    Scalar {
+    /// Variable `s` of interval `k`.
+    Interval {
         /// Interval.
         k: usize,
         /// Which scalar.
@@ -25,18 +27,29 @@ pub enum Variable {
     Horizon,
 }
 
-/// An equation.
+impl Column {
+    /// What it is.
+    pub fn of(self, variables: &Variables) -> &Variable {
+        match self {
+            Self::Instant { i, .. } => &variables.of(Time::Instant)[i],
+            Self::Interval { s, .. } => &variables.of(Time::Interval)[s],
+            Self::Horizon => &variables.of(Time::Horizon)[0],
+        }
+    }
+}
+
+/// An equation of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Row {
-    /// Row of coordinate `i` (momentum balance) or of multiplier `i` (constraint) of instant `k`.
-    Equation {
+    /// Equation of variable `i` of instant `k`: momentum balance or constraint.
+    Instant {
         /// Instant.
         k: usize,
         /// Entry of z.
         i: usize,
     },
-    /// Gauss's law of the potential that is scalar `s` of interval `k`.
-    Gauss {
+    /// Equation of variable `s` of interval `k`: Gauss's law.
+    Interval {
         /// Interval.
         k: usize,
         /// Which scalar.
@@ -51,122 +64,127 @@ pub enum Row {
     },
 }
 
-/// How many entries the instants and intervals of a horizon have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Counts {
-    /// Number of intervals.
-    pub intervals: usize,
-    /// Coordinates of an instant.
-    pub coordinates: usize,
-    /// Coordinates and multipliers of an instant.
-    pub unknowns: usize,
-    /// Voltages of an interval.
-    pub voltages: usize,
-    /// Voltages and potentials of an interval.
-    pub scalars: usize,
+impl Row {
+    /// The variable whose equation it is.
+    pub fn of(self, variables: &Variables) -> Option<&Variable> {
+        match self {
+            Self::Instant { i, .. } => Some(&variables.of(Time::Instant)[i]),
+            Self::Interval { s, .. } => Some(&variables.of(Time::Interval)[s]),
+            Self::Limit { .. } => None,
+        }
+    }
 }
 
-/// Variables and equations of a horizon of `intervals`.
+/// Columns and rows of a horizon.
 #[derive(Clone, Debug)]
 pub struct Numbering {
-    /// All variables, in order.
-    pub variables: Vec<Variable>,
-    /// All equations, in order; limits follow where they are added.
+    /// All columns, in order.
+    pub columns: Vec<Column>,
+    /// All rows, in order; limits follow where they are added.
     pub rows: Vec<Row>,
-    of_unknown: Vec<Option<usize>>,
-    of_scalar: Vec<Option<usize>>,
-    row_of_scalar: Vec<Option<usize>>,
-    of_horizon: Option<usize>,
-    row_of: Vec<Option<usize>>,
-    unknowns: usize,
-    scalars: usize,
+    /// Columns of voltages, each with its place in a list of the voltages of all intervals, those that are given included.
+    pub voltages: Vec<(usize, usize)>,
+    column_of_instant: Vec<Option<usize>>,
+    column_of_interval: Vec<Option<usize>>,
+    column_of_horizon: Option<usize>,
+    row_of_instant: Vec<Option<usize>>,
+    row_of_interval: Vec<Option<usize>>,
+    /// Numbers of variables of an instant and of an interval.
+    counts: [usize; 2],
 }
 
 impl Numbering {
-    /// `given(k, i)` says whether coordinate i of instant k is given, `balanced(k, i)` whether its momentum balance is an
-    /// equation, `prescribed(s)` whether voltage s is given.
+    /// Numbers the variables of `intervals` intervals. `is_given` says which values are given, `is_balanced(k, i)` whether the momentum
+    /// balance of coordinate i of instant k is an equation.
     pub fn new(
-        counts: Counts,
-        free_horizon: bool,
-        given: impl Fn(usize, usize) -> bool,
-        balanced: impl Fn(usize, usize) -> bool,
-        prescribed: impl Fn(usize) -> bool,
+        variables: &Variables,
+        intervals: usize,
+        is_given: impl Fn(Column) -> bool,
+        is_balanced: impl Fn(usize, usize) -> bool,
     ) -> Self {
-        let Counts {
-            intervals,
-            coordinates,
-            unknowns,
-            voltages,
-            scalars,
-        } = counts;
+        let counts = [Time::Instant, Time::Interval].map(|time| variables.of(time).len());
+        let [of_instant, of_interval] = counts;
         let mut out = Self {
-            variables: Vec::new(),
+            columns: Vec::new(),
             rows: Vec::new(),
-            of_unknown: vec![None; (intervals + 1) * unknowns],
-            of_scalar: vec![None; intervals * scalars],
-            row_of_scalar: vec![None; intervals * scalars],
-            of_horizon: None,
-            row_of: vec![None; (intervals + 1) * unknowns],
-            unknowns,
-            scalars,
+            voltages: Vec::new(),
+            column_of_instant: vec![None; (intervals + 1) * of_instant],
+            column_of_interval: vec![None; intervals * of_interval],
+            column_of_horizon: None,
+            row_of_instant: vec![None; (intervals + 1) * of_instant],
+            row_of_interval: vec![None; intervals * of_interval],
+            counts,
         };
+        let voltages = variables.range(Role::Voltage);
         for k in 0..=intervals {
-            let all_given = (0..coordinates).all(|i| given(k, i));
-            for i in 0..unknowns {
-                let is_coordinate = i < coordinates;
-                if !is_coordinate || !given(k, i) {
-                    out.of_unknown[k * unknowns + i] = Some(out.variables.len());
-                    out.variables.push(Variable::Unknown { k, i });
-                }
-                let is_row = match is_coordinate {
-                    true => balanced(k, i),
-                    false => !all_given,
+            let mut coordinates = variables.range(Role::Coordinate);
+            let all_given = coordinates.all(|i| is_given(Column::Instant { k, i }));
+            for (i, variable) in variables.of(Time::Instant).iter().enumerate() {
+                let at = k * of_instant + i;
+                let column = Column::Instant { k, i };
+                out.column_of_instant[at] = out.column(column, is_given(column));
+                let is_row = match variable.role {
+                    Role::Coordinate => is_balanced(k, i),
+                    role => role.has_equation() && !all_given,
                 };
-                if is_row {
-                    out.row_of[k * unknowns + i] = Some(out.rows.len());
-                    out.rows.push(Row::Equation { k, i });
-                }
+                out.row_of_instant[at] = out.row_where(is_row, Row::Instant { k, i });
             }
-            if k < intervals {
-                for s in (0..scalars).filter(|&s| !prescribed(s)) {
-                    out.of_scalar[k * scalars + s] = Some(out.variables.len());
-                    out.variables.push(Variable::Scalar { k, s });
-                    if s >= voltages {
-                        out.row_of_scalar[k * scalars + s] = Some(out.rows.len());
-                        out.rows.push(Row::Gauss { k, s });
-                    }
+            if k == intervals {
+                break;
+            }
+            for (s, variable) in variables.of(Time::Interval).iter().enumerate() {
+                let at = k * of_interval + s;
+                let column = Column::Interval { k, s };
+                let number = out.column(column, is_given(column));
+                if let (Some(number), Role::Voltage) = (number, variable.role) {
+                    let place = k * voltages.len() + s - voltages.start;
+                    out.voltages.push((number, place));
                 }
+                out.column_of_interval[at] = number;
+                let is_row = variable.role.has_equation();
+                out.row_of_interval[at] = out.row_where(is_row, Row::Interval { k, s });
             }
         }
-        if free_horizon {
-            out.of_horizon = Some(out.variables.len());
-            out.variables.push(Variable::Horizon);
-        }
+        out.column_of_horizon = out.column(Column::Horizon, is_given(Column::Horizon));
         out
     }
 
-    /// Variable of entry i of z at instant k.
+    fn column(&mut self, column: Column, is_given: bool) -> Option<usize> {
+        (!is_given).then(|| {
+            self.columns.push(column);
+            self.columns.len() - 1
+        })
+    }
+
+    fn row_where(&mut self, is_row: bool, row: Row) -> Option<usize> {
+        is_row.then(|| {
+            self.rows.push(row);
+            self.rows.len() - 1
+        })
+    }
+
+    /// Column of variable i of instant k.
     pub fn unknown(&self, k: usize, i: usize) -> Option<usize> {
-        self.of_unknown[k * self.unknowns + i]
+        self.column_of_instant[k * self.counts[0] + i]
     }
 
-    /// Variable of scalar s of interval k; a given voltage is none.
+    /// Column of scalar s of interval k.
     pub fn scalar(&self, k: usize, s: usize) -> Option<usize> {
-        self.of_scalar[k * self.scalars + s]
+        self.column_of_interval[k * self.counts[1] + s]
     }
 
-    /// Row of scalar s of interval k, where it is a potential.
-    pub fn row_of_scalar(&self, k: usize, s: usize) -> Option<usize> {
-        self.row_of_scalar[k * self.scalars + s]
-    }
-
-    /// Variable of the interval length.
+    /// Column of the interval length.
     pub fn horizon(&self) -> Option<usize> {
-        self.of_horizon
+        self.column_of_horizon
     }
 
-    /// Row of entry i of z at instant k.
+    /// Row of variable i of instant k.
     pub fn row(&self, k: usize, i: usize) -> Option<usize> {
-        self.row_of[k * self.unknowns + i]
+        self.row_of_instant[k * self.counts[0] + i]
+    }
+
+    /// Row of scalar s of interval k.
+    pub fn row_of_scalar(&self, k: usize, s: usize) -> Option<usize> {
+        self.row_of_interval[k * self.counts[1] + s]
     }
 }

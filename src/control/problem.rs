@@ -4,7 +4,7 @@ use crate::control::{Earlier, Signal};
 use crate::dynamics::Solving;
 use crate::ipopt::OptionValue;
 use crate::model::system::{ElectricConstants, Muscle};
-use crate::model::{Coordinates, Region, System};
+use crate::model::{Coordinates, Region, System, Variable};
 use nalgebra::Vector3;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -237,6 +237,11 @@ pub struct Control {
 }
 
 impl Control {
+    /// The value of a variable of the intervals that is given for all the time, in its unit.
+    pub fn given(&self, variable: &Variable) -> Option<f64> {
+        self.given.get(&variable.source?).copied()
+    }
+
     /// Unit of voltages in V that suits their bounds and what moves a muscle much, t √(μ/ε): V, kV, MV, or another power of
     /// a thousand.
     pub fn voltage_unit(&self, system: &System) -> f64 {

@@ -5,12 +5,12 @@
 //! of path limits and of bounds. A finer grid has more and smaller ones.
 
 use crate::control::conditions::BoundaryConditions;
-use crate::control::numbering::{Row, Variable};
+use crate::control::numbering::{Column, Row};
 use crate::control::problem::Control;
 use crate::control::solution::{Costates, Solution};
 use crate::control::transcription::Layout;
 use crate::coordinates::CoordinateMap;
-use crate::model::Model;
+use crate::model::{Model, Role};
 
 /// Instants of the old grid that a curve is led through.
 const THROUGH: usize = 4;
@@ -136,50 +136,52 @@ pub(super) fn costates(
     let from = Layout::new(model, boundary, control, grids.from);
     let to = Layout::new(model, boundary, control, grids.to);
     let fits = old.rows.len() == from.unknowns.rows.len()
-        && old.lower.len() == from.unknowns.variables.len()
-        && old.upper.len() == from.unknowns.variables.len();
+        && old.lower.len() == from.unknowns.columns.len()
+        && old.upper.len() == from.unknowns.columns.len();
     if !fits {
         return None;
     }
     let ratio = grids.ratio();
     let constraint = ratio * solved.multiplier_time / model.multiplier_time;
-    let n = model.coordinate_count();
     let row = |row: &Row| match *row {
-        Row::Equation { k, i } => {
+        Row::Instant { k, i } => {
             let weights = grids.weights(k);
-            let factor = if i < n { 1.0 } else { constraint };
+            let factor = match model.variables.unknown(i).role {
+                Role::Multiplier => constraint,
+                _ => 1.0,
+            };
             let value =
                 |&(j, weight): &(usize, f64)| Some(weight * old.rows[from.unknowns.row(j, i)?]);
             let smooth: Option<f64> = weights.iter().map(value).sum();
             let nearest = || from.unknowns.row(grids.nearest(k), i).map(|r| old.rows[r]);
             factor * smooth.or_else(nearest).unwrap_or(0.0)
         }
-        Row::Gauss { k, s } => {
+        Row::Interval { k, s } => {
             let place = from.unknowns.row_of_scalar(grids.interval(k), s);
             place.map_or(0.0, |r| old.rows[r])
         }
         Row::Limit { limit, k } => from.carried(limit, k, grids, &old.rows),
     };
-    let bound = |list: &[f64], variable: &Variable| match *variable {
-        Variable::Unknown { k, i } => {
+    let bound = |list: &[f64], column: &Column| match *column {
+        Column::Instant { k, i } => {
             let place = from.unknowns.unknown(grids.nearest(k), i);
             ratio * place.map_or(0.0, |v| list[v])
         }
-        Variable::Scalar { k, s } => {
+        Column::Interval { k, s } => {
             let place = from.unknowns.scalar(grids.interval(k), s);
             ratio * place.map_or(0.0, |v| list[v])
         }
         // The duration is so many times the interval length.
-        Variable::Horizon => {
+        Column::Horizon => {
             let intervals = grids.to as f64 / grids.from as f64;
             from.unknowns.horizon().map_or(0.0, |v| list[v]) * intervals
         }
     };
     let of = |list: &[f64]| {
         to.unknowns
-            .variables
+            .columns
             .iter()
-            .map(|v| bound(list, v))
+            .map(|column| bound(list, column))
             .collect()
     };
     Some(Costates {

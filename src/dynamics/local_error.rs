@@ -122,7 +122,7 @@ fn weights(times: &[f64], h: f64) -> Vec<f64> {
 
 /// How many switches of voltages there are up to each instant.
 fn switches(model: &Model, history: &DiscreteTrajectory) -> Vec<usize> {
-    let voltages = |k: usize| &history.scalars[k][..model.voltages.len()];
+    let voltages = |k: usize| model.variables.split(&history.scalars[k])[0];
     let mut count = 0;
     let mut counts = vec![0];
     for k in 1..history.intervals() {

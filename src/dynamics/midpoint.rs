@@ -45,7 +45,7 @@ pub struct Midpoint<'m> {
     values: Vec<f64>,
     /// Voltages and potentials of the interval.
     scalars: Vec<f64>,
-    /// Multipliers and potentials before an attempt.
+    /// Multipliers, and scalars with an equation, before an attempt.
     saved: [Vec<f64>; 2],
 }
 
@@ -66,8 +66,8 @@ impl<'m> Stepper<'m> {
                 entries.add(layout.same_at(1) + slot, (row, col));
             }
         }
-        entries.add_potentials(model, &[[0, 1]]);
-        let size = motion.unknowns() + model.potentials;
+        entries.add_scalars(model, &[[0, 1]]);
+        let (sizes, algebraic) = (model.sizes(), model.variables.algebraic());
         let (mut here, next) = (motion.instant(), motion.instant());
         here.z.copy_from_slice(z);
         motion.place(&mut here);
@@ -80,17 +80,17 @@ impl<'m> Stepper<'m> {
             rates: vec![0.0; n],
             changes: vec![0.0; n],
             typical_energy: typical_energy(model),
-            sizes: scales(model)[..n].to_vec(),
+            sizes: sizes[..n].to_vec(),
             lengths: [0.0; 2],
             is_first: true,
             time: 0.0,
             scratch: model.action.scratch(Order::Hessian),
             values: vec![0.0; layout.values(1)],
             scalars: vec![0.0; layout.interval_scalars],
-            saved: [vec![0.0; motion.multipliers], vec![0.0; model.potentials]],
+            saved: [motion.multipliers, algebraic.len()].map(|count| vec![0.0; count]),
         };
-        let tangent = entries.tangent(size, model.step_symmetry(), solving.backend);
-        Self::by(equations, tangent, scales(model), solving.newton)
+        let tangent = entries.tangent(sizes.len(), model.step_symmetry(), solving.backend);
+        Self::by(equations, tangent, sizes, solving.newton)
     }
 
     /// Takes the rates of the coordinates before the first step, for its guess and its error.
@@ -104,23 +104,9 @@ impl<'m> Stepper<'m> {
     }
 }
 
-/// Size of each unknown of a step, by which its updates are measured: coordinates and multipliers, then potentials.
-///
-/// Potentials are lengths too; what multipliers do says nothing about convergence.
-pub(super) fn scales(model: &Model) -> Vec<f64> {
-    let (n, m) = (model.coordinate_count(), model.action.motion.unknowns());
-    let length = model.length();
-    let scale = |i: usize| match i {
-        i if i < n && !model.is_length(i) => 1.0,
-        i if i >= n && i < m => f64::INFINITY,
-        _ => length,
-    };
-    (0..m + model.potentials).map(scale).collect()
-}
-
 impl Equations for Midpoint<'_> {
     fn begin(&mut self, voltages: &[f64]) {
-        self.scalars[..voltages.len()].copy_from_slice(voltages);
+        self.scalars[self.model.variables.inputs()].copy_from_slice(voltages);
     }
 
     fn guess(&mut self, h: f64) {
@@ -135,9 +121,9 @@ impl Equations for Midpoint<'_> {
             self.next.z[i] = self.here.z[i] + h * (self.rates[i] + ratio * self.changes[i]);
         }
         let m = self.model.action.motion.unknowns();
-        let [multipliers, potentials] = &mut self.saved;
+        let [multipliers, scalars] = &mut self.saved;
         multipliers.copy_from_slice(&self.here.z[n..m]);
-        potentials.copy_from_slice(&self.scalars[self.model.voltages.len()..]);
+        scalars.copy_from_slice(&self.scalars[self.model.variables.algebraic()]);
         // Multipliers, and the charts: both ends of a step have the same.
         self.next.z[n..].copy_from_slice(&self.here.z[n..]);
     }
@@ -168,8 +154,8 @@ impl Equations for Midpoint<'_> {
         };
         action.evaluate_interval(level, [here, next], &interval, scratch);
         action.pull_back_interval(level, [here, next], &interval, 0, scratch, values);
-        let gauss = &scratch.interval.plain.rows[self.model.voltages.len()..];
-        residual[m..].copy_from_slice(gauss);
+        let rows = &scratch.interval.plain.rows[self.model.variables.algebraic()];
+        residual[m..].copy_from_slice(rows);
         if m > n {
             // Multipliers of the step act at its start, constraints hold at its end.
             action.evaluate_instant(level, next, &[], scratch);
@@ -193,17 +179,17 @@ impl Equations for Midpoint<'_> {
         for (z, update) in self.next.z[..m].iter_mut().zip(update) {
             *z -= update;
         }
-        let driven = self.model.voltages.len();
-        for (potential, update) in self.scalars[driven..].iter_mut().zip(&update[m..]) {
-            *potential -= update;
+        let scalars = &mut self.scalars[self.model.variables.algebraic()];
+        for (scalar, update) in scalars.iter_mut().zip(&update[m..]) {
+            *scalar -= update;
         }
     }
 
     fn restore(&mut self) {
         let motion = &self.model.action.motion;
-        let [multipliers, potentials] = &self.saved;
+        let [multipliers, scalars] = &self.saved;
         self.here.z[motion.coordinates..motion.unknowns()].copy_from_slice(multipliers);
-        self.scalars[self.model.voltages.len()..].copy_from_slice(potentials);
+        self.scalars[self.model.variables.algebraic()].copy_from_slice(scalars);
     }
 
     fn model(&self) -> &Model {
@@ -302,7 +288,7 @@ impl Equations for Midpoint<'_> {
     }
 
     fn unknown_name(&self, unknown: usize) -> String {
-        self.model.unknown_name(unknown)
+        self.model.variables.unknown(unknown).to_string()
     }
 
     fn time(&self) -> f64 {

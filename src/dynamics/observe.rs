@@ -14,7 +14,7 @@ use crate::dynamics::momenta::{Places, momentum_maps, moving, rates, vector_mome
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Kind, Order};
 use crate::math::Vector;
-use crate::model::{Model, SolidBlock};
+use crate::model::{Model, Role, SolidBlock};
 use std::ops::Range;
 
 /// Energies of one interval at its midpoint, in mJ.
@@ -189,8 +189,8 @@ impl<'m> Observer<'m> {
         for (block, electrode) in electrodes {
             add(format!("{block}_{electrode}_charge"), "mC");
         }
-        for &source in &self.model.voltages {
-            let name = self.model.sources[source].name.replace('.', "_");
+        for voltage in self.model.variables.with(Role::Voltage) {
+            let name = voltage.name.replace('.', "_");
             add(format!("{name}_charge"), "mC");
         }
         add("kinetic_energy".to_owned(), "N mm");
@@ -312,7 +312,7 @@ impl<'m> Observer<'m> {
             &Interval::given(scalars, h),
             scratch,
         );
-        let rows = &scratch.interval.plain.rows[..self.model.voltages.len()];
+        let rows = &scratch.interval.plain.rows[self.model.variables.range(Role::Voltage)];
         let charges = rows.iter().map(|row| row / h);
         (charges.collect(), here.forces.clone())
     }

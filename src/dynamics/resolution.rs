@@ -136,7 +136,10 @@ pub(super) fn turned(
         (turn > PI || turn.is_nan()) && !model.is_length(i)
     };
     if let Some(i) = (0..of_joints).find(turns) {
-        return Some((model.unknown_name(i), (end.z[i] - start.z[i]).abs()));
+        return Some((
+            model.variables.unknown(i).to_string(),
+            (end.z[i] - start.z[i]).abs(),
+        ));
     }
     let bodies = &model.presolved.system.bodies;
     bodies.iter().enumerate().find_map(|(body, named)| {

@@ -1,6 +1,6 @@
 //! The square system of one Newton iteration: which derivatives of the action it holds, and its factorisation.
 //!
-//! Unknowns are the coordinates and multipliers of an instant, then the potentials of an interval.
+//! Unknowns are those of a step (see [`Variables`](crate::model::Variables)).
 
 use crate::coordinates::StepPattern;
 use crate::model::Model;
@@ -35,25 +35,25 @@ impl EntryList {
         self.gather.push((place, entry));
     }
 
-    /// Gauss's law: potentials against the coordinates of the rows (instant `sides[0]`) and of the columns
-    /// (instant `sides[1]`) of the interval 0, and against each other.
-    pub(super) fn add_potentials(&mut self, model: &Model, sides: &[[usize; 2]]) {
+    /// Scalars with an equation against the coordinates of the rows (instant `sides[0]`) and of the columns (instant `sides[1]`) of
+    /// the interval 0, and against each other.
+    pub(super) fn add_scalars(&mut self, model: &Model, sides: &[[usize; 2]]) {
         let layout: &StepPattern = model.action.layout();
-        let (first, driven) = (model.action.motion.unknowns(), model.voltages.len());
+        let place = |s: usize| model.variables.place(s);
         for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
-            let Some(s) = s.checked_sub(driven) else {
+            let Some(s) = place(s) else {
                 continue;
             };
             for &[row, col] in sides {
-                self.add(layout.mixed_at(0, row) + slot, (i, first + s));
-                self.add(layout.mixed_at(0, col) + slot, (first + s, i));
+                self.add(layout.mixed_at(0, row) + slot, (i, s));
+                self.add(layout.mixed_at(0, col) + slot, (s, i));
             }
         }
         for (slot, &(s, t)) in layout.scalars.entries().iter().enumerate() {
-            if let (Some(s), Some(t)) = (s.checked_sub(driven), t.checked_sub(driven)) {
-                self.add(layout.scalars_at(0) + slot, (first + s, first + t));
+            if let (Some(s), Some(t)) = (place(s), place(t)) {
+                self.add(layout.scalars_at(0) + slot, (s, t));
                 if s != t {
-                    self.add(layout.scalars_at(0) + slot, (first + t, first + s));
+                    self.add(layout.scalars_at(0) + slot, (t, s));
                 }
             }
         }

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
 use crate::kinematics::Pose;
-use crate::model::Model;
 use crate::model::system::{Attachment, Joint, JointKind, System};
+use crate::model::{Model, Time};
 
 /// What changes over time: N + 1 instants and the N intervals between them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -48,8 +48,10 @@ impl Trajectory {
         }
         for scalars in &history.scalars {
             let mut voltages = vec![0.0; model.sources.len()];
-            for (&muscle, &voltage) in model.voltages.iter().zip(scalars) {
-                voltages[muscle] = voltage;
+            for (variable, &scalar) in model.variables.of(Time::Interval).iter().zip(scalars) {
+                if let Some(source) = variable.source {
+                    voltages[source] = scalar;
+                }
             }
             trajectory.voltages.push(voltages);
         }

@@ -62,11 +62,11 @@ pub(super) fn dielectric(solid: &Solid) -> Vec<bool> {
 }
 
 /// Sources whose voltages do something: of dielectric muscles, and of driven electrodes that a dielectric element touches.
-pub(super) fn voltages(system: &System, solids: &[Solid]) -> Vec<usize> {
+pub(super) fn voltages(system: &System) -> Vec<usize> {
     let muscles = system.muscles.iter().enumerate();
     let muscles = muscles.filter(|(_, m)| m.material.electric.is_some());
     let mut voltages: Vec<usize> = muscles.map(|(m, _)| m).collect();
-    for solid in solids {
+    for solid in &system.solids {
         let is = dielectric(solid);
         let elements = solid.mesh.hexahedra.iter().zip(&is);
         let reached: BTreeSet<usize> = elements

@@ -10,6 +10,7 @@ use crate::functional::{
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::joints::{JointCoordinate as Gauge, JointReading};
+use crate::model::variables::Variables;
 use crate::model::{FieldPlace, Presolved, Quantity, Region, SolidBlock};
 
 /// Measures by site, in the order of the quantities.
@@ -26,8 +27,7 @@ pub(super) struct Measures {
 pub(super) struct Known<'a> {
     pub(super) condensed: &'a Presolved,
     pub(super) reference: &'a [Pose],
-    /// Source of each voltage.
-    pub(super) voltages: &'a [usize],
+    pub(super) variables: &'a Variables,
     /// Vector of each marker.
     pub(super) markers: &'a [usize],
     pub(super) continua: &'a [SolidBlock],
@@ -98,7 +98,7 @@ impl Known<'_> {
             }
             Quantity::SquaredField { place, limit, at } => match place {
                 FieldPlace::Muscle(muscle) => {
-                    let scalar = self.voltages.iter().position(|&m| m == muscle)?;
+                    let scalar = self.variables.voltage(muscle)?;
                     let of = &self.condensed.system.muscles[muscle];
                     let energy = SquaredField {
                         length: of.length(),

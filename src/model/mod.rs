@@ -27,6 +27,7 @@ mod solids;
 mod states;
 pub mod system;
 mod terms;
+mod variables;
 
 pub use analysis::{Analysis, InitiallyMoving};
 pub use check::SystemError;
@@ -43,6 +44,7 @@ pub use quantity::{FieldPlace, Quantity, Region, joint_unit};
 pub use solid_block::SolidBlock;
 pub use system::{System, VACUUM_PERMITTIVITY};
 pub use terms::{Terms, mid, rate};
+pub use variables::{Role, Size, Time, Variable, Variables};
 
 use crate::coordinates::{Configuration, CoordinateMap, NodePlace, Reduced};
 use crate::functional::{Functional, Kind};
@@ -51,7 +53,6 @@ use crate::math::Vector;
 use crate::sparse::Symmetry;
 use measures::Measures;
 use solids::Solids;
-use std::collections::BTreeSet;
 use system::{Attachment, Muscle, Source};
 
 /// Coordinates in which a problem is solved.
@@ -88,16 +89,10 @@ pub struct Model {
     pub action: Reduced,
     /// The vectors that effects read, in terms of poses.
     pub vectors: Vec<MaterialVector>,
-    /// Source of each voltage: the first scalars of an interval (see [`System::sources`]).
-    pub voltages: Vec<usize>,
+    /// What is unknown or prescribed, at instants and in intervals.
+    pub variables: Variables,
     /// Sources whose voltage does something or would, were it not zero all the time: all that files have voltages of.
     pub reached: Vec<usize>,
-    /// Number of potentials: the other scalars of an interval, in units of `potential_unit`.
-    pub potentials: usize,
-    /// Unit of the potentials in V: √(μ/ε) times a millimetre.
-    pub potential_unit: f64,
-    /// What each potential is.
-    pub potential_names: Vec<String>,
     /// All that voltages are named for.
     pub sources: Vec<Source>,
     /// Elastic blocks, those of muscles last.
@@ -110,8 +105,6 @@ pub struct Model {
     pub measured: Vec<Option<usize>>,
     /// How the coordinates of each joint are read from poses.
     pub gauges: Vec<JointReading>,
-    /// Names of the multipliers.
-    pub multiplier_names: Vec<String>,
     /// Time that scales multipliers: the action holds −h₀ λ·g, in ms.
     pub multiplier_time: f64,
     graph: Graph,
@@ -153,23 +146,35 @@ impl Model {
     /// Reduced coordinates were asked for and do not exist.
     pub fn answering(system: System, question: Analysis) -> Result<Self, ModelError> {
         let mut condensed = Presolved::new(&system, &question);
+        let voltages = field_extent::voltages(&condensed.system);
+        let reached = match question.zero_voltage.is_empty() {
+            true => voltages.clone(),
+            false => field_extent::voltages(&system),
+        };
         let solids = blocks::blocks(&mut condensed);
         let rest = &condensed.system;
         let coordinates = Self::choose(rest, question.coordinates)?;
         let graph = Graph::new(rest);
         let reference: Vec<Pose> = rest.bodies.iter().map(system::Body::pose).collect();
         let mut vectors = Vectors::default();
-        let voltages = field_extent::voltages(rest, &solids);
-        let reached = match question.zero_voltage.is_empty() {
-            true => voltages.clone(),
-            false => Self::reached(&system, &question),
-        };
+        let sources = system.sources();
+        let mut variables = Variables::default();
+        for source in voltages {
+            variables.add(Variable::voltage(source, sources[source].name.clone()));
+        }
         let ties = coordinates == Coordinates::Redundant;
         let scene = system.solids.len();
-        let continua = Solids::new(solids, scene, &reference, &voltages, ties, &mut vectors)?;
+        let continua = Solids::new(
+            solids,
+            scene,
+            &reference,
+            ties,
+            &mut variables,
+            &mut vectors,
+        )?;
         let (intervals, mut present, mut left_out, spans) = {
             let motion = question.of_motion;
-            let mut terms = Terms::new(&condensed, &reference, &voltages, motion, &mut vectors);
+            let mut terms = Terms::new(&condensed, &reference, &variables, motion, &mut vectors);
             let span = |m: &Muscle, terms: &mut Terms<'_>| {
                 let span = MaterialVector::span(&terms.point(&m.from), &terms.point(&m.to));
                 terms.vector(span)
@@ -199,7 +204,7 @@ impl Model {
             }
             .constraints(question.interval),
         };
-        let (instants, multiplier_names) = (made.effects, made.multipliers);
+        let (instants, constraints) = (made.effects, made.multipliers);
         present.extend(made.present);
         left_out.extend(made.left_out);
         plan::settle(&present, &mut left_out);
@@ -216,14 +221,14 @@ impl Model {
             let known = measures::Known {
                 condensed: &condensed,
                 reference: &reference,
-                voltages: &voltages,
+                variables: &variables,
                 markers: &markers,
                 continua: &continua.list,
             };
             Measures::new(&question.quantities, &known, &mut vectors)
         };
         let list = vectors.list();
-        let multipliers = multiplier_names.len();
+        let multipliers = constraints.len();
         let motion = match coordinates {
             Coordinates::Reduced => {
                 let tree = graph.tree(rest, &reference, list);
@@ -234,20 +239,32 @@ impl Model {
             }
         };
         let intervals = {
-            let scalars = voltages.len() + continua.potentials.len();
+            let scalars = variables.of(Time::Interval).len();
             Functional::new(intervals, measures.intervals, list.len(), scalars)
         };
         let instants = Functional::new(instants, measures.instants, list.len(), multipliers);
+        {
+            let named = named::Named {
+                coordinates,
+                system: rest,
+                graph: &graph,
+                motion: &motion,
+                nodes: &continua.names,
+                solids: &continua.list,
+            };
+            (0..motion.coordinates).for_each(|i| _ = variables.add(named.coordinate(i)));
+            let multiplier = |name| Variable::of(Role::Multiplier, name, Size::Unknown);
+            constraints
+                .into_iter()
+                .for_each(|name| _ = variables.add(multiplier(name)));
+        }
         Ok(Self {
             coordinates,
             action: Reduced::new(motion, intervals, instants),
             vectors: list.to_vec(),
-            voltages,
+            variables,
             reached,
-            potentials: continua.potentials.len(),
-            potential_unit: continua.unit,
-            potential_names: continua.potentials,
-            sources: system.sources(),
+            sources,
             solids: continua.list,
             nodes: continua.nodes,
             node_names: continua.names,
@@ -255,7 +272,6 @@ impl Model {
             markers,
             measured: measures.places,
             gauges: Self::gauges(&system, &condensed),
-            multiplier_names,
             multiplier_time: question.interval,
             graph,
             reference,
@@ -265,18 +281,6 @@ impl Model {
             analysis: question,
             presolved: condensed,
         })
-    }
-
-    /// Sources whose voltage would do something if none were at zero voltage.
-    fn reached(system: &System, question: &Analysis) -> Vec<usize> {
-        let question = Analysis {
-            zero_voltage: BTreeSet::new(),
-            stirred: None,
-            ..question.clone()
-        };
-        let mut whole = Presolved::new(system, &question);
-        let solids = blocks::blocks(&mut whole);
-        field_extent::voltages(&whole.system, &solids)
     }
 
     /// How the coordinates of the joints of the scene are read from the poses of its bodies.
@@ -422,9 +426,20 @@ impl Model {
         self.action.motion.poses(instant, bodies)
     }
 
-    /// Voltages in the order of the scalars of an interval from one voltage a source.
+    /// Inputs of an interval from one voltage a source.
     pub fn scalars(&self, voltages: &[f64]) -> Vec<f64> {
-        self.voltages.iter().map(|&m| voltages[m]).collect()
+        self.variables.sources().map(|s| voltages[s]).collect()
+    }
+
+    /// Typical sizes of the unknowns of a step: 1 rad, the length of the system; infinite where the model does not tell.
+    pub fn sizes(&self) -> Vec<f64> {
+        let length = self.length();
+        let size = |variable: &Variable| match variable.size {
+            Size::One => 1.0,
+            Size::Length => length,
+            Size::Unknown => f64::INFINITY,
+        };
+        self.variables.unknowns().map(size).collect()
     }
 
     /// A length in mm that is typical of the system.

@@ -1,76 +1,80 @@
-//! What an unknown of a model is, in words and in kind.
+//! What a coordinate of a model is, in words and in kind.
 
+use crate::coordinates::CoordinateMap;
 use crate::math::Vector;
-use crate::model::system::JointKind;
-use crate::model::{Coordinates, Model, Screw};
+use crate::model::graph::Graph;
+use crate::model::joints::Screw;
+use crate::model::system::{JointKind, System};
+use crate::model::variables::{Role, Size, Variable};
+use crate::model::{Coordinates, Model, SolidBlock};
 
-impl Model {
-    /// What coordinate or multiplier `i` of an instant is, or what potential of an interval after these.
-    pub fn unknown_name(&self, i: usize) -> String {
-        let n = self.coordinate_count();
-        match self.coordinates {
-            _ if i >= n + self.multiplier_names.len() => {
-                let potential = i - n - self.multiplier_names.len();
-                format!("potential of {}", self.potential_names[potential])
-            }
-            _ if i >= n => format!("multiplier of {}", self.multiplier_names[i - n]),
-            _ if i >= self.action.motion.of_bodies => {
-                let (node, axis) = self.action.motion.of_nodes[i - self.action.motion.of_bodies];
-                let (block, node) = self.node_names[node];
+/// What coordinates are named by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Named<'a> {
+    pub(super) coordinates: Coordinates,
+    /// The condensed system.
+    pub(super) system: &'a System,
+    pub(super) graph: &'a Graph,
+    pub(super) motion: &'a CoordinateMap,
+    /// Block and node of the mesh of each node with coordinates.
+    pub(super) nodes: &'a [(usize, usize)],
+    pub(super) solids: &'a [SolidBlock],
+}
+
+impl Named<'_> {
+    /// Coordinate `i` of an instant.
+    pub(super) fn coordinate(&self, i: usize) -> Variable {
+        let (name, size) = match i.checked_sub(self.motion.of_bodies) {
+            Some(place) => {
+                let (node, axis) = self.motion.of_nodes[place];
+                let (block, node) = self.nodes[node];
                 let name = &self.solids[block].solid.name;
-                format!("{} of node {node} of {name}", ["x", "y", "z"][axis])
+                let axis = ["x", "y", "z"][axis];
+                (format!("{axis} of node {node} of {name}"), Size::Length)
             }
+            None => self.of_body(i),
+        };
+        Variable::of(Role::Coordinate, name, size)
+    }
+
+    fn of_body(&self, i: usize) -> (String, Size) {
+        match self.coordinates {
             Coordinates::Reduced => {
-                let Freedom { of, screw, is_only } = self.freedom(i);
-                match screw {
-                    _ if is_only => format!("coordinate of {of}"),
-                    Screw::Turn(axis) => format!("rotation about {} of {of}", axis_name(&axis)),
-                    Screw::Slide(axis) => {
-                        format!("displacement along {} of {of}", axis_name(&axis))
+                let Freedom { of, screw, is_only } = freedom(self.system, self.graph, i);
+                let (name, size) = match screw {
+                    Screw::Turn(axis) => {
+                        (format!("rotation about {}", axis_name(&axis)), Size::One)
                     }
+                    Screw::Slide(axis) => {
+                        let name = format!("displacement along {}", axis_name(&axis));
+                        (name, Size::Length)
+                    }
+                };
+                match is_only {
+                    true => (format!("coordinate of {of}"), size),
+                    false => (format!("{name} of {of}"), size),
                 }
             }
             Coordinates::Redundant => {
                 let part = ["centre", "d1", "d2", "d3"][i % 12 / 3];
                 let axis = ["x", "y", "z"][i % 3];
-                format!(
-                    "{} {part}.{axis}",
-                    self.presolved.system.bodies[i / 12].name
-                )
+                let name = format!("{} {part}.{axis}", self.system.bodies[i / 12].name);
+                let size = if i % 12 < 3 { Size::Length } else { Size::One };
+                (name, size)
             }
         }
     }
+}
 
+impl Model {
     /// Whether coordinate `i` is a length, rather than an angle or a component of a director.
     pub fn is_length(&self, i: usize) -> bool {
-        match self.coordinates {
-            _ if i >= self.action.motion.of_bodies => true,
-            Coordinates::Redundant => i % 12 < 3,
-            Coordinates::Reduced => matches!(self.freedom(i).screw, Screw::Slide(_)),
-        }
+        self.variables.with(Role::Coordinate)[i].size == Size::Length
     }
 
     /// Joint coordinate `i` of reduced coordinates.
     pub fn freedom(&self, i: usize) -> Freedom<'_> {
-        let system = &self.presolved.system;
-        let mut at = i;
-        for joint in &system.joints {
-            let (screws, _) = joint.kind.screws();
-            if let Some(&screw) = screws.get(at) {
-                return Freedom {
-                    of: &joint.name,
-                    screw,
-                    is_only: screws.len() == 1,
-                };
-            }
-            at -= screws.len();
-        }
-        let (screws, _) = JointKind::Floating.screws();
-        Freedom {
-            of: &system.bodies[self.graph.free()[at / screws.len()]].name,
-            screw: screws[at % screws.len()],
-            is_only: false,
-        }
+        freedom(&self.presolved.system, &self.graph, i)
     }
 }
 
@@ -83,6 +87,28 @@ pub struct Freedom<'m> {
     pub screw: Screw,
     /// Whether it is the only coordinate of its joint.
     pub is_only: bool,
+}
+
+/// Joint coordinate `i` of a condensed system.
+fn freedom<'m>(system: &'m System, graph: &Graph, i: usize) -> Freedom<'m> {
+    let mut at = i;
+    for joint in &system.joints {
+        let (screws, _) = joint.kind.screws();
+        if let Some(&screw) = screws.get(at) {
+            return Freedom {
+                of: &joint.name,
+                screw,
+                is_only: screws.len() == 1,
+            };
+        }
+        at -= screws.len();
+    }
+    let (screws, _) = JointKind::Floating.screws();
+    Freedom {
+        of: &system.bodies[graph.free()[at / screws.len()]].name,
+        screw: screws[at % screws.len()],
+        is_only: false,
+    }
 }
 
 /// x, y or z of an axis of the ground frame.

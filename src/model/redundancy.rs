@@ -1,7 +1,7 @@
 //! Constraints that follow from others: closed loops with more joints than they need, joints written twice.
 
 use crate::functional::Order;
-use crate::model::Model;
+use crate::model::{Model, Role};
 use nalgebra::{DMatrix, DVector};
 
 /// A gradient whose part independent of the others is smaller than this follows from them.
@@ -14,7 +14,8 @@ impl Model {
     /// are independent.
     pub fn redundant_constraints(&self, z: &[f64]) -> Vec<String> {
         let (action, n) = (&self.action, self.coordinate_count());
-        let m = self.multiplier_names.len();
+        let multipliers = self.variables.with(Role::Multiplier);
+        let m = multipliers.len();
         if m == 0 || m > MANY {
             return Vec::new();
         }
@@ -35,10 +36,10 @@ impl Model {
                 gradients[(row, col - n)] += values[layout.same_at(0) + slot] * unit;
             }
         }
-        let names = self.multiplier_names.iter().zip(gradients.column_iter());
+        let names = multipliers.iter().zip(gradients.column_iter());
         let mut independent: Vec<DVector<f64>> = Vec::new();
         let mut redundant = Vec::new();
-        for (name, gradient) in names {
+        for (multiplier, gradient) in names {
             let mut rest = gradient.into_owned();
             rest.try_normalize_mut(0.0);
             // Once more, for what rounding left of the first time.
@@ -50,7 +51,7 @@ impl Model {
             }
             match rest.try_normalize(DEPENDENT) {
                 Some(direction) => independent.push(direction),
-                None => redundant.push(name.clone()),
+                None => redundant.push(multiplier.name.clone()),
             }
         }
         redundant

@@ -8,10 +8,11 @@ use crate::element::{ElementGeometry, Inverted};
 use crate::functional::ScalarArg;
 use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
 use crate::model::system::{Glue, Material, Potential, Solid};
+use crate::model::variables::{Variable, Variables};
 use crate::model::{ModelError, SolidBlock, field_extent};
 use std::collections::HashMap;
 
-/// Blocks before they become terms: nodes, ties and potentials of all of them.
+/// Blocks before they become terms: nodes and ties of all of them.
 #[derive(Debug, Default)]
 pub(super) struct Solids {
     pub(super) list: Vec<SolidBlock>,
@@ -21,10 +22,6 @@ pub(super) struct Solids {
     pub(super) names: Vec<(usize, usize)>,
     /// Node and place on a body that multipliers hold together, and what they are called.
     pub(super) ties: Vec<(MaterialVector, String)>,
-    /// What each potential of an interval is.
-    pub(super) potentials: Vec<String>,
-    /// Unit of the potentials in V.
-    pub(super) unit: f64,
 }
 
 /// What is in use of a potential before it is numbered.
@@ -37,8 +34,8 @@ enum Connection {
 }
 
 impl Solids {
-    /// Lays out blocks, of which the first `scene` are those of the scene; `voltages` are the sources of the first scalars, and glued nodes keep coordinates of their own
-    /// where `ties` says so.
+    /// Lays out blocks, of which the first `scene` are those of the scene. Their potentials are added to `variables`, which have all
+    /// voltages; glued nodes keep coordinates of their own where `ties` says so.
     ///
     /// # Errors
     /// An element of a mesh is turned inside out.
@@ -46,19 +43,16 @@ impl Solids {
         solids: Vec<Solid>,
         scene: usize,
         reference: &[Pose],
-        voltages: &[usize],
         ties: bool,
+        variables: &mut Variables,
         vectors: &mut Vectors,
     ) -> Result<Self, ModelError> {
-        let mut out = Self {
-            unit: unit(&solids),
-            ..Self::default()
-        };
+        let (mut out, unit) = (Self::default(), unit(&solids));
         for (index, solid) in solids.into_iter().enumerate() {
             let shapes = shapes(&solid)?;
             let places = out.places(index, &solid, reference, ties, vectors);
             let is_dielectric = field_extent::dielectric(&solid);
-            let terminals = out.terminals(&solid, &is_dielectric, voltages);
+            let terminals = terminals(&solid, &is_dielectric, unit, variables);
             let on_ground = |&v: &usize| {
                 let mut terms = vectors.list()[v].terms.iter();
                 terms.all(|term| term.carrier == Carrier::Ground)
@@ -127,66 +121,57 @@ impl Solids {
         };
         (0..count).map(&mut place).collect()
     }
+}
 
-    /// The terminal of each node that a dielectric element has.
-    fn terminals(
-        &mut self,
-        solid: &Solid,
-        is_dielectric: &[bool],
-        voltages: &[usize],
-    ) -> Vec<Option<ScalarArg>> {
-        let mut wires = vec![None; solid.mesh.nodes.len()];
-        let elements = solid.mesh.hexahedra.iter().zip(is_dielectric);
-        for (nodes, _) in elements.filter(|(_, is)| **is) {
-            for &node in nodes {
-                wires[node] = Some(Connection::Free);
-            }
+/// The terminal of each node that a dielectric element has.
+fn terminals(
+    solid: &Solid,
+    is_dielectric: &[bool],
+    unit: f64,
+    variables: &mut Variables,
+) -> Vec<Option<ScalarArg>> {
+    let mut wires = vec![None; solid.mesh.nodes.len()];
+    let elements = solid.mesh.hexahedra.iter().zip(is_dielectric);
+    for (nodes, _) in elements.filter(|(_, is)| **is) {
+        for &node in nodes {
+            wires[node] = Some(Connection::Free);
         }
-        for (e, electrode) in solid.electrodes.iter().enumerate() {
-            let wire = match electrode.potential {
-                Potential::Given(constant) => Connection::Terminal(ScalarArg {
-                    constant,
-                    scalar: None,
-                }),
-                Potential::Driven { source, factor } => Connection::Terminal(ScalarArg {
-                    constant: 0.0,
-                    scalar: voltages
-                        .iter()
-                        .position(|&v| v == source)
-                        .map(|s| (s, factor)),
-                }),
-                Potential::Floating => Connection::Floating(e),
-            };
-            for &node in &electrode.nodes {
-                if wires[node].is_some() {
-                    wires[node] = Some(wire);
-                }
-            }
-        }
-        let mut floating: HashMap<usize, usize> = HashMap::new();
-        let fresh = |name: String, potentials: &mut Vec<String>| {
-            potentials.push(name);
-            voltages.len() + potentials.len() - 1
-        };
-        let mut terminal = |(node, wire): (usize, Option<Connection>)| {
-            let scalar = match wire? {
-                Connection::Terminal(terminal) => return Some(terminal),
-                Connection::Floating(e) => *floating.entry(e).or_insert_with(|| {
-                    let name = format!("{}.{}", solid.name, solid.electrodes[e].name);
-                    fresh(name, &mut self.potentials)
-                }),
-                Connection::Free => fresh(
-                    format!("node {node} of {}", solid.name),
-                    &mut self.potentials,
-                ),
-            };
-            Some(ScalarArg {
-                constant: 0.0,
-                scalar: Some((scalar, self.unit)),
-            })
-        };
-        wires.into_iter().enumerate().map(&mut terminal).collect()
     }
+    for (e, electrode) in solid.electrodes.iter().enumerate() {
+        let wire = match electrode.potential {
+            Potential::Given(constant) => Connection::Terminal(ScalarArg {
+                constant,
+                scalar: None,
+            }),
+            Potential::Driven { source, factor } => Connection::Terminal(ScalarArg {
+                constant: 0.0,
+                scalar: variables.voltage(source).map(|s| (s, factor)),
+            }),
+            Potential::Floating => Connection::Floating(e),
+        };
+        for &node in &electrode.nodes {
+            if wires[node].is_some() {
+                wires[node] = Some(wire);
+            }
+        }
+    }
+    let mut floating: HashMap<usize, usize> = HashMap::new();
+    let mut fresh = |name: String| variables.add(Variable::potential(name, unit));
+    let mut terminal = |(node, wire): (usize, Option<Connection>)| {
+        let scalar = match wire? {
+            Connection::Terminal(terminal) => return Some(terminal),
+            Connection::Floating(e) => *floating.entry(e).or_insert_with(|| {
+                let name = format!("{}.{}", solid.name, solid.electrodes[e].name);
+                fresh(name)
+            }),
+            Connection::Free => fresh(format!("node {node} of {}", solid.name)),
+        };
+        Some(ScalarArg {
+            constant: 0.0,
+            scalar: Some((scalar, unit)),
+        })
+    };
+    wires.into_iter().enumerate().map(&mut terminal).collect()
 }
 
 /// √(μ/ε) in V/mm, the unit of fields in which mechanics and electrostatics have one magnitude; potentials are counted in

@@ -10,6 +10,7 @@ use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::model::attachment::Attachment;
 use crate::model::plan::{self, LeftOut, Present};
 use crate::model::presolved::Presolved;
+use crate::model::variables::Variables;
 use std::any::Any;
 use std::fmt;
 
@@ -18,8 +19,7 @@ pub struct Terms<'a> {
     condensed: &'a Presolved,
     reference: &'a [Pose],
     vectors: &'a mut Vectors,
-    /// Source of each voltage.
-    voltages: &'a [usize],
+    variables: &'a Variables,
     of_motion: bool,
     collected: Vec<Collected>,
     present: Vec<Present>,
@@ -93,7 +93,7 @@ impl<'a> Terms<'a> {
     pub(super) fn new(
         condensed: &'a Presolved,
         reference: &'a [Pose],
-        voltages: &'a [usize],
+        variables: &'a Variables,
         of_motion: bool,
         vectors: &'a mut Vectors,
     ) -> Self {
@@ -101,7 +101,7 @@ impl<'a> Terms<'a> {
             condensed,
             reference,
             vectors,
-            voltages,
+            variables,
             of_motion,
             collected: Vec::new(),
             present: Vec::new(),
@@ -142,7 +142,7 @@ impl<'a> Terms<'a> {
 
     /// Scalar of the voltage of a source; `None` where it is zero all the time, or does nothing.
     pub fn input(&self, source: usize) -> Option<usize> {
-        self.voltages.iter().position(|&s| s == source)
+        self.variables.voltage(source)
     }
 
     /// Adds a formula of vectors of the intervals: a potential energy, or where it has virtual displacements a virtual work.

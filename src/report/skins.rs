@@ -92,7 +92,7 @@ impl Skins {
                 skin.places.push(vectors.collect());
                 let potentials = match skin.muscle {
                     Some(muscle) => {
-                        let s = model.voltages.iter().position(|&v| v == muscle);
+                        let s = model.variables.voltage(muscle);
                         vec![s.map_or(0.0, |s| scalars[s].abs()); nodes.len()]
                     }
                     None => {

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::control::problem::{Control, Duration, PathConstraint};
-use crate::control::{Row, Transcription, Variable, When};
+use crate::control::{Column, Row, Transcription, When};
 use crate::math::significant;
-use crate::model::{JointReading, Model, joint_unit};
+use crate::model::{JointReading, Model, Role, joint_unit};
 use crate::nlp::Nlp;
 
 /// A bound that is reached.
@@ -35,12 +35,13 @@ pub fn active(
 ) -> Vec<Active> {
     let mut seen = ActiveLimits::default();
     let bounds = program.variables();
-    for (i, variable) in program.unknowns().variables.iter().enumerate() {
+    for (i, &column) in program.unknowns().columns.iter().enumerate() {
         let [low, high] = [bounds.lower[i], bounds.upper[i]];
         let side = reached(x[i], low, high);
-        match *variable {
-            Variable::Scalar { s, .. } if s < model.voltages.len() => {
-                let name = &model.sources[model.voltages[s]].name;
+        let variable = column.of(&model.variables);
+        match (column, variable.role) {
+            (_, Role::Voltage) => {
+                let name = &variable.name;
                 for (index, is_reached) in side.into_iter().enumerate() {
                     let volts = control.voltage_bounds[index];
                     if volts.is_finite() && volts != 0.0 {
@@ -49,7 +50,7 @@ pub fn active(
                     }
                 }
             }
-            Variable::Unknown { i, .. } if i < model.coordinate_count() => {
+            (Column::Instant { i, .. }, Role::Coordinate) => {
                 let of = |gauge: &JointReading| gauge.coordinate == Some(i);
                 let Some(joint) = model.gauges.iter().position(of) else {
                     continue;
@@ -71,7 +72,7 @@ pub fn active(
                     }
                 }
             }
-            Variable::Horizon => {
+            (Column::Horizon, _) => {
                 let Duration::Free { min, max, .. } = control.duration else {
                     continue;
                 };

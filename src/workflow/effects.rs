@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::control::problem::Control;
 use crate::coordinates::CoordinateMap;
 use crate::functional::{Couplings, Kind, Term};
-use crate::model::Model;
+use crate::model::{Model, Time, Variable};
 use crate::workflow::reasons::{self, Absent, absent};
 use crate::workflow::stopwatch;
 
@@ -81,10 +81,25 @@ pub fn effect_counts(model: &Model, control: Option<&Control>, spent: f64) -> Ve
         (None, true) => Matrix::Step,
         (None, false) => Matrix::Rest,
     };
-    let given = |source: &usize| control.is_some_and(|c| c.given.contains_key(source));
+    let scalar = |variable: &Variable| {
+        let has_equation = variable.role.has_equation();
+        let is_unknown = match control {
+            Some(control) => control.given(variable).is_none(),
+            None => has_equation,
+        };
+        Scalar {
+            has_equation,
+            is_unknown,
+        }
+    };
     let unknowns = Unknowns {
         coordinates: model.coordinate_count(),
-        sought: model.voltages.iter().map(|s| !given(s)).collect(),
+        scalars: model
+            .variables
+            .of(Time::Interval)
+            .iter()
+            .map(scalar)
+            .collect(),
         matrix,
     };
     let times = stopwatch::times(model, spent);
@@ -103,9 +118,16 @@ pub fn effect_counts(model: &Model, control: Option<&Control>, spent: f64) -> Ve
 struct Unknowns {
     /// Number of coordinates.
     coordinates: usize,
-    /// Whether each voltage is an unknown of a program.
-    sought: Vec<bool>,
+    /// Scalars of an interval.
+    scalars: Vec<Scalar>,
     matrix: Matrix,
+}
+
+/// What a scalar of an interval is in the matrix.
+#[derive(Clone, Copy)]
+struct Scalar {
+    has_equation: bool,
+    is_unknown: bool,
 }
 
 /// Names of the effects that couple two unknowns: coordinates by entry, scalars of the site behind them.
@@ -165,14 +187,16 @@ impl<'a> Coupled<'a> {
         let mut unknowns: Vec<u32> = self.pairs.iter().flatten().copied().collect();
         unknowns.sort_unstable();
         unknowns.dedup();
-        let given = of.coordinates + of.sought.len();
-        let (kind, first) = match self.effect.kind() {
-            Kind::Kinetic => ("kinetic", given),
-            Kind::Potential => ("potential", given),
-            Kind::VirtualWork => ("virtual work", given),
-            Kind::Constraint => ("constraint", of.coordinates),
+        let kind = match self.effect.kind() {
+            Kind::Kinetic => "kinetic",
+            Kind::Potential => "potential",
+            Kind::VirtualWork => "virtual work",
+            Kind::Constraint => "constraint",
         };
-        let equations = unknowns.iter().filter(|&&i| i as usize >= first);
+        let scalars = unknowns.iter();
+        let scalars = scalars.filter_map(|&i| (i as usize).checked_sub(of.coordinates));
+        let is_of_instant = self.effect.kind() == Kind::Constraint;
+        let equations = scalars.filter(|&s| is_of_instant || of.scalars[s].has_equation);
         let diagonal = self.pairs.iter().filter(|[i, j]| i == j).count();
         let touched = self.pairs.iter().map(|pair| self.touched(pair, of));
         let [jacobian, hessian] = touched.fold([0, 0], |[a, b], [c, d]| [a + c, b + d]);
@@ -205,12 +229,7 @@ impl<'a> Coupled<'a> {
                 (false, _) => [2, 1],
             };
         }
-        let scalar = |i: usize| i.checked_sub(of.coordinates);
-        let is_potential = |s: usize| s >= of.sought.len();
-        let is_variable = |s: usize| match of.matrix {
-            Matrix::Program => is_potential(s) || of.sought[s],
-            Matrix::Step | Matrix::Rest => is_potential(s),
-        };
+        let scalar = |i: usize| Some(of.scalars[i.checked_sub(of.coordinates)?]);
         // A program has the balances of an instant with the instants before, here and after, and an interval has two ends.
         let (balances, ends) = match of.matrix {
             Matrix::Program => (3, 2),
@@ -218,12 +237,12 @@ impl<'a> Coupled<'a> {
         };
         match (scalar(i), scalar(j)) {
             (None, None) => [balances * both_orders, 1 + both_orders],
-            (None, Some(s)) if is_variable(s) => {
-                let rows = if is_potential(s) { 2 } else { 1 };
+            (None, Some(s)) if s.is_unknown => {
+                let rows = if s.has_equation { 2 } else { 1 };
                 [ends * rows, 2]
             }
-            (Some(s), Some(t)) if is_variable(s) && is_variable(t) => {
-                let rows = usize::from(is_potential(s)) + usize::from(i != j && is_potential(t));
+            (Some(s), Some(t)) if s.is_unknown && t.is_unknown => {
+                let rows = usize::from(s.has_equation) + usize::from(i != j && t.has_equation);
                 [rows, 1]
             }
             _ => [0, 0],

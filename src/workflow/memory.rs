@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::model::system::Fidelity;
-use crate::model::{Model, System};
+use crate::model::{Model, System, Time};
 use crate::workflow::error::WorkflowError;
 
 /// Bytes of an element with its share of nodes, couplings, tangent and factors: dielectric blocks of 2048 to 16 384 elements took
@@ -49,7 +49,7 @@ fn unknowns(system: &System) -> usize {
 /// Its instants need more than there is.
 pub(crate) fn of_motion(model: &Model, steps: usize) -> Result<(), WorkflowError> {
     let motion = &model.action.motion;
-    let scalars = model.voltages.len() + model.potentials;
+    let scalars = model.variables.of(Time::Interval).len();
     let numbers = 3 * motion.unknowns() + 2 * motion.coordinates + 2 * scalars;
     let instant = 8.0 * numbers as f64 + OF_POSE * model.system.bodies.len() as f64 + OF_INSTANT;
     let what = format!("a motion of {steps} steps");
@@ -62,7 +62,10 @@ pub(crate) fn of_motion(model: &Model, steps: usize) -> Result<(), WorkflowError
 /// Its derivatives need more than there is.
 pub(crate) fn of_program(model: &Model, intervals: usize) -> Result<(), WorkflowError> {
     let derivatives = model.action.layout().values(1) as f64;
-    let unknowns = model.action.motion.unknowns() + model.voltages.len() + model.potentials;
+    let unknowns: usize = [Time::Instant, Time::Interval]
+        .map(|time| model.variables.of(time).len())
+        .iter()
+        .sum();
     let what = format!(
         "a program of {intervals} intervals with {unknowns} unknowns and {derivatives} second derivatives each"
     );

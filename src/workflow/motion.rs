@@ -4,8 +4,8 @@ use crate::control::{Costates, Solution};
 use crate::dynamics::DiscreteTrajectory;
 use crate::dynamics::trajectory::Trajectory;
 use crate::math::Vector;
-use crate::model::Model;
 use crate::model::system::Joint;
+use crate::model::{Model, Role};
 
 /// What is kept of a motion.
 pub fn solved(model: &Model, history: &DiscreteTrajectory, costates: Option<Costates>) -> Solution {
@@ -62,20 +62,24 @@ fn marks(model: &Model, z: &[Vec<f64>]) -> Vec<Vec<Vector>> {
 
 /// Potentials of a motion by interval; none where a scene has none.
 fn potentials(model: &Model, history: &DiscreteTrajectory) -> Vec<Vec<f64>> {
-    if model.potentials == 0 {
+    let potentials = model.variables.range(Role::Potential);
+    if potentials.is_empty() {
         return Vec::new();
     }
     let rows = history.scalars.iter();
-    rows.map(|row| row[model.voltages.len()..].to_vec())
-        .collect()
+    rows.map(|row| row[potentials.clone()].to_vec()).collect()
 }
 
 /// Voltages and potentials of a motion that is kept, by interval.
 pub(crate) fn scalars(model: &Model, kept: &Solution) -> Vec<Vec<f64>> {
     let row = |(k, voltages): (usize, &Vec<f64>)| {
-        let mut row = model.scalars(voltages);
-        row.extend(kept.potentials.get(k).into_iter().flatten());
-        row.resize(model.action.intervals.scalars, 0.0);
+        let mut row = model.variables.scalars(&model.scalars(voltages));
+        let potentials = &mut row[model.variables.range(Role::Potential)];
+        let known = kept.potentials.get(k).into_iter().flatten();
+        potentials
+            .iter_mut()
+            .zip(known)
+            .for_each(|(to, from)| *to = *from);
         row
     };
     kept.voltages.iter().enumerate().map(row).collect()

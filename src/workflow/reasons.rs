@@ -42,7 +42,7 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
     let (zero_voltage, cut): (Vec<usize>, Vec<usize>) = model
         .reached
         .iter()
-        .filter(|s| !model.voltages.contains(s))
+        .filter(|s| model.variables.voltage(**s).is_none())
         .partition(|s| model.analysis.zero_voltage.contains(s));
     if !zero_voltage.is_empty() {
         let why = format!("0 V all the time at {}", names(&zero_voltage));
@@ -90,7 +90,7 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
 }
 
 fn absent_of_control(model: &Model, control: &Control, add: &mut impl FnMut(String, String)) {
-    let present = |source: &&usize| model.voltages.contains(source);
+    let present = |source: &&usize| model.variables.voltage(**source).is_some();
     for source in control.given.keys().filter(present) {
         let name = format!("unknown of the voltage of {}", model.sources[*source].name);
         add(name, "the problem gives it".to_owned());

@@ -21,7 +21,7 @@ pub(crate) fn times(model: &Model, spent: f64) -> Vec<f64> {
     let scalars = vec![0.0; action.intervals.scalars];
     let interval = Interval::given(&scalars, model.analysis.interval);
     let of_interval = interval.frame([&instant, &instant]);
-    let multipliers = vec![0.0; model.multiplier_names.len()];
+    let multipliers = vec![0.0; action.instants.scalars];
     let of_instant = Sample {
         scalars: &multipliers,
         ..of_interval

@@ -6,7 +6,7 @@ use proboscis::energy::Energy;
 use proboscis::functional::{Element, Formulas, Functional, Group, Stencil, Term, VectorArg};
 use proboscis::kinematics::MaterialVector;
 use proboscis::math::Jet;
-use proboscis::model::Model;
+use proboscis::model::{Model, Variable};
 
 /// Scalars of a program are in kV: one unit of force is a thousand units of the scalar.
 pub const UNIT: f64 = 1e-3;
@@ -51,6 +51,7 @@ pub fn with_control<E: Energy<4> + 'static>(
     effects.push(Box::new(control) as Box<dyn Term>);
     let intervals = Functional::new(effects, intervals.measures, intervals.vectors, 1);
     model.action = Reduced::new(motion, intervals, instants);
-    model.voltages = vec![0];
+    let control = Variable::voltage(0, "control".to_owned());
+    assert_eq!(model.variables.add(control), 0);
     model
 }

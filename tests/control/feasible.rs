@@ -72,7 +72,7 @@ fn law(
     for (row, (value, r)) in rows.iter().zip(g.iter().zip(0..)) {
         match *row {
             // At the end the motion is not at rest: the row is minus the momentum there, in the scale of the rows of i.
-            Row::Equation { k: INTERVALS, i } if i < n => {
+            Row::Instant { k: INTERVALS, i } if i < n => {
                 let scale = momentum_scale(&mut program, &x, i);
                 let momentum = history.momenta[INTERVALS][i] * scale;
                 assert!(
@@ -80,7 +80,7 @@ fn law(
                     "{value} against {momentum}"
                 );
             }
-            Row::Equation { .. } | Row::Gauss { .. } => {
+            Row::Instant { .. } | Row::Interval { .. } => {
                 assert!(
                     value.abs() < 1e-12,
                     "{name} {coordinates:?}: {} is {value:e}",

@@ -4,7 +4,7 @@
 use crate::common::cases::{hold, rest_to_rest};
 use crate::common::{numbers, reference, trunk};
 use proboscis::control::problem::{Control, Duration, Objective};
-use proboscis::control::{BoundaryConditions, Costates, Row, Transcription, Variable, guess};
+use proboscis::control::{BoundaryConditions, Column, Costates, Row, Transcription, guess};
 use proboscis::dynamics::{DiscreteTrajectory, simulate};
 use proboscis::ipopt::{self, Options, SolverResult, Start};
 use proboscis::model::system::System;
@@ -20,7 +20,7 @@ pub(crate) struct Optimum {
     pub(crate) h: f64,
     pub(crate) solution: SolverResult,
     pub(crate) costates: Costates,
-    pub(crate) variables: Vec<Variable>,
+    pub(crate) columns: Vec<Column>,
     pub(crate) rows: Vec<Row>,
     /// Largest entries of the four conditions: stationarity, rows, complementarity, sign of multipliers.
     pub(crate) conditions: [f64; 4],
@@ -64,8 +64,8 @@ pub(crate) fn solve(
     let history = program.decode(&solution.x);
     let h = history.times[1];
     let costates = program.costates(&solution.costates);
-    let (variables, rows) = (
-        program.unknowns().variables.clone(),
+    let (columns, rows) = (
+        program.unknowns().columns.clone(),
         program.unknowns().rows.clone(),
     );
     drop(program);
@@ -76,7 +76,7 @@ pub(crate) fn solve(
         h,
         solution,
         costates,
-        variables,
+        columns,
         rows,
         conditions,
         multipliers,
@@ -280,7 +280,7 @@ fn both_coordinates_have_the_same_optimum_and_costates() {
                 let mut list = vec![0.0; n];
                 for (row, y) in optimum.rows.iter().zip(&optimum.costates.rows) {
                     match *row {
-                        Row::Equation { k: at, i } if at == k && i < n => list[i] = *y,
+                        Row::Instant { k: at, i } if at == k && i < n => list[i] = *y,
                         _ => {}
                     }
                 }
@@ -331,7 +331,7 @@ fn optima_satisfy_the_conditions_of_first_order() {
                 "{name}: complementarity {complementarity:e}"
             );
             assert!(signs <= 1e-7, "{name}: signs {signs:e}");
-            assert!(optimum.variables.len() == optimum.solution.x.len());
+            assert!(optimum.columns.len() == optimum.solution.x.len());
         }
     }
 }

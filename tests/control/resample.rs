@@ -4,7 +4,7 @@ use crate::common::cases::{joints, rest_to_rest};
 use crate::common::trunk;
 use proboscis::control::problem::{Control, Duration, Objective, PathConstraint, Task};
 use proboscis::control::{
-    BoundaryConditions, Costates, InitialGuess, Row, Transcription, Variable, guess,
+    BoundaryConditions, Column, Costates, InitialGuess, Row, Transcription, guess,
 };
 use proboscis::files::read_problem;
 use proboscis::model::Coordinates;
@@ -59,35 +59,35 @@ fn solve(control: &Control) -> Optimum {
 }
 
 /// The start that an earlier optimum gives, with the layout of the program.
-fn carried(control: &Control, from: &Optimum) -> (InitialGuess, Vec<Variable>, Vec<Row>, usize) {
+fn carried(control: &Control, from: &Optimum) -> (InitialGuess, Vec<Column>, Vec<Row>, usize) {
     let h = 110.0 / control.intervals as f64;
     let (model, boundary) = BoundaryConditions::resolve(&trunk(2), control, h).unwrap();
     let initial = guess(&model, &boundary, control, h, Some(&from.motion));
     let program = Transcription::new(&model, &boundary, control, &initial).unwrap();
     let unknowns = program.unknowns();
-    let (variables, rows) = (unknowns.variables.clone(), unknowns.rows.clone());
+    let (variables, rows) = (unknowns.columns.clone(), unknowns.rows.clone());
     (initial, variables, rows, model.coordinate_count())
 }
 
 /// Lists by kind.
 type Kinds = BTreeMap<&'static str, Vec<f64>>;
 
-fn kinds(costates: &Costates, variables: &[Variable], rows: &[Row], count: usize) -> Kinds {
+fn kinds(costates: &Costates, variables: &[Column], rows: &[Row], count: usize) -> Kinds {
     let mut out = Kinds::new();
     for (row, &value) in rows.iter().zip(&costates.rows) {
         let kind = match row {
-            Row::Equation { i, .. } if *i < count => "momentum balance",
-            Row::Equation { .. } => "constraint",
-            Row::Gauss { .. } => "Gauss's law",
+            Row::Instant { i, .. } if *i < count => "momentum balance",
+            Row::Instant { .. } => "constraint",
+            Row::Interval { .. } => "Gauss's law",
             Row::Limit { .. } => "limit",
         };
         out.entry(kind).or_default().push(value);
     }
     for (i, variable) in variables.iter().enumerate() {
         let kind = match variable {
-            Variable::Unknown { .. } => "bound of a coordinate",
-            Variable::Scalar { .. } => "bound of a voltage",
-            Variable::Horizon => "bound of the duration",
+            Column::Instant { .. } => "bound of a coordinate",
+            Column::Interval { .. } => "bound of a voltage",
+            Column::Horizon => "bound of the duration",
         };
         let both = [costates.lower[i], costates.upper[i]];
         out.entry(kind).or_default().extend(both);

@@ -9,7 +9,7 @@ use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::coordinates::Interval;
 use proboscis::functional::Order;
 use proboscis::model::system::System;
-use proboscis::model::{Coordinates, Model};
+use proboscis::model::{Coordinates, Model, Role};
 use proboscis::nlp::{Bounds, Entries, Nlp, differences};
 
 /// Noise on the variables of a guess, all of which are scaled to about one.
@@ -105,8 +105,8 @@ fn dense(system: &System, coordinates: Coordinates) -> nalgebra::DMatrix<f64> {
         }
         action.motion.place(instant);
     }
-    let driven = model.voltages.len();
-    let size = |s: usize| if s < driven { 2e3 } else { 0.02 };
+    let voltages = model.variables.range(Role::Voltage);
+    let size = |s: usize| if voltages.contains(&s) { 2e3 } else { 0.02 };
     let scalars = (0..model.action.intervals.scalars).map(|s| size(s) * random.unit());
     let scalars: Vec<f64> = scalars.collect();
     let layout = action.layout();

@@ -55,7 +55,9 @@ fn screws_and_charts_of_robots() {
         .push(joint("nothing", JointKind::Floating, None, 0, at));
     assert_eq!(count(free), (10, 18));
     let model = Model::new(satellite(), None, 1.0, &[]).unwrap();
-    let names: Vec<String> = (0..10).map(|i| model.unknown_name(i)).collect();
+    let names: Vec<String> = (0..10)
+        .map(|i| model.variables.unknown(i).to_string())
+        .collect();
     assert_eq!(names[0], "coordinate of joint2");
     assert_eq!(names[2], "rotation about y of joint3");
     assert_eq!(names[6], "displacement along z of segment1");

@@ -2,6 +2,7 @@
 
 use crate::stable::{file, model, reference, run, scene, summary};
 use proboscis::dynamics::{DiscreteTrajectory, largest_stretch, out_of_domain};
+use proboscis::model::Role;
 use proboscis::model::system::ElectricConstants;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -56,10 +57,15 @@ fn a_block_outside_the_domain_is_told_with_its_instants() {
         axes.map(|(&(_, axis), x)| if axis == 2 { l * x } else { x / l.sqrt() })
             .collect()
     };
+    let scalars = |voltage: f64| {
+        let mut scalars = vec![0.5 * voltage; model.action.intervals.scalars];
+        scalars[model.variables.range(Role::Voltage)].fill(voltage);
+        scalars
+    };
     let motion = |voltage: f64| DiscreteTrajectory {
         times: vec![0.0, 1.0, 2.0, 3.0],
         z: [1.0, 1.46, 1.6, 1.5].map(stretched).to_vec(),
-        scalars: vec![[vec![voltage], vec![0.5 * voltage; model.potentials]].concat(); 3],
+        scalars: vec![scalars(voltage); 3],
         ..DiscreteTrajectory::default()
     };
     assert_eq!(out_of_domain(&model, &motion(0.0)), Vec::new());

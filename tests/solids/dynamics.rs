@@ -7,8 +7,8 @@ use proboscis::dynamics::{
     DiscreteTrajectory, Newton, Solving, Start, observations, simulate, simulate_by,
 };
 use proboscis::functional::Order;
-use proboscis::model::Model;
 use proboscis::model::system::System;
+use proboscis::model::{Model, Role};
 use proboscis::sparse::Backend;
 use serde_json::Value;
 use std::ops::ControlFlow;
@@ -140,7 +140,7 @@ fn gauss_holds_in_every_interval_and_the_balance_closes() {
             .evaluate_interval(Order::Gradient, [&mut a, &mut b], &interval, &mut scratch);
         let rows = &scratch.interval.plain.rows;
         // The charge on the electrodes in the units of the free rows.
-        let charge = rows[0].abs() * model.potential_unit;
+        let charge = rows[0].abs() * model.variables.with(Role::Potential)[0].unit;
         assert!(charge > 0.1);
         for row in &rows[1..] {
             assert!(row.abs() < 1e-9 * charge, "{row:e} of {charge:e}");

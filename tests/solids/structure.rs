@@ -10,7 +10,7 @@ use proboscis::coordinates::Interval;
 use proboscis::functional::{Kind, Order};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::system::{Electrode, Fidelity, Material, Potential, Solid, System};
-use proboscis::model::{Coordinates, Model};
+use proboscis::model::{Coordinates, Model, Role, Time};
 use proboscis::nlp::Nlp;
 use std::collections::BTreeSet;
 
@@ -165,7 +165,7 @@ fn a_block_without_electrodes_has_no_potential() {
     // 36 nodes, 9 of them clamped, 2 on rollers.
     assert_eq!(expected, 3 * 27 - 2);
     assert_eq!(found.coordinate_count(), expected);
-    assert_eq!((found.potentials, found.voltages.len()), (0, 0));
+    assert_eq!(found.variables.of(Time::Interval), []);
     assert_eq!(found.action.intervals.scalars, 0);
 }
 
@@ -176,10 +176,10 @@ fn inner_nodes_of_dielectric_elements_have_a_potential() {
         let mut solid = driven(elements);
         change(&mut solid);
         let model = model(solid);
-        (model.potentials, model.voltages.len())
+        [Role::Potential, Role::Voltage].map(|role| model.variables.count(role))
     };
     // Three planes of nine nodes between both faces.
-    assert_eq!(with(&|_| {}), (27, 1));
+    assert_eq!(with(&|_| {}), [27, 1]);
     // An electrode takes the potentials of its nodes away; floating ones keep one.
     let middle = |potential| {
         move |s: &mut Solid| {
@@ -188,10 +188,10 @@ fn inner_nodes_of_dielectric_elements_have_a_potential() {
         }
     };
     // Between two of one voltage there is no field.
-    assert_eq!(with(&middle(Potential::Given(0.0))), (9, 1));
-    assert_eq!(with(&middle(Potential::Given(30.0))), (18, 1));
-    assert_eq!(with(&middle(DRIVEN)), (9, 1));
-    assert_eq!(with(&middle(Potential::Floating)), (19, 1));
+    assert_eq!(with(&middle(Potential::Given(0.0))), [9, 1]);
+    assert_eq!(with(&middle(Potential::Given(30.0))), [18, 1]);
+    assert_eq!(with(&middle(DRIVEN)), [9, 1]);
+    assert_eq!(with(&middle(Potential::Floating)), [19, 1]);
     // A passive half below an electrode in the middle: its nodes have none, and the field ends at the electrode.
     let passive = |s: &mut Solid| {
         s.mesh.regions = (0..16).map(|e| usize::from(e < 8)).collect();
@@ -207,16 +207,16 @@ fn inner_nodes_of_dielectric_elements_have_a_potential() {
             passive(s);
             middle(Potential::Given(0.0))(s);
         }),
-        (9, 1)
+        [9, 1]
     );
     // Without it the nodes in the middle are on the boundary of the field, and no electrode grounds the dielectric.
-    assert_eq!(with(&passive), (0, 0));
+    assert_eq!(with(&passive), [0, 0]);
     // Nor is there a field where all electrodes have one potential.
     assert_eq!(
         with(&|s| s.electrodes[1].potential = Potential::Given(0.0)),
-        (0, 0)
+        [0, 0]
     );
-    assert_eq!(with(&|s| s.electrodes.truncate(1)), (0, 0));
+    assert_eq!(with(&|s| s.electrodes.truncate(1)), [0, 0]);
     // An electrode of no dielectric element drives nothing.
     let beside = |s: &mut Solid| {
         passive(s);
@@ -231,7 +231,7 @@ fn inner_nodes_of_dielectric_elements_have_a_potential() {
             },
         });
     };
-    assert_eq!(with(&beside), (9, 1));
+    assert_eq!(with(&beside), [9, 1]);
 }
 
 /// Kinds of the effects of a model.
@@ -347,7 +347,7 @@ fn a_block_far_away_changes_no_bit() {
         let [near, far] =
             [near, far].map(|system| Model::new(system, Some(coordinates), 2.0, &[]).unwrap());
         let n = near.coordinate_count();
-        assert!(far.coordinate_count() > n && near.potentials > 0);
+        assert!(far.coordinate_count() > n && near.variables.count(Role::Potential) > 0);
         let [mut near, mut far] = [near, far].map(|model| numbers(&model, n));
         assert!(near.iter().filter(|v| v.2.abs() > 1e-3).count() > 500);
         // Places are in the order of the list of entries, which the far block may shift: compare them sorted.

@@ -14,7 +14,7 @@ use proboscis::functional::{Kind, Term};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::plan::TERMS;
 use proboscis::model::system::{Potential, System};
-use proboscis::model::{Analysis, Coordinates, Model};
+use proboscis::model::{Analysis, Coordinates, Model, Role};
 use proboscis::sparse::Symmetry;
 use proboscis::workflow::Plan;
 use std::collections::BTreeSet;
@@ -63,6 +63,11 @@ pub(crate) fn names(model: &Model) -> BTreeSet<String> {
     effects.map(|e| Term::name(e.as_ref()).to_owned()).collect()
 }
 
+/// Sources of the voltages of a model.
+fn sources(model: &Model) -> Vec<usize> {
+    model.variables.sources().collect()
+}
+
 #[test]
 fn a_muscle_without_voltage_moves_like_a_passive_one_to_the_last_bit() {
     for coordinates in BOTH {
@@ -73,10 +78,7 @@ fn a_muscle_without_voltage_moves_like_a_passive_one_to_the_last_bit() {
             passive.muscles[muscle].material.electric = None;
         }
         let ((model, found), (other, expected)) = (moved(&system, &task), moved(&passive, &task));
-        assert_eq!(
-            (&model.voltages, &other.voltages),
-            (&vec![1, 3], &vec![1, 3])
-        );
+        assert_eq!([sources(&model), sources(&other)], [[1, 3], [1, 3]]);
         assert_eq!(model.reached, vec![0, 1, 2, 3]);
         let way: f64 = found.z[20]
             .iter()
@@ -112,13 +114,15 @@ fn an_electrode_without_voltage_is_grounded() {
     let (model, found) = moved(&driven, &of_reduced(vec![0.0, 3e4]));
     let (other, expected) = moved(&grounded, &of_reduced(vec![3e4]));
     // One plane of potentials between middle and top, none below.
-    assert_eq!((model.potentials, other.potentials), (4, 4));
-    assert_eq!((&model.voltages, &model.reached), (&vec![1], &vec![0, 1]));
+    let potentials = [&model, &other].map(|model| model.variables.count(Role::Potential));
+    assert_eq!(potentials, [4, 4]);
+    assert_eq!((sources(&model), &model.reached), (vec![1], &vec![0, 1]));
     assert!((found.z[20][2] - found.z[0][2]).abs() > 1e-6);
     assert_eq!(found.z, expected.z);
     // Without any voltage there is no field, and nothing moves.
     let (still, rest) = moved(&driven, &of_reduced(vec![0.0, 0.0]));
-    assert_eq!((still.potentials, still.coordinate_count()), (0, 0));
+    let potentials = still.variables.count(Role::Potential);
+    assert_eq!((potentials, still.coordinate_count()), (0, 0));
     assert_eq!((names(&still).len(), rest.intervals()), (0, 20));
 }
 

@@ -9,6 +9,7 @@ mod condensed;
 mod documents;
 mod floors;
 mod lengths;
+mod roles;
 mod sources;
 mod trace;
 mod welded;

@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use crate::control::conditions::BoundaryConditions;
 use crate::control::limits::When;
-use crate::control::numbering::{Counts, Numbering, Row};
+use crate::control::numbering::{Column, Numbering, Row};
 use crate::control::problem::{Control, Duration};
 use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};
-use crate::model::Model;
+use crate::model::{Model, Role};
 
 /// Which variables and rows the program of a control problem has on a number of intervals.
 #[derive(Clone, Debug)]
@@ -28,13 +28,16 @@ impl Layout {
     ) -> Self {
         let motion = &model.action.motion;
         let goal = &boundary.goal.coordinates;
-        let given = |k: usize, i: usize| k == 0 || (k == intervals && goal[i].is_some());
-        let counts = Counts {
-            intervals,
-            coordinates: motion.coordinates,
-            unknowns: motion.unknowns(),
-            voltages: model.voltages.len(),
-            scalars: model.voltages.len() + model.potentials,
+        let is_given = |column: Column| {
+            let variable = column.of(&model.variables);
+            match (column, variable.role) {
+                (Column::Instant { k, i }, Role::Coordinate) => {
+                    k == 0 || (k == intervals && goal[i].is_some())
+                }
+                (Column::Instant { .. }, _) => false,
+                (Column::Interval { .. }, _) => control.given(variable).is_some(),
+                (Column::Horizon, _) => matches!(control.duration, Duration::Given(_)),
+            }
         };
         let at_rest = boundary.goal.nodes_rest;
         // A node that multipliers hold rests with what they hold it to: its balance gives their last value.
@@ -45,13 +48,8 @@ impl Layout {
             }
         }
         let rests = |i: usize| i < motion.of_bodies || is_held[i] || at_rest;
-        let balanced = |k: usize, i: usize| k < intervals || rests(i);
-        let free = matches!(control.duration, Duration::Free { .. });
-        let prescribed = |s: usize| {
-            let source = model.voltages.get(s);
-            source.is_some_and(|source| control.given.contains_key(source))
-        };
-        let mut unknowns = Numbering::new(counts, free, given, balanced, prescribed);
+        let is_balanced = |k: usize, i: usize| k < intervals || rests(i);
+        let mut unknowns = Numbering::new(&model.variables, intervals, is_given, is_balanced);
         let limits = limit_rows(model, &boundary.limits.list, intervals, &unknowns);
         let mut limit_rows = Vec::new();
         for (index, limit) in limits.iter().enumerate() {

@@ -22,12 +22,12 @@ use crate::control::BoundaryError;
 use crate::control::conditions::BoundaryConditions;
 use crate::control::guess::InitialGuess;
 use crate::control::limits::{BoundedQuantity, When};
-use crate::control::numbering::{Numbering, Row, Variable};
+use crate::control::numbering::{Column, Numbering, Row};
 use crate::control::objective::{Cost, objective_scale};
 use crate::control::problem::{Control, Duration};
 use crate::coordinates::Configuration;
 use crate::functional::{Horizon, Part};
-use crate::model::Model;
+use crate::model::{Model, Role, Size, Time};
 use crate::nlp::{Bounds, Entries, Nlp};
 pub(super) use layout::Layout;
 use limit_rows::LimitRow;
@@ -69,9 +69,11 @@ pub struct Transcription<'m> {
     point: Vec<f64>,
     instants: Vec<Configuration>,
     placed: Placed,
+    /// Scalars of all intervals.
     scalars: Vec<f64>,
-    /// Costates of Gauss's laws, scalar by scalar.
+    /// Costates of their equations.
     scalars_along: Vec<f64>,
+    /// Voltages of all intervals in kV.
     kilovolts: Vec<f64>,
     h: f64,
     // Scales: value = scale · variable, scaled row = scale · row.
@@ -83,15 +85,15 @@ pub struct Transcription<'m> {
     middle: Option<usize>,
     halo: Configuration,
     measured: Part,
-    /// Step by step the rows of an instant and those of the potentials, then costates of the limits.
+    /// Step by step the rows of an instant and those of the scalars of an interval, then costates of the limits.
     rows: Vec<f64>,
     values: Vec<f64>,
     jacobian: Vec<Gather>,
     jacobian_entries: Entries,
     hessian: Vec<Gather>,
     hessian_entries: Entries,
-    /// Slot of the second derivative of each voltage with itself.
-    voltage_slots: Vec<usize>,
+    /// Each voltage of an interval: its place among the scalars, and the slot of its second derivative with itself.
+    voltages: Vec<(usize, usize)>,
     gradient: Vec<f64>,
 }
 impl<'m> Transcription<'m> {
@@ -118,9 +120,9 @@ impl<'m> Transcription<'m> {
         initial: &InitialGuess,
     ) -> Self {
         let motion = &model.action.motion;
-        let (n, unknown_count) = (motion.coordinates, motion.unknowns());
-        let driven = model.voltages.len();
-        let scalar_count = driven + model.potentials;
+        let unknown_count = motion.unknowns();
+        let variables = &model.variables;
+        let scalar_count = variables.of(Time::Interval).len();
         let intervals = control.intervals;
         let horizon = match control.duration {
             Duration::Given(_) => Horizon::Given,
@@ -132,11 +134,13 @@ impl<'m> Transcription<'m> {
             limits,
             limit_rows: limit_at,
         } = Layout::new(model, boundary, control, intervals);
-        let held = |s: usize| control.given.get(model.voltages.get(s)?);
-        let row: Vec<f64> = (0..scalar_count)
-            .map(|s| held(s).copied().unwrap_or(0.0))
+        let scalars = variables.of(Time::Interval).iter();
+        let row: Vec<f64> = scalars
+            .map(|variable| control.given(variable).unwrap_or(0.0))
             .collect();
-        let kilovolts: Vec<f64> = row[..driven].iter().map(|v| v / KILOVOLT).collect();
+        let voltages = variables.range(Role::Voltage);
+        let kilovolts = row[voltages.clone()].iter().map(|v| v / KILOVOLT);
+        let kilovolts = kilovolts.collect::<Vec<_>>().repeat(intervals);
         let mut instants = vec![motion.instant(); intervals + 1];
         for (instant, z) in instants.iter_mut().zip(&initial.history.z) {
             instant.z[unknown_count..].copy_from_slice(&z[unknown_count..]);
@@ -160,18 +164,20 @@ impl<'m> Transcription<'m> {
             boundary.rest[0].as_ref().map(kilo),
             boundary.rest[1].as_ref().map(kilo),
         ];
-        let cost = Cost::new(control.objective, driven, intervals, ends);
+        let cost = Cost::new(control.objective, voltages.len(), intervals, ends);
         let layout = model.action.layout();
         let length = model.length();
         let volts = control.voltage_unit(&model.system);
-        let scale = |variable: &Variable| match *variable {
-            Variable::Unknown { i, .. } if i < n && model.is_length(i) => length,
-            Variable::Unknown { .. } => 1.0,
-            Variable::Scalar { s, .. } if s < driven => volts,
-            Variable::Scalar { .. } => volts / model.potential_unit,
-            Variable::Horizon => initial.h,
+        let scale = |column: &Column| {
+            let variable = column.of(variables);
+            match variable.role {
+                Role::Coordinate if variable.size == Size::Length => length,
+                Role::Coordinate | Role::Multiplier => 1.0,
+                Role::Voltage | Role::Potential => volts / variable.unit,
+                Role::Duration => initial.h,
+            }
         };
-        let variable_scales = unknowns.variables.iter().map(scale).collect();
+        let variable_scales = unknowns.columns.iter().map(scale).collect();
         let limit_count = limit_at.len();
         let extra: usize = limit_at.iter().map(|&(l, _)| limits[l].entries.len()).sum();
         let mut out = Self {
@@ -189,12 +195,11 @@ impl<'m> Transcription<'m> {
             cost,
             momentum: boundary.start.momentum.clone(),
             bounds: Bounds::default(),
-            point: vec![f64::NAN; unknowns.variables.len()],
+            point: vec![f64::NAN; unknowns.columns.len()],
             instants,
             placed: Placed::Nothing,
             scalars: row.repeat(intervals),
             scalars_along: vec![0.0; intervals * scalar_count],
-            kilovolts: kilovolts.repeat(intervals),
             h: initial.h,
             variable_scales,
             row_scales: vec![1.0; unknowns.rows.len()],
@@ -203,21 +208,20 @@ impl<'m> Transcription<'m> {
                 .then_some(intervals / 2),
             halo: motion.instant(),
             measured: Part::new(motion.vectors.len(), scalar_count, None),
-            rows: vec![0.0; (intervals + 1) * (unknown_count + model.potentials) + limit_count],
+            rows: vec![0.0; (intervals + 1) * (unknown_count + scalar_count) + limit_count],
             values: vec![0.0; layout.values(intervals) + extra],
             jacobian: Vec::new(),
             jacobian_entries: Entries::default(),
             hessian: Vec::new(),
             hessian_entries: Entries::default(),
-            gradient: vec![0.0; intervals * driven],
-            voltage_slots: (0..driven)
+            gradient: vec![0.0; kilovolts.len()],
+            voltages: voltages
                 .map(|s| {
-                    layout
-                        .scalars
-                        .find(s, s)
-                        .expect("a voltage has a curvature of its own")
+                    let slot = layout.scalars.find(s, s);
+                    (s, slot.expect("a voltage has a curvature of its own"))
                 })
                 .collect(),
+            kilovolts,
             unknowns,
         };
         out.lay_jacobian();
@@ -237,7 +241,7 @@ impl<'m> Transcription<'m> {
             .filter(|r| !matches!(r, Row::Limit { .. }))
             .count()
             + goals;
-        let unknowns = self.unknowns.variables.len();
+        let unknowns = self.unknowns.columns.len();
         if equations > unknowns {
             let fixed = (0..self.model.coordinate_count())
                 .filter(|&i| self.unknowns.unknown(given, i).is_none())
@@ -256,7 +260,7 @@ impl<'m> Transcription<'m> {
         self.intervals
     }
 
-    /// Variables and equations.
+    /// Columns and rows.
     pub fn unknowns(&self) -> &Numbering {
         &self.unknowns
     }

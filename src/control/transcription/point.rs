@@ -1,7 +1,7 @@
 //! Between motions and points of the program.
 
 use crate::control::guess::InitialGuess;
-use crate::control::numbering::Variable;
+use crate::control::numbering::Column;
 use crate::control::solution::Costates;
 use crate::control::transcription::{KILOVOLT, Placed, Transcription};
 use crate::coordinates::Configuration;
@@ -14,7 +14,7 @@ pub struct Decoder {
     z: Vec<Vec<f64>>,
     scalars: Vec<Vec<f64>>,
     h: f64,
-    variables: Vec<Variable>,
+    columns: Vec<Column>,
     scales: Vec<f64>,
 }
 
@@ -22,12 +22,12 @@ impl Decoder {
     /// The motion of a point of the program.
     pub fn decode(&self, x: &[f64]) -> DiscreteTrajectory {
         let (mut z, mut scalars, mut h) = (self.z.clone(), self.scalars.clone(), self.h);
-        for ((variable, scale), x) in self.variables.iter().zip(&self.scales).zip(x) {
+        for ((column, scale), x) in self.columns.iter().zip(&self.scales).zip(x) {
             let value = scale * x;
-            match *variable {
-                Variable::Unknown { k, i } => z[k][i] = value,
-                Variable::Scalar { k, s } => scalars[k][s] = value,
-                Variable::Horizon => h = value,
+            match *column {
+                Column::Instant { k, i } => z[k][i] = value,
+                Column::Interval { k, s } => scalars[k][s] = value,
+                Column::Horizon => h = value,
             }
         }
         DiscreteTrajectory {
@@ -49,16 +49,16 @@ impl Transcription<'_> {
             z
         };
         let z: Vec<_> = history.z.iter().zip(&self.instants).map(here).collect();
-        let value = |variable: &Variable| match *variable {
-            Variable::Unknown { k, i } => z[k][i],
-            Variable::Scalar { k, s } => history.scalars[k][s],
-            Variable::Horizon => h,
+        let value = |column: &Column| match *column {
+            Column::Instant { k, i } => z[k][i],
+            Column::Interval { k, s } => history.scalars[k][s],
+            Column::Horizon => h,
         };
         self.unknowns
-            .variables
+            .columns
             .iter()
             .zip(&self.variable_scales)
-            .map(|(v, scale)| value(v) / scale)
+            .map(|(column, scale)| value(column) / scale)
             .collect()
     }
 
@@ -80,7 +80,7 @@ impl Transcription<'_> {
                 .map(|k| self.scalars[k * scalar_count..(k + 1) * scalar_count].to_vec())
                 .collect(),
             h: self.h,
-            variables: self.unknowns.variables.clone(),
+            columns: self.unknowns.columns.clone(),
             scales: self.variable_scales.clone(),
         }
     }
@@ -120,26 +120,23 @@ impl Transcription<'_> {
             return;
         }
         self.point.copy_from_slice(x);
-        let driven = self.model.voltages.len();
         let scalar_count = self.model.action.layout().interval_scalars;
-        for ((variable, scale), value) in self
+        for ((column, scale), value) in self
             .unknowns
-            .variables
+            .columns
             .iter()
             .zip(&self.variable_scales)
             .zip(x)
         {
             let value = scale * value;
-            match *variable {
-                Variable::Unknown { k, i } => self.instants[k].z[i] = value,
-                Variable::Scalar { k, s } => {
-                    self.scalars[k * scalar_count + s] = value;
-                    if s < driven {
-                        self.kilovolts[k * driven + s] = value / KILOVOLT;
-                    }
-                }
-                Variable::Horizon => self.h = value,
+            match *column {
+                Column::Instant { k, i } => self.instants[k].z[i] = value,
+                Column::Interval { k, s } => self.scalars[k * scalar_count + s] = value,
+                Column::Horizon => self.h = value,
             }
+        }
+        for &(column, place) in &self.unknowns.voltages {
+            self.kilovolts[place] = self.variable_scales[column] * x[column] / KILOVOLT;
         }
         self.placed = Placed::Nothing;
     }

@@ -1,9 +1,10 @@
 //! What the solver asks.
 
 use crate::control::limits::{BoundedQuantity, When};
-use crate::control::numbering::{Row, Variable};
+use crate::control::numbering::{Column, Row};
 use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
 use crate::functional::Order;
+use crate::model::Role;
 use crate::nlp::{Bounds, Entries, Nlp};
 
 impl Nlp for Transcription<'_> {
@@ -13,7 +14,7 @@ impl Nlp for Transcription<'_> {
 
     fn constraints(&self) -> Bounds {
         let bound = |row: &Row| match *row {
-            Row::Equation { .. } | Row::Gauss { .. } => (0.0, 0.0),
+            Row::Instant { .. } | Row::Interval { .. } => (0.0, 0.0),
             Row::Limit { limit, .. } => {
                 let limit = &self.limits[limit];
                 let bounded = &limit.bounded;
@@ -46,21 +47,13 @@ impl Nlp for Transcription<'_> {
         let by_horizon =
             self.cost
                 .gradient(&self.kilovolts, self.h * MILLISECOND, &mut self.gradient);
-        let driven = self.model.voltages.len();
-        for ((variable, scale), g) in self
-            .unknowns
-            .variables
-            .iter()
-            .zip(&self.variable_scales)
-            .zip(grad)
-        {
-            *g = match *variable {
-                Variable::Scalar { k, s } if s < driven => {
-                    self.gradient[k * driven + s] * scale / KILOVOLT
-                }
-                Variable::Horizon => by_horizon * MILLISECOND * scale,
-                Variable::Scalar { .. } | Variable::Unknown { .. } => 0.0,
-            };
+        let scales = &self.variable_scales;
+        grad.fill(0.0);
+        for &(column, place) in &self.unknowns.voltages {
+            grad[column] = self.gradient[place] * scales[column] / KILOVOLT;
+        }
+        if let Some(column) = self.unknowns.horizon() {
+            grad[column] = by_horizon * MILLISECOND * scales[column];
         }
     }
 
@@ -68,17 +61,14 @@ impl Nlp for Transcription<'_> {
         self.load(x);
         self.sweep(Order::Gradient);
         let stride = self.stride();
-        let (count, driven) = (
-            self.model.action.motion.unknowns(),
-            self.model.voltages.len(),
-        );
+        let count = self.model.action.motion.unknowns();
         for (value, (row, scale)) in g
             .iter_mut()
             .zip(self.unknowns.rows.iter().zip(&self.row_scales))
         {
             *value = scale
                 * match *row {
-                    Row::Equation { k, i } => {
+                    Row::Instant { k, i } => {
                         let start = if k == 0 && i < self.momentum.len() {
                             self.momentum[i]
                         } else {
@@ -86,7 +76,7 @@ impl Nlp for Transcription<'_> {
                         };
                         self.rows[k * stride + i] + start
                     }
-                    Row::Gauss { k, s } => self.rows[k * stride + count + s - driven],
+                    Row::Interval { k, s } => self.rows[k * stride + count + s],
                     Row::Limit { limit, k } => self.limit_value(&self.limits[limit], k),
                 };
         }
@@ -114,8 +104,8 @@ impl Nlp for Transcription<'_> {
         for (r, (row, y)) in self.unknowns.rows.iter().zip(costates).enumerate() {
             let y = y * self.row_scales[r];
             match *row {
-                Row::Equation { k, i } => self.instants[k].l[i] = y,
-                Row::Gauss { k, s } => self.scalars_along[k * count + s] = y,
+                Row::Instant { k, i } => self.instants[k].l[i] = y,
+                Row::Interval { k, s } => self.scalars_along[k * count + s] = y,
                 Row::Limit { .. } => self.rows[total + r - first] = y,
             }
         }
@@ -130,51 +120,40 @@ impl Nlp for Transcription<'_> {
     }
 
     fn variable_name(&self, i: usize) -> String {
-        match self.unknowns.variables[i] {
-            Variable::Unknown { k, i } => format!("{} at instant {k}", self.model.unknown_name(i)),
-            Variable::Scalar { k, s } => match s.checked_sub(self.model.voltages.len()) {
-                None => {
-                    let source = &self.model.sources[self.model.voltages[s]];
-                    format!("voltage of {} in interval {k}", source.name)
-                }
-                Some(p) => format!(
-                    "potential of {} in interval {k}",
-                    self.model.potential_names[p]
-                ),
-            },
-            Variable::Horizon => "interval length".to_owned(),
+        let column = self.unknowns.columns[i];
+        let name = column.of(&self.model.variables);
+        match column {
+            Column::Instant { k, .. } => format!("{name} at instant {k}"),
+            Column::Interval { k, .. } => format!("{name} in interval {k}"),
+            Column::Horizon => name.to_string(),
         }
     }
 
     fn constraint_name(&self, i: usize) -> String {
-        let n = self.model.coordinate_count();
-        match self.unknowns.rows[i] {
-            Row::Equation { k, i } if i < n && k == self.intervals => {
-                format!("rest at the goal, {}", self.model.unknown_name(i))
-            }
-            Row::Equation { k, i } if i < n => {
-                format!("motion at instant {k}, {}", self.model.unknown_name(i))
-            }
-            Row::Equation { k, i } => format!(
-                "constraint {} at instant {k}",
-                self.model.multiplier_names[i - n]
-            ),
-            Row::Gauss { k, s } => format!(
-                "Gauss's law of {} in interval {k}",
-                self.model.potential_names[s - self.model.voltages.len()]
-            ),
-            Row::Limit { limit, k } => {
+        let row = self.unknowns.rows[i];
+        let variable = row.of(&self.model.variables);
+        let name = variable.map_or("", |variable| &variable.name);
+        match (row, variable.map(|variable| variable.role)) {
+            (Row::Limit { limit, k }, _) => {
                 let BoundedQuantity {
                     name,
                     quantity,
-                    when: place,
+                    when,
                     ..
                 } = self.limit(limit);
-                match place {
+                match when {
                     When::Goal => name.clone(),
                     When::Everywhere => format!("{name} {} {k}", quantity.when()),
                 }
             }
+            (Row::Instant { k, .. }, Some(Role::Multiplier)) => {
+                format!("constraint {name} at instant {k}")
+            }
+            (Row::Instant { k, .. }, _) if k == self.intervals => {
+                format!("rest at the goal, {name}")
+            }
+            (Row::Instant { k, .. }, _) => format!("motion at instant {k}, {name}"),
+            (Row::Interval { k, .. }, _) => format!("Gauss's law of {name} in interval {k}"),
         }
     }
 }

@@ -1,29 +1,31 @@
 //! Scales of rows and variables, and bounds.
 
-use crate::control::numbering::{Row, Variable};
+use crate::control::numbering::{Column, Row};
 use crate::control::problem::{Control, Duration, PathConstraint};
 use crate::control::transcription::Transcription;
 use crate::dynamics::DiscreteTrajectory;
-use crate::model::Coordinates;
+use crate::model::{Coordinates, Role};
 use crate::nlp::{Bounds, Nlp};
 
 impl Transcription<'_> {
     /// Scales rows and multipliers by the largest entries of the Jacobian at the guess, kind by kind.
     pub(super) fn set_scales(&mut self, history: &DiscreteTrajectory, h: f64) {
-        let n = self.model.coordinate_count();
+        let variables = &self.model.variables;
         let count = self.model.action.motion.unknowns();
         let x = self.encode(history, h);
         let mut values = vec![0.0; self.jacobian.len()];
         self.jacobian(&x, &mut values);
-        let is_multiplier = |v: &Variable| matches!(v, Variable::Unknown { i, .. } if *i >= n);
-        // Rows of an instant, then of the potentials of an interval.
-        let driven = self.model.voltages.len();
+        // Place of a multiplier in its instant.
+        let multiplier = |column: Column| match (column, column.of(variables).role) {
+            (Column::Instant { i, .. }, Role::Multiplier) => Some(i),
+            _ => None,
+        };
         let kind = |row: Row| match row {
-            Row::Equation { i, .. } => Some(i),
-            Row::Gauss { s, .. } => Some(count + s - driven),
+            Row::Instant { i, .. } => Some(i),
+            Row::Interval { s, .. } => Some(count + s),
             Row::Limit { .. } => None,
         };
-        let mut largest = vec![0.0_f64; count + self.model.potentials];
+        let mut largest = vec![0.0_f64; self.stride()];
         let entries = || {
             self.jacobian_entries
                 .rows
@@ -33,9 +35,9 @@ impl Transcription<'_> {
         };
         let scale = |col: u32| self.variable_scales[col as usize];
         for ((&row, &col), value) in entries() {
-            if let (Some(i), false) = (
+            if let (Some(i), None) = (
                 kind(self.unknowns.rows[row as usize]),
-                is_multiplier(&self.unknowns.variables[col as usize]),
+                multiplier(self.unknowns.columns[col as usize]),
             ) && self.unknowns.horizon() != Some(col as usize)
             {
                 largest[i] = largest[i].max((value * scale(col)).abs());
@@ -51,24 +53,17 @@ impl Transcription<'_> {
         let row_scales: Vec<f64> = largest.iter().map(|&v| inverse(v)).collect();
         let mut columns = vec![0.0_f64; count];
         for ((&row, &col), value) in entries() {
-            let (row, variable) = (
+            let (row, column) = (
                 self.unknowns.rows[row as usize],
-                self.unknowns.variables[col as usize],
+                self.unknowns.columns[col as usize],
             );
-            if let (Some(r), Variable::Unknown { i, .. }) = (kind(row), variable)
-                && i >= n
-            {
+            if let (Some(r), Some(i)) = (kind(row), multiplier(column)) {
                 columns[i] = columns[i].max((value * row_scales[r]).abs());
             }
         }
-        for (scale, variable) in self
-            .variable_scales
-            .iter_mut()
-            .zip(&self.unknowns.variables)
-        {
-            match *variable {
-                Variable::Unknown { i, .. } if i >= n => *scale = inverse(columns[i]),
-                _ => {}
+        for (scale, &column) in self.variable_scales.iter_mut().zip(&self.unknowns.columns) {
+            if let Some(i) = multiplier(column) {
+                *scale = inverse(columns[i]);
             }
         }
         for (scale, row) in self.row_scales.iter_mut().zip(&self.unknowns.rows) {
@@ -98,7 +93,6 @@ impl Transcription<'_> {
 
     pub(super) fn set_bounds(&mut self, control: &Control) {
         let n = self.model.coordinate_count();
-        let driven = self.model.voltages.len();
         let mut lower = vec![f64::NEG_INFINITY; n];
         let mut upper = vec![f64::INFINITY; n];
         if self.model.coordinates == Coordinates::Reduced {
@@ -110,24 +104,23 @@ impl Transcription<'_> {
                 }
             }
         }
-        let bound = |(variable, &scale): (&Variable, &f64)| {
-            let [low, high] = match *variable {
-                Variable::Unknown { i, .. } if i < n => [lower[i], upper[i]],
-                Variable::Unknown { .. } => [f64::NEG_INFINITY, f64::INFINITY],
-                Variable::Scalar { s, .. } if s < driven => control.voltage_bounds,
-                Variable::Scalar { .. } => [f64::NEG_INFINITY, f64::INFINITY],
-                Variable::Horizon => match control.duration {
+        let bound = |(&column, &scale): (&Column, &f64)| {
+            let [low, high] = match (column, column.of(&self.model.variables).role) {
+                (Column::Instant { i, .. }, Role::Coordinate) => [lower[i], upper[i]],
+                (_, Role::Voltage) => control.voltage_bounds,
+                (Column::Horizon, _) => match control.duration {
                     Duration::Free { min, max, .. } => {
                         [min, max].map(|t| t / self.intervals as f64)
                     }
                     Duration::Given(_) => [self.h; 2],
                 },
+                _ => [f64::NEG_INFINITY, f64::INFINITY],
             };
             (low / scale, high / scale)
         };
         let (lower, upper) = self
             .unknowns
-            .variables
+            .columns
             .iter()
             .zip(&self.variable_scales)
             .map(bound)

@@ -23,9 +23,9 @@ pub(super) struct Shared<'a> {
     pub(super) costates: &'a [f64],
     /// Scalars of all intervals.
     pub(super) scalars: &'a [f64],
-    /// Costates of Gauss's laws of all intervals.
+    /// Costates of their equations.
     pub(super) along: &'a [f64],
-    /// Rows of one step: of the instant, then of the potentials.
+    /// Rows of one step: of the instant, then of the scalars.
     pub(super) stride: usize,
     pub(super) h: f64,
     pub(super) horizon: Horizon,
@@ -171,9 +171,8 @@ impl Segment<'_> {
         };
         action.evaluate_interval(level, [a, b], &interval, scratch);
         if level == Order::Gradient {
-            let gauss = &mut self.rows[j * stride + action.motion.unknowns()..(j + 1) * stride];
-            let rows = &scratch.interval.plain.rows;
-            gauss.copy_from_slice(&rows[rows.len() - gauss.len()..]);
+            let rows = &mut self.rows[j * stride + action.motion.unknowns()..(j + 1) * stride];
+            rows.copy_from_slice(&scratch.interval.plain.rows);
         }
         scratch.carry(level);
         let carried = Interval {

@@ -3,6 +3,7 @@
 use crate::control::numbering::Row;
 use crate::control::transcription::limit_rows::SCALAR;
 use crate::control::transcription::{Gather, Transcription};
+use crate::model::Role;
 use crate::nlp::Entries;
 
 impl Transcription<'_> {
@@ -73,15 +74,13 @@ impl Transcription<'_> {
 
     pub(super) fn lay_jacobian(&mut self) {
         // The horizon column has no entry in the rows of constraints, which are instantaneous.
-        let n = self.model.coordinate_count();
         let horizon = self.unknowns.horizon();
+        let lasts = |row: Row| {
+            let variable = row.of(&self.model.variables);
+            variable.is_some_and(|variable| variable.role != Role::Multiplier)
+        };
         let exists = |&(row, col, _): &(usize, usize, usize)| {
-            Some(col) != horizon
-                || match self.unknowns.rows[row] {
-                    Row::Equation { i, .. } => i < n,
-                    Row::Gauss { .. } => true,
-                    Row::Limit { .. } => false,
-                }
+            Some(col) != horizon || lasts(self.unknowns.rows[row])
         };
         let list: Vec<_> = self.jacobian_of().into_iter().filter(exists).collect();
         for (row, col, place) in list {
@@ -155,7 +154,7 @@ impl Transcription<'_> {
         }
         if self.cost.couples_intervals() {
             for k in 1..self.intervals {
-                for s in 0..self.model.voltages.len() {
+                for &(s, _) in &self.voltages {
                     if let (Some(row), Some(col)) = (u.scalar(k, s), u.scalar(k - 1, s)) {
                         entries.rows.push(row as u32);
                         entries.cols.push(col as u32);

@@ -9,9 +9,9 @@ use crate::ipopt::interrupt;
 use crate::math::Vector;
 
 impl<'m> Transcription<'m> {
-    /// Number of rows of a step: of an instant, then of the potentials of an interval.
+    /// Number of rows of a step: of an instant, then of the scalars of an interval.
     pub(super) fn stride(&self) -> usize {
-        self.model.action.motion.unknowns() + self.model.potentials
+        self.model.action.motion.unknowns() + self.model.action.intervals.scalars
     }
 
     /// Instant by instant and interval by interval, each while it is in the cache: forces, and second derivatives into
@@ -198,21 +198,20 @@ impl Transcription<'_> {
     /// Adds σ∇²f to the values.
     pub(super) fn objective_curvature(&mut self, sigma: f64) {
         let layout = self.model.action.layout();
-        let scalar_count = self.model.voltages.len();
         let tau = self.h * MILLISECOND;
         for k in 0..self.intervals {
             let curvature = sigma * self.cost.curvature(k, tau) / (KILOVOLT * KILOVOLT);
-            for s in 0..scalar_count {
-                self.values[layout.scalars_at(k) + self.voltage_slots[s]] += curvature;
+            for &(_, slot) in &self.voltages {
+                self.values[layout.scalars_at(k) + slot] += curvature;
             }
         }
         if self.horizon == Horizon::Free {
             let square = self.cost.horizon(&self.kilovolts, tau, &mut self.gradient);
+            let mut gradient = self.gradient.iter();
             for k in 0..self.intervals {
                 let at = layout.horizon_scalars_at(k);
-                for s in 0..scalar_count {
-                    self.values[at + s] +=
-                        sigma * self.gradient[k * scalar_count + s] * MILLISECOND / KILOVOLT;
+                for (&(s, _), slope) in self.voltages.iter().zip(&mut gradient) {
+                    self.values[at + s] += sigma * slope * MILLISECOND / KILOVOLT;
                 }
             }
             self.values[layout.horizon_square_at(self.intervals)] +=

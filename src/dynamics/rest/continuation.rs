@@ -36,7 +36,8 @@ pub fn continuation(
     let beginning: Vec<f64> = voltages.iter().map(|v| v * FIRST).collect();
     let first = stable_equilibrium(model, start, &beginning)?;
     let mut statics = Statics::new(model);
-    let state = statics.state(&first.z, &first.scalars[voltages.len()..]);
+    let [_, scalars] = model.variables.split(&first.scalars);
+    let state = statics.state(&first.z, scalars);
     let ramp = Ramp {
         load: Load::Voltages,
         voltages,

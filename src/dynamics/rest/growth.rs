@@ -58,7 +58,7 @@ pub(super) fn unloaded(
     start: &[f64],
     voltages: &[f64],
 ) -> Result<RestState, EquilibriumError> {
-    let mut first = statics.state(start, &vec![0.0; statics.model.potentials]);
+    let mut first = statics.state_without_field(start);
     let none = vec![0.0; voltages.len()];
     if statics.has_weight() {
         statics.weight = 0.0;

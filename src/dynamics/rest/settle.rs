@@ -13,8 +13,9 @@ impl Statics<'_> {
     pub(super) fn energy(&mut self, state: &[f64], voltages: &[f64]) -> f64 {
         let action = &self.model.action;
         let m = action.motion.unknowns();
-        self.scalars[..voltages.len()].copy_from_slice(voltages);
-        self.scalars[voltages.len()..].copy_from_slice(&state[m..]);
+        let variables = &self.model.variables;
+        self.scalars[variables.inputs()].copy_from_slice(voltages);
+        self.scalars[variables.algebraic()].copy_from_slice(&state[m..]);
         self.a.z[..m].copy_from_slice(&state[..m]);
         action.motion.place(&mut self.a);
         let interval = Interval::given(&self.scalars, 1.0);

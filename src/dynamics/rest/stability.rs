@@ -10,8 +10,8 @@ impl Equilibrium {
     /// voltages and potentials.
     pub fn of_state(model: &Model, z: &[f64], scalars: &[f64]) -> Self {
         let mut statics = Statics::new(model);
-        let (voltages, potentials) = scalars.split_at(model.voltages.len());
-        let state = statics.state(z, potentials);
+        let [voltages, others] = model.variables.split(scalars);
+        let state = statics.state(z, others);
         Self::new(&mut statics, &state, voltages, Route::Loads)
     }
 

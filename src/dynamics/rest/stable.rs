@@ -53,7 +53,7 @@ pub fn stable_equilibrium(
                 fraction: last.loss().map_or(0.0, |l| l.fraction),
                 kind: last.loss().and_then(|l| l.kind),
             };
-            let state = statics.state(&last.z, &vec![0.0; model.potentials]);
+            let state = statics.state_without_field(&last.z);
             let found = downhill(&mut statics, &[state], voltages)?;
             let found = found.ok_or(error)?;
             let route = Route::Minimum(loss);
@@ -98,7 +98,7 @@ fn under_weight(
         return under(statics, begun?, ramp);
     }
     // Nothing but weights holds the system, or its reference is far from rest.
-    let first = statics.state(start, &vec![0.0; statics.model.potentials]);
+    let first = statics.state_without_field(start);
     let from = match &begun {
         Ok(state) => vec![state.clone(), first],
         Err(_) => vec![first],
@@ -128,7 +128,7 @@ fn without_stiffness(
     if model.coordinates == Coordinates::Redundant {
         return None;
     }
-    let mut aside = statics.state(start, &vec![0.0; model.potentials]);
+    let mut aside = statics.state_without_field(start);
     let turns = aside[..model.action.motion.of_bodies].iter_mut();
     turns.for_each(|value| *value += PUSH);
     statics.weight = 1.0;

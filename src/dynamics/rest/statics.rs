@@ -23,7 +23,7 @@ const UPDATE: f64 = 1e-11;
 /// An update longer than this leaves the region in which the tangent says anything.
 const LONG: f64 = 0.5;
 
-/// A state of rest: coordinates and multipliers, then potentials.
+/// A state of rest: the unknowns of a step (see [`Variables`](crate::model::Variables)).
 pub(super) type RestState = Vec<f64>;
 
 /// From how far Newton's method may come.
@@ -55,10 +55,10 @@ pub(super) struct Statics<'m> {
     gravity: Vec<Vector>,
     /// Part of the weights that acts.
     pub(super) weight: f64,
-    /// First place of the added stiffness in the values: one a coordinate, one a potential.
+    /// First place of the added stiffness in the values: one a coordinate, one a scalar with an equation.
     pub(super) added: usize,
     pub(super) tangent: Tangent,
-    /// The potentials' own block.
+    /// The own block of the scalars with an equation.
     pub(super) electric: Option<Tangent>,
     /// Rows, then the Newton update.
     pub(super) residual: Vec<f64>,
@@ -82,29 +82,23 @@ impl<'m> Statics<'m> {
             entries.add_to(layout.lower_at(0) + slot, same);
             entries.add_to(layout.upper_at(0) + slot, same);
         }
-        entries.add_potentials(model, &[[0, 0], [1, 1]]);
-        let size = m + model.potentials;
+        entries.add_scalars(model, &[[0, 0], [1, 1]]);
+        let (size, algebraic) = (model.variables.unknown_count(), model.variables.algebraic());
         let added = layout.values(1);
         for (place, i) in (0..n).chain(m..size).enumerate() {
             entries.add(added + place, (i, i));
         }
-        let electric = (model.potentials > 0).then(|| {
+        let electric = (!algebraic.is_empty()).then(|| {
             let mut entries = EntryList::default();
-            entries.add_potentials(model, &[]);
-            entries.tangent_from(m, model.potentials, Symmetry::Symmetric, None)
+            entries.add_scalars(model, &[]);
+            entries.tangent_from(m, algebraic.len(), Symmetry::Symmetric, None)
         });
-        let length = model.length();
-        let scale = |i: usize| match i {
-            i if i < n && !model.is_length(i) => 1.0,
-            i if i >= n && i < m => f64::INFINITY,
-            _ => length,
-        };
         Self {
             model,
             a: motion.instant(),
             b: motion.instant(),
             scratch: model.action.scratch(Order::Hessian),
-            values: vec![0.0; added + n + model.potentials],
+            values: vec![0.0; added + n + (size - m)],
             scalars: vec![0.0; layout.interval_scalars],
             gravity: weights(model),
             weight: 1.0,
@@ -112,18 +106,25 @@ impl<'m> Statics<'m> {
             tangent: entries.tangent(size, Symmetry::Symmetric, None),
             electric,
             residual: vec![0.0; size],
-            scales: (0..size).map(scale).collect(),
+            scales: model.sizes(),
             iterations: 0,
         }
     }
 
-    /// The state at a configuration, with potentials; all states are meant with the charts of the configuration taken last.
-    pub(super) fn state(&mut self, z: &[f64], potentials: &[f64]) -> RestState {
+    /// The state at a configuration, potentials being zero.
+    pub(super) fn state_without_field(&mut self, z: &[f64]) -> RestState {
+        let scalars = vec![0.0; self.model.variables.algebraic().len()];
+        self.state(z, &scalars)
+    }
+
+    /// The state at a configuration with scalars that have an equation; all states are meant with the charts of the configuration
+    /// taken last.
+    pub(super) fn state(&mut self, z: &[f64], scalars: &[f64]) -> RestState {
         let (unknowns, charts) = z.split_at(self.model.action.motion.unknowns());
         for instant in [&mut self.a, &mut self.b] {
             instant.z[unknowns.len()..].copy_from_slice(charts);
         }
-        [unknowns, potentials].concat()
+        [unknowns, scalars].concat()
     }
 
     /// Coordinates, multipliers and charts of a state.
@@ -147,7 +148,7 @@ impl<'m> Statics<'m> {
     pub(super) fn evaluate(&mut self, state: &[f64], voltages: &[f64]) {
         let action = &self.model.action;
         let m = action.motion.unknowns();
-        let driven = voltages.len();
+        let variables = &self.model.variables;
         let Self {
             a,
             b,
@@ -159,8 +160,8 @@ impl<'m> Statics<'m> {
             weight,
             ..
         } = self;
-        scalars[..driven].copy_from_slice(voltages);
-        scalars[driven..].copy_from_slice(&state[m..]);
+        scalars[variables.inputs()].copy_from_slice(voltages);
+        scalars[variables.algebraic()].copy_from_slice(&state[m..]);
         values.fill(0.0);
         for instant in [&mut *a, &mut *b] {
             instant.z[..m].copy_from_slice(&state[..m]);
@@ -182,7 +183,8 @@ impl<'m> Statics<'m> {
         action.pull_back_instant(Order::Hessian, a, 0, scratch, values);
         residual.fill(0.0);
         action.rows(a, scratch, &mut residual[..m]);
-        residual[m..].copy_from_slice(&scratch.interval.plain.rows[driven..]);
+        let rows = &scratch.interval.plain.rows[variables.algebraic()];
+        residual[m..].copy_from_slice(rows);
     }
 
     /// Factorises the tangent of the state evaluated last.
@@ -260,17 +262,18 @@ impl<'m> Statics<'m> {
     /// Adds the derivative of the rows along a change of the voltages, at the state evaluated last.
     pub(super) fn add_load(&self, change: &[f64], rows: &mut [f64]) {
         let layout = self.model.action.layout();
-        let (m, driven) = (self.model.action.motion.unknowns(), change.len());
+        let variables = &self.model.variables;
+        let change = &variables.scalars(change);
         for side in 0..2 {
             for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
-                if s < driven {
+                if variables.place(s).is_none() {
                     rows[i] += self.values[layout.mixed_at(0, side) + slot] * change[s];
                 }
             }
         }
         for (slot, &(s, t)) in layout.scalars.entries().iter().enumerate() {
-            if s >= driven && t < driven {
-                rows[m + s - driven] += self.values[layout.scalars_at(0) + slot] * change[t];
+            if let (Some(row), None) = (variables.place(s), variables.place(t)) {
+                rows[row] += self.values[layout.scalars_at(0) + slot] * change[t];
             }
         }
     }
@@ -305,7 +308,7 @@ impl<'m> Statics<'m> {
             }
             if let Err(singular) = self.factor() {
                 return Err(EquilibriumError::Singular {
-                    name: self.model.unknown_name(singular.column),
+                    name: self.model.variables.unknown(singular.column).to_string(),
                     redundant: self.model.redundant_constraints(&self.configuration(state)),
                 });
             }
@@ -340,7 +343,8 @@ impl<'m> Statics<'m> {
         let electric = match &mut self.electric {
             Some(tangent) => {
                 tangent.factor(&self.values).ok()?;
-                self.model.potentials - tangent.negative_pivots()?
+                let scalars = self.residual.len() - self.model.action.motion.unknowns();
+                scalars - tangent.negative_pivots()?
             }
             None => 0,
         };

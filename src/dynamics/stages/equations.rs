@@ -13,7 +13,7 @@ use crate::model::Model;
 impl Equations for Stages<'_> {
     fn begin(&mut self, voltages: &[f64]) {
         for sample in &mut self.samples {
-            sample.scalars[..voltages.len()].copy_from_slice(voltages);
+            sample.scalars[self.model.variables.inputs()].copy_from_slice(voltages);
         }
     }
 
@@ -33,10 +33,10 @@ impl Equations for Stages<'_> {
                 }
             }
         }
-        let driven = self.model.voltages.len();
+        let algebraic = self.model.variables.algebraic();
         self.saved.0.clone_from(&self.multipliers);
         for (saved, sample) in self.saved.1.iter_mut().zip(&self.samples) {
-            saved.copy_from_slice(&sample.scalars[driven..]);
+            saved.copy_from_slice(&sample.scalars[algebraic.clone()]);
         }
     }
 
@@ -78,15 +78,15 @@ impl Equations for Stages<'_> {
             let instant = &self.points[at];
             motion.pull_back(&instant.columns, &instant.forces, rows);
         }
-        let driven = model.voltages.len();
-        let gauss = residual[last * m..].chunks_mut(model.potentials.max(1));
-        for (rows, sample) in gauss.zip(&self.samples) {
-            rows.copy_from_slice(&sample.out.plain.rows[driven..]);
+        let algebraic = model.variables.algebraic();
+        let of_samples = residual[last * m..].chunks_mut(algebraic.len().max(1));
+        for (rows, sample) in of_samples.zip(&self.samples) {
+            rows.copy_from_slice(&sample.out.plain.rows[algebraic.clone()]);
         }
         if level >= Order::Hessian {
             self.tangent_of_points(h);
-            if model.potentials > 0 {
-                self.tangent_of_potentials();
+            if !algebraic.is_empty() {
+                self.tangent_of_scalars();
             }
         }
     }
@@ -107,20 +107,21 @@ impl Equations for Stages<'_> {
                 *multiplier -= update;
             }
         }
-        let driven = self.model.voltages.len();
-        let updates = update[(self.points.len() - 1) * m..].chunks(self.model.potentials.max(1));
+        let algebraic = self.model.variables.algebraic();
+        let updates = update[(self.points.len() - 1) * m..].chunks(algebraic.len().max(1));
         for (sample, update) in self.samples.iter_mut().zip(updates) {
-            for (potential, update) in sample.scalars[driven..].iter_mut().zip(update) {
-                *potential -= update;
+            let scalars = &mut sample.scalars[algebraic.clone()];
+            for (scalar, update) in scalars.iter_mut().zip(update) {
+                *scalar -= update;
             }
         }
     }
 
     fn restore(&mut self) {
         self.multipliers.clone_from(&self.saved.0);
-        let driven = self.model.voltages.len();
+        let algebraic = self.model.variables.algebraic();
         for (saved, sample) in self.saved.1.iter().zip(&mut self.samples) {
-            sample.scalars[driven..].copy_from_slice(saved);
+            sample.scalars[algebraic.clone()].copy_from_slice(saved);
         }
     }
 
@@ -197,15 +198,9 @@ impl Equations for Stages<'_> {
     }
 
     fn unknown_name(&self, unknown: usize) -> String {
-        let m = self.model.action.motion.unknowns();
-        let of_points = m * (self.points.len() - 1);
-        match unknown.checked_sub(of_points) {
-            None => self.model.unknown_name(unknown % m),
-            Some(potential) => {
-                let potential = potential % self.model.potentials;
-                self.model.unknown_name(m + potential)
-            }
-        }
+        let points = self.points.len() - 1;
+        let variables = &self.model.variables;
+        variables.unknown_of(points, unknown).to_string()
     }
 
     fn time(&self) -> f64 {

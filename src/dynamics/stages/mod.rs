@@ -2,8 +2,8 @@
 //!
 //! `rule` tells the methods, with the points of `lobatto`; `places` and `tangent` hold the derivatives.
 //!
-//! Unknowns of point ν = 1 … s are its coordinates and the multipliers of its rows; then come the potentials of each sample,
-//! with Gauss's law there. Constraints hold at every point.
+//! Unknowns of point ν = 1 … s are its coordinates and the multipliers of its rows; then come the scalars of each sample that have
+//! an equation, such as potentials with Gauss's law. Constraints hold at every point.
 
 mod equations;
 mod lobatto;

@@ -22,9 +22,9 @@ impl Places {
     pub(super) fn new(model: &Model, rows: &[usize], samples: usize) -> (Self, EntryList) {
         let layout = model.action.layout();
         let motion = &model.action.motion;
-        let has_potentials = model.potentials > 0;
+        let has_scalars = !model.variables.algebraic().is_empty();
         let [same, cross] = [&layout.same, &layout.cross].map(|p| p.entries().len());
-        let [mixed, scalars] = match has_potentials {
+        let [mixed, scalars] = match has_scalars {
             true => [&layout.mixed, &layout.scalars].map(|p| p.entries().len()),
             false => [0, 0],
         };
@@ -66,34 +66,34 @@ impl Places {
                 }
             }
         }
-        if has_potentials {
-            places.add_potentials(model, samples, &mut entries);
+        if has_scalars {
+            places.add_scalars(model, samples, &mut entries);
         }
         (places, entries)
     }
 
-    /// Potentials of each sample against the points, and against each other.
-    fn add_potentials(&self, model: &Model, samples: usize, entries: &mut EntryList) {
+    /// Scalars with an equation of each sample against the points, and against each other.
+    fn add_scalars(&self, model: &Model, samples: usize, entries: &mut EntryList) {
         let layout = model.action.layout();
-        let (m, driven) = (model.action.motion.unknowns(), model.voltages.len());
+        let m = model.action.motion.unknowns();
         for sample in 0..samples {
-            let first = self.rows.len() * m + sample * model.potentials;
+            let place = |s: usize| model.variables.place_of(self.rows.len(), sample, s);
             for point in 1..=self.rows.len() {
                 let [rows, columns] = self.mixed(sample, point);
                 let block = (point - 1) * m;
                 for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
-                    if let Some(s) = s.checked_sub(driven) {
-                        entries.add(rows + slot, (block + i, first + s));
-                        entries.add(columns + slot, (first + s, block + i));
+                    if let Some(s) = place(s) {
+                        entries.add(rows + slot, (block + i, s));
+                        entries.add(columns + slot, (s, block + i));
                     }
                 }
             }
             for (slot, &(s, t)) in layout.scalars.entries().iter().enumerate() {
-                if let (Some(s), Some(t)) = (s.checked_sub(driven), t.checked_sub(driven)) {
+                if let (Some(s), Some(t)) = (place(s), place(t)) {
                     let at = self.scalars(sample) + slot;
-                    entries.add(at, (first + s, first + t));
+                    entries.add(at, (s, t));
                     if s != t {
-                        entries.add(at, (first + t, first + s));
+                        entries.add(at, (t, s));
                     }
                 }
             }

@@ -3,7 +3,6 @@
 use crate::coordinates::{Configuration, Scratch};
 use crate::dynamics::error::StepError;
 use crate::dynamics::kinetic::masses;
-use crate::dynamics::midpoint::scales;
 use crate::dynamics::momenta::{rates, vector_momenta};
 use crate::dynamics::simulate::Start;
 use crate::dynamics::solving::{Integrator, Solving};
@@ -26,7 +25,7 @@ pub(super) struct StagePoint {
     /// x_a and x_b.
     pub(super) x: [Vec<Vector>; 2],
     pub(super) out: Output,
-    /// Voltages and potentials.
+    /// Scalars of the sample.
     pub(super) scalars: Vec<f64>,
 }
 
@@ -52,7 +51,7 @@ pub struct Stages<'m> {
     pub(super) accelerations: Vec<Vector>,
     /// Multipliers of the rows of each point, in the order of the points ν.
     pub(super) multipliers: Vec<Vec<f64>>,
-    /// Multipliers and potentials before an attempt.
+    /// Multipliers, and scalars with an equation, before an attempt.
     pub(super) saved: (Vec<Vec<f64>>, Vec<Vec<f64>>),
     pub(super) dissipates: bool,
     pub(super) work: Option<f64>,
@@ -108,6 +107,7 @@ impl<'m> Steps<Stages<'m>> {
         let combined = action.intervals.output(Order::Hessian).plain;
         let n = motion.coordinates;
         let multipliers = vec![start.z[n..motion.unknowns()].to_vec(); degree];
+        let algebraic = model.variables.algebraic();
         let mut effects = action.intervals.effects.iter();
         let equations = Stages {
             model,
@@ -120,7 +120,7 @@ impl<'m> Steps<Stages<'m>> {
             accelerations: vec![Vector::zeros(); points[0].x.len()],
             saved: (
                 multipliers.clone(),
-                vec![vec![0.0; model.potentials]; samples.len()],
+                vec![vec![0.0; algebraic.len()]; samples.len()],
             ),
             multipliers,
             dissipates: effects.any(|e| e.kind() == Kind::VirtualWork),
@@ -131,10 +131,10 @@ impl<'m> Steps<Stages<'m>> {
             places,
             combined,
         };
-        let of_points = scales(model);
-        let (of_points, potentials) = of_points.split_at(motion.unknowns());
+        let sizes = model.sizes();
+        let (of_points, of_samples) = sizes.split_at(motion.unknowns());
         let mut scales = of_points.repeat(degree);
-        scales.extend(potentials.repeat(equations.samples.len()));
+        scales.extend(of_samples.repeat(equations.samples.len()));
         let tangent = entries.tangent(scales.len(), Symmetry::Unsymmetric, solving.backend);
         Self::by(equations, tangent, scales, solving.newton)
     }

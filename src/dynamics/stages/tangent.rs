@@ -65,8 +65,8 @@ impl Stages<'_> {
         }
     }
 
-    /// Writes the derivatives by the potentials, and those of Gauss's laws.
-    pub(super) fn tangent_of_potentials(&mut self) {
+    /// Writes the derivatives by the scalars of the samples, and those of their equations.
+    pub(super) fn tangent_of_scalars(&mut self) {
         let none = BlockMask { blocks: [false; 4] };
         for (i, sample) in self.samples.iter().enumerate() {
             let weights = &sample.weights;

@@ -1,0 +1,280 @@
+//! The variables of a model in one table: what each is called, which role it has, and where it stands.
+//!
+//! What is a variable of an instant or of an interval, what has an equation, and what is prescribed from outside follows from roles.
+//! Each role has one range of places in the list of its time, so that evaluations index and never search.
+
+use std::fmt;
+use std::ops::Range;
+
+/// What a variable belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Time {
+    /// It has a value at each instant.
+    Instant,
+    /// It has a value in each interval: a scalar that terms read.
+    Interval,
+    /// It has one value.
+    Horizon,
+}
+
+/// What a variable is. Roles of one time stand in this order in its list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Role {
+    /// Coordinate of the motion, with a momentum balance.
+    Coordinate,
+    /// Multiplier λ of a constraint, which is its equation.
+    Multiplier,
+    /// Voltage of a source, in V: an input.
+    Voltage,
+    /// Electric potential of a node or a floating electrode, with Gauss's law.
+    Potential,
+    /// Length of the intervals, in ms.
+    Duration,
+}
+
+/// All roles, in order.
+const ROLES: [Role; 5] = [
+    Role::Coordinate,
+    Role::Multiplier,
+    Role::Voltage,
+    Role::Potential,
+    Role::Duration,
+];
+
+impl Role {
+    /// What a variable of this role belongs to.
+    pub const fn time(self) -> Time {
+        match self {
+            Self::Coordinate | Self::Multiplier => Time::Instant,
+            Self::Voltage | Self::Potential => Time::Interval,
+            Self::Duration => Time::Horizon,
+        }
+    }
+
+    /// Whether a variable of this role has an equation of its own, so that a step forward and an equilibrium solve for it; others
+    /// are inputs.
+    pub const fn has_equation(self) -> bool {
+        match self {
+            Self::Coordinate | Self::Multiplier | Self::Potential => true,
+            Self::Voltage | Self::Duration => false,
+        }
+    }
+}
+
+/// How large a variable typically is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Size {
+    /// One: an angle in rad, or a component of a direction.
+    One,
+    /// The length of the system.
+    Length,
+    /// The model does not tell.
+    Unknown,
+}
+
+/// A variable. Its `Display` is its full name, such as `voltage of muscle1`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variable {
+    /// Its role.
+    pub role: Role,
+    /// What it is of; of a coordinate and the duration the full name.
+    pub name: String,
+    /// Size of one, in rad, mm, ms or V: potentials are counted in a unit of their own.
+    pub unit: f64,
+    /// How large its value typically is.
+    pub size: Size,
+    /// Source of a voltage (see [`System::sources`](crate::model::System::sources)).
+    pub source: Option<usize>,
+}
+
+impl Variable {
+    /// The voltage of a source.
+    pub fn voltage(source: usize, name: String) -> Self {
+        Self {
+            source: Some(source),
+            ..Self::of(Role::Voltage, name, Size::Unknown)
+        }
+    }
+
+    /// A potential, counted in `unit` V, in which it is as large as a length.
+    pub(super) fn potential(name: String, unit: f64) -> Self {
+        Self {
+            unit,
+            ..Self::of(Role::Potential, name, Size::Length)
+        }
+    }
+
+    /// A variable that is counted in rad, mm, ms or V.
+    pub(super) fn of(role: Role, name: String, size: Size) -> Self {
+        Self {
+            role,
+            name,
+            unit: 1.0,
+            size,
+            source: None,
+        }
+    }
+}
+
+impl fmt::Display for Variable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let of = match self.role {
+            Role::Coordinate | Role::Duration => "",
+            Role::Multiplier => "multiplier of ",
+            Role::Voltage => "voltage of ",
+            Role::Potential => "potential of ",
+        };
+        write!(f, "{of}{}", self.name)
+    }
+}
+
+/// All variables of a model.
+///
+/// The unknowns of a step are those of an instant, then those scalars of an interval that have an equation.
+#[derive(Clone, Debug)]
+pub struct Variables {
+    instant: Vec<Variable>,
+    interval: Vec<Variable>,
+    horizon: Vec<Variable>,
+    ranges: [Range<usize>; ROLES.len()],
+    /// Number of scalars of an interval without an equation, which come first.
+    inputs: usize,
+}
+
+impl Default for Variables {
+    /// The duration alone.
+    fn default() -> Self {
+        let mut variables = Self {
+            instant: Vec::new(),
+            interval: Vec::new(),
+            horizon: Vec::new(),
+            ranges: [const { 0..0 }; ROLES.len()],
+            inputs: 0,
+        };
+        let name = "interval length".to_owned();
+        variables.add(Variable::of(Role::Duration, name, Size::Unknown));
+        variables
+    }
+}
+
+impl Variables {
+    /// Adds a variable behind those of its time, and returns its place there.
+    ///
+    /// # Panics
+    /// A variable of a later role stands there already.
+    pub fn add(&mut self, variable: Variable) -> usize {
+        let role = variable.role;
+        let list = match role.time() {
+            Time::Instant => &mut self.instant,
+            Time::Interval => &mut self.interval,
+            Time::Horizon => &mut self.horizon,
+        };
+        let place = list.len();
+        assert!(
+            list.last().is_none_or(|last| last.role <= role),
+            "variables come in the order of their roles"
+        );
+        list.push(variable);
+        let range = &mut self.ranges[role as usize];
+        if range.end == 0 {
+            *range = place..place;
+        }
+        range.end += 1;
+        if role.time() == Time::Interval && !role.has_equation() {
+            self.inputs = self.interval.len();
+        }
+        place
+    }
+
+    /// Variables of an instant, of an interval or of the horizon, in order.
+    pub fn of(&self, time: Time) -> &[Variable] {
+        match time {
+            Time::Instant => &self.instant,
+            Time::Interval => &self.interval,
+            Time::Horizon => &self.horizon,
+        }
+    }
+
+    /// Places of the variables of a role in the list of its time.
+    pub fn range(&self, role: Role) -> Range<usize> {
+        self.ranges[role as usize].clone()
+    }
+
+    /// The variables of a role.
+    pub fn with(&self, role: Role) -> &[Variable] {
+        &self.of(role.time())[self.range(role)]
+    }
+
+    /// Number of variables of a role.
+    pub fn count(&self, role: Role) -> usize {
+        self.ranges[role as usize].len()
+    }
+
+    /// Places of the scalars of an interval that are prescribed from outside or sought by an optimisation.
+    pub fn inputs(&self) -> Range<usize> {
+        0..self.inputs
+    }
+
+    /// Places of the scalars of an interval that have an equation.
+    pub fn algebraic(&self) -> Range<usize> {
+        self.inputs..self.interval.len()
+    }
+
+    /// Scalars of an interval as inputs and those with an equation.
+    pub fn split<'s>(&self, scalars: &'s [f64]) -> [&'s [f64]; 2] {
+        [&scalars[self.inputs()], &scalars[self.algebraic()]]
+    }
+
+    /// Scalars of an interval with these inputs, the others zero.
+    pub fn scalars(&self, inputs: &[f64]) -> Vec<f64> {
+        let mut scalars = vec![0.0; self.interval.len()];
+        scalars[self.inputs()].copy_from_slice(inputs);
+        scalars
+    }
+
+    /// Place of the voltage of a source among the scalars of an interval; `None` where it does nothing.
+    pub fn voltage(&self, source: usize) -> Option<usize> {
+        let is_of = |variable: &Variable| variable.source == Some(source);
+        self.interval.iter().position(is_of)
+    }
+
+    /// Source of each voltage.
+    pub fn sources(&self) -> impl Iterator<Item = usize> + '_ {
+        self.interval.iter().filter_map(|variable| variable.source)
+    }
+
+    /// The unknowns of a step.
+    pub fn unknowns(&self) -> impl Iterator<Item = &Variable> {
+        self.instant.iter().chain(&self.interval[self.algebraic()])
+    }
+
+    /// Number of unknowns of a step.
+    pub fn unknown_count(&self) -> usize {
+        self.instant.len() + self.algebraic().len()
+    }
+
+    /// Unknown `i` of a step.
+    pub fn unknown(&self, i: usize) -> &Variable {
+        self.unknown_of(1, i)
+    }
+
+    /// Unknown `i` of a step of several points, which come first, and the scalars of several samples.
+    pub fn unknown_of(&self, points: usize, i: usize) -> &Variable {
+        match i.checked_sub(points * self.instant.len()) {
+            None => &self.instant[i % self.instant.len()],
+            Some(place) => &self.interval[self.inputs + place % self.algebraic().len()],
+        }
+    }
+
+    /// Place among the unknowns of a step of scalar `s` of an interval; `None` for an input.
+    pub fn place(&self, s: usize) -> Option<usize> {
+        self.place_of(1, 0, s)
+    }
+
+    /// Place of scalar `s` of a sample among the unknowns of a step of several points, which come first, and the scalars of several
+    /// samples; `None` for an input.
+    pub fn place_of(&self, points: usize, sample: usize, s: usize) -> Option<usize> {
+        let place = s.checked_sub(self.inputs)?;
+        Some(points * self.instant.len() + sample * self.algebraic().len() + place)
+    }
+}
