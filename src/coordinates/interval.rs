@@ -6,7 +6,7 @@ use crate::functional::{BlockMask, Horizon, Sample};
 /// What an interval is asked with, besides its two instants.
 #[derive(Clone, Copy, Debug)]
 pub struct Interval<'a> {
-    /// Scalars: voltages, then potentials.
+    /// Scalars, such as voltages and potentials.
     pub scalars: &'a [f64],
     /// Their rates along the direction; read at level `Third` only.
     pub along: &'a [f64],

@@ -14,7 +14,7 @@ use crate::math::Vector;
 pub struct Reduced {
     /// Coordinates and the vectors that follow from them.
     pub motion: CoordinateMap,
-    /// Sum over intervals; its scalars are voltages.
+    /// Sum over intervals; its scalars are those of an interval.
     pub intervals: Functional,
     /// Sum over instants; its scalars are multipliers.
     pub instants: Functional,
