@@ -1,5 +1,25 @@
 //! Simulation and optimal control of systems driven by dielectric elastomer muscles.
 //!
+//! ```
+//! use proboscis::prelude::*;
+//!
+//! # fn main() -> Result<()> {
+//! let mut system = System::new("oscillator");
+//! let cart = system.add(Body::sphere(mm(10.0)).mass(g(50.0)));
+//! let slide = system.add(Joint::prismatic(X).between(GROUND, cart));
+//! let spring = Spring::between((GROUND, -X * mm(50.0)), (cart, X * mm(0.0)));
+//! system.add(spring.stiffness(n_per_m(200.0)));
+//! let start = State::Joints(vec![(slide, mm(5.0))]);
+//! let motion = Simulation::over(ms(200.0)).start(start).run(&system)?;
+//! let lowest = motion.joint(slide).into_iter().fold(0.0, f64::min);
+//! assert!((lowest + 5.0).abs() < 0.1);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! [`Simulation`] and [`Control`] are asked of a [`System`] of parts; [`units`] are written as functions. The modules below show
+//! all that they are made of.
+//!
 //! Everything a problem is made of is a scalar, and everything the solvers need is a derivative of a sum of scalars.
 //! The midpoint rule turns the action of a scene into a sum over intervals `[t_k, t_{k+1}]` and instants `t_k`,
 //!
@@ -35,6 +55,7 @@
 //! | [`model`] | from a system of bodies, joints and muscles to its action |
 //! | [`dynamics`] | simulation, equilibrium, observations |
 //! | [`control`] | the transcription of a control problem (DMOCC) |
+//! | [`interface`], [`units`] | systems built part by part, simulated and steered |
 //! | [`workflow`] | simulate, optimise, refine, verify: in memory |
 //! | [`files`], [`report`] | files in and files out |
 //! | [`app`], [`study`] | what the commands do with one problem, and with many variants of it |
@@ -97,3 +118,8 @@ pub const X: nalgebra::Vector3<f64> = nalgebra::Vector3::new(1.0, 0.0, 0.0);
 pub const Y: nalgebra::Vector3<f64> = nalgebra::Vector3::new(0.0, 1.0, 0.0);
 /// Direction z.
 pub const Z: nalgebra::Vector3<f64> = nalgebra::Vector3::new(0.0, 0.0, 1.0);
+
+/// The program of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -91,6 +91,69 @@ fn with_table(table: &str) -> Result<Voltages, String> {
 }
 
 #[test]
+fn voltages_may_be_functions_of_time() {
+    let signals =
+        r#"{ "muscle1": { "ramp": { "to": "2 kV", "start": "0.1 s", "duration": "0.2 s" } } }"#;
+    let voltages = with_table(signals).unwrap();
+    let at = |time| voltages.at(time).to_vec();
+    assert_eq!(at(50.0), [0.0, 0.0]);
+    assert!((at(150.0)[0] - 500.0).abs() < 1e-9);
+    assert_eq!(at(900.0), [2000.0, 0.0]);
+    assert_eq!(voltages.switches().to_vec(), [100.0, 100.0 + 200.0]);
+    assert!(voltages.drive(0) && !voltages.drive(1));
+    let sine = r#"{ "muscle1": { "sine": { "mean": 1000, "amplitude": "500 V", "period": "0.4 s", "phase": "90 deg" } } }"#;
+    let voltages = with_table(sine).unwrap();
+    assert!((voltages.at(0.0)[0] - 1500.0).abs() < 1e-9);
+    assert!((voltages.at(200.0)[0] - 500.0).abs() < 1e-9);
+    let table = r#"{ "muscle1": { "table": { "time": [0.2, 0.4], "values": [100, "0.3 kV"] } } }"#;
+    let voltages = with_table(table).unwrap();
+    assert!((voltages.at(250.0)[0] - 150.0).abs() < 1e-9);
+    assert_eq!(
+        with_table(r#"{ "muscle1": "1 kV" }"#).unwrap(),
+        Voltages::Constant(vec![1000.0, 0.0])
+    );
+    for (wrong, told) in [
+        (r#"{ "muscle1": {} }"#, "ramp"),
+        (
+            r#"{ "muscle1": { "ramp": { "to": 1, "duration": 0 } } }"#,
+            "duration",
+        ),
+        (
+            r#"{ "muscle1": { "ramp": { "to": 1, "duration": 1 }, "sine": { "amplitude": 1, "period": 1 } } }"#,
+            "ramp",
+        ),
+        (
+            r#"{ "muscle1": { "sine": { "amplitude": "1 kV", "period": "-1 s" } } }"#,
+            "period",
+        ),
+        (
+            r#"{ "muscle1": { "table": { "time": [1, 1], "values": [0, 0] } } }"#,
+            "increasing times",
+        ),
+        (
+            r#"{ "muscle1": { "table": { "time": [1, 2], "values": [0] } } }"#,
+            "2, one for each time",
+        ),
+        (
+            r#"{ "muscle1": { "table": { "time": [], "values": [] } } }"#,
+            "one or more",
+        ),
+        (
+            r#"{ "muscle1": { "ramp": { "to": "1 m", "duration": 1 } } }"#,
+            "voltages.muscle1.ramp.to",
+        ),
+        (r#"{ "muscle1": { "rise": 1 } }"#, "rise"),
+        (
+            r#"{ "muscle9": { "ramp": { "to": 1, "duration": 1 } } }"#,
+            "muscle9",
+        ),
+    ] {
+        let error = with_table(wrong).unwrap_err();
+        assert!(error.contains(told), "{error}");
+    }
+}
+
+#[test]
 fn voltages_may_be_a_table() {
     let table = r#"{ "time": [0, "500 ms", 1], "voltages": { "muscle1": [100, "0.2 kV"] }, "hold": { "muscle1": 50 } }"#;
     let voltages = with_table(table).unwrap();

@@ -1,13 +1,14 @@
 //! The problem file: what is written (`spec`, `spec_*`) and how it becomes a [`Task`](crate::control::problem::Task).
 //!
 //! - `build`: the problem; `control`, `simulation`: its two longer tasks.
-//! - `state`, `limits`, `guess`, `voltages`, `coordinates`: their parts; `solution_voltages`: voltages of an earlier solution.
+//! - `state`, `limits`, `guess`, `voltages`, `signal`, `coordinates`: their parts; `solution_voltages`: voltages of an earlier solution.
 
 pub(crate) mod build;
 pub(crate) mod control;
 pub(crate) mod coordinates;
 pub(crate) mod guess;
 pub(crate) mod limits;
+pub(crate) mod signal;
 pub(crate) mod simulation;
 pub(crate) mod solution_voltages;
 pub mod spec;
@@ -15,6 +16,7 @@ pub mod spec_control;
 pub mod spec_coordinates;
 pub mod spec_integrator;
 pub mod spec_limits;
+pub mod spec_signal;
 pub mod spec_simulate;
 pub mod spec_states;
 pub mod spec_voltages;

@@ -1,5 +1,6 @@
 //! Voltages as they are written: constant, of a solution, or a table.
 
+use crate::files::problem::spec_signal::SignalSpec;
 use crate::files::units::quantity::{Quantity, Time, Voltage};
 use schemars::JsonSchema;
 use serde::de::{Error, MapAccess, Unexpected, Visitor};
@@ -10,7 +11,7 @@ use std::fmt;
 /// Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
 pub type VoltageMap = BTreeMap<String, Quantity<Voltage>>;
 
-/// Constant voltages by muscle or driven electrode, `{"solution": path}`, or `{"time": [...], "voltages": {...}}`.
+/// Voltages by muscle or driven electrode, constant or functions of time; 0 where not named; `{"solution": path}`, or `{"time": [...], "voltages": {...}}`.
 #[derive(Clone, Debug, JsonSchema)]
 #[serde(untagged)]
 pub enum VoltagesSpec {
@@ -18,8 +19,8 @@ pub enum VoltagesSpec {
     Solution(SolutionSpec),
     /// A table.
     Table(TableSpec),
-    /// Constant.
-    Constant(VoltageMap),
+    /// Constant, or functions of time.
+    Signals(BTreeMap<String, SignalSpec>),
 }
 
 /// A solution by its path.
@@ -46,7 +47,7 @@ pub struct TableSpec {
 
 impl Default for VoltagesSpec {
     fn default() -> Self {
-        Self::Constant(VoltageMap::new())
+        Self::Signals(BTreeMap::new())
     }
 }
 
@@ -68,7 +69,7 @@ impl<'de> Visitor<'de> for VoltagesVisitor {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<VoltagesSpec, A::Error> {
-        let mut constant = VoltageMap::new();
+        let mut signals = BTreeMap::new();
         let (mut solution, mut time, mut voltages, mut hold) = (None, None, None, None);
         while let Some(key) = map.next_key::<String>()? {
             match key.as_str() {
@@ -76,16 +77,16 @@ impl<'de> Visitor<'de> for VoltagesVisitor {
                 "time" => time = Some(map.next_value()?),
                 "voltages" => voltages = Some(map.next_value()?),
                 "hold" => hold = Some(map.next_value()?),
-                _ => drop(constant.insert(key, map.next_value()?)),
+                _ => drop(signals.insert(key, map.next_value()?)),
             }
         }
-        let is_constant = !constant.is_empty();
+        let has_signals = !signals.is_empty();
         match (solution, time, voltages, hold) {
-            (None, None, None, None) => Ok(VoltagesSpec::Constant(constant)),
-            (Some(solution), None, None, None) if !is_constant => {
+            (None, None, None, None) => Ok(VoltagesSpec::Signals(signals)),
+            (Some(solution), None, None, None) if !has_signals => {
                 Ok(VoltagesSpec::Solution(SolutionSpec { solution }))
             }
-            (None, Some(time), Some(voltages), hold) if !is_constant => {
+            (None, Some(time), Some(voltages), hold) if !has_signals => {
                 Ok(VoltagesSpec::Table(TableSpec {
                     time,
                     voltages,

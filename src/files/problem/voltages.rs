@@ -3,9 +3,9 @@
 use crate::control::problem::Voltages;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::problem::signal::signals;
 use crate::files::problem::solution_voltages::{of_solution, of_table};
 use crate::files::problem::spec_voltages::VoltagesSpec;
-use crate::files::problem::state::voltages;
 use crate::model::system::System;
 use std::path::PathBuf;
 
@@ -16,7 +16,7 @@ pub(crate) fn over_time(
     scope: &Scope<'_>,
 ) -> Result<Voltages, SceneError> {
     match spec {
-        VoltagesSpec::Constant(map) => voltages(map, system, scope).map(Voltages::Constant),
+        VoltagesSpec::Signals(map) => signals(map, system, scope),
         VoltagesSpec::Solution(solution) => {
             let path = existing(&solution.solution, &scope.key("solution"))?;
             of_solution(&path, system)
