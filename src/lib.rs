@@ -45,6 +45,7 @@
 //! | module | owns |
 //! |---|---|
 //! | [`math`], [`sparse`], [`nlp`] | jets; direct solution; what a nonlinear program is, and its check by differences |
+//! | [`kkt`] | symmetric indefinite systems along a horizon |
 //! | [`mesh`] | hexahedral meshes: nodes, elements, named sets |
 //! | [`energy`] | formulas: energies and virtual works with exact derivatives |
 //! | [`element`] | formulas of the trilinear hexahedron: material law, viscosity, fields |
@@ -73,6 +74,7 @@ pub mod functional;
 pub mod interface;
 pub mod ipopt;
 pub mod kinematics;
+pub mod kkt;
 pub mod math;
 pub mod mesh;
 pub mod model;

@@ -5,7 +5,9 @@ mod common;
 
 mod checker;
 mod faults;
+mod horizon;
 mod ipopt;
 mod ipopt_stops;
+mod kkt;
 mod matrices;
 mod sparse;

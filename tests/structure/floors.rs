@@ -5,7 +5,7 @@ use crate::sources::sources;
 /// From the ground up; folders of one line do not know each other.
 const FLOORS: [&[&str]; 13] = [
     &["math"],
-    &["mesh", "sparse", "nlp"],
+    &["mesh", "sparse", "kkt", "nlp"],
     &["energy", "ipopt"],
     &["kinematics", "element"],
     &["functional"],

@@ -1,0 +1,82 @@
+//! The graph of a symmetric matrix: which unknowns share an entry.
+
+/// Neighbours of each unknown in ascending order, itself left out.
+#[derive(Clone, Debug)]
+pub(super) struct Graph {
+    starts: Vec<u32>,
+    neighbours: Vec<u32>,
+}
+
+impl Graph {
+    /// The graph of a matrix of `order` unknowns with entries at `rows` and `cols`, of either triangle or both.
+    pub(super) fn new(order: usize, rows: &[u32], cols: &[u32]) -> Self {
+        let mut starts = vec![0; order + 1];
+        let pairs = || rows.iter().zip(cols).filter(|(row, col)| row != col);
+        for (&row, &col) in pairs() {
+            starts[row as usize + 1] += 1;
+            starts[col as usize + 1] += 1;
+        }
+        for i in 0..order {
+            starts[i + 1] += starts[i];
+        }
+        let mut next = starts.clone();
+        let mut mixed = vec![0; starts[order] as usize];
+        let mut put = |list: &mut [u32], from: u32, to: u32| {
+            let place = &mut next[from as usize];
+            list[*place as usize] = to;
+            *place += 1;
+        };
+        for (&row, &col) in pairs() {
+            put(&mut mixed, row, col);
+            put(&mut mixed, col, row);
+        }
+        // A symmetric list, transposed, is in order.
+        let mut next = starts.clone();
+        let mut sorted = vec![0; mixed.len()];
+        for i in 0..order {
+            for &j in &mixed[starts[i] as usize..starts[i + 1] as usize] {
+                let place = &mut next[j as usize];
+                sorted[*place as usize] = i as u32;
+                *place += 1;
+            }
+        }
+        Self::without_duplicates(starts, sorted)
+    }
+
+    fn without_duplicates(mut starts: Vec<u32>, mut sorted: Vec<u32>) -> Self {
+        let (mut kept, mut begin) = (0, 0);
+        for i in 0..starts.len() - 1 {
+            let end = starts[i + 1] as usize;
+            let first = kept;
+            for place in begin..end {
+                let j = sorted[place];
+                if kept == first || sorted[kept - 1] != j {
+                    sorted[kept] = j;
+                    kept += 1;
+                }
+            }
+            begin = end;
+            starts[i + 1] = kept as u32;
+        }
+        sorted.truncate(kept);
+        Self {
+            starts,
+            neighbours: sorted,
+        }
+    }
+
+    /// Number of unknowns.
+    pub(super) const fn order(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Neighbours of unknown `i`.
+    pub(super) fn neighbours(&self, i: usize) -> &[u32] {
+        &self.neighbours[self.starts[i] as usize..self.starts[i + 1] as usize]
+    }
+
+    /// Where the neighbours of each unknown begin, with the end of the last, and all of them.
+    pub(super) fn lists(&self) -> (&[u32], &[u32]) {
+        (&self.starts, &self.neighbours)
+    }
+}

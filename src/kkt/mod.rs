@@ -1,0 +1,41 @@
+//! Sparse symmetric indefinite systems with the structure of a horizon: `A = L D Lᵀ` with exact inertia.
+//!
+//! An interior-point method solves in each iteration
+//!
+//! ```text
+//! ⎡ H + Σ + δ_w   Jᵀ  ⎤ ⎡ Δx ⎤     ⎡ ∇ₓL ⎤
+//! ⎣ J            −δ_c ⎦ ⎣ Δy ⎦ = − ⎣ c   ⎦
+//! ```
+//!
+//! and asks for the number of negative eigenvalues, which must be that of the equations. H is indefinite on the way and δ_c mostly zero, so
+//! that neither static regularisation nor an order alone makes the factors stable: pivots are chosen by threshold, in a front of all
+//! that one stage reaches, and what is no pivot there is left to the next one (the multifrontal method of Duff and Reid, 1983).
+//!
+//! | file | owns |
+//! |---|---|
+//! | `graph`, `order`, `tree`, `plan` | once for a pattern: order of elimination, fronts, where each entry goes |
+//! | `pivot`, `dense`, `update`, `eliminate` | one dense front |
+//! | `numeric`, `solve`, `scales` | factors, solutions, equilibration |
+//! | `solver` | when to scale, how strictly to pivot, whether the factors are good |
+//!
+//! After the first matrix nothing is allocated, unless more pivots are delayed than ever before.
+
+mod dense;
+mod eliminate;
+mod graph;
+mod inertia;
+mod lanes;
+mod numeric;
+mod order;
+mod pivot;
+mod plan;
+mod scales;
+mod solve;
+mod solver;
+mod tree;
+mod update;
+
+pub use inertia::Inertia;
+pub use order::Unknown;
+pub use plan::Plan;
+pub use solver::{Solver, Statistics};

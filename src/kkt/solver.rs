@@ -1,0 +1,303 @@
+//! When to scale, how strictly to pivot, and whether the factors are good.
+//!
+//! * Cheap systems are factored as they are, with the weakest rule for pivots. If many pivots are delayed, or one seems to be zero,
+//!   the matrix is equilibrated and factored again, and these scales are kept for a while. Expensive ones are equilibrated always.
+//! * After each factorisation a system is solved and its backward error looked at. Where that is great, signs of eigenvalues may be
+//!   wrong, and the matrix is factored again under a stricter rule.
+//! * Zero pivots are counted in an equilibrated matrix under the strictest rule.
+
+use super::inertia::Inertia;
+use super::numeric::{Factors, Outcome};
+use super::pivot::Rules;
+use super::plan::Plan;
+use super::scales::Scales;
+use super::solve::solve;
+
+/// Threshold of pivots for each [`Care`].
+const THRESHOLDS: [f64; 4] = [1e-8, 1e-4, 1e-2, 0.1];
+/// Largest entry of a column that counts as zero: of a matrix as it is, and of an equilibrated one.
+const ZEROS: [f64; 2] = [1e-20, 1e-14];
+/// Delays, as a part of the unknowns, that call for scales.
+const MANY: usize = 20;
+/// Factorisations for which scales are kept.
+const KEPT: usize = 4;
+/// Multiplications for each entry above which scales cost little.
+const EXPENSIVE: f64 = 200.0;
+/// Backward error that calls for a stricter rule.
+const ERROR: f64 = 1e-3;
+
+/// What a solver has done.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Matrices that were given.
+    pub factorisations: usize,
+    /// Right-hand sides solved for.
+    pub solutions: usize,
+    /// Columns that were no pivots where they were expected, in all factorisations.
+    pub delays: usize,
+    /// Times the scales were found anew.
+    pub equilibrations: usize,
+    /// Factorisations that were repeated under a stricter rule because of their backward error.
+    pub repeated: usize,
+    /// Largest backward error of factors that were used.
+    pub backward_error: f64,
+}
+
+/// A matrix as it is, or equilibrated and under stricter and stricter rules for pivots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+enum Care {
+    #[default]
+    Plain,
+    Scaled,
+    Careful,
+    Strict,
+}
+
+impl Care {
+    const fn stricter(self) -> Self {
+        match self {
+            Self::Plain => Self::Scaled,
+            Self::Scaled => Self::Careful,
+            Self::Careful | Self::Strict => Self::Strict,
+        }
+    }
+}
+
+/// Why a factorisation is repeated.
+enum Doubt {
+    /// Many delays or a great backward error.
+    Growth,
+    /// Zero pivots.
+    Zeros,
+}
+
+/// Factors and solves matrices of one pattern.
+#[derive(Clone, Debug)]
+pub struct Solver {
+    plan: Plan,
+    factors: Factors,
+    scales: Scales,
+    /// Of the factors.
+    care: Care,
+    /// With which a factorisation begins.
+    least: Care,
+    /// With which it begins for a while.
+    lately: Care,
+    /// Factorisations that this while lasts.
+    kept: usize,
+    is_factored: bool,
+    entries: Vec<f64>,
+    scaled: Vec<f64>,
+    work: Vec<f64>,
+    solution: Vec<f64>,
+    /// Residual, and the sum of the magnitudes of its terms.
+    residual: Vec<[f64; 2]>,
+    statistics: Statistics,
+}
+
+impl Solver {
+    /// A solver for matrices of a plan.
+    #[must_use]
+    pub fn new(plan: Plan) -> Self {
+        let n = plan.order();
+        let cost = plan.multiplications() / plan.entries.len().max(1) as f64;
+        let least = if cost > EXPENSIVE {
+            Care::Scaled
+        } else {
+            Care::Plain
+        };
+        Self {
+            plan,
+            factors: Factors::default(),
+            scales: Scales::default(),
+            care: least,
+            least,
+            lately: least,
+            kept: 0,
+            is_factored: false,
+            entries: Vec::new(),
+            scaled: Vec::new(),
+            work: Vec::new(),
+            solution: vec![0.0; n],
+            residual: vec![[0.0; 2]; n],
+            statistics: Statistics::default(),
+        }
+    }
+
+    /// The plan.
+    #[must_use]
+    pub const fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// What was done so far.
+    #[must_use]
+    pub const fn statistics(&self) -> &Statistics {
+        &self.statistics
+    }
+
+    /// Asks for a stricter rule from now on.
+    pub fn improve(&mut self) {
+        self.least = self.care.max(self.least).stricter();
+    }
+
+    /// Factors the matrix with these entries, one for each of the pattern. A matrix with an entry that is no finite number counts as
+    /// zero.
+    ///
+    /// # Panics
+    ///
+    /// If there are more or fewer entries than in the pattern.
+    pub fn factor(&mut self, entries: &[f64]) -> Inertia {
+        assert_eq!(
+            entries.len(),
+            self.plan.entries.len(),
+            "the entries of the pattern"
+        );
+        self.statistics.factorisations += 1;
+        self.entries.clear();
+        self.entries.extend_from_slice(entries);
+        self.is_factored = entries.iter().all(|entry| entry.is_finite());
+        if !self.is_factored {
+            return Inertia {
+                negative: 0,
+                zero: self.plan.order(),
+            };
+        }
+        self.care = match self.kept {
+            0 => self.least,
+            _ => self.least.max(self.lately),
+        };
+        let outcome = loop {
+            match self.attempt() {
+                Ok(outcome) => break outcome,
+                // Growth hides zeros, so that no weak rule counts them all.
+                Err(Doubt::Zeros) => self.care = Care::Strict,
+                Err(Doubt::Growth) => {
+                    self.care = self.care.stricter();
+                    (self.lately, self.kept) = (self.care, KEPT + 1);
+                }
+            }
+        };
+        self.kept = self.kept.saturating_sub(1);
+        self.statistics.delays += outcome.delays;
+        outcome.inertia
+    }
+
+    /// A factorisation with the care at hand, unless a stricter one may be better.
+    fn attempt(&mut self) -> Result<Outcome, Doubt> {
+        let outcome = match self.care {
+            Care::Plain => self.plain().ok_or(Doubt::Growth)?,
+            _ => self.equilibrated(),
+        };
+        if outcome.inertia.zero > 0 {
+            // The solution of a singular system tells nothing.
+            return match self.care {
+                Care::Strict => Ok(outcome),
+                _ => Err(Doubt::Zeros),
+            };
+        }
+        let error = self.backward_error();
+        if error > ERROR && self.care < Care::Strict {
+            self.statistics.repeated += 1;
+            return Err(Doubt::Growth);
+        }
+        self.statistics.backward_error = self.statistics.backward_error.max(error);
+        Ok(outcome)
+    }
+
+    /// The matrix as it is, if there are few delays.
+    fn plain(&mut self) -> Option<Outcome> {
+        let few = self.plan.order() / MANY;
+        let rules = rules(self.care);
+        self.factors.factor(&self.plan, &self.entries, rules, few)
+    }
+
+    /// The matrix with its scales: those of an earlier one as long as they do.
+    fn equilibrated(&mut self) -> Outcome {
+        let are_kept = self.kept > 0 && self.kept < KEPT && self.least == Care::Plain;
+        if are_kept {
+            let outcome = self.scaled(self.plan.order() / MANY);
+            if let Some(outcome) = outcome.filter(|outcome| outcome.inertia.zero == 0) {
+                return outcome;
+            }
+        }
+        self.statistics.equilibrations += 1;
+        let plan = &self.plan;
+        self.scales
+            .find(plan.order(), plan.pattern(), &self.entries);
+        self.scaled(usize::MAX).expect("any number of delays")
+    }
+
+    /// The matrix with the scales at hand.
+    fn scaled(&mut self, most_delays: usize) -> Option<Outcome> {
+        self.scales
+            .scale(self.plan.pattern(), &self.entries, &mut self.scaled);
+        let rules = rules(self.care);
+        self.factors
+            .factor(&self.plan, &self.scaled, rules, most_delays)
+    }
+
+    /// Replaces a right-hand side by the solution; by NaN if the matrix was not finite.
+    ///
+    /// # Panics
+    ///
+    /// If the lengths contradict each other.
+    pub fn solve(&mut self, x: &mut [f64]) {
+        assert_eq!(x.len(), self.plan.order(), "one number for each unknown");
+        self.statistics.solutions += 1;
+        if !self.is_factored {
+            x.fill(f64::NAN);
+            return;
+        }
+        self.substitute(x);
+    }
+
+    fn substitute(&mut self, x: &mut [f64]) {
+        let is_scaled = self.care != Care::Plain;
+        if is_scaled {
+            self.scales.apply(x);
+        }
+        solve(&self.factors, x, &mut self.work);
+        if is_scaled {
+            self.scales.apply(x);
+        }
+    }
+
+    /// The smallest relative change of entries with which a solution for `b = (1, −1, 1, …)` is exact (Oettli and Prager, 1964):
+    /// the greatest of `|b − A x| / (|A| |x| + |b|)`.
+    fn backward_error(&mut self) -> f64 {
+        let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let mut x = std::mem::take(&mut self.solution);
+        x.iter_mut().enumerate().for_each(|(i, x)| *x = sign(i));
+        self.substitute(&mut x);
+        let sums = &mut self.residual;
+        sums.iter_mut()
+            .enumerate()
+            .for_each(|(i, sum)| *sum = [sign(i), 1.0]);
+        let mut add = |row: u32, term: f64| {
+            let [residual, magnitude] = &mut sums[row as usize];
+            *residual -= term;
+            *magnitude += term.abs();
+        };
+        let (rows, cols) = self.plan.pattern();
+        for ((&row, &col), &entry) in rows.iter().zip(cols).zip(&self.entries) {
+            add(row, entry * x[col as usize]);
+            if row != col {
+                add(col, entry * x[row as usize]);
+            }
+        }
+        self.solution = x;
+        let errors = self.residual.iter().map(|[r, m]| r.abs() / m);
+        errors.fold(
+            0.0,
+            |most: f64, error| if error <= most { most } else { error },
+        )
+    }
+}
+
+fn rules(care: Care) -> Rules {
+    Rules {
+        threshold: THRESHOLDS[care as usize],
+        zero: ZEROS[usize::from(care != Care::Plain)],
+    }
+}
