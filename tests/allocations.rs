@@ -8,6 +8,7 @@ use common::systems::branched;
 use common::trunk;
 use proboscis::control::problem::{Control, Duration, Objective};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::kkt::{Plan, Solver, Unknown};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
 use proboscis::nlp::Nlp;
@@ -83,9 +84,53 @@ fn allocations(system: &System, control: &Control) -> [usize; 5] {
     fewest
 }
 
+/// Factoring and solving a system along a horizon again, with other numbers: fewest allocations of all rounds but the first.
+fn allocations_of_factors() -> usize {
+    let (stages, width) = (40, 6);
+    let variables = stages * width;
+    let (mut rows, mut cols) = (Vec::new(), Vec::new());
+    for row in 0..2 * variables {
+        for col in 0..=row {
+            let (i, j) = (row % variables, col % variables);
+            let is_near = (i / width).abs_diff(j / width) < 2;
+            if is_near && (col < variables || row == col) {
+                rows.push(row as u32);
+                cols.push(col as u32);
+            }
+        }
+    }
+    let variable = |i: usize| Unknown::Variable((i / width) as u32);
+    let mut unknowns: Vec<Unknown> = (0..variables).map(variable).collect();
+    unknowns.resize(2 * variables, Unknown::Equality);
+    let mut solver = Solver::new(Plan::new(unknowns.len(), &rows, &cols, Some(&unknowns)));
+    let mut entries = vec![0.0; rows.len()];
+    let mut fewest = usize::MAX;
+    for round in 0..20 {
+        for (e, entry) in entries.iter_mut().enumerate() {
+            let is_equation = rows[e] as usize >= variables && rows[e] == cols[e];
+            *entry = if is_equation {
+                0.0
+            } else {
+                ((e + round) as f64).sin()
+            };
+        }
+        let mut x = vec![1.0; unknowns.len()];
+        let before = ASKED.load(Ordering::Relaxed);
+        let inertia = solver.factor(&entries);
+        solver.solve(&mut x);
+        let asked = ASKED.load(Ordering::Relaxed) - before;
+        assert!(inertia.negative > 0 && inertia.zero == 0, "{inertia:?}");
+        if round > 0 {
+            fewest = fewest.min(asked);
+        }
+    }
+    fewest
+}
+
 /// The only test of its binary: the count belongs to the process.
 #[test]
 fn evaluations_allocate_nothing() {
+    assert_eq!(allocations_of_factors(), 0, "factors");
     let before = ASKED.load(Ordering::Relaxed);
     drop(std::hint::black_box(vec![0_u8; 100]));
     assert!(
