@@ -86,7 +86,7 @@ fn allocations(system: &System, control: &Control) -> [usize; 5] {
 
 /// Factoring and solving a system along a horizon again, with other numbers: fewest allocations of all rounds but the first.
 fn allocations_of_factors() -> usize {
-    let (stages, width) = (40, 6);
+    let (stages, width) = (40, 6_usize);
     let variables = stages * width;
     let (mut rows, mut cols) = (Vec::new(), Vec::new());
     for row in 0..2 * variables {

@@ -10,6 +10,7 @@ use crate::control::problem::{
 };
 use crate::control::{Column, Row, Transcription};
 use crate::files::read_problem;
+use crate::ipopt::LinearSolver;
 use crate::ipopt::interrupt::TimeLimit;
 use crate::mesh::Mesh;
 use crate::model::{Coordinates, Model, System};
@@ -170,6 +171,7 @@ fn as_control(task: Task, system: &System) -> Control {
         solver: Solver {
             tolerance: 1e-10,
             max_iterations: 0,
+            linear_solver: LinearSolver::Auto,
             ipopt: BTreeMap::new(),
         },
     };

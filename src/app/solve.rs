@@ -11,7 +11,9 @@ use crate::app::folder::make_folder;
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::solution_file;
-use crate::app::summary::{Evaluations, MEASURED, PerInterval, Program, Seconds, Summary};
+use crate::app::summary::{
+    Evaluations, LinearSystems, MEASURED, PerInterval, Program, Seconds, Summary,
+};
 use crate::app::unfinished::Unfinished;
 use crate::app::words::counted;
 use crate::control::problem::{Control, Hold};
@@ -131,6 +133,7 @@ pub(super) fn control(
         constraints: optimum.constraints,
         jacobian_nonzeros: optimum.jacobian_nonzeros,
         hessian_nonzeros: optimum.hessian_nonzeros,
+        linear_solver: LinearSystems::new(&solution.linear),
         evaluations: Evaluations {
             objective: solution.evaluations.objective,
             gradient: solution.evaluations.gradient,

@@ -12,6 +12,7 @@ use crate::app::rest_words::Rest;
 use crate::control::problem;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
 use crate::files::lay_out;
+use crate::ipopt::LinearReport;
 use crate::report::atomic::{self, WriteError};
 use crate::workflow::accuracy::Accuracy;
 use crate::workflow::domain::Outside;
@@ -71,6 +72,8 @@ pub(super) struct Program {
     pub(super) constraints: usize,
     pub(super) jacobian_nonzeros: usize,
     pub(super) hessian_nonzeros: usize,
+    /// Who solved the linear systems, and what that took.
+    pub(super) linear_solver: LinearSystems,
     /// How often the solver asked for what.
     pub(super) evaluations: Evaluations,
     /// Mean time of one evaluation per interval.
@@ -82,6 +85,53 @@ pub(super) struct Program {
     pub(super) violations: Vec<Violation>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) resimulation: Option<Resimulation>,
+}
+
+/// The linear systems of the solver.
+#[derive(Debug, Serialize)]
+pub(super) struct LinearSystems {
+    /// `stages`, or the name of another one.
+    name: String,
+    #[serde(flatten)]
+    stages: Option<Stages>,
+}
+
+/// What the linear solver along the horizon did.
+#[derive(Debug, Serialize)]
+struct Stages {
+    factorisations: usize,
+    solutions: usize,
+    /// Pivots that were found later than expected.
+    delays: usize,
+    equilibrations: usize,
+    /// Factorisations that were repeated under a stricter rule.
+    repeated: usize,
+    /// Greatest one of the factors that were used.
+    backward_error: f64,
+    analysis_seconds: f64,
+    factorisation_seconds: f64,
+    solution_seconds: f64,
+}
+
+impl LinearSystems {
+    /// Of a solve.
+    pub(super) fn new(report: &LinearReport) -> Self {
+        let stages = report.stages.map(|stages| Stages {
+            factorisations: stages.statistics.factorisations,
+            solutions: stages.statistics.solutions,
+            delays: stages.statistics.delays,
+            equilibrations: stages.statistics.equilibrations,
+            repeated: stages.statistics.repeated,
+            backward_error: stages.statistics.backward_error,
+            analysis_seconds: stages.analysis,
+            factorisation_seconds: stages.factorisation,
+            solution_seconds: stages.solution,
+        });
+        Self {
+            name: report.solver.clone(),
+            stages,
+        }
+    }
 }
 
 /// Numbers of evaluations.

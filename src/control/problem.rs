@@ -2,7 +2,7 @@
 
 use crate::control::{Earlier, Signal};
 use crate::dynamics::Solving;
-use crate::ipopt::OptionValue;
+use crate::ipopt::{LinearSolver, OptionValue};
 use crate::model::system::{ElectricConstants, Muscle};
 use crate::model::{Coordinates, Region, System, Variable};
 use nalgebra::Vector3;
@@ -356,6 +356,8 @@ pub struct Solver {
     pub tolerance: f64,
     /// Limit of iterations.
     pub max_iterations: usize,
+    /// Who solves the linear systems, unless the options name another one.
+    pub linear_solver: LinearSolver,
     /// Options passed to Ipopt by name.
     pub ipopt: BTreeMap<String, OptionValue>,
 }
@@ -366,6 +368,7 @@ impl Default for Solver {
         Self {
             tolerance: 1e-10,
             max_iterations: 500,
+            linear_solver: LinearSolver::Auto,
             ipopt: BTreeMap::new(),
         }
     }

@@ -38,12 +38,12 @@ mod bindings {
     include!(concat!(env!("OUT_DIR"), "/ipopt.rs"));
 }
 
-/// A problem known to Ipopt; while it exists, no other thread has one or calls MUMPS.
+/// A problem known to Ipopt; while one exists that uses MUMPS, no other thread has such a one or calls MUMPS.
 pub(super) struct Problem {
     handle: NonNull<bindings::IpoptProblemInfo>,
     variables: usize,
     constraints: usize,
-    _lock: Exclusive,
+    _lock: Option<Exclusive>,
 }
 
 /// An evaluator, and the panic that ended its work, if any.
@@ -53,14 +53,15 @@ struct Session<'e, 'a> {
 }
 
 impl Problem {
-    /// Waits until no other problem exists, and creates one; `None` if Ipopt refuses it.
+    /// Creates a problem; `None` if Ipopt refuses it. One that is to be alone with MUMPS waits for the others.
     pub(super) fn new(
         variables: &Bounds,
         constraints: &Bounds,
         jacobian: usize,
         hessian: usize,
+        is_alone: bool,
     ) -> Option<Self> {
-        let lock = mumps::exclusive();
+        let lock = is_alone.then(mumps::exclusive);
         let count = |number: usize| c_int::try_from(number).ok();
         let (n, m) = (variables.lower.len(), constraints.lower.len());
         assert!(

@@ -1,13 +1,17 @@
 //! Ipopt behind one safe function over the trait [`Nlp`].
 //!
-//! One solve runs at a time in a process, because Ipopt with MUMPS is not made for more: a second call waits. For the
-//! same reason an observer or an [`Nlp`] must not call [`solve`] itself.
+//! Solves with the linear solver along the horizon run in any number of threads, also within a callback. With MUMPS, which is not made for
+//! more, one runs at a time in a process and a second call waits; an observer or an [`Nlp`] must not call [`solve`] itself then.
 
 mod centre;
 mod evaluation;
 mod ffi;
+mod hook;
 pub mod interrupt;
+mod linear_report;
+mod linear_solver;
 mod options;
+mod session;
 mod solution;
 mod status;
 
@@ -19,7 +23,10 @@ use crate::nlp::{Bounds, Entries, Nlp};
 
 use centre::{Structures, centre};
 use evaluation::Evaluator;
+pub use linear_report::{LinearReport, StagesReport};
+pub use linear_solver::LinearSolver;
 pub use options::{MUMPS_ORDERING, OptionValue, Options, Start};
+use session::Session;
 pub use solution::{Evaluations, Iteration, Multipliers, Seconds, SolverResult, StartingPoint};
 pub use status::Status;
 
@@ -41,6 +48,11 @@ pub enum IpoptError {
         /// The known option with the most similar name; none if the name is known, so that the value must be wrong.
         nearest: Option<String>,
     },
+    /// This Ipopt takes no linear solver but those that it was built with.
+    #[error(
+        "this Ipopt ({VERSION}) takes no linear solver along the horizon: write \"auto\" or \"mumps\""
+    )]
+    NoStages,
     /// Ipopt takes no problem without variables, nor constraints without any entry in their Jacobian.
     #[error(
         "Ipopt cannot work on {variables} variables and {constraints} constraints with {entries} entries in their Jacobian"
@@ -104,14 +116,18 @@ pub fn solve(
         centre(nlp, &structures, &mut x, &mut costates);
     }
 
-    let entries = jacobian.rows.len();
-    let mut problem = ffi::Problem::new(&variables, &constraints, entries, hessian.rows.len())
+    let (linear_solver, is_along) = linear_solver(options)?;
+    let stages = nlp.stages();
+    let staged = stages.as_ref().map_or(n, Vec::len);
+    assert_eq!(staged, n, "a stage for each variable");
+    let (entries, second) = (jacobian.rows.len(), hessian.rows.len());
+    let mut problem = ffi::Problem::new(&variables, &constraints, entries, second, !is_along)
         .ok_or(IpoptError::ProblemNotCreated {
             variables: n,
             constraints: m,
             entries,
         })?;
-    for (name, value) in options.settings() {
+    for (name, value) in options.settings(&linear_solver) {
         if !problem.set(&name, &value) {
             let nearest = options::nearest(&name).map(str::to_owned);
             return Err(IpoptError::OptionRejected {
@@ -123,7 +139,15 @@ pub fn solve(
     }
 
     let mut evaluator = Evaluator::new(nlp, observer, jacobian, hessian, &x, options.max_seconds);
-    let code = problem.solve(&mut evaluator, &mut x, &mut costates);
+    let solve = || problem.solve(&mut evaluator, &mut x, &mut costates);
+    let (code, stages) = match is_along {
+        true => {
+            let session = Session::new(&variables, &constraints, stages.as_deref());
+            let (code, report) = session.during(solve);
+            (code, Some(report))
+        }
+        false => (solve(), None),
+    };
     let record = evaluator.into_record();
     let _unwatched = interrupt::unwatched();
     let mut status = match Status::from_code(code) {
@@ -157,9 +181,29 @@ pub fn solve(
         costates,
         iterations: record.iterations,
         seconds: record.seconds,
+        linear: LinearReport {
+            solver: if is_along {
+                "stages".to_owned()
+            } else {
+                linear_solver
+            },
+            stages,
+        },
         evaluations: record.evaluations,
         failed_evaluations: record.failed,
     })
+}
+
+/// The name of the linear solver in Ipopt, and whether it is the one along the horizon.
+fn linear_solver(options: &Options) -> Result<(String, bool), IpoptError> {
+    if let Some(name) = options.named_linear_solver() {
+        return Ok((name.to_owned(), false));
+    }
+    let solver = options
+        .linear_solver
+        .resolve()
+        .ok_or(IpoptError::NoStages)?;
+    Ok((solver.name().to_owned(), solver == LinearSolver::Stages))
 }
 
 /// Whether there are as many equations as variables that are free.

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use crate::ipopt::linear_solver::LinearSolver;
+
 /// Ordering of the linear solver's elimination unless `mumps_pivot_order` says otherwise: approximate minimum fill.
 ///
 /// Measured on the trunk, as time inside Ipopt against this one. In joint coordinates AMD (0) takes 0.8 to 0.95. With
@@ -88,6 +90,8 @@ pub struct Options {
     pub max_seconds: Option<f64>,
     /// What the starting point is worth.
     pub start: Start,
+    /// Who solves the linear systems, unless `extra` names another one.
+    pub linear_solver: LinearSolver,
     /// Further options of Ipopt by name; they override all others.
     pub extra: BTreeMap<String, OptionValue>,
 }
@@ -99,24 +103,33 @@ impl Default for Options {
             max_iterations: 500,
             max_seconds: None,
             start: Start::Cold,
+            linear_solver: LinearSolver::Auto,
             extra: BTreeMap::new(),
         }
     }
 }
 
 impl Options {
-    /// All options that Ipopt is given, by name.
+    /// The linear solver by a name of Ipopt, if `extra` names one.
+    pub(super) fn named_linear_solver(&self) -> Option<&str> {
+        match self.extra.get("linear_solver") {
+            Some(OptionValue::Text(name)) => Some(name),
+            _ => None,
+        }
+    }
+
+    /// All options that Ipopt is given, by name; `solver` is its name of the linear solver.
     ///
     /// Ipopt is silent, reads no options file from the working directory, and leaves the scaling to the
     /// problem; the point it returns keeps to the bounds, which Ipopt since 3.14 does only when asked.
-    pub(super) fn settings(&self) -> BTreeMap<String, OptionValue> {
+    pub(super) fn settings(&self, solver: &str) -> BTreeMap<String, OptionValue> {
         let mut settings = BTreeMap::new();
         let mut text = |name: &str, value: &str| {
             settings.insert(name.to_owned(), OptionValue::Text(value.to_owned()))
         };
         text("sb", "yes");
         text("option_file_name", "");
-        text("linear_solver", "mumps");
+        text("linear_solver", solver);
         text("nlp_scaling_method", "none");
         text("honor_original_bounds", "yes");
         text("fixed_variable_treatment", "make_parameter");
@@ -134,7 +147,9 @@ impl Options {
             "max_iter",
             i32::try_from(self.max_iterations).unwrap_or(i32::MAX),
         );
-        integer("mumps_pivot_order", MUMPS_ORDERING);
+        if solver == LinearSolver::Mumps.name() {
+            integer("mumps_pivot_order", MUMPS_ORDERING);
+        }
 
         let mut number =
             |name: &str, value: f64| settings.insert(name.to_owned(), OptionValue::Number(value));

@@ -2,7 +2,8 @@
 
 use std::ops::AddAssign;
 
-use crate::ipopt::Status;
+use crate::ipopt::linear_report::LinearReport;
+use crate::ipopt::status::Status;
 
 /// Multipliers of constraints and bounds, in the sign convention of Ipopt:
 /// ∇f(x) + Σ yᵢ ∇gᵢ(x) − z_L + z_U = 0 with z_L, z_U ≥ 0.
@@ -148,6 +149,8 @@ pub struct SolverResult {
     pub iterations: Vec<Iteration>,
     /// Where the time went.
     pub seconds: Seconds,
+    /// Who solved the linear systems.
+    pub linear: LinearReport,
     /// How often each quantity was asked for.
     pub evaluations: Evaluations,
     /// How many of these met NaN or ±∞, so that the solver stepped back.

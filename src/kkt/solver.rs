@@ -100,12 +100,7 @@ impl Solver {
     #[must_use]
     pub fn new(plan: Plan) -> Self {
         let n = plan.order();
-        let cost = plan.multiplications() / plan.entries.len().max(1) as f64;
-        let least = if cost > EXPENSIVE {
-            Care::Scaled
-        } else {
-            Care::Plain
-        };
+        let least = begin(&plan);
         Self {
             plan,
             factors: Factors::default(),
@@ -134,6 +129,14 @@ impl Solver {
     #[must_use]
     pub const fn statistics(&self) -> &Statistics {
         &self.statistics
+    }
+
+    /// Forgets what the matrices so far have taught, so that the next ones are factored as by a new solver.
+    pub fn restart(&mut self) {
+        self.least = begin(&self.plan);
+        self.kept = 0;
+        self.is_factored = false;
+        self.statistics = Statistics::default();
     }
 
     /// Asks for a stricter rule from now on.
@@ -292,6 +295,15 @@ impl Solver {
             0.0,
             |most: f64, error| if error <= most { most } else { error },
         )
+    }
+}
+
+/// With which care a solver begins.
+fn begin(plan: &Plan) -> Care {
+    let cost = plan.multiplications() / plan.entries.len().max(1) as f64;
+    match cost > EXPENSIVE {
+        true => Care::Scaled,
+        false => Care::Plain,
     }
 }
 

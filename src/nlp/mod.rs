@@ -36,6 +36,15 @@ pub struct Entries {
     pub cols: Vec<u32>,
 }
 
+/// Where a variable stands along a horizon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// In a stage; equations couple neighbouring ones.
+    Of(u32),
+    /// In none: it couples all of them.
+    Border,
+}
+
 /// Minimise f(x) subject to g_L ≤ g(x) ≤ g_U and x_L ≤ x ≤ x_U.
 ///
 /// Structures never change during the life of the object. A quantity that does not exist at `x`
@@ -62,6 +71,10 @@ pub trait Nlp {
     /// Factor that brings f near 1, so that a tolerance means the same whatever f is measured in.
     fn objective_scale(&self) -> f64 {
         1.0
+    }
+    /// Stage of each variable, where there is a horizon: linear systems are solved along it.
+    fn stages(&self) -> Option<Vec<Stage>> {
+        None
     }
     /// What variable `i` is, for messages.
     fn variable_name(&self, i: usize) -> String {

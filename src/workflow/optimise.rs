@@ -170,7 +170,8 @@ pub fn optimise(
         max_iterations: allowed.iterations.unwrap_or(control.solver.max_iterations),
         max_seconds: allowed.seconds.map(|s| (s - setup).max(0.0)),
         start,
-        extra: linear_solver(&model, control),
+        linear_solver: control.solver.linear_solver,
+        extra: ordering(&model, control),
     };
     phase("ordering and first factorisation");
     tracing::info!(?start, variables = point.x.len(), "solve");
@@ -371,12 +372,12 @@ pub(crate) fn prepare<'m>(
     })
 }
 
-/// Options of the linear solver: the ordering that was fastest for the kind of program, unless the problem names one.
+/// Options of Ipopt, with the ordering of MUMPS that was fastest for the kind of program, unless the problem names one.
 ///
 /// Approximate minimum degree (0) where each instant is a small dense block or the duration is given; minimum fill (2)
 /// where a free duration couples all instants of a redundant program; nested dissection of SCOTCH (3) for the meshes of elastic
 /// blocks. Measurements: `benches/README.md`.
-fn linear_solver(model: &Model, control: &Control) -> BTreeMap<String, OptionValue> {
+fn ordering(model: &Model, control: &Control) -> BTreeMap<String, OptionValue> {
     let free = matches!(control.duration, Duration::Free { .. });
     let ordering = if !model.action.motion.of_nodes.is_empty() {
         3

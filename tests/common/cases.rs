@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 use proboscis::control::problem::{
     BoundaryState, Control, Duration, Guess, Objective, PathConstraint, Rest, Side, Solver,
 };
+use proboscis::ipopt::LinearSolver;
 use proboscis::model::system::{ElectricConstants, Material, System, VACUUM_PERMITTIVITY};
 use proboscis::model::{Coordinates, Region};
 use std::collections::BTreeMap;
@@ -49,6 +50,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
         solver: Solver {
             tolerance: 1e-10,
             max_iterations: 500,
+            linear_solver: LinearSolver::Auto,
             ipopt: BTreeMap::new(),
         },
     }

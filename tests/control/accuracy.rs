@@ -10,7 +10,7 @@ use proboscis::control::problem::{
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::dynamics::{DiscreteTrajectory, Solving};
 use proboscis::files::read_problem;
-use proboscis::ipopt::{self, Options};
+use proboscis::ipopt::{self, LinearSolver, Options};
 use proboscis::kinematics::MaterialVector;
 use proboscis::model::Model;
 use proboscis::model::system::{JointKind, System};
@@ -67,6 +67,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
         solver: Solver {
             tolerance: 1e-11,
             max_iterations: 200,
+            linear_solver: LinearSolver::Auto,
             ipopt: BTreeMap::new(),
         },
     };

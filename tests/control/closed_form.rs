@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, SVector, Vector3};
 use proboscis::control::problem::{BoundaryState, Control, Duration, Guess, Objective, Solver};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::energy::Energy;
-use proboscis::ipopt::{self, Options};
+use proboscis::ipopt::{self, LinearSolver, Options};
 use proboscis::kinematics::MaterialVector;
 use proboscis::math::Jet;
 use proboscis::model::system::{JointKind, System};
@@ -66,6 +66,7 @@ fn optimum(
         solver: Solver {
             tolerance: 1e-10,
             max_iterations: 200,
+            linear_solver: LinearSolver::Auto,
             ipopt: BTreeMap::new(),
         },
     };

@@ -3,7 +3,7 @@
 use crate::common::{numbers, reference, trunk};
 use proboscis::control::problem::{BoundaryState, Control, Duration, Guess, Objective, Solver};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
-use proboscis::ipopt::{self, Options, Start};
+use proboscis::ipopt::{self, LinearSolver, Options, Start};
 use proboscis::model::Coordinates;
 use proboscis::nlp::differences;
 use std::collections::BTreeMap;
@@ -43,6 +43,7 @@ fn problem(name: &str, coordinates: Coordinates) -> Control {
         solver: Solver {
             tolerance: 1e-8,
             max_iterations: 500,
+            linear_solver: LinearSolver::Auto,
             ipopt: BTreeMap::new(),
         },
     }

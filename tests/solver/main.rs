@@ -9,5 +9,6 @@ mod horizon;
 mod ipopt;
 mod ipopt_stops;
 mod kkt;
+mod linear_solver;
 mod matrices;
 mod sparse;

@@ -9,7 +9,7 @@ use std::{fs, thread};
 
 use crate::common::programs::{HS071_OPTIMUM, HS071_START, hs071};
 use nalgebra::DVector;
-use proboscis::ipopt::{self, Options, StartingPoint};
+use proboscis::ipopt::{self, LinearSolver, Options, StartingPoint};
 use proboscis::sparse::{Backend, Direct, Symmetry};
 
 use Symmetry::{Symmetric, Unsymmetric};
@@ -306,7 +306,11 @@ fn ipopt_calls_mumps() -> usize {
         costates: None,
     };
     let mut go_on = |_: &ipopt::Iteration, _: &[f64]| ControlFlow::Continue(());
-    let solution = ipopt::solve(&mut program, &start, &Options::default(), &mut go_on).unwrap();
+    let options = Options {
+        linear_solver: LinearSolver::Mumps,
+        ..Options::default()
+    };
+    let solution = ipopt::solve(&mut program, &start, &options, &mut go_on).unwrap();
     assert!(solution.status.is_solved());
     assert!((solution.objective - HS071_OPTIMUM).abs() < 1e-6);
     count.load(Ordering::Relaxed)

@@ -5,7 +5,7 @@ use crate::control::numbering::{Column, Row};
 use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
 use crate::functional::Order;
 use crate::model::Role;
-use crate::nlp::{Bounds, Entries, Nlp};
+use crate::nlp::{Bounds, Entries, Nlp, Stage};
 
 impl Nlp for Transcription<'_> {
     fn variables(&self) -> Bounds {
@@ -117,6 +117,19 @@ impl Nlp for Transcription<'_> {
             *value = kept.scale * self.values[kept.place];
         }
         coupling.fill(sigma * self.cost.coupling(tau) * self.kilovolt * self.kilovolt);
+    }
+
+    /// None with constraint forces: an instant is sparse then, and an order of minimum degree is twice as fast.
+    fn stages(&self) -> Option<Vec<Stage>> {
+        if self.model.coordinate_count() < self.model.action.motion.unknowns() {
+            return None;
+        }
+        let stage = |column: &Column| match *column {
+            Column::Instant { k, .. } => Stage::Of(2 * k as u32),
+            Column::Interval { k, .. } => Stage::Of(2 * k as u32 + 1),
+            Column::Horizon => Stage::Border,
+        };
+        Some(self.unknowns.columns.iter().map(stage).collect())
     }
 
     fn variable_name(&self, i: usize) -> String {

@@ -7,11 +7,11 @@ use crate::files::problem::coordinates::{coordinates, count};
 use crate::files::problem::guess::guess;
 use crate::files::problem::limits::limit;
 use crate::files::problem::spec_control::{
-    ControlSpec, DurationSpec, ObjectiveSpec, OptionSpec, SolverSpec,
+    ControlSolverSpec, ControlSpec, DurationSpec, ObjectiveSpec, OptionSpec, SolverSpec,
 };
 use crate::files::problem::state::{ELECTRIC_KEYS, driven, goal_state, start_state};
 use crate::files::scene::graph::tree_freedoms;
-use crate::ipopt::OptionValue;
+use crate::ipopt::{LinearSolver, OptionValue};
 use crate::model::system::{Fidelity, Muscle, System};
 use std::collections::BTreeMap;
 
@@ -212,9 +212,28 @@ pub(crate) fn solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<Solver, Sce
         };
         (name.clone(), value)
     };
+    let linear_solver = linear_solver(spec, scope)?;
     Ok(Solver {
         tolerance,
         max_iterations,
+        linear_solver,
         ipopt: spec.ipopt.iter().map(option).collect(),
+    })
+}
+
+/// Who solves the linear systems; named once.
+fn linear_solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<LinearSolver, SceneError> {
+    let Some(named) = spec.linear_solver else {
+        return Ok(LinearSolver::Auto);
+    };
+    if let Some(OptionSpec::Text(other)) = spec.ipopt.get("linear_solver") {
+        let expected = "one linear solver: \"linear_solver\" of \"solver\" names another one";
+        let place = scope.key("ipopt").key("linear_solver");
+        return Err(place.wrong(format!("{other:?}"), expected));
+    }
+    Ok(match named {
+        ControlSolverSpec::Auto => LinearSolver::Auto,
+        ControlSolverSpec::Stages => LinearSolver::Stages,
+        ControlSolverSpec::Mumps => LinearSolver::Mumps,
     })
 }

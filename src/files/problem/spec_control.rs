@@ -86,9 +86,24 @@ pub struct SolverSpec {
     /// Limit of iterations, 500 where not written.
     #[serde(default)]
     pub max_iterations: Option<usize>,
+    /// Who solves the linear systems, `auto` where not written.
+    #[serde(default)]
+    pub linear_solver: Option<ControlSolverSpec>,
     /// Options of Ipopt by name.
     #[serde(default)]
     pub ipopt: BTreeMap<String, OptionSpec>,
+}
+
+/// Who solves the linear systems of a control problem.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ControlSolverSpec {
+    /// `stages` where Ipopt takes it, else `mumps`.
+    Auto,
+    /// LDLᵀ in the order of the horizon.
+    Stages,
+    /// LDLᵀ of MUMPS.
+    Mumps,
 }
 
 /// A value of an option of Ipopt.

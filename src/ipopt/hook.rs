@@ -1,0 +1,259 @@
+//! The linear solver along the horizon in the place of MA57 of the HSL.
+//!
+//! Up to 3.13 Ipopt can be given the functions of a linear solver that it was not built with: `LSL_setMA57` of its header
+//! `HSLLoader.h`, found among the loaded libraries when first asked for. Later versions have no such function. Meaning of the arguments:
+//! specification of MA57 (HSL, 2016) and `IpMa57TSolverInterface.cpp`; the arrays `keep`, `fact` and `ifact`, in which MA57 stores what it
+//! knows, stay unused.
+
+#![expect(unsafe_code, reason = "C interface of Ipopt")]
+
+use std::ffi::{c_int, c_void};
+use std::mem;
+use std::slice;
+use std::sync::OnceLock;
+
+use crate::ipopt::session::with_current;
+
+/// Numbers in `info`, in `icntl` and in `cntl`.
+const INFO: usize = 40;
+const ICNTL: usize = 20;
+const CNTL: usize = 5;
+/// `info(1)` of a system that is singular, and of a failure that ends the solve.
+const SINGULAR: c_int = 4;
+const FAILED: c_int = -1;
+/// Length of the arrays that nothing is stored in.
+const UNUSED: c_int = 10;
+
+/// Order and number of entries, rows and columns counted from one; then what MA57 writes.
+type Analyse = unsafe extern "C" fn(
+    *mut c_int,
+    *mut c_int,
+    *const c_int,
+    *const c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut f64,
+);
+type Factor = unsafe extern "C" fn(
+    *mut c_int,
+    *mut c_int,
+    *mut f64,
+    *mut f64,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut f64,
+    *mut c_int,
+    *mut f64,
+);
+type Solve = unsafe extern "C" fn(
+    *mut c_int,
+    *mut c_int,
+    *mut f64,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut f64,
+    *mut c_int,
+    *mut f64,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+);
+type Enlarge = unsafe extern "C" fn(
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut f64,
+    *mut c_int,
+    *mut f64,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut c_int,
+);
+type Initialise = unsafe extern "C" fn(*mut f64, *mut c_int);
+type SetMa57 = unsafe extern "C" fn(Analyse, Factor, Solve, Enlarge, Initialise);
+
+/// Gives Ipopt the functions, once in a process, and says whether it takes them.
+pub(super) fn install() -> bool {
+    static TAKEN: OnceLock<bool> = OnceLock::new();
+    *TAKEN.get_or_init(|| {
+        // SAFETY: the name ends in NUL; `dlsym` looks it up among the libraries already loaded and returns null if there is none.
+        let symbol = unsafe { libc::dlsym(libc::RTLD_DEFAULT, c"LSL_setMA57".as_ptr()) };
+        if symbol.is_null() {
+            return false;
+        }
+        // SAFETY: `HSLLoader.h` declares the function and its five arguments with these types.
+        let set = unsafe { mem::transmute::<*mut c_void, SetMa57>(symbol) };
+        // SAFETY: as above; the functions live as long as the process, and the cell keeps other threads out.
+        unsafe { set(analyse, factor, solve, enlarge, initialise) };
+        true
+    })
+}
+
+/// `length` numbers at `start`.
+///
+/// # Safety
+///
+/// Unless `length` is zero, `start` points to that many numbers which nobody writes to during the life of the slice.
+unsafe fn read<'s, T>(start: *const T, length: usize) -> &'s [T] {
+    match length {
+        0 => &[],
+        // SAFETY: the caller vouches for it.
+        _ => unsafe { slice::from_raw_parts(start, length) },
+    }
+}
+
+/// The number at `place`, none of which is negative.
+///
+/// # Safety
+///
+/// `place` points to a number.
+unsafe fn count(place: *const c_int) -> usize {
+    // SAFETY: the caller vouches for it.
+    usize::try_from(unsafe { *place }).unwrap_or(0)
+}
+
+/// Answers with `info(1)` and further entries, counted from one; all others are zero.
+///
+/// # Safety
+///
+/// `info` points to [`INFO`] numbers.
+unsafe fn answer(info: *mut c_int, first: c_int, others: &[(usize, usize)]) {
+    // SAFETY: the caller vouches for it.
+    let info = unsafe { slice::from_raw_parts_mut(info, INFO) };
+    info.fill(0);
+    info[0] = first;
+    for &(place, number) in others {
+        info[place - 1] = c_int::try_from(number).unwrap_or(c_int::MAX);
+    }
+}
+
+unsafe extern "C" fn initialise(cntl: *mut f64, icntl: *mut c_int) {
+    // SAFETY: Ipopt passes arrays of these lengths.
+    unsafe {
+        slice::from_raw_parts_mut(cntl, CNTL).fill(0.0);
+        slice::from_raw_parts_mut(icntl, ICNTL).fill(0);
+    }
+}
+
+unsafe extern "C" fn analyse(
+    n: *mut c_int,
+    entries: *mut c_int,
+    rows: *const c_int,
+    cols: *const c_int,
+    _lkeep: *mut c_int,
+    _keep: *mut c_int,
+    _iwork: *mut c_int,
+    _icntl: *mut c_int,
+    info: *mut c_int,
+    _rinfo: *mut f64,
+) {
+    // SAFETY: Ipopt passes the order, the number of entries, their rows and columns, and `INFO` places for the answer.
+    unsafe {
+        let (order, entries) = (count(n), count(entries));
+        let from_zero = |start| {
+            let counted = read::<c_int>(start, entries).iter();
+            counted.map(|i| (i - 1).cast_unsigned()).collect::<Vec<_>>()
+        };
+        let (rows, cols) = (from_zero(rows), from_zero(cols));
+        let done = with_current(|session| session.analyse(order, &rows, &cols));
+        let first = done.map_or(FAILED, |()| 0);
+        let unused = UNUSED.unsigned_abs() as usize;
+        answer(info, first, &[(9, unused), (10, unused)]);
+    }
+}
+
+unsafe extern "C" fn factor(
+    n: *mut c_int,
+    entries: *mut c_int,
+    values: *mut f64,
+    _fact: *mut f64,
+    _lfact: *mut c_int,
+    _ifact: *mut c_int,
+    _lifact: *mut c_int,
+    _lkeep: *mut c_int,
+    _keep: *mut c_int,
+    _iwork: *mut c_int,
+    _icntl: *mut c_int,
+    cntl: *mut f64,
+    info: *mut c_int,
+    _rinfo: *mut f64,
+) {
+    // SAFETY: Ipopt passes as many values as it passed entries, the pivot tolerance in `cntl(1)`, and `INFO` places for the answer.
+    unsafe {
+        let (order, values, tolerance) = (count(n), read(values, count(entries)), *cntl);
+        match with_current(|session| session.factor(values, tolerance)) {
+            Some(inertia) => {
+                let first = if inertia.zero > 0 { SINGULAR } else { 0 };
+                let rank = order - inertia.zero;
+                answer(info, first, &[(24, inertia.negative), (25, rank)]);
+            }
+            None => answer(info, FAILED, &[]),
+        }
+    }
+}
+
+unsafe extern "C" fn solve(
+    _job: *mut c_int,
+    n: *mut c_int,
+    _fact: *mut f64,
+    _lfact: *mut c_int,
+    _ifact: *mut c_int,
+    _lifact: *mut c_int,
+    columns: *mut c_int,
+    right: *mut f64,
+    stride: *mut c_int,
+    _work: *mut f64,
+    _lwork: *mut c_int,
+    _iwork: *mut c_int,
+    _icntl: *mut c_int,
+    info: *mut c_int,
+) {
+    // SAFETY: Ipopt passes right-hand sides of `n` numbers, `stride` apart, that nobody else uses meanwhile, and `INFO` places for
+    // the answer.
+    unsafe {
+        let (order, columns, stride) = (count(n), count(columns), count(stride));
+        let length = match columns {
+            0 => 0,
+            _ => (columns - 1) * stride + order,
+        };
+        let right = match length {
+            0 => &mut [],
+            _ => slice::from_raw_parts_mut(right, length),
+        };
+        let done = with_current(|session| session.solve(right, stride.max(1)));
+        answer(info, done.map_or(FAILED, |()| 0), &[]);
+    }
+}
+
+/// Never called: there is always room for the factors.
+unsafe extern "C" fn enlarge(
+    _n: *mut c_int,
+    _ic: *mut c_int,
+    _keep: *mut c_int,
+    _fact: *mut f64,
+    _lfact: *mut c_int,
+    _newfac: *mut f64,
+    _lnew: *mut c_int,
+    _ifact: *mut c_int,
+    _lifact: *mut c_int,
+    _newifc: *mut c_int,
+    _linew: *mut c_int,
+    info: *mut c_int,
+) {
+    // SAFETY: Ipopt passes `INFO` places for the answer.
+    unsafe { answer(info, FAILED, &[]) };
+}

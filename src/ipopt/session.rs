@@ -1,0 +1,164 @@
+//! The linear systems of one solve: from the questions of Ipopt to [`kkt`](crate::kkt).
+//!
+//! Ipopt holds no pointer to it. A solve works in one thread and in no other, so that its session stands in a variable of the thread; a
+//! solve within a callback has a session of its own.
+
+use std::any::Any;
+use std::cell::RefCell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::Instant;
+
+use crate::ipopt::linear_report::StagesReport;
+use crate::kkt::{Inertia, Plan, Solver, Unknown};
+use crate::nlp::{Bounds, Stage};
+
+thread_local! {
+    static CURRENT: RefCell<Option<Session>> = const { RefCell::new(None) };
+    /// The solver of the last solve, for one of the same pattern.
+    static KEPT: RefCell<Option<Kept>> = const { RefCell::new(None) };
+}
+
+/// A solver with the unknowns that gave its order.
+struct Kept {
+    solver: Solver,
+    unknowns: Option<Vec<Unknown>>,
+}
+
+/// The linear systems of one solve.
+pub(super) struct Session {
+    /// The unknowns as Ipopt lists them: without fixed variables, and with them.
+    layouts: [Vec<Unknown>; 2],
+    current: Option<Kept>,
+    /// Pivot tolerance that was asked for last.
+    tolerance: f64,
+    report: StagesReport,
+    panic: Option<Box<dyn Any + Send>>,
+}
+
+impl Session {
+    /// For a program with these bounds; nothing is known of its order without stages.
+    pub(super) fn new(variables: &Bounds, constraints: &Bounds, stages: Option<&[Stage]>) -> Self {
+        Self {
+            layouts: match stages {
+                Some(stages) => layouts(variables, constraints, stages),
+                None => [Vec::new(), Vec::new()],
+            },
+            current: None,
+            tolerance: 0.0,
+            report: StagesReport::default(),
+            panic: None,
+        }
+    }
+
+    /// Does `solve` with this session as that of the thread, and returns what it found and what the session did.
+    pub(super) fn during<T>(self, solve: impl FnOnce() -> T) -> (T, StagesReport) {
+        /// Puts the session of an outer solve back, also where the inner one panics.
+        struct Outer(Option<Session>);
+        impl Drop for Outer {
+            fn drop(&mut self) {
+                CURRENT.set(self.0.take());
+            }
+        }
+        let outer = Outer(CURRENT.replace(Some(self)));
+        let found = solve();
+        let session = CURRENT.take().expect("the session of this solve");
+        drop(outer);
+        if let Some(panic) = session.panic {
+            std::panic::resume_unwind(panic);
+        }
+        let mut report = session.report;
+        if let Some(kept) = session.current {
+            report.statistics = *kept.solver.statistics();
+            KEPT.set(Some(kept));
+        }
+        (found, report)
+    }
+
+    /// A solver for systems of `order` unknowns with these entries.
+    pub(super) fn analyse(&mut self, order: usize, rows: &[u32], cols: &[u32]) {
+        let began = Instant::now();
+        let layout = self.layouts.iter().find(|layout| layout.len() == order);
+        let unknowns = layout.cloned();
+        let fits = |kept: &Kept| {
+            let plan = kept.solver.plan();
+            kept.unknowns == unknowns && plan.order() == order && plan.pattern() == (rows, cols)
+        };
+        self.current = Some(match KEPT.take().filter(fits) {
+            Some(mut kept) => {
+                kept.solver.restart();
+                kept
+            }
+            None => {
+                self.report.analyses += 1;
+                let plan = Plan::new(order, rows, cols, unknowns.as_deref());
+                Kept {
+                    solver: Solver::new(plan),
+                    unknowns,
+                }
+            }
+        });
+        self.report.analysis += began.elapsed().as_secs_f64();
+    }
+
+    /// Factors a matrix; a tolerance greater than before asks for better factors.
+    pub(super) fn factor(&mut self, entries: &[f64], tolerance: f64) -> Inertia {
+        let began = Instant::now();
+        let solver = &mut self.current.as_mut().expect("analysed first").solver;
+        if self.tolerance > 0.0 && tolerance > self.tolerance {
+            solver.improve();
+        }
+        self.tolerance = tolerance;
+        let inertia = solver.factor(entries);
+        self.report.factorisation += began.elapsed().as_secs_f64();
+        inertia
+    }
+
+    /// Solves for right-hand sides that begin every `stride` numbers.
+    pub(super) fn solve(&mut self, right: &mut [f64], stride: usize) {
+        let began = Instant::now();
+        let solver = &mut self.current.as_mut().expect("analysed first").solver;
+        let order = solver.plan().order();
+        for x in right.chunks_mut(stride) {
+            solver.solve(&mut x[..order]);
+        }
+        self.report.solution += began.elapsed().as_secs_f64();
+    }
+}
+
+/// Does `work` with the session of this thread. `None` if there is none, or it failed: a panic goes on when the solve has returned.
+pub(super) fn with_current<T>(work: impl FnOnce(&mut Session) -> T) -> Option<T> {
+    CURRENT.with_borrow_mut(|current| {
+        let session = current.as_mut().filter(|session| session.panic.is_none())?;
+        catch_unwind(AssertUnwindSafe(|| work(session)))
+            .inspect_err(|_| tracing::debug!("the linear solver failed"))
+            .map_err(|panic| session.panic = Some(panic))
+            .ok()
+    })
+}
+
+/// The unknowns in the order of Ipopt: variables, slacks, multipliers of equalities, multipliers of inequalities.
+///
+/// Fixed variables are left out, unless there would be more equations than variables.
+fn layouts(variables: &Bounds, constraints: &Bounds, stages: &[Stage]) -> [Vec<Unknown>; 2] {
+    let is_equal = |bounds: &Bounds, i: usize| bounds.lower[i] == bounds.upper[i];
+    let rows = constraints.lower.len();
+    let equalities = (0..rows).filter(|&i| is_equal(constraints, i)).count();
+    [false, true].map(|with_fixed| {
+        let mut unknowns: Vec<Unknown> = (0..variables.lower.len())
+            .filter(|&i| with_fixed || !is_equal(variables, i))
+            .map(|i| match stages[i] {
+                Stage::Of(stage) => Unknown::Variable(stage),
+                Stage::Border => Unknown::Border,
+            })
+            .collect();
+        let counts = [
+            (Unknown::Slack, rows - equalities),
+            (Unknown::Equality, equalities),
+            (Unknown::Inequality, rows - equalities),
+        ];
+        for (unknown, count) in counts {
+            unknowns.resize(unknowns.len() + count, unknown);
+        }
+        unknowns
+    })
+}

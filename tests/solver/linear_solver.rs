@@ -1,0 +1,180 @@
+//! Ipopt with the linear solver along the horizon takes the way that it takes with MUMPS.
+
+use crate::common::cases::{all_limits, control, rest_to_rest};
+use crate::common::programs::{HS071_OPTIMUM, HS071_START, hs071};
+use crate::common::systems::branched;
+use crate::common::trunk;
+use crate::ipopt::run;
+use proboscis::control::problem::{Control, Duration, Objective};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::ipopt::{LinearSolver, OptionValue, Options, SolverResult, Status};
+use proboscis::model::Coordinates;
+use proboscis::model::system::System;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::thread;
+
+fn options(linear_solver: LinearSolver) -> Options {
+    Options {
+        tolerance: 1e-10,
+        linear_solver,
+        ..Options::default()
+    }
+}
+
+fn solve(system: &System, control: &Control, linear_solver: LinearSolver) -> SolverResult {
+    let (Duration::Given(t) | Duration::Free { guess: t, .. }) = control.duration;
+    let h = t / control.intervals as f64;
+    let (model, boundary) = BoundaryConditions::resolve(system, control, h).unwrap();
+    let initial = guess(&model, &boundary, control, h, None);
+    let mut program = Transcription::new(&model, &boundary, control, &initial).unwrap();
+    let point = program.start(&initial);
+    run(&mut program, &point.x, &options(linear_solver))
+}
+
+/// Motions of trunks: given and free duration, limits, both kinds of coordinates.
+fn cases() -> Vec<(&'static str, System, Control)> {
+    let plain = rest_to_rest(3, 16, 300.0);
+    let timed = Control {
+        duration: Duration::Free {
+            min: 100.0,
+            max: 1e3,
+            guess: 300.0,
+        },
+        objective: Objective {
+            effort: 1.0,
+            rate: 0.1,
+            duration: 1.0,
+        },
+        ..plain.clone()
+    };
+    let redundant = Control {
+        coordinates: Some(Coordinates::Redundant),
+        intervals: 6,
+        ..plain.clone()
+    };
+    let mut limited = control(&branched(), 6);
+    limited.limits = all_limits();
+    vec![
+        ("trunk", trunk(3), plain),
+        ("free duration", trunk(3), timed),
+        ("redundant", trunk(3), redundant),
+        ("limits", branched(), limited),
+    ]
+}
+
+#[test]
+fn iterations_and_optima_are_those_of_mumps() {
+    assert!(LinearSolver::has_stages(), "this Ipopt takes it");
+    let mut solved = 0;
+    for (name, system, control) in cases() {
+        let [mumps, stages] =
+            [LinearSolver::Mumps, LinearSolver::Stages].map(|one| solve(&system, &control, one));
+        assert_eq!(mumps.linear.solver, "mumps");
+        assert_eq!(mumps.linear.stages, None);
+        assert_eq!(stages.linear.solver, "stages");
+        let report = stages.linear.stages.unwrap();
+        assert!(report.statistics.factorisations >= stages.iterations.len() - 1);
+        assert!(report.statistics.solutions > 0 && report.factorisation > 0.0);
+        assert!(
+            report.statistics.backward_error < 1e-3,
+            "{name}: {report:?}"
+        );
+        assert_eq!(stages.status, mumps.status, "{name}");
+        if stages.status.is_solved() {
+            solved += 1;
+            assert_eq!(stages.iterations.len(), mumps.iterations.len(), "{name}");
+            let error = (stages.objective - mumps.objective).abs() / mumps.objective.abs();
+            assert!(error < 1e-12, "{name}: {error:e}");
+        }
+    }
+    assert!(solved >= 3, "{solved} of the cases are solved");
+}
+
+/// The pattern is analysed once in a thread, and a solve with a kept one is the same to the last bit.
+#[test]
+fn a_solve_leaves_no_trace_but_its_plan() {
+    let (_, system, control) = cases().swap_remove(0);
+    thread::spawn(move || {
+        let solves = [0; 3].map(|_| solve(&system, &control, LinearSolver::Auto));
+        let analyses = solves.each_ref().map(|s| s.linear.stages.unwrap().analyses);
+        assert_eq!(analyses, [1, 0, 0]);
+        assert!(solves[0].x.iter().any(|x| x.abs() > 0.1));
+        for other in &solves[1..] {
+            assert_eq!(other.x, solves[0].x);
+            assert_eq!(other.iterations, solves[0].iterations);
+        }
+    })
+    .join()
+    .unwrap();
+}
+
+#[test]
+fn solves_in_four_threads_are_the_same() {
+    let (_, system, control) = cases().swap_remove(0);
+    let first = solve(&system, &control, LinearSolver::Stages);
+    assert!(first.status.is_solved());
+    thread::scope(|scope| {
+        let work = || (0..8).map(|_| solve(&system, &control, LinearSolver::Stages).x);
+        let others: Vec<_> = (0..4)
+            .map(|_| scope.spawn(move || work().collect::<Vec<_>>()))
+            .collect();
+        for x in others.into_iter().flat_map(|other| other.join().unwrap()) {
+            assert_eq!(x, first.x);
+        }
+    });
+}
+
+/// A callback may solve another program, and go on or fail afterwards.
+#[test]
+fn solves_may_be_nested() {
+    let mut program = hs071();
+    let mut objective = std::mem::replace(&mut program.f, Box::new(|_| 0.0));
+    let options = options(LinearSolver::Stages);
+    let inner = options.clone();
+    program.f = Box::new(move |x| {
+        let solution = run(&mut hs071(), &HS071_START, &inner);
+        assert!(solution.status.is_solved());
+        objective(x)
+    });
+    let solution = run(&mut program, &HS071_START, &options);
+    assert_eq!(solution.status, Status::Solved);
+    assert!((solution.objective - HS071_OPTIMUM).abs() < 1e-7);
+    let mut failing = hs071();
+    failing.f = Box::new(|_| {
+        let mut inner = hs071();
+        inner.f = Box::new(|_| panic!("within"));
+        run(&mut inner, &HS071_START, &Options::default());
+        0.0
+    });
+    assert!(
+        catch_unwind(AssertUnwindSafe(|| run(
+            &mut failing,
+            &HS071_START,
+            &options
+        )))
+        .is_err()
+    );
+    assert!(run(&mut hs071(), &HS071_START, &options).status.is_solved());
+}
+
+/// A linear solver that is named as an option of Ipopt is taken.
+#[test]
+fn options_of_ipopt_come_first() {
+    let mut options = options(LinearSolver::Stages);
+    let name = OptionValue::Text("mumps".to_owned());
+    options.extra.insert("linear_solver".to_owned(), name);
+    let solution = run(&mut hs071(), &HS071_START, &options);
+    assert!(solution.status.is_solved());
+    assert_eq!(solution.linear.solver, "mumps");
+}
+
+/// Where MA57 itself is asked for, the linear solver that stands in its place has no program: the solve fails in good order.
+#[test]
+fn no_other_solve_is_answered() {
+    assert!(LinearSolver::has_stages());
+    let mut options = options(LinearSolver::Auto);
+    let name = OptionValue::Text("ma57".to_owned());
+    options.extra.insert("linear_solver".to_owned(), name);
+    let solution = run(&mut hs071(), &HS071_START, &options);
+    assert!(!solution.status.is_solved());
+}
