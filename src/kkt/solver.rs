@@ -291,10 +291,9 @@ impl Solver {
         }
         self.solution = x;
         let errors = self.residual.iter().map(|[r, m]| r.abs() / m);
-        errors.fold(
-            0.0,
-            |most: f64, error| if error <= most { most } else { error },
-        )
+        let is_known = errors.clone().all(f64::is_finite);
+        let greatest = errors.fold(0.0, f64::max);
+        if is_known { greatest } else { f64::INFINITY }
     }
 }
 

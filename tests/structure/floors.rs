@@ -78,6 +78,7 @@ fn words_stay_in_their_place() {
             {
                 let bindings = [
                     "ipopt/ffi.rs",
+                    "ipopt/hook.rs",
                     "sparse/mumps/ffi.rs",
                     "sparse/mumps/blas.rs",
                 ];
