@@ -134,13 +134,7 @@ pub(super) fn control(
         jacobian_nonzeros: optimum.jacobian_nonzeros,
         hessian_nonzeros: optimum.hessian_nonzeros,
         linear_solver: LinearSystems::new(&solution.linear),
-        evaluations: Evaluations {
-            objective: solution.evaluations.objective,
-            gradient: solution.evaluations.gradient,
-            constraints: solution.evaluations.constraints,
-            jacobian: solution.evaluations.jacobian,
-            hessian: solution.evaluations.hessian,
-        },
+        evaluations: Evaluations::new(&solution.evaluations),
         interval_microseconds: PerInterval {
             jacobian: per_interval(seconds.jacobian, solution.evaluations.jacobian),
             hessian: per_interval(seconds.hessian, solution.evaluations.hessian),

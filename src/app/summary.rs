@@ -12,7 +12,7 @@ use crate::app::rest_words::Rest;
 use crate::control::problem;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
 use crate::files::lay_out;
-use crate::ipopt::LinearReport;
+use crate::ipopt::{self, LinearReport};
 use crate::report::atomic::{self, WriteError};
 use crate::workflow::accuracy::Accuracy;
 use crate::workflow::domain::Outside;
@@ -103,6 +103,8 @@ struct Stages {
     solutions: usize,
     /// Pivots that were found later than expected.
     delays: usize,
+    /// Factorisations of condensed systems, of few inputs for many states.
+    condensed: usize,
     equilibrations: usize,
     /// Factorisations that were repeated under a stricter rule.
     repeated: usize,
@@ -120,6 +122,7 @@ impl LinearSystems {
             factorisations: stages.statistics.factorisations,
             solutions: stages.statistics.solutions,
             delays: stages.statistics.delays,
+            condensed: stages.statistics.condensed,
             equilibrations: stages.statistics.equilibrations,
             repeated: stages.statistics.repeated,
             backward_error: stages.statistics.backward_error,
@@ -142,6 +145,19 @@ pub(super) struct Evaluations {
     pub(super) constraints: usize,
     pub(super) jacobian: usize,
     pub(super) hessian: usize,
+}
+
+impl Evaluations {
+    /// Of a solve.
+    pub(super) fn new(evaluations: &ipopt::Evaluations) -> Self {
+        Self {
+            objective: evaluations.objective,
+            gradient: evaluations.gradient,
+            constraints: evaluations.constraints,
+            jacobian: evaluations.jacobian,
+            hessian: evaluations.hessian,
+        }
+    }
 }
 
 /// Mean time of one evaluation per interval, in µs; nothing where there was none.
@@ -265,7 +281,7 @@ impl Versions {
         Self {
             program: env!("CARGO_PKG_VERSION"),
             commit: option_env!("PROBOSCIS_COMMIT"),
-            ipopt: crate::ipopt::VERSION,
+            ipopt: ipopt::VERSION,
         }
     }
 }

@@ -16,10 +16,14 @@
 //! | `graph`, `order`, `tree`, `plan` | once for a pattern: order of elimination, fronts, where each entry goes |
 //! | `pivot`, `dense`, `update`, `eliminate` | one dense front |
 //! | `numeric`, `solve`, `scales` | factors, solutions, equilibration |
+//! | `condense`, `condensed`, `block_lu` | many states and few inputs: states by inputs, then the inputs by themselves |
 //! | `solver` | when to scale, how strictly to pivot, whether the factors are good |
 //!
 //! After the first matrix nothing is allocated, unless more pivots are delayed than ever before.
 
+mod block_lu;
+mod condense;
+mod condensed;
 mod dense;
 mod eliminate;
 mod graph;

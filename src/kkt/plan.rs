@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::condense::Condensation;
 use super::graph::Graph;
 use super::order::{self, Unknown};
 use super::tree::{self, Node};
@@ -45,6 +46,8 @@ pub struct Plan {
     pub(super) children: Vec<u32>,
     pub(super) entries: Vec<Entry>,
     pub(super) places: Vec<u32>,
+    /// States that are condensed, where that is worth it.
+    pub(super) condensation: Option<Condensation>,
 }
 
 impl Plan {
@@ -80,8 +83,11 @@ impl Plan {
             children: Vec::new(),
             entries: Vec::with_capacity(rows.len()),
             places: Vec::new(),
+            condensation: None,
         };
         plan.lay_out(&nodes);
+        plan.condensation = unknowns
+            .and_then(|unknowns| Condensation::new(unknowns, rows, cols, plan.multiplications()));
         plan
     }
 
@@ -97,7 +103,7 @@ impl Plan {
         (&self.rows, &self.cols)
     }
 
-    /// Multiplications of a factorisation without delays.
+    /// Multiplications of a factorisation along the horizon without delays.
     #[must_use]
     pub fn multiplications(&self) -> f64 {
         let of_front = |front: &Front| {

@@ -4,8 +4,11 @@
 //!   the matrix is equilibrated and factored again, and these scales are kept for a while. Expensive ones are equilibrated always.
 //! * After each factorisation a system is solved and its backward error looked at. Where that is great, signs of eigenvalues may be
 //!   wrong, and the matrix is factored again under a stricter rule.
+//! * Where many states follow from few inputs the system is condensed; one that has a diagonal in its equations, or grows along the horizon, is
+//!   factored as it is.
 //! * Zero pivots are counted in an equilibrated matrix under the strictest rule.
 
+use super::condensed::Condensed;
 use super::inertia::Inertia;
 use super::numeric::{Factors, Outcome};
 use super::pivot::Rules;
@@ -14,7 +17,7 @@ use super::scales::Scales;
 use super::solve::solve;
 
 /// Threshold of pivots for each [`Care`].
-const THRESHOLDS: [f64; 4] = [1e-8, 1e-4, 1e-2, 0.1];
+const THRESHOLDS: [f64; 5] = [0.1, 1e-8, 1e-4, 1e-2, 0.1];
 /// Largest entry of a column that counts as zero: of a matrix as it is, and of an equilibrated one.
 const ZEROS: [f64; 2] = [1e-20, 1e-14];
 /// Delays, as a part of the unknowns, that call for scales.
@@ -35,6 +38,8 @@ pub struct Statistics {
     pub solutions: usize,
     /// Columns that were no pivots where they were expected, in all factorisations.
     pub delays: usize,
+    /// Factorisations of condensed systems.
+    pub condensed: usize,
     /// Times the scales were found anew.
     pub equilibrations: usize,
     /// Factorisations that were repeated under a stricter rule because of their backward error.
@@ -43,9 +48,10 @@ pub struct Statistics {
     pub backward_error: f64,
 }
 
-/// A matrix as it is, or equilibrated and under stricter and stricter rules for pivots.
+/// A matrix condensed, as it is, or equilibrated and under stricter and stricter rules for pivots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 enum Care {
+    Condensed,
     #[default]
     Plain,
     Scaled,
@@ -56,7 +62,7 @@ enum Care {
 impl Care {
     const fn stricter(self) -> Self {
         match self {
-            Self::Plain => Self::Scaled,
+            Self::Condensed | Self::Plain => Self::Scaled,
             Self::Scaled => Self::Careful,
             Self::Careful | Self::Strict => Self::Strict,
         }
@@ -65,6 +71,8 @@ impl Care {
 
 /// Why a factorisation is repeated.
 enum Doubt {
+    /// Equations with a diagonal, which are not condensed.
+    Structure,
     /// Many delays or a great backward error.
     Growth,
     /// Zero pivots.
@@ -72,9 +80,10 @@ enum Doubt {
 }
 
 /// Factors and solves matrices of one pattern.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Solver {
     plan: Plan,
+    condensed: Option<Condensed>,
     factors: Factors,
     scales: Scales,
     /// Of the factors.
@@ -102,6 +111,7 @@ impl Solver {
         let n = plan.order();
         let least = begin(&plan);
         Self {
+            condensed: plan.condensation.clone().map(Condensed::new),
             plan,
             factors: Factors::default(),
             scales: Scales::default(),
@@ -175,6 +185,7 @@ impl Solver {
                 Ok(outcome) => break outcome,
                 // Growth hides zeros, so that no weak rule counts them all.
                 Err(Doubt::Zeros) => self.care = Care::Strict,
+                Err(Doubt::Structure) => self.care = self.care.stricter(),
                 Err(Doubt::Growth) => {
                     self.care = self.care.stricter();
                     (self.lately, self.kept) = (self.care, KEPT + 1);
@@ -189,6 +200,7 @@ impl Solver {
     /// A factorisation with the care at hand, unless a stricter one may be better.
     fn attempt(&mut self) -> Result<Outcome, Doubt> {
         let outcome = match self.care {
+            Care::Condensed => self.condensed().ok_or(Doubt::Structure)?,
             Care::Plain => self.plain().ok_or(Doubt::Growth)?,
             _ => self.equilibrated(),
         };
@@ -206,6 +218,13 @@ impl Solver {
         }
         self.statistics.backward_error = self.statistics.backward_error.max(error);
         Ok(outcome)
+    }
+
+    /// The matrix condensed, if its equations hold no more than states and inputs.
+    fn condensed(&mut self) -> Option<Outcome> {
+        let inertia = self.condensed.as_mut()?.factor(&self.entries)?;
+        self.statistics.condensed += 1;
+        Some(Outcome { inertia, delays: 0 })
     }
 
     /// The matrix as it is, if there are few delays.
@@ -256,6 +275,9 @@ impl Solver {
     }
 
     fn substitute(&mut self, x: &mut [f64]) {
+        if let (Care::Condensed, Some(condensed)) = (self.care, &mut self.condensed) {
+            return condensed.solve(&self.entries, x);
+        }
         let is_scaled = self.care != Care::Plain;
         if is_scaled {
             self.scales.apply(x);
@@ -301,6 +323,7 @@ impl Solver {
 fn begin(plan: &Plan) -> Care {
     let cost = plan.multiplications() / plan.entries.len().max(1) as f64;
     match cost > EXPENSIVE {
+        _ if plan.condensation.is_some() => Care::Condensed,
         true => Care::Scaled,
         false => Care::Plain,
     }

@@ -23,6 +23,8 @@ pub(crate) struct Horizon {
     pub(crate) limits: usize,
     /// Whether one variable couples all stages.
     pub(crate) has_border: bool,
+    /// What is added to the entry of each state in its own equation.
+    pub(crate) own: f64,
 }
 
 impl System {
@@ -67,6 +69,7 @@ impl System {
             inputs,
             limits,
             has_border,
+            own: dominance,
         } = horizon;
         let width = states + inputs;
         let variables = width * intervals + usize::from(has_border);
@@ -75,7 +78,8 @@ impl System {
         let order = equations.end + limits * intervals;
         let mut unknowns = vec![Unknown::Border; variables];
         for (i, unknown) in unknowns.iter_mut().enumerate().take(width * intervals) {
-            *unknown = Unknown::Variable((i / width) as u32);
+            let is_state = i % width >= inputs;
+            *unknown = Unknown::Variable((i / width * 2) as u32 + u32::from(is_state));
         }
         unknowns.resize(slacks.end, Unknown::Slack);
         unknowns.resize(equations.end, Unknown::Equality);
@@ -113,6 +117,7 @@ impl System {
                 for j in 0..inputs {
                     system.push(row, k * width + j, random.number());
                 }
+                system.push(row, state(k, i), dominance);
                 system.push(row, row, 0.0);
             }
             for i in 0..limits {

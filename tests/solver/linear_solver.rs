@@ -1,11 +1,10 @@
 //! Ipopt with the linear solver along the horizon takes the way that it takes with MUMPS.
 
-use crate::common::cases::{all_limits, control, rest_to_rest};
+use crate::common::cases::rest_to_rest;
 use crate::common::programs::{HS071_OPTIMUM, HS071_START, hs071};
-use crate::common::systems::branched;
 use crate::common::trunk;
 use crate::ipopt::run;
-use proboscis::control::problem::{Control, Duration, Objective};
+use proboscis::control::problem::{Control, Duration, Objective, PathConstraint};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::ipopt::{LinearSolver, OptionValue, Options, SolverResult, Status};
 use proboscis::model::Coordinates;
@@ -52,13 +51,19 @@ fn cases() -> Vec<(&'static str, System, Control)> {
         intervals: 6,
         ..plain.clone()
     };
-    let mut limited = control(&branched(), 6);
-    limited.limits = all_limits();
+    let limited = Control {
+        limits: vec![PathConstraint::JointAngle {
+            joint: 0,
+            min: -0.6,
+            max: 0.7,
+        }],
+        ..plain.clone()
+    };
     vec![
         ("trunk", trunk(3), plain),
         ("free duration", trunk(3), timed),
         ("redundant", trunk(3), redundant),
-        ("limits", branched(), limited),
+        ("limits", trunk(3), limited),
     ]
 }
 
