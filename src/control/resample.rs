@@ -8,7 +8,7 @@ use crate::control::conditions::BoundaryConditions;
 use crate::control::numbering::{Column, Row};
 use crate::control::problem::Control;
 use crate::control::solution::{Costates, Solution};
-use crate::control::transcription::Layout;
+use crate::control::transcription::layout::Layout;
 use crate::coordinates::CoordinateMap;
 use crate::model::{Model, Role};
 

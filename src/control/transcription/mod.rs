@@ -8,7 +8,7 @@
 //! bounds suggest, lengths in the length of the system, the interval length in its guess, the objective by a power of a
 //! thousand, so that one tolerance means the same everywhere.
 
-mod layout;
+pub(super) mod layout;
 mod limit_rows;
 mod placed;
 mod point;
@@ -29,7 +29,7 @@ use crate::coordinates::Configuration;
 use crate::functional::{Horizon, Part};
 use crate::model::{Model, Role, Size, Time};
 use crate::nlp::{Bounds, Entries, Nlp};
-pub(super) use layout::Layout;
+use layout::Layout;
 use limit_rows::LimitRow;
 pub(super) use limit_rows::Site;
 use placed::Placed;
