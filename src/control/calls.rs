@@ -1,7 +1,7 @@
 //! What a task calls for: the question that it puts to the model.
 //!
 //! A source is at zero voltage where neither the task nor the states at its ends name a voltage other than zero; a body or a block is
-//! stirred where a start, a goal or a limit speaks of it.
+//! stirred where a start, a goal or a limit names it.
 
 use std::collections::BTreeSet;
 
@@ -13,12 +13,12 @@ impl Simulation {
     /// The question of a motion in steps of `step` ms.
     pub fn question(&self, system: &System, step: f64) -> Analysis {
         let is_driven = |s: usize| self.voltages.drive(s);
-        let mut spoken = Spoken::new(system);
-        spoken.of_start(&self.start);
+        let mut named = Named::new(system);
+        named.of_start(&self.start);
         Analysis {
             coordinates: self.coordinates,
             zero_voltage: zero_voltage(system, is_driven, [&self.start]),
-            stirred: Some(spoken.stirred),
+            stirred: Some(named.stirred),
             ..Analysis::of_motion(step)
         }
     }
@@ -40,14 +40,14 @@ impl Control {
     /// The question of a horizon of intervals of about `interval` ms, without the quantities that are measured.
     pub fn question(&self, system: &System, interval: f64) -> Analysis {
         let is_sought = |s: usize| self.given.get(&s).is_none_or(|&voltage| voltage != 0.0);
-        let mut spoken = Spoken::new(system);
-        spoken.of_start(&self.start);
-        spoken.of_goal(&self.goal);
-        self.limits.iter().for_each(|limit| spoken.of_limit(limit));
+        let mut named = Named::new(system);
+        named.of_start(&self.start);
+        named.of_goal(&self.goal);
+        self.limits.iter().for_each(|limit| named.of_limit(limit));
         Analysis {
             coordinates: self.coordinates,
             zero_voltage: zero_voltage(system, is_sought, [&self.start, &self.goal]),
-            stirred: Some(spoken.stirred),
+            stirred: Some(named.stirred),
             ..Analysis::of_motion(interval)
         }
     }
@@ -71,13 +71,13 @@ fn zero_voltage<const N: usize>(
     takes.filter(|&s| !is_driven(s) && !is_held(s)).collect()
 }
 
-/// Bodies and blocks that are spoken of.
-struct Spoken<'a> {
+/// Bodies and blocks that are named.
+struct Named<'a> {
     system: &'a System,
     stirred: InitiallyMoving,
 }
 
-impl<'a> Spoken<'a> {
+impl<'a> Named<'a> {
     fn new(system: &'a System) -> Self {
         Self {
             system,

@@ -150,7 +150,7 @@ pub enum EquilibriumError {
     )]
     NoStiffness(Vec<String>),
     /// A part of a block can move freely.
-    #[error("{name} is not held: {motion} costs nothing; fix or glue one of its faces")]
+    #[error("{name} is not held: {motion} is a zero-energy mode; fix or glue one of its faces")]
     Floating {
         /// The part.
         name: String,

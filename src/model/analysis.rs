@@ -16,11 +16,11 @@ pub struct Analysis {
     pub of_motion: bool,
     /// Sources whose voltage is zero all the time.
     pub zero_voltage: BTreeSet<usize>,
-    /// What is spoken of; `None`: anything may be set in motion by hand.
+    /// Bodies and blocks that may start to move; `None`: anything may be set in motion by hand.
     pub stirred: Option<InitiallyMoving>,
 }
 
-/// Bodies and blocks that a start, a goal or a limit speaks of; all others start at rest in the reference configuration, and
+/// Bodies and blocks that a start, a goal or a limit names; all others start at rest in the reference configuration, and
 /// nothing but forces moves them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct InitiallyMoving {

@@ -79,7 +79,7 @@ pub fn charge_svg(mut charges: Vec<Series>, origin: &Origin) -> String {
     .svg(origin)
 }
 
-/// The observed columns whose name speaks of energy, over time in s; in N mm, which is mJ.
+/// The observed columns that are energies, over time in s; in N mm, which is mJ.
 pub fn energies(trajectory: &Trajectory, observations: &Observations) -> Vec<Series> {
     let columns = observations.columns.iter();
     columns

@@ -23,7 +23,7 @@ use crate::workflow::integrate;
 use crate::workflow::optimise;
 use crate::workflow::trajectory;
 
-/// How much finer the grid is on which optimal voltages are put to the test.
+/// How much finer the grid is on which optimal voltages are verified.
 pub const FINER: usize = 16;
 
 /// How a run ended.
@@ -93,7 +93,7 @@ fn control(
     let ended = RunOutcome {
         status: optimum.word(),
         message: (!is_solved).then(|| optimum.cause().map_or_else(none, Cause::told)),
-        // Putting voltages to the test is no part of finding them.
+        // Verifying voltages is no part of finding them.
         seconds: seconds - optimum.tested,
         is_solved,
     };

@@ -20,7 +20,7 @@ pub(crate) struct Cured {
     pub(crate) optimum: Optimum,
     /// Iterations on all grids.
     pub(crate) iterations: usize,
-    /// That and why another grid was taken, or tried in vain.
+    /// Why another grid was taken, or that none gave an optimum that is reproduced.
     pub(crate) note: Option<String>,
 }
 

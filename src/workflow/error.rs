@@ -51,7 +51,7 @@ impl WorkflowError {
             BoundaryError::Limit { place, reason } => (*place, reason.clone()),
             BoundaryError::NoEquilibrium { place, source } => {
                 let reason = source.to_string();
-                // What nothing holds is wrong input; loads that a robot does not bear are not.
+                // What nothing holds is wrong input; loads without an equilibrium are not.
                 let is_borne = !matches!(
                     source,
                     EquilibriumError::LimitPoint { .. } | EquilibriumError::NoStart

@@ -194,7 +194,7 @@ fn changes(control: &Control, optimum: &Optimum, longer: Longer) -> Vec<String> 
         Longer::Unknown => {}
     }
     if optimum.active.iter().any(|active| active.is_voltage) {
-        lines.push("change: wider voltage_bounds, if the muscles bear them".to_owned());
+        lines.push("change: wider voltage_bounds, if the muscles withstand them".to_owned());
     }
     let has_nodes = !model.action.motion.of_nodes.is_empty();
     if has_nodes && optimum.boundary.goal.nodes_rest {

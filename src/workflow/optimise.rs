@@ -73,7 +73,7 @@ pub struct Optimum {
     pub setup: f64,
     /// Durations in ms of the solution that it started from and of its first guess, where they differ.
     pub stretched: Option<[f64; 2]>,
-    /// Its voltages put to the test, where the solver found a solution.
+    /// The verification of its voltages, where the solver found a solution.
     pub resimulation: Option<Resimulation>,
     /// Seconds that the test took.
     pub tested: f64,

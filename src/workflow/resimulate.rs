@@ -1,4 +1,4 @@
-//! Optimal voltages put to the test: simulated forward from the start alone, with the step of the optimum and with finer
+//! Verification of optimal voltages: simulated forward from the start alone, with the step of the optimum and with finer
 //! ones, then held at the goal's.
 //!
 //! The equations of a step have several roots where it does not resolve the motion; an optimum may have taken another one
@@ -208,7 +208,7 @@ impl Resimulation {
         self.failure.is_none() && self.drift.is_some_and(stays)
     }
 
-    /// That the grid is coarse, or that the voltages could not be put to the test.
+    /// That the grid is coarse, or that the motion under the voltages could not be simulated.
     pub(crate) fn warning(&self) -> Option<String> {
         if let (None, None, Some(failure)) = (&self.cause, self.error, &self.failure) {
             return Some(format!(

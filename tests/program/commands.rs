@@ -278,7 +278,7 @@ fn a_block_that_floats_is_refused() {
     refused_run(
         folder.path(),
         &[&arguments[..], &["-o", "results"]].concat(),
-        &[file, "block is not held", "costs nothing"],
+        &[file, "block is not held", "zero-energy mode"],
     );
 }
 

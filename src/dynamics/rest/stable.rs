@@ -44,7 +44,7 @@ pub fn stable_equilibrium(
     let is_driven = voltages.iter().any(|&v| v != 0.0);
     match (weighed, is_driven) {
         (Err(error @ EquilibriumError::LimitPoint { .. }), true) => {
-            // Voltages may bear what the robot alone does not.
+            // Under voltages there may be an equilibrium where there is none without.
             let EquilibriumError::LimitPoint { last, load, .. } = &error else {
                 unreachable!("matched above");
             };
