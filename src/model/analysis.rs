@@ -1,7 +1,26 @@
 //! What is asked of a system, as far as it decides which effects are called for.
 
-use crate::model::{Coordinates, Quantity};
+use crate::model::quantity::Quantity;
 use std::collections::BTreeSet;
+
+/// Coordinates in which a problem is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coordinates {
+    /// Independent joint coordinates; joints form a tree, and what no joint connects to the ground floats.
+    Reduced,
+    /// Directors with multipliers; any graph of bodies and joints.
+    Redundant,
+}
+
+impl Coordinates {
+    /// The word in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Reduced => "reduced",
+            Self::Redundant => "redundant",
+        }
+    }
+}
 
 /// A question to a system.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use crate::element::Viscosity;
 use crate::functional::{Hexahedron, Mass, ViscousHexahedron};
-use crate::model::SolidBlock;
+use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
 use crate::model::terms::Terms;
 use std::collections::BTreeMap;

@@ -3,7 +3,7 @@
 use crate::energy::{AngularDamper, CoordinateDamper, LinearDamper};
 use crate::functional::Element;
 use crate::kinematics::{MaterialVector, Pose};
-use crate::model::Coordinates;
+use crate::model::analysis::Coordinates;
 use crate::model::joints::{JointCoordinate, JointReading};
 use crate::model::system::{Joint, System};
 use crate::model::terms::{Terms, mid, rate};

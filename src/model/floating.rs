@@ -3,7 +3,7 @@
 use crate::coordinates::NodePlace;
 use crate::kinematics::{Carrier, MaterialVector, VectorTerm};
 use crate::math::Vector;
-use crate::model::SolidBlock;
+use crate::model::solid_block::SolidBlock;
 
 /// A part of a block that can move without resistance: its name and the motion.
 #[derive(Clone, Debug, PartialEq)]

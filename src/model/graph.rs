@@ -3,7 +3,7 @@
 use crate::coordinates::{Configuration, CoordinateMap, Link, LinkKind, Tree};
 use crate::kinematics::{Carrier, MaterialVector, Pose, VectorTerm};
 use crate::math::{Matrix, Vector};
-use crate::model::ModelError;
+use crate::model::error::ModelError;
 use crate::model::joints::Screw;
 use crate::model::system::{JointKind, System};
 

@@ -10,8 +10,10 @@ use crate::functional::{
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::joints::{JointCoordinate as Gauge, JointReading};
+use crate::model::presolved::Presolved;
+use crate::model::quantity::{FieldPlace, Quantity, Region};
+use crate::model::solid_block::SolidBlock;
 use crate::model::variables::Variables;
-use crate::model::{FieldPlace, Presolved, Quantity, Region, SolidBlock};
 
 /// Measures by site, in the order of the quantities.
 #[derive(Debug, Default)]

@@ -2,11 +2,13 @@
 
 use crate::coordinates::CoordinateMap;
 use crate::math::Vector;
+use crate::model::analysis::Coordinates;
 use crate::model::graph::Graph;
 use crate::model::joints::Screw;
+use crate::model::model::Model;
+use crate::model::solid_block::SolidBlock;
 use crate::model::system::{JointKind, System};
 use crate::model::variables::{Role, Size, Variable};
-use crate::model::{Coordinates, Model, SolidBlock};
 
 /// What coordinates are named by.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,8 @@
 //! Constraints that follow from others: closed loops with more joints than they need, joints written twice.
 
 use crate::functional::Order;
-use crate::model::{Model, Role};
+use crate::model::model::Model;
+use crate::model::variables::Role;
 use nalgebra::{DMatrix, DVector};
 
 /// A gradient whose part independent of the others is smaller than this follows from them.

@@ -7,9 +7,11 @@ use crate::coordinates::NodePlace;
 use crate::element::{ElementGeometry, Inverted};
 use crate::functional::ScalarArg;
 use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
+use crate::model::error::ModelError;
+use crate::model::field_extent;
+use crate::model::solid_block::SolidBlock;
 use crate::model::system::{Glue, Material, Potential, Solid};
 use crate::model::variables::{Variable, Variables};
-use crate::model::{ModelError, SolidBlock, field_extent};
 use std::collections::HashMap;
 
 /// Blocks before they become terms: nodes and ties of all of them.

@@ -3,7 +3,8 @@
 use crate::coordinates::Configuration;
 use crate::kinematics::Pose;
 use crate::math::Vector;
-use crate::model::{Coordinates, Model};
+use crate::model::analysis::Coordinates;
+use crate::model::model::Model;
 use std::collections::BTreeMap;
 
 impl Model {

@@ -7,17 +7,31 @@ use crate::functional::{
     Stencil, Term, VectorArg, ViscousHexahedra, ViscousHexahedron,
 };
 use crate::kinematics::{MaterialVector, Pose, Vectors};
+use crate::math::Vector;
 use crate::model::attachment::Attachment;
 use crate::model::plan::{self, LeftOut, Present};
-use crate::model::presolved::Presolved;
 use crate::model::variables::Variables;
 use std::any::Any;
 use std::fmt;
 
+/// The bodies that carry what is fixed to bodies of the scene.
+pub(super) struct Carriers<'a> {
+    /// The condensed body of each body of the scene; `None` is the ground.
+    pub(super) of: Vec<Option<usize>>,
+    /// Poses of the condensed bodies in the reference configuration.
+    pub(super) reference: &'a [Pose],
+}
+
+impl Carriers<'_> {
+    fn carrier(&self, body: Option<usize>) -> Option<usize> {
+        self.of[body?]
+    }
+}
+
 /// Terms of components collected for the action.
 pub struct Terms<'a> {
-    condensed: &'a Presolved,
-    reference: &'a [Pose],
+    bodies: Carriers<'a>,
+    gravity: Option<Vector>,
     vectors: &'a mut Vectors,
     variables: &'a Variables,
     of_motion: bool,
@@ -91,15 +105,15 @@ where
 
 impl<'a> Terms<'a> {
     pub(super) fn new(
-        condensed: &'a Presolved,
-        reference: &'a [Pose],
+        bodies: Carriers<'a>,
+        gravity: Option<Vector>,
         variables: &'a Variables,
         of_motion: bool,
         vectors: &'a mut Vectors,
     ) -> Self {
         Self {
-            condensed,
-            reference,
+            bodies,
+            gravity,
             vectors,
             variables,
             of_motion,
@@ -116,13 +130,13 @@ impl<'a> Terms<'a> {
 
     /// The point as a vector, whose body is the one that carries it.
     pub fn point(&self, point: &Attachment) -> MaterialVector {
-        let body = self.condensed.carrier(point.body);
-        MaterialVector::point(body, &point.at, self.reference)
+        let body = self.bodies.carrier(point.body);
+        MaterialVector::point(body, &point.at, self.bodies.reference)
     }
 
     /// Whether nothing moves the points.
     pub fn is_immobile(&self, points: &[Attachment]) -> bool {
-        let mut carriers = points.iter().map(|p| self.condensed.carrier(p.body));
+        let mut carriers = points.iter().map(|p| self.bodies.carrier(p.body));
         carriers.all(|carrier| carrier.is_none())
     }
 
@@ -133,7 +147,7 @@ impl<'a> Terms<'a> {
 
     /// Index of the vector from one point to another; `None` where no motion of the robot changes its length.
     pub fn span(&mut self, from: &Attachment, to: &Attachment) -> Option<usize> {
-        let [a, b] = [from, to].map(|end| self.condensed.carrier(end.body));
+        let [a, b] = [from, to].map(|end| self.bodies.carrier(end.body));
         (a != b).then(|| {
             let span = MaterialVector::span(&self.point(from), &self.point(to));
             self.vectors.index(span)
@@ -181,7 +195,7 @@ impl<'a> Terms<'a> {
 
     /// Adds the weight of a mass in g at a point, where there is gravity.
     pub(super) fn weigh(&mut self, point: &MaterialVector, mass: f64) {
-        if self.condensed.system.gravity.is_some() {
+        if self.gravity.is_some() {
             let vector = self.vectors.index(point.clone());
             self.weigh_vector(vector, mass);
         }
@@ -189,7 +203,7 @@ impl<'a> Terms<'a> {
 
     /// Adds the weight of a mass in g at the point of a vector of the list, where there is gravity.
     pub(super) fn weigh_vector(&mut self, vector: usize, mass: f64) {
-        if let Some(g) = self.condensed.system.gravity {
+        if let Some(g) = self.gravity {
             let element = Element {
                 energy: Gravity { weight: g * mass },
                 vectors: [mid(vector)],

@@ -1,0 +1,205 @@
+//! The model of a system, and what is read off its instants.
+
+use crate::coordinates::{Configuration, NodePlace, Reduced};
+use crate::functional::Kind;
+use crate::kinematics::{MaterialVector, Pose};
+use crate::math::Vector;
+use crate::model::analysis::{Analysis, Coordinates};
+use crate::model::floating::{self, Floating};
+use crate::model::graph::Graph;
+use crate::model::joints::JointReading;
+use crate::model::plan::{LeftOut, Present};
+use crate::model::presolved::Presolved;
+use crate::model::solid_block::SolidBlock;
+use crate::model::system::{Source, System};
+use crate::model::variables::{Size, Variable, Variables};
+use crate::sparse::Symmetry;
+
+/// A system with its coordinates, vectors and effects: constant during a run.
+#[derive(Debug)]
+pub struct Model {
+    /// What the scene means.
+    pub system: System,
+    /// What is asked of it.
+    pub analysis: Analysis,
+    /// What remains of it to be solved for; its blocks are in `continua`.
+    pub presolved: Presolved,
+    /// Which coordinates.
+    pub coordinates: Coordinates,
+    /// The action as a function of coordinates and voltages.
+    pub action: Reduced,
+    /// The vectors that effects read, in terms of poses.
+    pub vectors: Vec<MaterialVector>,
+    /// What is unknown or prescribed, at instants and in intervals.
+    pub variables: Variables,
+    /// Sources whose voltage does something or would, were it not zero all the time: all that files have voltages of.
+    pub reached: Vec<usize>,
+    /// All that voltages are named for.
+    pub sources: Vec<Source>,
+    /// Elastic blocks, those of muscles last.
+    pub solids: Vec<SolidBlock>,
+    /// Vector of the span of each muscle.
+    pub spans: Vec<usize>,
+    /// Vector of each marker.
+    pub markers: Vec<usize>,
+    /// Index of each quantity of the question among the measures of its site; `None` where nothing of the model can change it.
+    pub measured: Vec<Option<usize>>,
+    /// How the coordinates of each joint are read from poses.
+    pub gauges: Vec<JointReading>,
+    /// Time that scales multipliers: the action holds −h₀ λ·g, in ms.
+    pub multiplier_time: f64,
+    pub(super) graph: Graph,
+    pub(super) reference: Vec<Pose>,
+    /// Terms of components, and what calls for them.
+    pub present: Vec<Present>,
+    /// Terms that components could have and have not.
+    pub left_out: Vec<LeftOut>,
+    pub(super) nodes: Vec<NodePlace>,
+    /// Block and node of the mesh of each node with coordinates.
+    pub node_names: Vec<(usize, usize)>,
+}
+
+impl Model {
+    /// Poses of the condensed bodies in the reference configuration.
+    pub fn reference(&self) -> &[Pose] {
+        &self.reference
+    }
+
+    /// Number of coordinates of an instant, without multipliers.
+    pub fn coordinate_count(&self) -> usize {
+        self.action.motion.coordinates
+    }
+
+    /// Coordinates of an instant at given joint coordinates (rad or mm, by joint; zero where a joint has none): other joints and
+    /// free bodies stay at their reference.
+    pub fn coordinates_at(&self, joints: &[f64]) -> Vec<f64> {
+        match self.coordinates {
+            Coordinates::Reduced => {
+                let mut z = self.action.motion.instant().z;
+                for (gauge, &value) in self.gauges.iter().zip(joints) {
+                    if let Some(c) = gauge.coordinate {
+                        z[c] = value;
+                    }
+                }
+                self.place_nodes(&mut z);
+                z
+            }
+            Coordinates::Redundant => {
+                let joints = self.presolved.by_joint(joints);
+                let system = &self.presolved.system;
+                self.coordinates_of(&self.graph.poses(system, &self.reference, &joints))
+            }
+        }
+    }
+
+    /// Director coordinates of given poses; multipliers zero.
+    pub(super) fn coordinates_of(&self, poses: &[Pose]) -> Vec<f64> {
+        let mut z = vec![0.0; self.action.motion.unknowns()];
+        for (body, pose) in poses.iter().enumerate() {
+            let q = &mut z[12 * body..12 * body + 12];
+            q[..3].copy_from_slice(pose.centre.as_slice());
+            q[3..].copy_from_slice(pose.directors.as_slice());
+        }
+        self.place_nodes(&mut z);
+        z
+    }
+
+    /// Puts the nodes at their reference places.
+    fn place_nodes(&self, z: &mut [f64]) {
+        let motion = &self.action.motion;
+        for (value, &(node, axis)) in z[motion.of_bodies..].iter_mut().zip(&motion.of_nodes) {
+            *value = self.nodes[node].reference[axis];
+        }
+    }
+
+    /// Rates of the coordinates of the nodes at the start, after zeros for those of the bodies; `None` at rest.
+    pub fn node_rates(&self) -> Option<Vec<f64>> {
+        let motion = &self.action.motion;
+        let mut rates = vec![0.0; motion.coordinates];
+        let mut moves = false;
+        for (rate, &(node, axis)) in rates[motion.of_bodies..].iter_mut().zip(&motion.of_nodes) {
+            let (block, node) = self.node_names[node];
+            if let Some(velocity) = self.solids[block].solid.velocities.get(node) {
+                *rate = velocity[axis];
+                moves |= *rate != 0.0;
+            }
+        }
+        moves.then_some(rates)
+    }
+
+    /// Whether the tangent of a step is symmetric: all coordinates are nodes', and every force has a potential.
+    pub fn step_symmetry(&self) -> Symmetry {
+        let motion = &self.action.motion;
+        let effects = &self.action.intervals.effects;
+        let has_potential = effects.iter().all(|e| e.kind() != Kind::VirtualWork);
+        match motion.of_bodies == 0 && motion.multipliers == 0 && has_potential {
+            true => Symmetry::Symmetric,
+            false => Symmetry::Unsymmetric,
+        }
+    }
+
+    /// The part of a block that nothing holds, if there is one.
+    pub fn floating(&self) -> Option<Floating> {
+        floating::floating(&self.solids, &self.vectors, &self.nodes)
+    }
+
+    /// Joint coordinates (rad or mm, zero where a joint has none) at poses, angles in the branch nearest to `near`.
+    pub fn read_joints(&self, poses: &[Pose], near: &[f64]) -> Vec<f64> {
+        self.gauges
+            .iter()
+            .zip(near)
+            .map(|(g, &near)| g.read(poses, near))
+            .collect()
+    }
+
+    /// Joint coordinates of an instant.
+    pub fn joints(&self, instant: &Configuration, near: &[f64]) -> Vec<f64> {
+        match self.coordinates {
+            Coordinates::Reduced => self
+                .gauges
+                .iter()
+                .map(|g| g.coordinate.map_or(0.0, |c| instant.z[c]))
+                .collect(),
+            Coordinates::Redundant => self.read_joints(&self.poses(instant), near),
+        }
+    }
+
+    /// Poses of all bodies of the scene at an instant.
+    pub fn poses(&self, instant: &Configuration) -> Vec<Pose> {
+        let poses = self.condensed_poses(instant);
+        self.presolved.poses(&poses, &self.system.bodies)
+    }
+
+    /// Poses of the condensed bodies at an instant, which carry the vectors.
+    pub fn condensed_poses(&self, instant: &Configuration) -> Vec<Pose> {
+        let bodies = self.presolved.system.bodies.len();
+        self.action.motion.poses(instant, bodies)
+    }
+
+    /// Inputs of an interval from one voltage a source.
+    pub fn scalars(&self, voltages: &[f64]) -> Vec<f64> {
+        self.variables.sources().map(|s| voltages[s]).collect()
+    }
+
+    /// Typical sizes of the unknowns of a step: 1 rad, the length of the system; infinite where the model does not tell.
+    pub fn sizes(&self) -> Vec<f64> {
+        let length = self.length();
+        let size = |variable: &Variable| match variable.size {
+            Size::One => 1.0,
+            Size::Length => length,
+            Size::Unknown => f64::INFINITY,
+        };
+        self.variables.unknowns().map(size).collect()
+    }
+
+    /// A length in mm that is typical of the system.
+    pub fn length(&self) -> f64 {
+        let far = |length: f64, x: &Vector| length.max(x.amax());
+        let nodes = self.nodes.iter().map(|n| &n.reference);
+        let places = self.reference.iter().map(|p| &p.centre).chain(nodes);
+        let length = places
+            .chain(self.presolved.system.joints.iter().map(|j| &j.at))
+            .fold(0.0, far);
+        if length > 0.0 { length } else { 1.0 }
+    }
+}
