@@ -20,8 +20,8 @@ impl BoundaryConditions {
         h0: f64,
     ) -> Result<(Model, Self), BoundaryError> {
         let question = control.question(system, h0);
-        let remaining = Presolved::new(system, &question).system;
-        let coordinates = Model::choose(&remaining, control.coordinates)?;
+        let presolved = Presolved::new(system, &question);
+        let coordinates = Model::choose(&presolved.system, control.coordinates)?;
         let redundant = coordinates == Coordinates::Redundant;
         let mut limits = Limits::new(&control.limits, system, redundant);
         let all_joints = all_joints_given(system, &control.goal);
@@ -58,7 +58,7 @@ impl BoundaryConditions {
             quantities: limits.quantities(),
             ..question
         };
-        let model = Model::answering(system.clone(), question)?;
+        let model = Model::of_presolved(system.clone(), question, presolved)?;
         let mut scalars = [None, None];
         let start = match &control.start {
             BoundaryState::RestAtVoltages(voltages) => {

@@ -46,7 +46,19 @@ impl Model {
     /// # Errors
     /// Reduced coordinates were asked for and do not exist.
     pub fn answering(system: System, question: Analysis) -> Result<Self, ModelError> {
-        let mut condensed = Presolved::new(&system, &question);
+        let condensed = Presolved::new(&system, &question);
+        Self::of_presolved(system, question, condensed)
+    }
+
+    /// Builds the same model from what remains of the system, which depends neither on coordinates nor on quantities of the question.
+    ///
+    /// # Errors
+    /// Reduced coordinates were asked for and do not exist.
+    pub fn of_presolved(
+        system: System,
+        question: Analysis,
+        mut condensed: Presolved,
+    ) -> Result<Self, ModelError> {
         let voltages = field_extent::voltages(&condensed.system);
         let reached = match question.zero_voltage.is_empty() {
             true => voltages.clone(),

@@ -9,6 +9,7 @@ mod condensed;
 mod documents;
 mod floors;
 mod lengths;
+mod numbering;
 mod roles;
 mod sources;
 mod trace;

@@ -1,0 +1,130 @@
+//! A variable that is given has no column, one with an equation has a row; the unknowns of a step are those with an equation.
+
+use crate::common::cases::{Case, cases};
+use proboscis::control::problem::{Control, Duration};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::model::{Coordinates, Model, Role, System, Time};
+use proboscis::nlp::Nlp;
+use std::collections::BTreeSet;
+
+/// What a list of names has to begin with, and to end with.
+fn names<'n>(names: &'n [String], begin: &str) -> Vec<&'n str> {
+    let all = names.iter().map(String::as_str);
+    all.filter(|name| name.starts_with(begin)).collect()
+}
+
+/// Numbers of potentials and given voltages that were seen.
+fn check(system: &System, control: &Control) -> [usize; 2] {
+    let (intervals, h) = (control.intervals, 10.0);
+    let (model, boundary) = BoundaryConditions::resolve(system, control, h).unwrap();
+    let initial = guess(&model, &boundary, control, h, None);
+    let program = Transcription::of_any(&model, &boundary, control, &initial);
+    let unknowns = program.unknowns();
+    let columns: Vec<String> = (0..unknowns.columns.len())
+        .map(|i| program.variable_name(i))
+        .collect();
+    let rows: Vec<String> = (0..unknowns.rows.len())
+        .map(|i| program.constraint_name(i))
+        .collect();
+
+    // Every voltage of the system acts in these problems.
+    let sources: Vec<usize> = (0..model.sources.len())
+        .filter(|&s| model.sources[s].takes_voltage)
+        .collect();
+    let voltage = |k: usize, s: usize| {
+        let name = &model.sources[s].name;
+        format!("voltage of {name} in interval {k}")
+    };
+    let sought = (0..intervals).flat_map(|k| {
+        let open = sources.iter().filter(|s| !control.given.contains_key(s));
+        open.map(move |&s| voltage(k, s))
+    });
+    assert_eq!(names(&columns, "voltage of "), sought.collect::<Vec<_>>());
+    for &(column, place) in &unknowns.voltages {
+        let (k, s) = (place / sources.len(), place % sources.len());
+        assert_eq!(columns[column], voltage(k, sources[s]));
+    }
+
+    let potentials = names(&columns, "potential of ");
+    let laws = names(&rows, "Gauss's law of ");
+    let count = model.action.intervals.scalars - sources.len();
+    assert_eq!(potentials.len(), count * intervals);
+    let of = |list: Vec<&str>, begin: &str| {
+        let rest = |name: &str| name[begin.len()..].to_owned();
+        list.into_iter().map(rest).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        of(potentials.clone(), "potential of "),
+        of(laws, "Gauss's law of ")
+    );
+
+    let motion = &model.action.motion;
+    let (n, m) = (motion.coordinates, motion.multipliers);
+    let goal = &boundary.goal.coordinates[..n];
+    let open = goal.iter().filter(|value| value.is_none()).count();
+    let multipliers = names(&columns, "multiplier of ").len();
+    assert_eq!(multipliers, (intervals + 1) * m);
+    // At the start, and where the goal gives all, nothing is left for a constraint to decide.
+    let decided = 1 + usize::from(open == 0);
+    let constraints = names(&rows, "constraint ").len();
+    assert_eq!(constraints, (intervals + 1 - decided) * m);
+    let free = usize::from(matches!(control.duration, Duration::Free { .. }));
+    assert_eq!(names(&columns, "interval length").len(), free);
+    let others = columns.len() - unknowns.voltages.len() - potentials.len() - multipliers - free;
+    assert_eq!(others, (intervals - 1) * n + open);
+    step(&model, n + m + count);
+    [count, control.given.len()]
+}
+
+/// The unknowns of a step, of which there are so many.
+fn step(model: &Model, count: usize) {
+    let variables = &model.variables;
+    let all = [Time::Instant, Time::Interval].map(|time| variables.of(time));
+    let solved: Vec<String> = all
+        .into_iter()
+        .flatten()
+        .filter(|variable| variable.role != Role::Voltage)
+        .map(ToString::to_string)
+        .collect();
+    let unknowns: Vec<String> = variables.unknowns().map(ToString::to_string).collect();
+    assert_eq!((&unknowns, unknowns.len()), (&solved, count));
+    assert_eq!(variables.unknown_count(), count);
+    assert_eq!(unknowns.iter().collect::<BTreeSet<_>>().len(), count);
+    assert_eq!(model.sizes().len(), count);
+    for (i, name) in solved.iter().enumerate() {
+        assert_eq!(variables.unknown(i).to_string(), *name);
+    }
+    for (s, variable) in variables.of(Time::Interval).iter().enumerate() {
+        let name = variables.place(s).map(|i| &solved[i]);
+        let expected = (variable.role != Role::Voltage).then(|| variable.to_string());
+        assert_eq!(name, expected.as_ref());
+        let place = variable.source.map(|source| variables.voltage(source));
+        assert_eq!(place, (variable.role == Role::Voltage).then_some(Some(s)));
+    }
+}
+
+#[test]
+fn columns_are_what_is_not_given_and_rows_what_has_an_equation() {
+    let (mut potentials, mut given) = (0, 0);
+    for Case {
+        name,
+        system,
+        control,
+    } in cases()
+    {
+        println!("{name}");
+        for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
+            let mut control = Control {
+                coordinates: Some(coordinates),
+                ..control.clone()
+            };
+            let count = check(&system, &control);
+            potentials += count[0];
+            let takes = |s: &usize| system.sources()[*s].takes_voltage;
+            let first = (0..system.sources().len()).find(takes).unwrap();
+            control.given.insert(first, 300.0);
+            given += check(&system, &control)[1];
+        }
+    }
+    assert!(potentials > 10 && given > 10, "{potentials} {given}");
+}
