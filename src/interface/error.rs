@@ -1,8 +1,9 @@
 //! Why there is no result.
 
 use crate::dynamics::StepError;
-use crate::interface::Motion;
-use crate::model::SystemError;
+use crate::interface::input::Input;
+use crate::interface::motion::Motion;
+use crate::model::{System, SystemError};
 use crate::workflow::WorkflowError;
 use thiserror::Error;
 
@@ -59,4 +60,13 @@ pub(super) fn require(
             expected,
         }),
     }
+}
+
+/// The source of an input of a system.
+pub(super) fn source(input: &Input, system: &System) -> Result<usize> {
+    input.source(system).ok_or_else(|| Error::Problem {
+        what: "voltage",
+        found: format!("{input:?}"),
+        expected: "a muscle or a driven electrode of the system",
+    })
 }

@@ -1,6 +1,5 @@
 //! What takes a voltage.
 
-use crate::interface::error::{Error, Result};
 use crate::interface::handle::Handle;
 use crate::model::System;
 use crate::model::system::{Muscle, Potential, Solid};
@@ -27,12 +26,9 @@ impl From<(Handle<Solid>, &str)> for Input {
 }
 
 impl Input {
-    /// Its place in the list of sources of a system.
-    ///
-    /// # Errors
-    /// The system has no such muscle or electrode.
-    pub(super) fn source(&self, system: &System) -> Result<usize> {
-        let found = match self {
+    /// Its place in the list of sources of a system; `None` where that has no such muscle or electrode.
+    pub(super) fn source(&self, system: &System) -> Option<usize> {
+        match self {
             Self::Muscle(muscle) => {
                 let index = muscle.index();
                 (index < system.muscles.len()).then_some(index)
@@ -44,11 +40,6 @@ impl Input {
                     Potential::Given(_) | Potential::Floating => None,
                 }
             }),
-        };
-        found.ok_or_else(|| Error::Problem {
-            what: "voltage",
-            found: format!("{self:?}"),
-            expected: "a muscle or a driven electrode of the system",
-        })
+        }
     }
 }

@@ -48,7 +48,7 @@ impl Motion {
 
     /// Start in ms and voltage in V of each interval; nothing of what takes no voltage.
     pub fn voltage(&self, input: impl Into<Input>) -> Vec<(f64, f64)> {
-        let Ok(source) = input.into().source(&self.system) else {
+        let Some(source) = input.into().source(&self.system) else {
             return Vec::new();
         };
         let rows = self.trajectory.voltages.iter();

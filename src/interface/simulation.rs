@@ -4,7 +4,7 @@ use crate::control::Signal;
 use crate::control::problem::{self, Voltages};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{Integrator, Newton, Solving, local_error, out_of_domain};
-use crate::interface::error::{Error, Result, require};
+use crate::interface::error::{Error, Result, require, source};
 use crate::interface::input::Input;
 use crate::interface::motion::Motion;
 use crate::interface::state::State;
@@ -122,7 +122,7 @@ impl Simulation {
             let found = || format!("{signal:?} of {input:?}");
             let expected = "finite numbers, and times that grow";
             require(signal.is_sound(), "simulation", found, expected)?;
-            signals[input.source(system)?] = signal.clone();
+            signals[source(input, system)?] = signal.clone();
         }
         let of_elements = |muscle: &Muscle| muscle.fidelity != Fidelity::Lumped;
         let has_elements = !system.solids.is_empty() || system.muscles.iter().any(of_elements);

@@ -1,7 +1,7 @@
 //! States at the ends of a motion.
 
 use crate::control::problem::{BoundaryState, Rest};
-use crate::interface::error::{Result, require};
+use crate::interface::error::{Result, require, source};
 use crate::interface::handle::Handle;
 use crate::interface::input::Input;
 use crate::model::System;
@@ -42,7 +42,7 @@ impl State {
                 for (input, voltage) in voltages {
                     let found = || format!("{voltage} V of {input:?}");
                     require(voltage.is_finite(), "state", found, "a finite voltage")?;
-                    row[input.source(system)?] = *voltage;
+                    row[source(input, system)?] = *voltage;
                 }
                 BoundaryState::RestAtVoltages(row)
             }

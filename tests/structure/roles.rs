@@ -7,14 +7,7 @@ use crate::sources::sources;
 const OWNERS: [&str; 2] = ["model/variables.rs", "control/numbering.rs"];
 
 /// Lists and ranges of variables of a role.
-const NAMES: [&str; 6] = [
-    "voltages",
-    "potentials",
-    "inputs",
-    "algebraic",
-    "range",
-    "with",
-];
+const NAMES: [&str; 4] = ["voltages", "potentials", "inputs", "algebraic"];
 
 fn is_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
@@ -42,16 +35,13 @@ fn counts(code: &str) -> Vec<[&str; 3]> {
     for end in [".len()", ".start", ".end", ".count(Role::"] {
         for (at, _) in code.match_indices(end) {
             let (begin, mut after) = (start(code, at), at + end.len());
-            let list = code[begin..at]
-                .split_once('(')
-                .map_or(&code[begin..at], |_| {
-                    let open = code[begin..at].rfind('(').unwrap_or_default();
-                    &code[begin..begin + open]
-                });
-            let name = list.rsplit('.').next().unwrap_or_default();
+            let list = &code[begin..at];
+            let is_of_role = list.ends_with(')') && list.contains("(Role::");
+            let name = list.trim_end_matches("()").rsplit('.').next();
+            let is_named = name.is_some_and(|name| NAMES.contains(&name));
             if end.ends_with(':') {
                 after += code[after..].find(')').unwrap_or_default() + 1;
-            } else if !NAMES.contains(&name) || code[after..].starts_with(is_word) {
+            } else if !(is_of_role || is_named) || code[after..].starts_with(is_word) {
                 continue;
             }
             found.push([&code[..begin], &code[begin..after], &code[after..]]);
