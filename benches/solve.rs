@@ -1,7 +1,7 @@
 //! Whole solves of the trunk problem and tables of what they cost.
 //!
 //! Without arguments the tables go to standard output, with `--write` also into `benches/README.md`. One solve with
-//! options of Ipopt: `--one redundant 40 mumps_pivot_order=3`. Numbers are the least of a few runs, which other
+//! options of Ipopt: `--one redundant 40 linear_solver=mumps mumps_pivot_order=3`. Numbers are the least of a few runs, which other
 //! programs on the machine disturb least.
 
 mod trunk;

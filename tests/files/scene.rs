@@ -2,6 +2,7 @@
 
 use proboscis::control::problem::{Duration, PathConstraint, Task};
 use proboscis::files::{SceneError, new_trunk, read_problem, schema};
+use proboscis::ipopt::LinearSolver;
 use proboscis::model::system::{Discretisation, ElementKind, Fidelity};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -218,6 +219,8 @@ fn mistakes_in_a_problem_name_place_found_and_expected() {
         ("\"scene.json\"", "\"missing.json\"", "scene", "\"missing.json\", where there is no file", "the path of a scene file", "missing"),
         ("\"scene.json\"", "{ \"name\": \"x\", \"bodys\": [] }", "scene.bodys", "the key \"bodys\"", "\"bodies\"", "\"bodys\""),
         ("\"intervals\": 20,", "\"intervals\": 20, \"solver\": { \"ipopt\": { \"x\": [] } },", "control.solver.ipopt.x", "another kind", "a whole number, a number or a text", "[]"),
+        ("\"intervals\": 20,", "\"intervals\": 20, \"solver\": { \"linear_solver\": \"pardiso\" },", "control.solver.linear_solver", "\"pardiso\"", "\"stages\"", "\"pardiso\""),
+        ("\"intervals\": 20,", "\"intervals\": 20, \"solver\": { \"linear_solver\": \"stages\", \"ipopt\": { \"linear_solver\": \"mumps\" } },", "control.solver.ipopt.linear_solver", "\"mumps\"", "one linear solver", "\"mumps\""),
         ("\"intervals\": 20,", "\"intervals\": 20, \"guess\": \"interpolat\",", "control.guess", "\"interpolat\"", "\"interpolate\"", "\"interpolat\""),
     ];
     check(cases, PROBLEM, |problem| mistake(SCENE, problem, &[]));
@@ -245,6 +248,7 @@ fn overrides_change_problem_and_scene_and_answer_for_mistakes() {
         "control.duration=0.4 s",
         "scene.bodies[0].mass=60 g",
         "control.solver.tolerance=1e-6",
+        "control.solver.linear_solver=mumps",
     ];
     let loaded = read_problem(&path, &overrides.map(str::to_owned)).expect("overrides apply");
     let Task::Control(control) = loaded.task else {
@@ -258,6 +262,7 @@ fn overrides_change_problem_and_scene_and_answer_for_mistakes() {
         (loaded.system.bodies[0].mass, control.solver.tolerance),
         (60.0, 1e-6)
     );
+    assert_eq!(control.solver.linear_solver, LinearSolver::Mumps);
 
     for (text, path, part) in [
         (
