@@ -11,7 +11,9 @@ use proboscis::control::resolve_start;
 use proboscis::coordinates::Reduced;
 use proboscis::dynamics::{Solving, Start, Stepper};
 use proboscis::energy::DielectricCell;
-use proboscis::functional::{Element, Functional, Group, Inertia, Mass, Stencil, Term, VectorArg};
+use proboscis::functional::{
+    Element, Formulas, Functional, Group, Inertia, Mass, Stencil, Term, VectorArg,
+};
 use proboscis::kinematics::MaterialVector;
 use proboscis::mesh::grid::Grid;
 use proboscis::model::system::{
@@ -455,7 +457,9 @@ fn by_hand(system: &System, volts: &[f64]) -> Variant {
     let effects: Vec<Box<dyn Term>> = vec![
         Box::new(Inertia::new("bodies", bodies)),
         Box::new(Inertia::new("rods", rods)),
-        Box::new(Group::<_, 4, 1, 1>::intervals("muscles", -1.0, cells)),
+        Box::new(Group::<Formulas<DielectricCell, 4, 1, 1>>::intervals(
+            "muscles", -1.0, cells,
+        )),
     ];
     let scalars = model.action.intervals.scalars;
     let intervals = Functional::new(effects, Vec::new(), list.len(), scalars);
