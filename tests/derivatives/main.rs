@@ -11,5 +11,6 @@ mod hexahedron;
 mod hexahedron_states;
 mod hexahedron_viscosity;
 mod horizon;
+mod kernel;
 mod naive_formulas;
 mod naive_hexahedron;
