@@ -36,7 +36,7 @@ fn variations<F: Field>(
     criterion: &mut Criterion,
     name: &str,
     law: &Elastomer<F>,
-    potentials: &F::Potentials,
+    potentials: &F::Potentials<8>,
 ) {
     let mut group = criterion.benchmark_group(name);
     group

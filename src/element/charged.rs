@@ -7,7 +7,7 @@ use super::number::{Points, Real};
 use super::state::{ElectricField, ElementState};
 
 /// Electric quantities of the nodes at the Gauss points.
-pub(super) struct Charged<N: Points> {
+pub(super) struct Charged<N: Points, const NODES: usize> {
     /// 2 w c₁.
     pub(super) c1: N::Plain,
     /// 2 w c₂.
@@ -18,21 +18,21 @@ pub(super) struct Charged<N: Points> {
     /// 2 w c₂ FE.
     pub(super) c2_pushed: Three<N>,
     /// E·G_i.
-    pub(super) along: [N; 8],
+    pub(super) along: [N; NODES],
     /// 2 w c₂ E·G_i.
-    pub(super) c2_along: [N; 8],
+    pub(super) c2_along: [N; NODES],
     /// e·g_i.
-    pub(super) s: [N; 8],
+    pub(super) s: [N; NODES],
     /// w κ g_i.
-    pub(super) flux: [[N; 3]; 8],
+    pub(super) flux: [[N; 3]; NODES],
     /// w κ g_i × e.
-    pub(super) turned: [[N; 3]; 8],
+    pub(super) turned: [[N; 3]; NODES],
     /// F G_i.
-    pub(super) pushed: [[N; 3]; 8],
+    pub(super) pushed: [[N; 3]; NODES],
 }
 
 #[expect(non_snake_case, reason = "notation of the law")]
-impl<N: Points> Charged<N> {
+impl<N: Points, const NODES: usize> Charged<N, NODES> {
     #[inline(always)]
     pub(super) fn zero(token: N::Token) -> Self {
         let zero = N::constant(token, 0.0);
@@ -42,12 +42,12 @@ impl<N: Points> Charged<N> {
             kappa: zero,
             e: [zero; 3],
             c2_pushed: [zero; 3],
-            along: [zero; 8],
-            c2_along: [zero; 8],
-            s: [zero; 8],
-            flux: [[zero; 3]; 8],
-            turned: [[zero; 3]; 8],
-            pushed: [[zero; 3]; 8],
+            along: [zero; NODES],
+            c2_along: [zero; NODES],
+            s: [zero; NODES],
+            flux: [[zero; 3]; NODES],
+            turned: [[zero; 3]; NODES],
+            pushed: [[zero; 3]; NODES],
         }
     }
 
@@ -56,10 +56,10 @@ impl<N: Points> Charged<N> {
     pub(super) fn fill(
         &mut self,
         (w, F): (N::Plain, &Nine<N>),
-        state: &ElementState<'_, N>,
+        state: &ElementState<'_, N, NODES>,
         field: &ElectricField<N>,
         constants: &Dielectric,
-        g: &[[N; 3]; 8],
+        g: &[[N; 3]; NODES],
     ) {
         let token = state.token;
         let weights = N::Plain::load(token, state.shape.weights());

@@ -1,4 +1,4 @@
-//! The material law of an elastomer, passive or dielectric, and the energy of a hexahedron of it.
+//! The material law of an elastomer, passive or dielectric, and the energy of an element of it.
 
 use super::dispatch::{Task, dispatch};
 use super::dual::Dual;
@@ -43,15 +43,15 @@ impl<F: Field> Elastomer<F> {
         }
     }
 
-    /// Energy W in mJ of the hexahedron `shape` with nodes at `x` in mm and their potentials in V.
-    pub fn energy(
+    /// Energy W in mJ of the element `shape` with nodes at `x` in mm and their potentials in V.
+    pub fn energy<const NODES: usize>(
         &self,
-        shape: &ElementGeometry,
-        x: &[Vector; 8],
-        potentials: &F::Potentials,
+        shape: &ElementGeometry<NODES>,
+        x: &[Vector; NODES],
+        potentials: &F::Potentials<NODES>,
     ) -> f64 {
         let mut energy = 0.0;
-        dispatch(Plain::<_, _, 0> {
+        dispatch(Plain::<_, _, 0, NODES> {
             law: self,
             shape,
             x,
@@ -62,14 +62,14 @@ impl<F: Field> Elastomer<F> {
     }
 
     /// Fills energy, forces and charges.
-    pub fn gradient(
+    pub fn gradient<const NODES: usize>(
         &self,
-        shape: &ElementGeometry,
-        x: &[Vector; 8],
-        potentials: &F::Potentials,
-        local: &mut Local<F>,
+        shape: &ElementGeometry<NODES>,
+        x: &[Vector; NODES],
+        potentials: &F::Potentials<NODES>,
+        local: &mut Local<F, NODES>,
     ) {
-        dispatch(Plain::<_, _, 1> {
+        dispatch(Plain::<_, _, 1, NODES> {
             law: self,
             shape,
             x,
@@ -79,14 +79,14 @@ impl<F: Field> Elastomer<F> {
     }
 
     /// Fills everything: energy, gradient, and stiffness, coupling and permittivity.
-    pub fn tangent(
+    pub fn tangent<const NODES: usize>(
         &self,
-        shape: &ElementGeometry,
-        x: &[Vector; 8],
-        potentials: &F::Potentials,
-        local: &mut Local<F>,
+        shape: &ElementGeometry<NODES>,
+        x: &[Vector; NODES],
+        potentials: &F::Potentials<NODES>,
+        local: &mut Local<F, NODES>,
     ) {
-        dispatch(Plain::<_, _, 2> {
+        dispatch(Plain::<_, _, 2, NODES> {
             law: self,
             shape,
             x,
@@ -101,15 +101,15 @@ impl<F: Field> Elastomer<F> {
         clippy::too_many_arguments,
         reason = "a state, a direction, and their two results"
     )]
-    pub fn third(
+    pub fn third<const NODES: usize>(
         &self,
-        shape: &ElementGeometry,
-        x: &[Vector; 8],
-        potentials: &F::Potentials,
-        w: &[Vector; 8],
-        w_potentials: &F::Potentials,
-        plain: &mut Local<F>,
-        along: &mut Local<F>,
+        shape: &ElementGeometry<NODES>,
+        x: &[Vector; NODES],
+        potentials: &F::Potentials<NODES>,
+        w: &[Vector; NODES],
+        w_potentials: &F::Potentials<NODES>,
+        plain: &mut Local<F, NODES>,
+        along: &mut Local<F, NODES>,
     ) {
         dispatch(Along {
             law: self,
@@ -124,21 +124,23 @@ impl<F: Field> Elastomer<F> {
 }
 
 /// Derivatives to the order `ORDER` at a state.
-struct Plain<'a, F: Field, O, const ORDER: usize> {
+struct Plain<'a, F: Field, O, const ORDER: usize, const NODES: usize> {
     law: &'a Elastomer<F>,
-    shape: &'a ElementGeometry,
-    x: &'a [Vector; 8],
-    potentials: &'a F::Potentials,
+    shape: &'a ElementGeometry<NODES>,
+    x: &'a [Vector; NODES],
+    potentials: &'a F::Potentials<NODES>,
     out: &'a mut O,
 }
 
-impl<F: Field, O: Output<f64>, const ORDER: usize> Task for Plain<'_, F, O, ORDER> {
+impl<F: Field, O: Output<f64>, const ORDER: usize, const NODES: usize> Task
+    for Plain<'_, F, O, ORDER, NODES>
+{
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd, const K: usize>(self, unit: S) {
-        let mut x = [[0.0; 3]; 8];
-        for i in 0..8 {
+        let mut x = [[0.0; 3]; NODES];
+        for i in 0..NODES {
             x[i] = [self.x[i].x, self.x[i].y, self.x[i].z];
         }
         let electric = self.law.field.constants(self.potentials);
@@ -151,38 +153,38 @@ impl<F: Field, O: Output<f64>, const ORDER: usize> Task for Plain<'_, F, O, ORDE
             x: &x,
             electric: electric.as_ref().map(|(constants, phi)| (constants, phi)),
         };
-        Variations::<Lanes<S, K>>::write::<ORDER>(&state, self.out);
+        Variations::<Lanes<S, K>>::write::<ORDER, NODES>(&state, self.out);
     }
 }
 
 /// Second derivatives at a state, and their rates along a direction.
-struct Along<'a, F: Field> {
+struct Along<'a, F: Field, const NODES: usize> {
     law: &'a Elastomer<F>,
-    shape: &'a ElementGeometry,
-    x: &'a [Vector; 8],
-    potentials: &'a F::Potentials,
-    w: &'a [Vector; 8],
-    w_potentials: &'a F::Potentials,
-    out: Pair<'a, F>,
+    shape: &'a ElementGeometry<NODES>,
+    x: &'a [Vector; NODES],
+    potentials: &'a F::Potentials<NODES>,
+    w: &'a [Vector; NODES],
+    w_potentials: &'a F::Potentials<NODES>,
+    out: Pair<'a, F, NODES>,
 }
 
-impl<F: Field> Task for Along<'_, F> {
+impl<F: Field, const NODES: usize> Task for Along<'_, F, NODES> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd, const K: usize>(mut self, unit: S) {
         let dual = |value: f64, rate: f64| Dual { value, rate };
-        let mut x = [[dual(0.0, 0.0); 3]; 8];
-        for i in 0..8 {
+        let mut x = [[dual(0.0, 0.0); 3]; NODES];
+        for i in 0..NODES {
             for a in 0..3 {
                 x[i][a] = dual(self.x[i][a], self.w[i][a]);
             }
         }
         let values = self.law.field.constants(self.potentials);
         let rates = self.law.field.constants(self.w_potentials);
-        let mut phi = [dual(0.0, 0.0); 8];
+        let mut phi = [dual(0.0, 0.0); NODES];
         if let (Some((_, value)), Some((_, rate))) = (&values, &rates) {
-            for i in 0..8 {
+            for i in 0..NODES {
                 phi[i] = dual(value[i], rate[i]);
             }
         }
@@ -195,6 +197,6 @@ impl<F: Field> Task for Along<'_, F> {
             x: &x,
             electric: values.as_ref().map(|(constants, _)| (constants, &phi)),
         };
-        Variations::<Dual<Lanes<S, K>>>::write::<2>(&state, &mut self.out);
+        Variations::<Dual<Lanes<S, K>>>::write::<2, NODES>(&state, &mut self.out);
     }
 }

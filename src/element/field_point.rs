@@ -1,4 +1,4 @@
-//! The true electric field at a point of a hexahedron, squared and relative to a limit, with its derivatives.
+//! The true electric field at a point of an element, squared and relative to a limit, with its derivatives.
 //!
 //! With the spatial gradients a_i = F⁻ᵀG_i the field is e = F⁻ᵀE = −Σ φ_i a_i, and
 //!
@@ -17,31 +17,31 @@
 use super::fields::{gradient_of, inverse};
 use crate::math::{Matrix, Vector};
 
-/// s = |e|²/E² at a point of a hexahedron.
+/// s = |e|²/E² at a point of an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FieldPoint {
+pub struct FieldPoint<const NODES: usize = 8> {
     /// G_i = ∂N_i/∂X there, in 1/mm.
-    pub gradients: [Vector; 8],
+    pub gradients: [Vector; NODES],
     /// E in V/mm.
     pub limit: f64,
 }
 
 /// Field and gradients at a state: all that derivatives are made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpatialField {
+pub struct SpatialField<const NODES: usize = 8> {
     /// a_i in 1/mm.
-    gradients: [Vector; 8],
+    gradients: [Vector; NODES],
     /// e/E.
     field: Vector,
     /// g_i = (e/E)·a_i in 1/mm.
-    along: [f64; 8],
+    along: [f64; NODES],
     /// 1/E.
     scale: f64,
 }
 
-impl FieldPoint {
+impl<const NODES: usize> FieldPoint<NODES> {
     /// Field and gradients with nodes at `x` in mm and their potentials in V; NaN where the element is flat.
-    pub fn at(&self, x: &[Vector; 8], potentials: &[f64; 8]) -> SpatialField {
+    pub fn at(&self, x: &[Vector; NODES], potentials: &[f64; NODES]) -> SpatialField<NODES> {
         let inverse = inverse(&gradient_of(x, &self.gradients));
         let gradients = self.gradients.map(|gradient| inverse.tr_mul(&gradient));
         let scale = 1.0 / self.limit;
@@ -56,7 +56,7 @@ impl FieldPoint {
     }
 }
 
-impl SpatialField {
+impl<const NODES: usize> SpatialField<NODES> {
     /// s.
     pub fn value(&self) -> f64 {
         self.field.norm_squared()

@@ -35,11 +35,11 @@ impl Fields {
 impl<F: Field> Elastomer<F> {
     /// Fields of the hexahedron `shape` with nodes at `x` in mm and their potentials in V; add
     /// [`Viscosity::stress`] to the stress of a moving one.
-    pub fn fields(
+    pub fn fields<const NODES: usize>(
         &self,
-        shape: &ElementGeometry,
-        x: &[Vector; 8],
-        potentials: &F::Potentials,
+        shape: &ElementGeometry<NODES>,
+        x: &[Vector; NODES],
+        potentials: &F::Potentials<NODES>,
     ) -> Fields {
         let one = Matrix::identity();
         let (mu, lambda) = (self.shear_modulus, self.lame_lambda);
@@ -65,7 +65,7 @@ impl<F: Field> Elastomer<F> {
             };
             let mut stress = (F * F.transpose() - one) * (mu / J) + one * pressure;
             if let Some((k, phi)) = &electric {
-                let E: Vector = (0..8).map(|i| shape.gradient(i, g) * -phi[i]).sum();
+                let E: Vector = (0..NODES).map(|i| shape.gradient(i, g) * -phi[i]).sum();
                 let e = spatial(F, &E);
                 let pushed = F * E;
                 let D = E * (-2.0 * k.c1) - F.tr_mul(&pushed) * (2.0 * k.c2);
@@ -84,7 +84,12 @@ impl<F: Field> Elastomer<F> {
 
 impl Viscosity {
     /// Mean of σ = η d over the reference volume, in MPa.
-    pub fn stress(&self, shape: &ElementGeometry, x: &[Vector; 8], v: &[Vector; 8]) -> Matrix {
+    pub fn stress<const NODES: usize>(
+        &self,
+        shape: &ElementGeometry<NODES>,
+        x: &[Vector; NODES],
+        v: &[Vector; NODES],
+    ) -> Matrix {
         let at = |g: usize| {
             // lᵀ = F⁻ᵀ Ḟᵀ.
             let deformation = shape.gradient_of(x, g);
@@ -98,15 +103,18 @@ impl Viscosity {
     }
 }
 
-impl ElementGeometry {
+impl<const NODES: usize> ElementGeometry<NODES> {
     /// Σ x_i ⊗ G_i at the Gauss point `g`.
-    pub fn gradient_of(&self, x: &[Vector; 8], g: usize) -> Matrix {
+    pub fn gradient_of(&self, x: &[Vector; NODES], g: usize) -> Matrix {
         gradient_of(x, &self.gradients_at(g))
     }
 }
 
 /// Σ x_i ⊗ G_i.
-pub(super) fn gradient_of(x: &[Vector; 8], gradients: &[Vector; 8]) -> Matrix {
+pub(super) fn gradient_of<const NODES: usize>(
+    x: &[Vector; NODES],
+    gradients: &[Vector; NODES],
+) -> Matrix {
     let both = x.iter().zip(gradients);
     both.map(|(x, gradient)| x * gradient.transpose()).sum()
 }

@@ -42,18 +42,19 @@ pub struct Inverted {
     pub determinant: f64,
 }
 
-/// Gradients G_i = ∂N_i/∂X and weights w = det ∂X/∂ξ at the 2 × 2 × 2 Gauss points of a hexahedron.
+/// Gradients G_i = ∂N_i/∂X and weights w at the eight Gauss points of an element; of a hexahedron with 2 × 2 × 2 points
+/// w = det ∂X/∂ξ.
 ///
-/// Nodes in the order of VTK: the lower face counter-clockwise seen from above, then the upper face above it.
+/// Nodes of a hexahedron in the order of VTK: the lower face counter-clockwise seen from above, then the upper face above it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ElementGeometry {
+pub struct ElementGeometry<const NODES: usize = 8> {
     /// `gradients[i][m][g]`: component `m` of G_i at point `g`, in 1/mm.
-    gradients: [[[f64; 8]; 3]; 8],
+    gradients: [[[f64; 8]; 3]; NODES],
     /// w in mm³.
     weights: [f64; 8],
 }
 
-impl ElementGeometry {
+impl ElementGeometry<8> {
     /// The hexahedron with these nodes, in mm.
     ///
     /// # Errors
@@ -91,11 +92,6 @@ impl ElementGeometry {
         Ok(shape)
     }
 
-    /// Reference volume V in mm³.
-    pub fn volume(&self) -> f64 {
-        self.weights.iter().sum()
-    }
-
     /// Consistent mass ∫ ρ N_i N_j dV in g by the same Gauss points, exact for parallelepipeds; ρ in g/mm³.
     pub fn mass(&self, density: f64) -> [[f64; 8]; 8] {
         let product = |i: usize, j: usize, g: usize| VALUES[i][g] * VALUES[j][g] * self.weights[g];
@@ -109,16 +105,6 @@ impl ElementGeometry {
         VALUES.map(|value| value.iter().zip(&self.weights).map(|(n, w)| n * w).sum())
     }
 
-    /// Gradient of N_i at the Gauss point `g`, in 1/mm.
-    pub fn gradient(&self, i: usize, g: usize) -> Vector {
-        Vector::from_fn(|m, _| self.gradients[i][m][g])
-    }
-
-    /// Gradients of all N_i at the Gauss point `g`, in 1/mm.
-    pub fn gradients_at(&self, g: usize) -> [Vector; 8] {
-        std::array::from_fn(|i| self.gradient(i, g))
-    }
-
     /// Gradients of all N_i at the centre of a hexahedron with these nodes; `None` where it is turned inside out there.
     pub fn central_gradients(nodes: &[Vector; 8]) -> Option<[Vector; 8]> {
         let slopes = CORNERS.map(|corner| Vector::from(corner) * 0.125);
@@ -128,10 +114,27 @@ impl ElementGeometry {
         let is_right = jacobian.determinant() > 0.0;
         is_right.then(|| slopes.map(|slope| inverse.tr_mul(&slope)))
     }
+}
+
+impl<const NODES: usize> ElementGeometry<NODES> {
+    /// Reference volume V in mm³.
+    pub fn volume(&self) -> f64 {
+        self.weights.iter().sum()
+    }
+
+    /// Gradient of N_i at the Gauss point `g`, in 1/mm.
+    pub fn gradient(&self, i: usize, g: usize) -> Vector {
+        Vector::from_fn(|m, _| self.gradients[i][m][g])
+    }
+
+    /// Gradients of all N_i at the Gauss point `g`, in 1/mm.
+    pub fn gradients_at(&self, g: usize) -> [Vector; NODES] {
+        std::array::from_fn(|i| self.gradient(i, g))
+    }
 
     /// Gradients, `[i][m][g]`.
     #[inline(always)]
-    pub(super) fn gradients(&self) -> &[[[f64; 8]; 3]; 8] {
+    pub(super) fn gradients(&self) -> &[[[f64; 8]; 3]; NODES] {
         &self.gradients
     }
 

@@ -20,12 +20,12 @@ pub(super) struct Kinematics<N: Points> {
 #[expect(non_snake_case, reason = "notation of the law")]
 impl<N: Points> Kinematics<N> {
     #[inline(always)]
-    pub(super) fn new(
+    pub(super) fn new<const NODES: usize>(
         token: N::Token,
-        shape: &ElementGeometry,
-        x: &[Three<N::Uniform>; 8],
+        shape: &ElementGeometry<NODES>,
+        x: &[Three<N::Uniform>; NODES],
     ) -> Self {
-        let F = gradient_of::<N>(token, shape, x);
+        let F = gradient_of::<N, NODES>(token, shape, x);
         let H = cofactor(&F);
         let J = dot(F[0], H[0]).positive();
         let inverse = J.recip();
@@ -40,10 +40,10 @@ impl<N: Points> Kinematics<N> {
 
 /// Σ x_i ⊗ G_i.
 #[inline(always)]
-pub(super) fn gradient_of<N: Points>(
+pub(super) fn gradient_of<N: Points, const NODES: usize>(
     token: N::Token,
-    shape: &ElementGeometry,
-    x: &[Three<N::Uniform>; 8],
+    shape: &ElementGeometry<NODES>,
+    x: &[Three<N::Uniform>; NODES],
 ) -> Nine<N> {
     let mut sum = [[N::constant(token, 0.0); 3]; 3];
     for (x, gradient) in x.iter().zip(shape.gradients()) {
@@ -70,10 +70,10 @@ pub(super) fn load<N: Points>(token: N::Token, gradient: &[[f64; 8]; 3]) -> Thre
 
 /// −Σ φ_i G_i.
 #[inline(always)]
-pub(super) fn minus_gradient_of<N: Points>(
+pub(super) fn minus_gradient_of<N: Points, const NODES: usize>(
     token: N::Token,
-    shape: &ElementGeometry,
-    phi: &[N::Uniform; 8],
+    shape: &ElementGeometry<NODES>,
+    phi: &[N::Uniform; NODES],
 ) -> Three<N> {
     let mut sum = [N::constant(token, 0.0); 3];
     for (phi, gradient) in phi.iter().zip(shape.gradients()) {

@@ -35,79 +35,93 @@ mod sealed {
 
 /// The electric part of a law: none of it ([`Passive`]), or [`Dielectric`].
 pub trait Field: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
-    /// Electric potentials of the nodes in V: `()` or `[f64; 8]`.
-    type Potentials: Copy + Debug + Default + PartialEq + Send + Sync;
-    /// Derivatives by potentials: `()` or [`Electric`].
-    type Local: Clone + Debug + Default + Send + Sync;
+    /// Electric potentials of the nodes in V: `()` or `[f64; NODES]`.
+    type Potentials<const NODES: usize>: Copy + Debug + PartialEq + Send + Sync;
+    /// Derivatives by potentials: `()` or [`ElectricDerivatives`].
+    type Local<const NODES: usize>: Clone + Debug + Default + Send + Sync;
 
     /// The constants and potentials, where there are any.
     #[doc(hidden)]
-    fn constants(&self, potentials: &Self::Potentials) -> Option<(Dielectric, [f64; 8])>;
+    fn constants<const NODES: usize>(
+        &self,
+        potentials: &Self::Potentials<NODES>,
+    ) -> Option<(Dielectric, [f64; NODES])>;
 
     /// The derivatives by potentials, where there are any.
-    fn derivatives(local: &Self::Local) -> Option<&ElectricDerivatives>;
+    fn derivatives<const NODES: usize>(
+        local: &Self::Local<NODES>,
+    ) -> Option<&ElectricDerivatives<NODES>>;
 
     /// Where the derivatives by potentials are written.
-    fn electric(local: &mut Self::Local) -> Option<&mut ElectricDerivatives>;
+    fn electric<const NODES: usize>(
+        local: &mut Self::Local<NODES>,
+    ) -> Option<&mut ElectricDerivatives<NODES>>;
 }
 
 impl Field for Passive {
-    type Potentials = ();
-    type Local = ();
+    type Potentials<const NODES: usize> = ();
+    type Local<const NODES: usize> = ();
 
     #[inline(always)]
-    fn constants(&self, (): &()) -> Option<(Dielectric, [f64; 8])> {
+    fn constants<const NODES: usize>(&self, (): &()) -> Option<(Dielectric, [f64; NODES])> {
         None
     }
 
     #[inline(always)]
-    fn derivatives((): &()) -> Option<&ElectricDerivatives> {
+    fn derivatives<const NODES: usize>((): &()) -> Option<&ElectricDerivatives<NODES>> {
         None
     }
 
     #[inline(always)]
-    fn electric((): &mut ()) -> Option<&mut ElectricDerivatives> {
+    fn electric<const NODES: usize>((): &mut ()) -> Option<&mut ElectricDerivatives<NODES>> {
         None
     }
 }
 
 impl Field for Dielectric {
-    type Potentials = [f64; 8];
-    type Local = ElectricDerivatives;
+    type Potentials<const NODES: usize> = [f64; NODES];
+    type Local<const NODES: usize> = ElectricDerivatives<NODES>;
 
     #[inline(always)]
-    fn constants(&self, potentials: &[f64; 8]) -> Option<(Dielectric, [f64; 8])> {
+    fn constants<const NODES: usize>(
+        &self,
+        potentials: &[f64; NODES],
+    ) -> Option<(Dielectric, [f64; NODES])> {
         Some((*self, *potentials))
     }
 
     #[inline(always)]
-    fn derivatives(local: &ElectricDerivatives) -> Option<&ElectricDerivatives> {
+    fn derivatives<const NODES: usize>(
+        local: &ElectricDerivatives<NODES>,
+    ) -> Option<&ElectricDerivatives<NODES>> {
         Some(local)
     }
 
     #[inline(always)]
-    fn electric(local: &mut ElectricDerivatives) -> Option<&mut ElectricDerivatives> {
+    fn electric<const NODES: usize>(
+        local: &mut ElectricDerivatives<NODES>,
+    ) -> Option<&mut ElectricDerivatives<NODES>> {
         Some(local)
     }
 }
 
 /// Derivatives of the energy of one hexahedron by the potentials of its nodes.
 #[derive(Clone, Debug)]
-pub struct ElectricDerivatives {
+pub struct ElectricDerivatives<const NODES: usize = 8> {
     /// ∂W/∂φ_i in mJ/V.
-    pub charges: [f64; 8],
+    pub charges: [f64; NODES],
     /// ∂²W/∂x_i∂φ_j in N/V, `coupling[i][j]`: all 64 vectors differ.
-    pub coupling: [[Vector; 8]; 8],
+    pub coupling: [[Vector; NODES]; NODES],
     /// ∂²W/∂φ_i∂φ_j in mJ/V²; both triangles are filled.
-    pub permittivity: [[f64; 8]; 8],
+    pub permittivity: [[f64; NODES]; NODES],
 }
 
-impl Default for ElectricDerivatives {
+impl<const NODES: usize> Default for ElectricDerivatives<NODES> {
     fn default() -> Self {
         Self {
-            charges: [0.0; 8],
-            coupling: [[Vector::zeros(); 8]; 8],
-            permittivity: [[0.0; 8]; 8],
+            charges: [0.0; NODES],
+            coupling: [[Vector::zeros(); NODES]; NODES],
+            permittivity: [[0.0; NODES]; NODES],
         }
     }
 }

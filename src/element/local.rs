@@ -8,24 +8,24 @@ use crate::math::{Matrix, Vector};
 ///
 /// A caller keeps one and has it filled again and again. `Local<Passive>` has no electric part.
 #[derive(Clone, Debug)]
-pub struct Local<F: Field> {
+pub struct Local<F: Field, const NODES: usize = 8> {
     /// W in mJ.
     pub energy: f64,
     /// ∂W/∂x_i in N.
-    pub forces: [Vector; 8],
+    pub forces: [Vector; NODES],
     /// ∂²W/∂x_i∂x_j in N/mm, rows belong to i; both triangles are filled.
-    pub stiffness: [[Matrix; 8]; 8],
-    /// Derivatives by potentials: [`Electric`](crate::element::Electric), or nothing.
-    pub electric: F::Local,
+    pub stiffness: [[Matrix; NODES]; NODES],
+    /// Derivatives by potentials: [`ElectricDerivatives`](crate::element::ElectricDerivatives), or nothing.
+    pub electric: F::Local<NODES>,
 }
 
-impl<F: Field> Default for Local<F> {
+impl<F: Field, const NODES: usize> Default for Local<F, NODES> {
     fn default() -> Self {
         Self {
             energy: 0.0,
-            forces: [Vector::zeros(); 8],
-            stiffness: [[Matrix::zeros(); 8]; 8],
-            electric: F::Local::default(),
+            forces: [Vector::zeros(); NODES],
+            stiffness: [[Matrix::zeros(); NODES]; NODES],
+            electric: Default::default(),
         }
     }
 }
@@ -50,7 +50,7 @@ impl Output<Self> for f64 {
     }
 }
 
-impl<F: Field> Output<f64> for Local<F> {
+impl<F: Field, const NODES: usize> Output<f64> for Local<F, NODES> {
     #[inline(always)]
     fn energy(&mut self, value: f64) {
         self.energy = value;
@@ -92,12 +92,12 @@ impl<F: Field> Output<f64> for Local<F> {
 }
 
 /// Variations, and their derivatives along a direction.
-pub(super) struct Pair<'a, F: Field> {
-    pub(super) plain: &'a mut Local<F>,
-    pub(super) along: &'a mut Local<F>,
+pub(super) struct Pair<'a, F: Field, const NODES: usize> {
+    pub(super) plain: &'a mut Local<F, NODES>,
+    pub(super) along: &'a mut Local<F, NODES>,
 }
 
-impl<F: Field> Output<Dual<f64>> for Pair<'_, F> {
+impl<F: Field, const NODES: usize> Output<Dual<f64>> for Pair<'_, F, NODES> {
     #[inline(always)]
     fn energy(&mut self, d: Dual<f64>) {
         self.plain.energy(d.value);

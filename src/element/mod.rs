@@ -1,12 +1,12 @@
-//! The trilinear hexahedron of a dielectric elastomer: pure formulas, without index, mesh or time.
+//! Finite elements of a dielectric elastomer, the trilinear hexahedron so far: pure formulas, without index, mesh or time.
 //!
-//! Eight nodes at x_i with electric potentials φ_i span, with the shape functions N_i and G_i = ∂N_i/∂X,
+//! N nodes at x_i, N in the type, with electric potentials φ_i span, with the shape functions N_i and G_i = ∂N_i/∂X,
 //!
 //! ```text
 //! F = Σ x_i ⊗ G_i,      E = −Σ φ_i G_i,      W(x, φ) = Σ_g w_g Ω(F, E),
 //! ```
 //!
-//! summed over 2 × 2 × 2 Gauss points of weight w_g = det ∂X/∂ξ. [`Shape`] holds G_i and w_g, [`Elastomer`] the law Ω with
+//! summed over eight Gauss points, 2 × 2 × 2 of weight w_g = det ∂X/∂ξ for the hexahedron. [`ElementGeometry`] holds G_i and w_g, [`Elastomer`] the law Ω with
 //! the derivatives of W to third order, [`Viscosity`] the virtual work of σ = η d, [`Fields`] what is shown of a state,
 //! [`FieldPoint`] the true field that limits bound.
 //!

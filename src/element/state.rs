@@ -6,15 +6,15 @@ use super::law::{Dielectric, Volume};
 use super::number::Points;
 
 /// A law and the state at which it is evaluated.
-pub(super) struct ElementState<'a, N: Points> {
+pub(super) struct ElementState<'a, N: Points, const NODES: usize> {
     pub(super) token: N::Token,
     pub(super) shear_modulus: f64,
     pub(super) lame_lambda: f64,
     pub(super) volume: Volume,
-    pub(super) shape: &'a ElementGeometry,
-    pub(super) x: &'a [[N::Uniform; 3]; 8],
+    pub(super) shape: &'a ElementGeometry<NODES>,
+    pub(super) x: &'a [[N::Uniform; 3]; NODES],
     /// Absent at compile time for a passive law.
-    pub(super) electric: Option<(&'a Dielectric, &'a [N::Uniform; 8])>,
+    pub(super) electric: Option<(&'a Dielectric, &'a [N::Uniform; NODES])>,
 }
 
 /// The electric field at the Gauss points.

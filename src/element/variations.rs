@@ -1,4 +1,4 @@
-//! Energy of a hexahedron, its gradient and its tangent, over any number.
+//! Energy of an element, its gradient and its tangent, over any number.
 //!
 //! With g_i = F⁻ᵀG_i, e = F⁻ᵀE, ω = F⁻¹e, κ = εJ, and θ = J U′(J) of the volumetric energy U,
 //!
@@ -58,8 +58,8 @@ struct Mean<U> {
 impl<N: Points> Variations<N> {
     /// Writes the energy; its gradient if `ORDER` ≥ 1; its tangent if `ORDER` ≥ 2.
     #[inline(always)]
-    pub(super) fn write<const ORDER: usize>(
-        state: &ElementState<'_, N>,
+    pub(super) fn write<const ORDER: usize, const NODES: usize>(
+        state: &ElementState<'_, N, NODES>,
         out: &mut impl Output<N::Uniform>,
     ) {
         let point = Self::new(state);
@@ -73,7 +73,7 @@ impl<N: Points> Variations<N> {
     }
 
     #[inline(always)]
-    fn new(state: &ElementState<'_, N>) -> Self {
+    fn new<const NODES: usize>(state: &ElementState<'_, N, NODES>) -> Self {
         let token = state.token;
         let Kinematics { w, F, T, J } = Kinematics::<N>::new(token, state.shape, state.x);
         let ln_J = J.ln();
@@ -96,7 +96,7 @@ impl<N: Points> Variations<N> {
         let electric = match state.electric {
             None => None,
             Some((constants, phi)) => {
-                let E = minus_gradient_of::<N>(token, state.shape, phi);
+                let E = minus_gradient_of::<N, NODES>(token, state.shape, phi);
                 let spatial = apply(&T, E);
                 let kappa = J.scaled(constants.permittivity);
                 Some(ElectricField {
@@ -123,7 +123,7 @@ impl<N: Points> Variations<N> {
     }
 
     #[inline(always)]
-    fn energy(&self, state: &ElementState<'_, N>) -> N::Uniform {
+    fn energy<const NODES: usize>(&self, state: &ElementState<'_, N, NODES>) -> N::Uniform {
         let F = &self.F;
         let square = dot(F[0], F[0]) + dot(F[1], F[1]) + dot(F[2], F[2]);
         let strain = square.shifted(-3.0).scaled(0.5) - self.ln_J;
@@ -144,7 +144,11 @@ impl<N: Points> Variations<N> {
     }
 
     #[inline(always)]
-    fn gradient(&self, state: &ElementState<'_, N>, out: &mut impl Output<N::Uniform>) {
+    fn gradient<const NODES: usize>(
+        &self,
+        state: &ElementState<'_, N, NODES>,
+        out: &mut impl Output<N::Uniform>,
+    ) {
         let token = state.token;
         let mu = state.shear_modulus;
         let mut isotropic = self.theta.shifted(-mu);
@@ -194,7 +198,11 @@ impl<N: Points> Variations<N> {
     }
 
     #[inline(always)]
-    fn tangent(&self, state: &ElementState<'_, N>, out: &mut impl Output<N::Uniform>) {
+    fn tangent<const NODES: usize>(
+        &self,
+        state: &ElementState<'_, N, NODES>,
+        out: &mut impl Output<N::Uniform>,
+    ) {
         let token = state.token;
         let zero = N::constant(token, 0.0);
         let w = self.w;
@@ -209,10 +217,10 @@ impl<N: Points> Variations<N> {
         let odd = (beta - alpha).scaled(0.5).times(w);
         let w_mu = N::Plain::load(token, state.shape.weights()).scaled(state.shear_modulus);
 
-        let mut g = [[zero; 3]; 8];
-        let mut even_g = [[zero; 3]; 8];
-        let mut odd_g = [[zero; 3]; 8];
-        for i in 0..8 {
+        let mut g = [[zero; 3]; NODES];
+        let mut even_g = [[zero; 3]; NODES];
+        let mut odd_g = [[zero; 3]; NODES];
+        for i in 0..NODES {
             g[i] = apply_plain(&self.T, load::<N>(token, &gradients[i]));
             even_g[i] = scale(g[i], even);
             odd_g[i] = scale(g[i], odd);
@@ -229,15 +237,15 @@ impl<N: Points> Variations<N> {
             None => None,
             Some(mean) => {
                 let w_J = self.J.times(w);
-                let mut slopes = [sums([zero; 3]); 8];
-                for i in 0..8 {
+                let mut slopes = [sums([zero; 3]); NODES];
+                for i in 0..NODES {
                     slopes[i] = sums(scale(g[i], w_J));
                 }
                 Some((mean.factor, slopes))
             }
         };
 
-        for i in 0..8 {
+        for i in 0..NODES {
             let Gi = load::<N>(token, &gradients[i]);
             for j in 0..=i {
                 let Gj = load::<N>(token, &gradients[j]);

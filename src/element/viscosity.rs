@@ -1,4 +1,4 @@
-//! The virtual work of the viscous stress σ = η d of a hexahedron, and its contraction with virtual displacements.
+//! The virtual work of the viscous stress σ = η d of an element, and its contraction with virtual displacements.
 //!
 //! With g_i = F⁻ᵀG_i, l = Σ v_i ⊗ g_i, d = sym l, l_i = lᵀg_i and c = w η J, the virtual work of displacements y_i is
 //!
@@ -41,9 +41,14 @@ pub struct Viscosity {
 }
 
 impl Viscosity {
-    /// Dissipation Σ v_i·f_i = ∫ J η d:d dV ≥ 0 in mJ/ms of the hexahedron `shape` with nodes at `x` in mm and their
+    /// Dissipation Σ v_i·f_i = ∫ J η d:d dV ≥ 0 in mJ/ms of the element `shape` with nodes at `x` in mm and their
     /// velocities `v` in mm/ms.
-    pub fn power(&self, shape: &ElementGeometry, x: &[Vector; 8], v: &[Vector; 8]) -> f64 {
+    pub fn power<const NODES: usize>(
+        &self,
+        shape: &ElementGeometry<NODES>,
+        x: &[Vector; NODES],
+        v: &[Vector; NODES],
+    ) -> f64 {
         let viscosity = self.viscosity;
         dispatch(Power {
             viscosity,
@@ -54,12 +59,12 @@ impl Viscosity {
     }
 
     /// Fills the forces f_i.
-    pub fn forces(
+    pub fn forces<const NODES: usize>(
         &self,
-        shape: &ElementGeometry,
-        x: &[Vector; 8],
-        v: &[Vector; 8],
-        forces: &mut [Vector; 8],
+        shape: &ElementGeometry<NODES>,
+        x: &[Vector; NODES],
+        v: &[Vector; NODES],
+        forces: &mut [Vector; NODES],
     ) {
         let viscosity = self.viscosity;
         dispatch(Forces {
@@ -72,12 +77,12 @@ impl Viscosity {
     }
 
     /// Fills the forces and their derivatives.
-    pub fn tangent(
+    pub fn tangent<const NODES: usize>(
         &self,
-        shape: &ElementGeometry,
-        x: &[Vector; 8],
-        v: &[Vector; 8],
-        local: &mut ViscousLocal,
+        shape: &ElementGeometry<NODES>,
+        x: &[Vector; NODES],
+        v: &[Vector; NODES],
+        local: &mut ViscousLocal<NODES>,
     ) {
         let viscosity = self.viscosity;
         dispatch(Tangent {
@@ -90,13 +95,13 @@ impl Viscosity {
     }
 
     /// Fills s = Σ y_i·f_i(x, v), its gradient and its Hessian.
-    pub fn contraction(
+    pub fn contraction<const NODES: usize>(
         &self,
-        shape: &ElementGeometry,
-        x: &[Vector; 8],
-        v: &[Vector; 8],
-        y: &[Vector; 8],
-        out: &mut ViscousContraction,
+        shape: &ElementGeometry<NODES>,
+        x: &[Vector; NODES],
+        v: &[Vector; NODES],
+        y: &[Vector; NODES],
+        out: &mut ViscousContraction<NODES>,
     ) {
         let viscosity = self.viscosity;
         dispatch(Contraction {
@@ -121,7 +126,12 @@ struct Flow<N: Points> {
 
 impl<N: Points<Uniform = f64>> Flow<N> {
     #[inline(always)]
-    fn new(token: N::Token, viscosity: f64, shape: &ElementGeometry, x: &[Vector; 8]) -> Self {
+    fn new<const NODES: usize>(
+        token: N::Token,
+        viscosity: f64,
+        shape: &ElementGeometry<NODES>,
+        x: &[Vector; NODES],
+    ) -> Self {
         let k = Kinematics::<N>::new(token, shape, &coordinates(x));
         Self {
             token,
@@ -132,15 +142,19 @@ impl<N: Points<Uniform = f64>> Flow<N> {
 
     /// Σ v_i ⊗ g_i.
     #[inline(always)]
-    fn rate(&self, shape: &ElementGeometry, v: &[Vector; 8]) -> Nine<N> {
-        let rate = gradient_of::<N>(self.token, shape, &coordinates(v));
+    fn rate<const NODES: usize>(
+        &self,
+        shape: &ElementGeometry<NODES>,
+        v: &[Vector; NODES],
+    ) -> Nine<N> {
+        let rate = gradient_of::<N, NODES>(self.token, shape, &coordinates(v));
         product(&rate, &transpose(&self.inverse))
     }
 
     /// g_i.
     #[inline(always)]
-    fn gradients(&self, shape: &ElementGeometry) -> [Three<N>; 8] {
-        let mut g = [[N::constant(self.token, 0.0); 3]; 8];
+    fn gradients<const NODES: usize>(&self, shape: &ElementGeometry<NODES>) -> [Three<N>; NODES] {
+        let mut g = [[N::constant(self.token, 0.0); 3]; NODES];
         for (g, gradient) in g.iter_mut().zip(shape.gradients()) {
             *g = apply_plain(&self.inverse, load::<N>(self.token, gradient));
         }
@@ -149,9 +163,9 @@ impl<N: Points<Uniform = f64>> Flow<N> {
 
     /// Writes ∂f_i/∂x_j of the rate `l` for all i and j.
     #[inline(always)]
-    fn by_place(
+    fn by_place<const NODES: usize>(
         &self,
-        g: &[Three<N>; 8],
+        g: &[Three<N>; NODES],
         l: &Nine<N>,
         mut write: impl FnMut(usize, usize, &Nine<f64>),
     ) {
@@ -160,13 +174,13 @@ impl<N: Points<Uniform = f64>> Flow<N> {
         let half = self.c.scaled(0.5);
         let half_l = scale_all(l, half);
         let transposed = transpose(&half_l);
-        let mut stressed = [[zero; 3]; 8];
-        let mut carried = [[zero; 3]; 8];
-        for i in 0..8 {
+        let mut stressed = [[zero; 3]; NODES];
+        let mut carried = [[zero; 3]; NODES];
+        for i in 0..NODES {
             stressed[i] = apply(&d, g[i]);
             carried[i] = apply(&transposed, g[i]);
         }
-        for i in 0..8 {
+        for i in 0..NODES {
             for j in 0..=i {
                 let inner = dot(g[i], g[j]);
                 let mut ij = [[0.0; 3]; 3];
@@ -186,14 +200,14 @@ impl<N: Points<Uniform = f64>> Flow<N> {
     }
 }
 
-struct Power<'a> {
+struct Power<'a, const NODES: usize> {
     viscosity: f64,
-    shape: &'a ElementGeometry,
-    x: &'a [Vector; 8],
-    v: &'a [Vector; 8],
+    shape: &'a ElementGeometry<NODES>,
+    x: &'a [Vector; NODES],
+    v: &'a [Vector; NODES],
 }
 
-impl Task for Power<'_> {
+impl<const NODES: usize> Task for Power<'_, NODES> {
     type Output = f64;
 
     #[inline(always)]
@@ -204,15 +218,15 @@ impl Task for Power<'_> {
     }
 }
 
-struct Forces<'a> {
+struct Forces<'a, const NODES: usize> {
     viscosity: f64,
-    shape: &'a ElementGeometry,
-    x: &'a [Vector; 8],
-    v: &'a [Vector; 8],
-    forces: &'a mut [Vector; 8],
+    shape: &'a ElementGeometry<NODES>,
+    x: &'a [Vector; NODES],
+    v: &'a [Vector; NODES],
+    forces: &'a mut [Vector; NODES],
 }
 
-impl Task for Forces<'_> {
+impl<const NODES: usize> Task for Forces<'_, NODES> {
     type Output = ();
 
     #[inline(always)]
@@ -227,15 +241,15 @@ impl Task for Forces<'_> {
     }
 }
 
-struct Tangent<'a> {
+struct Tangent<'a, const NODES: usize> {
     viscosity: f64,
-    shape: &'a ElementGeometry,
-    x: &'a [Vector; 8],
-    v: &'a [Vector; 8],
-    local: &'a mut ViscousLocal,
+    shape: &'a ElementGeometry<NODES>,
+    x: &'a [Vector; NODES],
+    v: &'a [Vector; NODES],
+    local: &'a mut ViscousLocal<NODES>,
 }
 
-impl Task for Tangent<'_> {
+impl<const NODES: usize> Task for Tangent<'_, NODES> {
     type Output = ();
 
     #[inline(always)]
@@ -246,7 +260,7 @@ impl Task for Tangent<'_> {
         let local = self.local;
         let d = scale_all(&symmetric(&l), flow.c);
         let half = flow.c.scaled(0.5);
-        for i in 0..8 {
+        for i in 0..NODES {
             local.forces[i] = vector(sums(apply(&d, g[i])));
             let scaled = scale(g[i], half);
             for j in 0..=i {
@@ -267,16 +281,16 @@ impl Task for Tangent<'_> {
     }
 }
 
-struct Contraction<'a> {
+struct Contraction<'a, const NODES: usize> {
     viscosity: f64,
-    shape: &'a ElementGeometry,
-    x: &'a [Vector; 8],
-    v: &'a [Vector; 8],
-    y: &'a [Vector; 8],
-    out: &'a mut ViscousContraction,
+    shape: &'a ElementGeometry<NODES>,
+    x: &'a [Vector; NODES],
+    v: &'a [Vector; NODES],
+    y: &'a [Vector; NODES],
+    out: &'a mut ViscousContraction<NODES>,
 }
 
-impl Task for Contraction<'_> {
+impl<const NODES: usize> Task for Contraction<'_, NODES> {
     type Output = ();
 
     #[inline(always)]
@@ -303,10 +317,10 @@ impl Task for Contraction<'_> {
             }
         }
         let stress = scale_all(&z, flow.c);
-        let mut q = [[zero; 3]; 8];
-        let mut half_l = [[zero; 3]; 8];
-        let mut pulled_y = [[zero; 3]; 8];
-        for i in 0..8 {
+        let mut q = [[zero; 3]; NODES];
+        let mut half_l = [[zero; 3]; NODES];
+        let mut pulled_y = [[zero; 3]; NODES];
+        for i in 0..NODES {
             q[i] = apply(&carried, g[i]);
             half_l[i] = scale(apply(&lt, g[i]), half);
             pulled_y[i] = apply(&yt, g[i]);
@@ -317,7 +331,7 @@ impl Task for Contraction<'_> {
             out.by_place[i] = vector(sums(slope));
             out.by_velocity[i] = vector(sums(apply(&stress, g[i])));
         }
-        for i in 0..8 {
+        for i in 0..NODES {
             for j in 0..=i {
                 let inner = dot(g[i], g[j]);
                 let mut block = [[0.0; 3]; 3];
@@ -347,8 +361,8 @@ impl Task for Contraction<'_> {
 }
 
 #[inline(always)]
-fn coordinates(x: &[Vector; 8]) -> [[f64; 3]; 8] {
-    let mut coordinates = [[0.0; 3]; 8];
+fn coordinates<const NODES: usize>(x: &[Vector; NODES]) -> [[f64; 3]; NODES] {
+    let mut coordinates = [[0.0; 3]; NODES];
     for (c, x) in coordinates.iter_mut().zip(x) {
         *c = [x.x, x.y, x.z];
     }

@@ -8,23 +8,23 @@ use crate::math::{Matrix, Vector};
 
 /// |e|²/E² at a point of an element, with the nodes at one time of an interval and the potentials of the interval.
 #[derive(Clone, Debug)]
-pub struct ElementField {
+pub struct ElementField<const NODES: usize = 8> {
     /// The point.
-    pub point: FieldPoint,
+    pub point: FieldPoint<NODES>,
     /// Vectors of the nodes.
-    pub nodes: [usize; 8],
+    pub nodes: [usize; NODES],
     /// Where the potentials of the nodes come from.
-    pub terminals: [ScalarArg; 8],
+    pub terminals: [ScalarArg; NODES],
     /// When the nodes are read.
     pub at: Stencil,
 }
 
-/// The kind of elements that are fields at points.
+/// The kind of elements that are fields at points of elements of `NODES` nodes.
 #[derive(Debug)]
-pub enum ElementFields {}
+pub enum ElementFields<const NODES: usize = 8> {}
 
-impl ElementField {
-    fn field(&self, sample: &Sample<'_>) -> SpatialField {
+impl<const NODES: usize> ElementField<NODES> {
+    fn field(&self, sample: &Sample<'_>) -> SpatialField<NODES> {
         let read = |vector| {
             let arg = VectorArg {
                 vector,
@@ -38,7 +38,7 @@ impl ElementField {
 }
 
 /// The arguments are the nodes, and the scalars their potentials.
-impl Derivatives for SpatialField {
+impl<const NODES: usize> Derivatives for SpatialField<NODES> {
     fn force(&self, i: usize) -> Vector {
         self.by_place(i)
     }
@@ -60,36 +60,36 @@ impl Derivatives for SpatialField {
     }
 }
 
-impl Kernel for ElementFields {
-    type Element = ElementField;
+impl<const NODES: usize> Kernel for ElementFields<NODES> {
+    type Element = ElementField<NODES>;
     type Storage = ();
 
-    fn vectors(element: &ElementField) -> usize {
+    fn vectors(element: &ElementField<NODES>) -> usize {
         element.nodes.len()
     }
 
-    fn scalars(element: &ElementField) -> usize {
+    fn scalars(element: &ElementField<NODES>) -> usize {
         element.terminals.len()
     }
 
-    fn vector(element: &ElementField, i: usize) -> VectorArg {
+    fn vector(element: &ElementField<NODES>, i: usize) -> VectorArg {
         VectorArg {
             vector: element.nodes[i],
             stencil: element.at,
         }
     }
 
-    fn scalar(element: &ElementField, s: usize) -> Option<(usize, f64)> {
+    fn scalar(element: &ElementField<NODES>, s: usize) -> Option<(usize, f64)> {
         element.terminals[s].scalar
     }
 
-    fn energy(element: &ElementField, sample: &Sample<'_>) -> f64 {
+    fn energy(element: &ElementField<NODES>, sample: &Sample<'_>) -> f64 {
         element.field(sample).value()
     }
 
     /// First and second derivatives: a quantity is asked for no others.
     fn derivatives<S: Scatter>(
-        element: &ElementField,
+        element: &ElementField<NODES>,
         _: Order,
         sample: &Sample<'_>,
         (): &(),

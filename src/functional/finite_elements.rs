@@ -1,4 +1,4 @@
-//! Elastic and dielectric hexahedra: energies W(x̄, φ) of finite elements.
+//! Elastic and dielectric finite elements: energies W(x̄, φ) of elements of any number of nodes.
 //!
 //! Nodes are read at the midpoint of an interval, potentials are scalars of the interval.
 
@@ -10,74 +10,74 @@ use crate::math::{Matrix, Vector};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// One hexahedron: its geometry, its law, and what it reads.
+/// One finite element: its geometry, its law, and what it reads.
 #[derive(Clone, Debug)]
-pub struct Hexahedron<F: Electrical> {
+pub struct FiniteElement<F: Electrical, const NODES: usize = 8> {
     /// Gradients of the shape functions.
-    pub shape: ElementGeometry,
+    pub shape: ElementGeometry<NODES>,
     /// The law.
     pub law: Elastomer<F>,
     /// Vectors of the nodes.
-    pub nodes: [usize; 8],
+    pub nodes: [usize; NODES],
     /// Where the potentials of the nodes come from; nothing for a passive element.
-    pub terminals: F::Terminals,
+    pub terminals: F::Terminals<NODES>,
 }
 
 /// How the potentials of an element follow from the scalars of an interval.
 pub trait Electrical: Field {
     /// One argument a node, or nothing.
-    type Terminals: Clone + fmt::Debug + Send + Sync;
+    type Terminals<const NODES: usize>: Clone + fmt::Debug + Send + Sync;
 
     /// Names of the parts of the energy.
     const PARTS: Option<[&'static str; 2]>;
 
     /// The arguments; none for a passive element.
-    fn terminals(terminals: &Self::Terminals) -> &[ScalarArg];
+    fn terminals<const NODES: usize>(terminals: &Self::Terminals<NODES>) -> &[ScalarArg];
 
     /// Potentials of the nodes.
-    fn potentials(potential: impl Fn(usize) -> f64) -> Self::Potentials;
+    fn potentials<const NODES: usize>(potential: impl Fn(usize) -> f64) -> Self::Potentials<NODES>;
 }
 
 impl Electrical for Passive {
-    type Terminals = ();
+    type Terminals<const NODES: usize> = ();
 
     const PARTS: Option<[&'static str; 2]> = None;
 
     #[inline(always)]
-    fn terminals((): &()) -> &[ScalarArg] {
+    fn terminals<const NODES: usize>((): &()) -> &[ScalarArg] {
         &[]
     }
 
-    fn potentials(_: impl Fn(usize) -> f64) {}
+    fn potentials<const NODES: usize>(_: impl Fn(usize) -> f64) {}
 }
 
 impl Electrical for Dielectric {
-    type Terminals = [ScalarArg; 8];
+    type Terminals<const NODES: usize> = [ScalarArg; NODES];
 
     const PARTS: Option<[&'static str; 2]> = Some(["elastic", "electric"]);
 
     #[inline(always)]
-    fn terminals(terminals: &[ScalarArg; 8]) -> &[ScalarArg] {
+    fn terminals<const NODES: usize>(terminals: &[ScalarArg; NODES]) -> &[ScalarArg] {
         terminals
     }
 
-    fn potentials(potential: impl Fn(usize) -> f64) -> [f64; 8] {
+    fn potentials<const NODES: usize>(potential: impl Fn(usize) -> f64) -> [f64; NODES] {
         std::array::from_fn(potential)
     }
 }
 
-/// The kind of elements that are hexahedra.
+/// The kind of elements that are finite elements of `NODES` nodes.
 #[derive(Debug)]
-pub struct Hexahedra<F>(PhantomData<F>);
+pub struct FiniteElements<F, const NODES: usize = 8>(PhantomData<F>);
 
-/// Derivatives of the energy of a hexahedron, and their rates along the direction.
+/// Derivatives of the energy of an element, and their rates along the direction.
 #[derive(Debug)]
-pub struct Variations<F: Field> {
-    plain: Local<F>,
-    along: Local<F>,
+pub struct Variations<F: Field, const NODES: usize> {
+    plain: Local<F, NODES>,
+    along: Local<F, NODES>,
 }
 
-impl<F: Field> Default for Variations<F> {
+impl<F: Field, const NODES: usize> Default for Variations<F, NODES> {
     fn default() -> Self {
         Self {
             plain: Local::default(),
@@ -88,19 +88,22 @@ impl<F: Field> Default for Variations<F> {
 
 /// Half the sum of both instants.
 #[inline(always)]
-pub(super) fn middle(vectors: [&[Vector]; 2], nodes: &[usize; 8]) -> [Vector; 8] {
+pub(super) fn middle<const NODES: usize>(
+    vectors: [&[Vector]; 2],
+    nodes: &[usize; NODES],
+) -> [Vector; NODES] {
     nodes.map(|v| (vectors[0][v] + vectors[1][v]) * 0.5)
 }
 
-impl<F: Electrical> Hexahedron<F> {
-    fn potentials(&self, scalars: &[f64]) -> F::Potentials {
-        let terminals = F::terminals(&self.terminals);
-        F::potentials(|i| terminals[i].read(scalars))
+impl<F: Electrical, const NODES: usize> FiniteElement<F, NODES> {
+    fn potentials(&self, scalars: &[f64]) -> F::Potentials<NODES> {
+        let terminals = F::terminals::<NODES>(&self.terminals);
+        F::potentials::<NODES>(|i| terminals[i].read(scalars))
     }
 }
 
 /// The arguments are the nodes, and the scalars their potentials.
-impl<F: Field> Derivatives for Local<F> {
+impl<F: Field, const NODES: usize> Derivatives for Local<F, NODES> {
     #[inline(always)]
     fn force(&self, i: usize) -> Vector {
         self.forces[i]
@@ -108,7 +111,7 @@ impl<F: Field> Derivatives for Local<F> {
 
     #[inline(always)]
     fn row(&self, s: usize) -> f64 {
-        F::derivatives(&self.electric).map_or(0.0, |electric| electric.charges[s])
+        F::derivatives::<NODES>(&self.electric).map_or(0.0, |electric| electric.charges[s])
     }
 
     #[inline(always)]
@@ -118,34 +121,34 @@ impl<F: Field> Derivatives for Local<F> {
 
     #[inline(always)]
     fn column(&self, i: usize, s: usize) -> Vector {
-        let electric = F::derivatives(&self.electric);
+        let electric = F::derivatives::<NODES>(&self.electric);
         electric.map_or(Vector::zeros(), |electric| electric.coupling[i][s])
     }
 
     #[inline(always)]
     fn entry(&self, s: usize, t: usize) -> f64 {
-        F::derivatives(&self.electric).map_or(0.0, |electric| electric.permittivity[s][t])
+        F::derivatives::<NODES>(&self.electric).map_or(0.0, |electric| electric.permittivity[s][t])
     }
 }
 
-impl<F: Electrical> Kernel for Hexahedra<F> {
-    type Element = Hexahedron<F>;
-    type Storage = Variations<F>;
+impl<F: Electrical, const NODES: usize> Kernel for FiniteElements<F, NODES> {
+    type Element = FiniteElement<F, NODES>;
+    type Storage = Variations<F, NODES>;
 
     const PARTS: Option<[&'static str; 2]> = F::PARTS;
 
     #[inline(always)]
-    fn vectors(_: &Hexahedron<F>) -> usize {
-        8
+    fn vectors(_: &FiniteElement<F, NODES>) -> usize {
+        NODES
     }
 
     #[inline(always)]
-    fn scalars(element: &Hexahedron<F>) -> usize {
-        F::terminals(&element.terminals).len()
+    fn scalars(element: &FiniteElement<F, NODES>) -> usize {
+        F::terminals::<NODES>(&element.terminals).len()
     }
 
     #[inline(always)]
-    fn vector(element: &Hexahedron<F>, i: usize) -> VectorArg {
+    fn vector(element: &FiniteElement<F, NODES>, i: usize) -> VectorArg {
         VectorArg {
             vector: element.nodes[i],
             stencil: Stencil::Mid,
@@ -153,30 +156,30 @@ impl<F: Electrical> Kernel for Hexahedra<F> {
     }
 
     #[inline(always)]
-    fn scalar(element: &Hexahedron<F>, s: usize) -> Option<(usize, f64)> {
-        F::terminals(&element.terminals)[s].scalar
+    fn scalar(element: &FiniteElement<F, NODES>, s: usize) -> Option<(usize, f64)> {
+        F::terminals::<NODES>(&element.terminals)[s].scalar
     }
 
-    fn energy(element: &Hexahedron<F>, sample: &Sample<'_>) -> f64 {
+    fn energy(element: &FiniteElement<F, NODES>, sample: &Sample<'_>) -> f64 {
         let x = middle(sample.vectors, &element.nodes);
         let potentials = element.potentials(sample.scalars);
         element.law.energy(&element.shape, &x, &potentials)
     }
 
     /// The energy without the field.
-    fn first_part(element: &Hexahedron<F>, sample: &Sample<'_>) -> f64 {
+    fn first_part(element: &FiniteElement<F, NODES>, sample: &Sample<'_>) -> f64 {
         let x = middle(sample.vectors, &element.nodes);
         let law = element.law.passive();
         law.energy(&element.shape, &x, &())
     }
 
     fn prepare(
-        element: &Hexahedron<F>,
+        element: &FiniteElement<F, NODES>,
         order: Order,
         sample: &Sample<'_>,
-        Variations { plain, along }: &mut Variations<F>,
+        Variations { plain, along }: &mut Variations<F, NODES>,
     ) {
-        let Hexahedron { shape, law, .. } = element;
+        let FiniteElement { shape, law, .. } = element;
         let x = middle(sample.vectors, &element.nodes);
         let potentials = element.potentials(sample.scalars);
         match order {
@@ -184,8 +187,8 @@ impl<F: Electrical> Kernel for Hexahedra<F> {
             Order::Hessian => law.tangent(shape, &x, &potentials, plain),
             Order::Third => {
                 let w = middle(sample.along, &element.nodes);
-                let terminals = F::terminals(&element.terminals);
-                let rates = F::potentials(|i| terminals[i].rate(sample.scalars_along));
+                let terminals = F::terminals::<NODES>(&element.terminals);
+                let rates = F::potentials::<NODES>(|i| terminals[i].rate(sample.scalars_along));
                 law.third(shape, &x, &potentials, &w, &rates, plain, along);
             }
         }
@@ -193,10 +196,10 @@ impl<F: Electrical> Kernel for Hexahedra<F> {
 
     #[inline(always)]
     fn derivatives<S: Scatter>(
-        _: &Hexahedron<F>,
+        _: &FiniteElement<F, NODES>,
         order: Order,
         _: &Sample<'_>,
-        Variations { plain, along }: &Variations<F>,
+        Variations { plain, along }: &Variations<F, NODES>,
         to: &mut S,
     ) {
         to.plain(plain);

@@ -4,43 +4,40 @@
 //! derive by it.
 
 use crate::element::{ElementGeometry, Viscosity, ViscousContraction, ViscousLocal};
-use crate::functional::hexahedra::middle;
+use crate::functional::finite_elements::middle;
 use crate::functional::{Derivatives, Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Matrix, Vector};
 
-/// One viscous hexahedron.
+/// One viscous finite element.
 #[derive(Clone, Debug)]
-pub struct ViscousHexahedron {
+pub struct ViscousElement<const NODES: usize = 8> {
     /// Gradients of the shape functions.
-    pub shape: ElementGeometry,
+    pub shape: ElementGeometry<NODES>,
     /// The law.
     pub law: Viscosity,
     /// Vectors of the nodes.
-    pub nodes: [usize; 8],
+    pub nodes: [usize; NODES],
 }
 
-/// The kind of elements that are viscous hexahedra; arguments are the virtual displacements of the nodes, their places and their
+/// The kind of elements that are viscous finite elements of `NODES` nodes; arguments are the virtual displacements of the nodes, their places and their
 /// velocities.
 #[derive(Debug)]
-pub enum ViscousHexahedra {}
-
-/// Nodes of an element.
-const NODES: usize = 8;
+pub enum ViscousElements<const NODES: usize = 8> {}
 
 /// Derivatives of the virtual work, and of its contraction.
 #[derive(Debug, Default)]
-pub struct ViscousVariations {
-    plain: ViscousLocal,
-    along: ViscousContraction,
+pub struct ViscousVariations<const NODES: usize> {
+    plain: ViscousLocal<NODES>,
+    along: ViscousContraction<NODES>,
 }
 
 /// Node and reading of an argument: 0 virtual displacement, 1 place, 2 velocity.
 #[inline(always)]
-fn node(i: usize) -> (usize, usize) {
+fn node<const NODES: usize>(i: usize) -> (usize, usize) {
     (i % NODES, i / NODES)
 }
 
-impl ViscousHexahedron {
+impl<const NODES: usize> ViscousElement<NODES> {
     /// Places and velocities of the nodes.
     fn state(&self, sample: &Sample<'_>) -> [[Vector; NODES]; 2] {
         let [x, y] = sample.vectors;
@@ -50,7 +47,7 @@ impl ViscousHexahedron {
 }
 
 /// Of the virtual work: rows are virtual displacements, columns places and velocities.
-impl Derivatives for ViscousLocal {
+impl<const NODES: usize> Derivatives for ViscousLocal<NODES> {
     #[inline(always)]
     fn force(&self, i: usize) -> Vector {
         -self.forces[i]
@@ -58,7 +55,7 @@ impl Derivatives for ViscousLocal {
 
     #[inline(always)]
     fn block(&self, i: usize, j: usize) -> Matrix {
-        match node(j) {
+        match node::<NODES>(j) {
             (j, 1) => -self.by_place[i][j],
             (j, _) => -self.by_velocity[i][j],
         }
@@ -78,10 +75,10 @@ impl Derivatives for ViscousLocal {
 }
 
 /// Of the virtual work of the direction: rows and columns are places and velocities.
-impl Derivatives for ViscousContraction {
+impl<const NODES: usize> Derivatives for ViscousContraction<NODES> {
     #[inline(always)]
     fn force(&self, i: usize) -> Vector {
-        match node(i) {
+        match node::<NODES>(i) {
             (i, 1) => -self.by_place[i],
             (i, _) => -self.by_velocity[i],
         }
@@ -89,7 +86,7 @@ impl Derivatives for ViscousContraction {
 
     #[inline(always)]
     fn block(&self, i: usize, j: usize) -> Matrix {
-        match (node(i), node(j)) {
+        match (node::<NODES>(i), node::<NODES>(j)) {
             ((i, 1), (j, 1)) => -self.place_place[i][j],
             ((i, 1), (j, _)) => -self.place_velocity[i][j],
             ((i, _), (j, _)) => -self.place_velocity[j][i].transpose(),
@@ -109,9 +106,9 @@ impl Derivatives for ViscousContraction {
     }
 }
 
-impl Kernel for ViscousHexahedra {
-    type Element = ViscousHexahedron;
-    type Storage = ViscousVariations;
+impl<const NODES: usize> Kernel for ViscousElements<NODES> {
+    type Element = ViscousElement<NODES>;
+    type Storage = ViscousVariations<NODES>;
 
     const VIRTUAL: usize = NODES;
     const READINGS: usize = 3;
@@ -120,22 +117,22 @@ impl Kernel for ViscousHexahedra {
     /// Forces are linear in the velocities.
     #[inline(always)]
     fn couples(i: usize, j: usize) -> bool {
-        node(i).1 != node(j).1 || node(i).1 == 1
+        node::<NODES>(i).1 != node::<NODES>(j).1 || node::<NODES>(i).1 == 1
     }
 
     #[inline(always)]
-    fn vectors(_: &ViscousHexahedron) -> usize {
+    fn vectors(_: &ViscousElement<NODES>) -> usize {
         NODES
     }
 
     #[inline(always)]
-    fn scalars(_: &ViscousHexahedron) -> usize {
+    fn scalars(_: &ViscousElement<NODES>) -> usize {
         0
     }
 
     #[inline(always)]
-    fn vector(element: &ViscousHexahedron, i: usize) -> VectorArg {
-        let (node, reading) = node(i);
+    fn vector(element: &ViscousElement<NODES>, i: usize) -> VectorArg {
+        let (node, reading) = node::<NODES>(i);
         VectorArg {
             vector: element.nodes[node],
             stencil: match reading {
@@ -145,22 +142,22 @@ impl Kernel for ViscousHexahedra {
         }
     }
 
-    fn scalar(_: &ViscousHexahedron, _s: usize) -> Option<(usize, f64)> {
+    fn scalar(_: &ViscousElement<NODES>, _s: usize) -> Option<(usize, f64)> {
         None
     }
 
-    fn energy(element: &ViscousHexahedron, sample: &Sample<'_>) -> f64 {
+    fn energy(element: &ViscousElement<NODES>, sample: &Sample<'_>) -> f64 {
         let [x, v] = element.state(sample);
         -sample.h * element.law.power(&element.shape, &x, &v)
     }
 
     fn prepare(
-        element: &ViscousHexahedron,
+        element: &ViscousElement<NODES>,
         order: Order,
         sample: &Sample<'_>,
-        ViscousVariations { plain, along }: &mut ViscousVariations,
+        ViscousVariations { plain, along }: &mut ViscousVariations<NODES>,
     ) {
-        let ViscousHexahedron { shape, law, nodes } = element;
+        let ViscousElement { shape, law, nodes } = element;
         let [x, v] = element.state(sample);
         match order {
             Order::Gradient => law.forces(shape, &x, &v, &mut plain.forces),
@@ -174,10 +171,10 @@ impl Kernel for ViscousHexahedra {
 
     #[inline(always)]
     fn derivatives<S: Scatter>(
-        _: &ViscousHexahedron,
+        _: &ViscousElement<NODES>,
         order: Order,
         _: &Sample<'_>,
-        ViscousVariations { plain, along }: &ViscousVariations,
+        ViscousVariations { plain, along }: &ViscousVariations<NODES>,
         to: &mut S,
     ) {
         to.plain(plain);

@@ -1,7 +1,7 @@
 //! Terms of elastic blocks: elements by kind, masses, weights.
 
 use crate::element::Viscosity;
-use crate::functional::{Hexahedron, Mass, ViscousHexahedron};
+use crate::functional::{FiniteElement, Mass, ViscousElement};
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
 use crate::model::terms::Terms;
@@ -71,7 +71,7 @@ impl Solids {
             let name = &c.solid.name;
             match c.is_dielectric[e] {
                 false => {
-                    let element = Hexahedron {
+                    let element = FiniteElement {
                         shape,
                         law: c.passive(e),
                         nodes,
@@ -87,7 +87,7 @@ impl Solids {
                     terms.without(ELECTROELASTICITY, why);
                 }
                 true => {
-                    let element = Hexahedron {
+                    let element = FiniteElement {
                         shape,
                         law: c.dielectric(e),
                         nodes,
@@ -111,7 +111,7 @@ impl Solids {
                 terms.without(VISCOSITY, "a state of rest dissipates nothing");
                 continue;
             }
-            let element = ViscousHexahedron {
+            let element = ViscousElement {
                 shape: c.shapes[e].clone(),
                 law: Viscosity { viscosity },
                 nodes: c.nodes(e),

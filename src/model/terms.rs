@@ -3,8 +3,8 @@
 
 use crate::energy::{Energy, Gravity};
 use crate::functional::{
-    Electrical, Element, Formulas, Group, Hexahedra, Hexahedron, Inertia, Mass, Path, Paths,
-    Stencil, Term, VectorArg, ViscousHexahedra, ViscousHexahedron,
+    Electrical, Element, FiniteElement, FiniteElements, Formulas, Group, Inertia, Mass, Path,
+    Paths, Stencil, Term, VectorArg, ViscousElement, ViscousElements,
 };
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
@@ -65,15 +65,15 @@ impl Member for Mass {
     }
 }
 
-impl<F: Electrical> Member for Hexahedron<F> {
+impl<F: Electrical> Member for FiniteElement<F> {
     fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        Box::new(Group::<Hexahedra<F>>::intervals(name, -1.0, list))
+        Box::new(Group::<FiniteElements<F>>::intervals(name, -1.0, list))
     }
 }
 
-impl Member for ViscousHexahedron {
+impl Member for ViscousElement {
     fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        Box::new(Group::<ViscousHexahedra>::intervals(name, 1.0, list))
+        Box::new(Group::<ViscousElements>::intervals(name, 1.0, list))
     }
 }
 

@@ -138,7 +138,7 @@ pub(crate) fn law<F>(volume: Volume, field: F) -> Elastomer<F> {
 fn all_derivatives<F: Field>(
     field: F,
     electric: Option<Dielectric>,
-    potentials: fn([f64; 8]) -> F::Potentials,
+    potentials: fn([f64; 8]) -> F::Potentials<8>,
 ) {
     let mut random = Random(7);
     let n = if electric.is_some() { 32 } else { 24 };
@@ -213,7 +213,7 @@ pub(crate) fn forces<F: Field>(
     law: &Elastomer<F>,
     shape: &ElementGeometry,
     x: &[Vector; 8],
-    phi: &F::Potentials,
+    phi: &F::Potentials<8>,
 ) -> Local<F> {
     let mut local = Local::default();
     law.gradient(shape, x, phi, &mut local);
