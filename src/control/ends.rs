@@ -152,8 +152,8 @@ impl<'a> End<'a> {
             && measure.scalars().iter().all(|&s| self.scalars[s].is_some());
         let scalars: Vec<f64> = self.scalars.iter().map(|s| s.unwrap_or(0.0)).collect();
         let x = &self.instant.x[..];
-        let frame = Sample::of_instant(x, &scalars);
-        is_known.then(|| measure.value(&frame))
+        let sample = Sample::of_instant(x, &scalars);
+        is_known.then(|| measure.value(&sample))
     }
 }
 

@@ -8,7 +8,7 @@ use crate::functional::{BlockMask, Horizon, Sample};
 pub struct Interval<'a> {
     /// Scalars, such as voltages and potentials.
     pub scalars: &'a [f64],
-    /// Their rates along the direction; read at level `Third` only.
+    /// Their rates along the direction; read at order `Third` only.
     pub along: &'a [f64],
     /// Length in ms.
     pub h: f64,
@@ -33,8 +33,8 @@ impl<'a> Interval<'a> {
         }
     }
 
-    /// What effects read of it.
-    pub fn frame(&self, [a, b]: [&'a Configuration; 2]) -> Sample<'a> {
+    /// What terms read of it.
+    pub fn sample(&self, [a, b]: [&'a Configuration; 2]) -> Sample<'a> {
         Sample {
             vectors: [&a.x, &b.x],
             along: [&a.w, &b.w],

@@ -55,10 +55,10 @@ impl Reduced {
         &self.layout
     }
 
-    /// Storage for evaluations up to a level; sweeps, which carry blocks on, need `Third`.
-    pub fn scratch(&self, level: Order) -> Scratch {
-        let interval = self.intervals.output(level);
-        let carried = if level == Order::Third {
+    /// Storage for evaluations up to a order; sweeps, which carry blocks on, need `Third`.
+    pub fn scratch(&self, order: Order) -> Scratch {
+        let interval = self.intervals.output(order);
+        let carried = if order == Order::Third {
             Carried::new(&interval.plain.blocks)
         } else {
             Carried::new(&Blocks::default())
@@ -66,37 +66,37 @@ impl Reduced {
         Scratch {
             carried: [carried.clone(), carried],
             interval,
-            instant: self.instants.output(level),
+            instant: self.instants.output(order),
             local: vec![0.0; self.interval_plan.local().max(self.instant_plan.local())],
         }
     }
 
-    /// Evaluates the interval between two instants and adds its forces to theirs; at level `Third` along their
+    /// Evaluates the interval between two instants and adds its forces to theirs; at order `Third` along their
     /// directions, with contracted forces and the measures of the site by their weights.
     pub fn evaluate_interval(
         &self,
-        level: Order,
+        order: Order,
         [a, b]: [&mut Configuration; 2],
         interval: &Interval<'_>,
         scratch: &mut Scratch,
     ) {
-        let frame = interval.frame([&*a, &*b]);
+        let sample = interval.sample([&*a, &*b]);
         self.intervals
-            .evaluate(level, &frame, &mut scratch.interval);
+            .evaluate(order, &sample, &mut scratch.interval);
         let out = &scratch.interval;
         add(&mut a.forces, &out.plain.forces[0]);
         add(&mut b.forces, &out.plain.forces[1]);
-        if level == Order::Third {
+        if order == Order::Third {
             add(&mut a.contracted, &out.contracted.forces[0]);
             add(&mut b.contracted, &out.contracted.forces[1]);
         }
     }
 
-    /// Adds the second derivatives of the interval evaluated last to the values of step k: ∇² at level `Hessian`, the
-    /// lower triangle of ∇³ along the directions at level `Third`.
+    /// Adds the second derivatives of the interval evaluated last to the values of step k: ∇² at order `Hessian`, the
+    /// lower triangle of ∇³ along the directions at order `Third`.
     pub fn pull_back_interval(
         &self,
-        level: Order,
+        order: Order,
         [a, b]: [&Configuration; 2],
         &Interval { horizon, sides, .. }: &Interval<'_>,
         k: usize,
@@ -118,7 +118,7 @@ impl Reduced {
             interval, local, ..
         } = scratch;
         let (plain, contracted) = (&interval.plain, &interval.contracted);
-        match level {
+        match order {
             Order::Gradient => return,
             Order::Hessian => {
                 self.interval_plan
@@ -136,7 +136,7 @@ impl Reduced {
             }
         }
         if horizon == Horizon::Free {
-            let part = if level == Order::Third {
+            let part = if order == Order::Third {
                 contracted
             } else {
                 plain
@@ -146,7 +146,7 @@ impl Reduced {
                 let rows = &mut values[at..at + layout.unknowns];
                 self.motion
                     .pull_back(&instant.columns, &part.horizon_forces[side], rows);
-                if level == Order::Third {
+                if order == Order::Third {
                     let forces = &plain.horizon_forces[side];
                     self.motion
                         .pull_back_along(&instant.columns_l, forces, rows);
@@ -181,18 +181,18 @@ impl Reduced {
     /// Pulls back the blocks that the last interval of a sweep carried on to the final instant k.
     pub fn pull_back_last(
         &self,
-        level: Order,
+        order: Order,
         last: &Configuration,
         k: usize,
         scratch: &mut Scratch,
         values: &mut [f64],
     ) {
-        if level == Order::Gradient {
+        if order == Order::Gradient {
             return;
         }
         scratch.interval.plain.clear(true);
         scratch.interval.contracted.clear(true);
-        scratch.carry(level);
+        scratch.carry(order);
         let same = self.layout.same_at(k);
         let target = Destination {
             blocks: [same; 4],
@@ -204,7 +204,7 @@ impl Reduced {
         } = scratch;
         let (plain, contracted) = (&interval.plain, &interval.contracted);
         let ends = [last, last];
-        match level {
+        match order {
             Order::Third => self.interval_plan.third(
                 ends,
                 [plain, contracted],
@@ -222,13 +222,13 @@ impl Reduced {
     /// Evaluates an instant and adds its forces.
     pub fn evaluate_instant(
         &self,
-        level: Order,
+        order: Order,
         instant: &mut Configuration,
         weights: &[f64],
         scratch: &mut Scratch,
     ) {
         let n = self.motion.coordinates;
-        let frame = Sample {
+        let sample = Sample {
             vectors: [&instant.x, &instant.x],
             along: [&instant.w, &instant.w],
             scalars: &instant.z[n..self.motion.unknowns()],
@@ -238,9 +238,9 @@ impl Reduced {
             sides: BlockMask::HERE,
             weights,
         };
-        self.instants.evaluate(level, &frame, &mut scratch.instant);
+        self.instants.evaluate(order, &sample, &mut scratch.instant);
         add(&mut instant.forces, &scratch.instant.plain.forces[0]);
-        if level == Order::Third {
+        if order == Order::Third {
             add(
                 &mut instant.contracted,
                 &scratch.instant.contracted.forces[0],
@@ -249,10 +249,10 @@ impl Reduced {
     }
 
     /// Adds the second derivatives of the instant evaluated last, and the curvature of its coordinates under all forces
-    /// on it, to the values of instant k; levels as for an interval.
+    /// on it, to the values of instant k; orders as for an interval.
     pub fn pull_back_instant(
         &self,
-        level: Order,
+        order: Order,
         instant: &mut Configuration,
         k: usize,
         scratch: &mut Scratch,
@@ -270,7 +270,7 @@ impl Reduced {
             ..
         } = scratch;
         let (plain, contracted) = (&output.plain, &output.contracted);
-        match level {
+        match order {
             Order::Gradient => return,
             Order::Hessian => self.instant_plan.hessian(
                 [instant, instant],
@@ -291,7 +291,7 @@ impl Reduced {
         }
         if let Some(tree) = &self.motion.tree {
             let values = &mut values[same..];
-            match level {
+            match order {
                 Order::Third => tree.curvature_along(instant, &self.curvature, values),
                 _ => tree.curvature(instant, &self.curvature, values),
             }
@@ -304,8 +304,8 @@ impl Reduced {
         instant.l[..rates.len()].copy_from_slice(rates);
         self.motion.along(instant);
         let mut momenta = vec![Vector::zeros(); instant.x.len()];
-        for effect in &self.intervals.effects {
-            effect.momentum(&instant.x, &instant.w, &mut momenta);
+        for term in &self.intervals.terms {
+            term.momentum(&instant.x, &instant.w, &mut momenta);
         }
         let mut rows = vec![0.0; self.motion.coordinates];
         self.motion.pull_back(&instant.columns, &momenta, &mut rows);

@@ -53,11 +53,11 @@ impl Scratch {
     }
 
     /// Moves the blocks of the second instant of the interval evaluated last to the next interval.
-    pub fn carry(&mut self, level: Order) {
-        if level >= Order::Hessian {
+    pub fn carry(&mut self, order: Order) {
+        if order >= Order::Hessian {
             self.carried[0].exchange(&mut self.interval.plain.blocks);
         }
-        if level == Order::Third {
+        if order == Order::Third {
             self.carried[1].exchange(&mut self.interval.contracted.blocks);
         }
     }

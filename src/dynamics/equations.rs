@@ -13,8 +13,8 @@ pub trait Equations {
     /// First guess of the unknowns of a step of `h` ms.
     fn guess(&mut self, h: f64);
 
-    /// Writes the residual; at level `Hessian` also the values of the tangent.
-    fn evaluate(&mut self, level: Order, h: f64, residual: &mut [f64]);
+    /// Writes the residual; at order `Hessian` also the values of the tangent.
+    fn evaluate(&mut self, order: Order, h: f64, residual: &mut [f64]);
 
     /// Values of the tangent.
     fn values(&self) -> &[f64];

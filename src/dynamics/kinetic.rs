@@ -107,10 +107,10 @@ pub(super) fn masses(model: &Model, x: &[Vector]) -> Blocks {
     let action = &model.action.intervals;
     let mut out = action.output(Order::Hessian);
     let scalars = vec![0.0; action.scalars];
-    let frame = Sample::of_instant(x, &scalars);
-    for (effect, slots) in action.terms() {
-        if effect.kind() == Kind::Kinetic {
-            effect.evaluate(Order::Hessian, &frame, slots, &mut out);
+    let sample = Sample::of_instant(x, &scalars);
+    for (term, slots) in action.terms() {
+        if term.kind() == Kind::Kinetic {
+            term.evaluate(Order::Hessian, &sample, slots, &mut out);
         }
     }
     out.plain.blocks

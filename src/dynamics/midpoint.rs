@@ -128,7 +128,7 @@ impl Equations for Midpoint<'_> {
         self.next.z[n..].copy_from_slice(&self.here.z[n..]);
     }
 
-    fn evaluate(&mut self, level: Order, h: f64, residual: &mut [f64]) {
+    fn evaluate(&mut self, order: Order, h: f64, residual: &mut [f64]) {
         let action = &self.model.action;
         let (n, m) = (action.motion.coordinates, action.motion.unknowns());
         let Self {
@@ -143,7 +143,7 @@ impl Equations for Midpoint<'_> {
         for instant in [&mut *here, &mut *next] {
             instant.forces.fill(Vector::zeros());
         }
-        if level >= Order::Hessian {
+        if order >= Order::Hessian {
             values.fill(0.0);
         }
         residual[..n].copy_from_slice(&self.momentum);
@@ -152,18 +152,18 @@ impl Equations for Midpoint<'_> {
             sides: BlockMask::FORWARD,
             ..Interval::given(scalars, h)
         };
-        action.evaluate_interval(level, [here, next], &interval, scratch);
-        action.pull_back_interval(level, [here, next], &interval, 0, scratch, values);
+        action.evaluate_interval(order, [here, next], &interval, scratch);
+        action.pull_back_interval(order, [here, next], &interval, 0, scratch, values);
         let rows = &scratch.interval.plain.rows[self.model.variables.algebraic()];
         residual[m..].copy_from_slice(rows);
         if m > n {
             // Multipliers of the step act at its start, constraints hold at its end.
-            action.evaluate_instant(level, next, &[], scratch);
-            action.pull_back_instant(level, next, 1, scratch, values);
+            action.evaluate_instant(order, next, &[], scratch);
+            action.pull_back_instant(order, next, 1, scratch, values);
             residual[n..m].copy_from_slice(&scratch.instant.plain.rows);
             here.z[n..m].copy_from_slice(&next.z[n..m]);
-            action.evaluate_instant(level, here, &[], scratch);
-            action.pull_back_instant(level, here, 0, scratch, values);
+            action.evaluate_instant(order, here, &[], scratch);
+            action.pull_back_instant(order, here, 0, scratch, values);
         }
         action
             .motion

@@ -47,8 +47,8 @@ pub(super) fn moving(model: &Model, instant: &mut Configuration, rates: &[f64]) 
 /// Momenta ∂T/∂ẋ of vectors x with rates v.
 pub(super) fn vector_momenta(model: &Model, x: &[Vector], v: &[Vector]) -> Vec<Vector> {
     let mut momenta = vec![Vector::zeros(); x.len()];
-    for effect in &model.action.intervals.effects {
-        effect.momentum(x, v, &mut momenta);
+    for term in &model.action.intervals.terms {
+        term.momentum(x, v, &mut momenta);
     }
     momenta
 }
@@ -80,7 +80,7 @@ pub(super) fn momentum_maps(
             let (place, total) = match term.carrier {
                 Carrier::Body(body) => (term.at(&places.poses[body]), momentum + impulse),
                 Carrier::Ground => (term.at(&Pose::GROUND), *momentum),
-                // A vector that effects read holds no more than one node, and nothing else beside it.
+                // A vector that terms read holds no more than one node, and nothing else beside it.
                 Carrier::Node(_) => (*x, momentum + impulse),
                 Carrier::Joint(coordinate) => {
                     let [force, torque] = places.pulls[coordinate];

@@ -22,7 +22,7 @@ use std::ops::Range;
 pub struct Energies {
     /// Kinetic energy.
     pub kinetic: f64,
-    /// Potential energy of each effect that has one, part by part, in the order of the effects.
+    /// Potential energy of each term that has one, part by part, in the order of the terms.
     pub potential: Vec<f64>,
     /// Work that forces without a potential do over the interval.
     pub work: f64,
@@ -44,13 +44,13 @@ pub fn energies(
     h: f64,
 ) -> Energies {
     let interval = Interval::given(scalars, h);
-    let frame = interval.frame([a, b]);
+    let sample = interval.sample([a, b]);
     let mut energies = Energies::default();
-    for effect in &model.action.intervals.effects {
-        match effect.kind() {
-            Kind::Kinetic => energies.kinetic += effect.energy(&frame),
-            Kind::Potential => effect.energies(&frame, &mut energies.potential),
-            Kind::VirtualWork => energies.work += effect.energy(&frame),
+    for term in &model.action.intervals.terms {
+        match term.kind() {
+            Kind::Kinetic => energies.kinetic += term.energy(&sample),
+            Kind::Potential => term.energies(&sample, &mut energies.potential),
+            Kind::VirtualWork => energies.work += term.energy(&sample),
             Kind::Constraint => {}
         }
     }
@@ -163,8 +163,8 @@ impl<'m> Observer<'m> {
     }
 
     fn has(&self, kind: Kind) -> bool {
-        let mut effects = self.model.action.intervals.effects.iter();
-        effects.any(|effect| effect.kind() == kind)
+        let mut terms = self.model.action.intervals.terms.iter();
+        terms.any(|term| term.kind() == kind)
     }
 
     /// Names and units, in the order of [`Self::row`].
@@ -194,9 +194,9 @@ impl<'m> Observer<'m> {
             add(format!("{name}_charge"), "mC");
         }
         add("kinetic_energy".to_owned(), "N mm");
-        for effect in &self.model.action.intervals.effects {
-            if effect.kind() == Kind::Potential {
-                for part in effect.energy_parts() {
+        for term in &self.model.action.intervals.terms {
+            if term.kind() == Kind::Potential {
+                for part in term.energy_parts() {
                     add(format!("{}_energy", part.replace(' ', "_")), "N mm");
                 }
             }

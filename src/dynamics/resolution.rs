@@ -41,14 +41,14 @@ impl Balance {
         forces: &[Vec<Vector>; 2],
     ) -> Self {
         let [start, end] = ends;
-        let frame = interval.frame(ends);
+        let sample = interval.sample(ends);
         let (mut kinetic, mut viscous, mut change, mut size) = (0.0, 0.0, 0.0, 0.0_f64);
-        for effect in &model.action.intervals.effects {
-            match effect.kind() {
-                Kind::Kinetic => kinetic += effect.energy(&frame),
-                Kind::VirtualWork => viscous += effect.energy(&frame),
+        for term in &model.action.intervals.terms {
+            match term.kind() {
+                Kind::Kinetic => kinetic += term.energy(&sample),
+                Kind::VirtualWork => viscous += term.energy(&sample),
                 Kind::Potential => {
-                    let energy = |at| effect.energy(&interval.frame([at, at]));
+                    let energy = |at| term.energy(&interval.sample([at, at]));
                     let (before, after) = (energy(start), energy(end));
                     change += after - before;
                     size += before.abs() + after.abs();

@@ -59,9 +59,9 @@ pub(super) fn is_inverted(model: &Model, at: &Configuration, scalars: &[f64]) ->
         return false;
     }
     let interval = Interval::given(scalars, 1.0);
-    let frame = interval.frame([at, at]);
-    let mut effects = model.action.intervals.effects.iter();
-    effects.any(|e| e.kind() == Kind::Potential && !e.energy(&frame).is_finite())
+    let sample = interval.sample([at, at]);
+    let mut terms = model.action.intervals.terms.iter();
+    terms.any(|e| e.kind() == Kind::Potential && !e.energy(&sample).is_finite())
 }
 
 /// The first interval of a motion in which the span of a lumped muscle turns by a right angle or more, and the muscle.

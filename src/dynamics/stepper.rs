@@ -207,13 +207,13 @@ impl<E: Equations> Steps<E> {
         for _ in 0..limit {
             self.go_on(h)?;
             self.report.iterations += 1;
-            let level = if reused {
+            let order = if reused {
                 Order::Gradient
             } else {
                 Order::Hessian
             };
             let began = Instant::now();
-            self.equations.evaluate(level, h, &mut self.residual);
+            self.equations.evaluate(order, h, &mut self.residual);
             self.report.assembly += began.elapsed().as_secs_f64();
             let norm = self.residual.iter().map(|r| r * r).sum::<f64>().sqrt();
             residuals.push(norm);

@@ -3,7 +3,7 @@
 use crate::math::{Matrix, Vector};
 use rustc_hash::FxHashMap;
 
-/// The pairs that couple at one site; laid down once by the effects, the same for every interval.
+/// The pairs that couple at one site; laid down once by the terms, the same for every interval.
 ///
 /// Vector pairs come in both orders.
 #[derive(Clone, Debug, Default)]

@@ -185,6 +185,10 @@ impl<K: Kernel> Term for Group<K> {
         self.register(couplings, slots);
     }
 
+    fn is_dead_load(&self) -> bool {
+        self.kind() == Kind::Potential && K::DEGREE == 1
+    }
+
     fn kind(&self) -> Kind {
         match (self.site, K::VIRTUAL) {
             (Site::Instants, _) => Kind::Constraint,

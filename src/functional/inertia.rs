@@ -1,4 +1,4 @@
-//! Kinetic energy of constant masses: the one effect whose second derivative never changes.
+//! Kinetic energy of constant masses: the one term whose second derivative never changes.
 
 use crate::functional::{Couplings, Horizon, Kind, Order, Output, Sample, Term};
 use crate::math::Vector;
@@ -67,14 +67,14 @@ impl Term for Inertia {
         Kind::Kinetic
     }
 
-    fn energy(&self, frame: &Sample<'_>) -> f64 {
-        let [x, y] = frame.vectors;
+    fn energy(&self, sample: &Sample<'_>) -> f64 {
+        let [x, y] = sample.vectors;
         let product = |m: &Mass| {
             let [a, b] = m.vectors;
             let once = m.mass * (y[a] - x[a]).dot(&(y[b] - x[b]));
             if m.is_point() { once } else { 2.0 * once }
         };
-        self.masses.iter().map(product).sum::<f64>() * 0.5 / (frame.h * frame.h)
+        self.masses.iter().map(product).sum::<f64>() * 0.5 / (sample.h * sample.h)
     }
 
     fn momentum(&self, _x: &[Vector], v: &[Vector], out: &mut [Vector]) {
@@ -87,12 +87,12 @@ impl Term for Inertia {
         }
     }
 
-    fn evaluate(&self, level: Order, frame: &Sample<'_>, slots: &[u32], out: &mut Output) {
+    fn evaluate(&self, order: Order, sample: &Sample<'_>, slots: &[u32], out: &mut Output) {
         for (m, slots) in self.masses.iter().zip(slots.chunks_exact(2)) {
             let [a, b] = m.vectors;
-            add(level, frame, m.mass, [a, b], slots[0] as usize, out);
+            add(order, sample, m.mass, [a, b], slots[0] as usize, out);
             if !m.is_point() {
-                add(level, frame, m.mass, [b, a], slots[1] as usize, out);
+                add(order, sample, m.mass, [b, a], slots[1] as usize, out);
             }
         }
     }
@@ -101,36 +101,36 @@ impl Term for Inertia {
 /// The rows of vector `a` against the rate of vector `b`.
 #[inline]
 fn add(
-    level: Order,
-    frame: &Sample<'_>,
+    order: Order,
+    sample: &Sample<'_>,
     mass: f64,
     [a, b]: [usize; 2],
     slot: usize,
     out: &mut Output,
 ) {
-    let ([x, y], [wx, wy]) = (frame.vectors, frame.along);
-    let r = 1.0 / frame.h;
+    let ([x, y], [wx, wy]) = (sample.vectors, sample.along);
+    let r = 1.0 / sample.h;
     let step = y[b] - x[b];
     let momentum = step * (mass * r);
     out.plain.forces[0][a] -= momentum;
     out.plain.forces[1][a] += momentum;
-    if level >= Order::Hessian {
+    if order >= Order::Hessian {
         let block = &mut out.plain.blocks.isotropic[slot];
         let c = mass * r;
         block[0] += c;
         block[1] -= c;
         block[2] -= c;
         block[3] += c;
-        if frame.horizon == Horizon::Free {
+        if sample.horizon == Horizon::Free {
             out.plain.horizon_forces[0][a] += momentum * r;
             out.plain.horizon_forces[1][a] -= momentum * r;
         }
     }
-    if level == Order::Third {
+    if order == Order::Third {
         let momentum_w = (wy[b] - wx[b]) * (mass * r);
         out.contracted.forces[0][a] -= momentum_w;
         out.contracted.forces[1][a] += momentum_w;
-        if frame.horizon == Horizon::Free {
+        if sample.horizon == Horizon::Free {
             out.contracted.horizon_forces[0][a] += momentum_w * r;
             out.contracted.horizon_forces[1][a] -= momentum_w * r;
             let step_w = wy[a] - wx[a];

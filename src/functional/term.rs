@@ -15,7 +15,7 @@ pub enum Order {
     Third,
 }
 
-/// What an effect reads on one interval.
+/// What a term reads on one interval.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<'a> {
     /// Vectors at t_k and t_{k+1}.
@@ -32,7 +32,7 @@ pub struct Sample<'a> {
     pub horizon: Horizon,
     /// Which blocks are asked for.
     pub sides: BlockMask,
-    /// Weights of the measures of the site in the contraction at level `Third`.
+    /// Weights of the measures of the site in the contraction at order `Third`.
     pub weights: &'a [f64],
 }
 
@@ -61,7 +61,7 @@ pub enum Horizon {
     Free,
 }
 
-/// Where an effect adds its derivatives.
+/// Where a term adds its derivatives.
 #[derive(Clone, Debug)]
 pub struct Output {
     /// The derivatives.
@@ -70,7 +70,7 @@ pub struct Output {
     pub contracted: Part,
 }
 
-/// What an effect is in the energy balance.
+/// What a term is in the energy balance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Kinetic energy.
@@ -94,11 +94,16 @@ pub trait Term: Debug + Send + Sync {
     /// Registers the couplings of the elements, and lists the slots that they got in the order in which they are read.
     fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>);
 
-    /// What the effect is in the energy balance.
+    /// What the term is in the energy balance.
     fn kind(&self) -> Kind;
 
+    /// Whether it is the potential of constant forces, such as weights: of degree one in places, and of nothing else.
+    fn is_dead_load(&self) -> bool {
+        false
+    }
+
     /// Kinetic or potential energy at the midpoint of an interval in mJ; the work that a virtual work does over it.
-    fn energy(&self, frame: &Sample<'_>) -> f64;
+    fn energy(&self, sample: &Sample<'_>) -> f64;
 
     /// Names of the parts of its energy, as reports show them.
     fn energy_parts(&self) -> Vec<String> {
@@ -106,15 +111,15 @@ pub trait Term: Debug + Send + Sync {
     }
 
     /// The parts of its energy, in the order of their names.
-    fn energies(&self, frame: &Sample<'_>, out: &mut Vec<f64>) {
-        out.push(self.energy(frame));
+    fn energies(&self, sample: &Sample<'_>, out: &mut Vec<f64>) {
+        out.push(self.energy(sample));
     }
 
     /// Adds the momenta ∂T/∂ẋ at vectors x with rates v.
     fn momentum(&self, x: &[Vector], v: &[Vector], out: &mut [Vector]);
 
     /// Adds the derivatives; `slots` are those of its couplings.
-    fn evaluate(&self, level: Order, frame: &Sample<'_>, slots: &[u32], out: &mut Output);
+    fn evaluate(&self, order: Order, sample: &Sample<'_>, slots: &[u32], out: &mut Output);
 }
 
 /// A quantity at one site that is read by itself: a path limit, a goal.
@@ -132,25 +137,25 @@ pub trait Measure: Debug + Send + Sync {
     fn reads(&self, side: usize) -> bool;
 
     /// Its value.
-    fn value(&self, frame: &Sample<'_>) -> f64;
+    fn value(&self, sample: &Sample<'_>) -> f64;
 
     /// Adds its gradient.
-    fn gradient(&self, frame: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]);
+    fn gradient(&self, sample: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]);
 
     /// Adds its gradient and Hessian times a weight; `slots` are those of its couplings.
-    fn add_weighted(&self, weight: f64, frame: &Sample<'_>, slots: &[u32], part: &mut Part);
+    fn add_weighted(&self, weight: f64, sample: &Sample<'_>, slots: &[u32], part: &mut Part);
 }
 
-/// A sum of effects at one site, and the quantities that are measured there.
+/// A sum of terms at one site, and the quantities that are measured there.
 #[derive(Debug, Default)]
 pub struct Functional {
-    /// The effects.
-    pub effects: Vec<Box<dyn Term>>,
+    /// The terms.
+    pub terms: Vec<Box<dyn Term>>,
     /// The quantities.
     pub measures: Vec<Box<dyn Measure>>,
     /// What couples in them.
     pub couplings: Couplings,
-    /// Slots of the couplings of each effect.
+    /// Slots of the couplings of each term.
     effect_slots: Vec<Vec<u32>>,
     /// Slots of the couplings of each quantity.
     measure_slots: Vec<Vec<u32>>,
@@ -161,9 +166,9 @@ pub struct Functional {
 }
 
 impl Functional {
-    /// A sum over effects that read `vectors` vectors and `scalars` scalars.
+    /// A sum over terms that read `vectors` vectors and `scalars` scalars.
     pub fn new(
-        effects: Vec<Box<dyn Term>>,
+        terms: Vec<Box<dyn Term>>,
         measures: Vec<Box<dyn Measure>>,
         vectors: usize,
         scalars: usize,
@@ -174,12 +179,12 @@ impl Functional {
             couple(&mut couplings, &mut slots);
             slots
         };
-        let of_effect = |effect: &dyn Term| laid(&|c, slots| effect.couple(c, slots));
-        let effect_slots = effects.iter().map(Box::as_ref).map(of_effect).collect();
+        let of_term = |term: &dyn Term| laid(&|c, slots| term.couple(c, slots));
+        let effect_slots = terms.iter().map(Box::as_ref).map(of_term).collect();
         let of_measure = |measure: &dyn Measure| laid(&|c, slots| measure.couple(c, slots));
         let measure_slots = measures.iter().map(Box::as_ref).map(of_measure).collect();
         Self {
-            effects,
+            terms,
             measures,
             couplings,
             effect_slots,
@@ -189,21 +194,21 @@ impl Functional {
         }
     }
 
-    /// The effects with the slots of their couplings.
+    /// The terms with the slots of their couplings.
     pub fn terms(&self) -> impl Iterator<Item = (&dyn Term, &[u32])> {
-        let effects = self.effects.iter().map(Box::as_ref);
-        effects.zip(self.effect_slots.iter().map(Vec::as_slice))
+        let terms = self.terms.iter().map(Box::as_ref);
+        terms.zip(self.effect_slots.iter().map(Vec::as_slice))
     }
 
-    /// Storage for the derivatives up to a level.
-    pub fn output(&self, level: Order) -> Output {
+    /// Storage for the derivatives up to a order.
+    pub fn output(&self, order: Order) -> Output {
         let part = |least: Order| {
-            let couplings = (level >= least).then_some(&self.couplings);
+            let couplings = (order >= least).then_some(&self.couplings);
             Part::new(self.vectors, self.scalars, couplings)
         };
         Output {
             plain: part(Order::Hessian),
-            contracted: if level == Order::Third {
+            contracted: if order == Order::Third {
                 part(Order::Third)
             } else {
                 Part::default()
@@ -212,19 +217,19 @@ impl Functional {
     }
 
     /// The derivatives on one interval, in place of what `out` held.
-    pub fn evaluate(&self, level: Order, frame: &Sample<'_>, out: &mut Output) {
-        out.plain.clear(level >= Order::Hessian);
-        if level == Order::Third {
+    pub fn evaluate(&self, order: Order, sample: &Sample<'_>, out: &mut Output) {
+        out.plain.clear(order >= Order::Hessian);
+        if order == Order::Third {
             out.contracted.clear(true);
         }
-        for (effect, slots) in self.terms() {
-            effect.evaluate(level, frame, slots, out);
+        for (term, slots) in self.terms() {
+            term.evaluate(order, sample, slots, out);
         }
-        if level == Order::Third {
+        if order == Order::Third {
             let measures = self.measures.iter().zip(&self.measure_slots);
-            for ((measure, slots), &weight) in measures.zip(frame.weights) {
+            for ((measure, slots), &weight) in measures.zip(sample.weights) {
                 if weight != 0.0 {
-                    measure.add_weighted(weight, frame, slots, &mut out.contracted);
+                    measure.add_weighted(weight, sample, slots, &mut out.contracted);
                 }
             }
         }

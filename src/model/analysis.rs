@@ -1,4 +1,4 @@
-//! What is asked of a system, as far as it decides which effects are called for.
+//! What is asked of a system, as far as it decides which terms are called for.
 
 use crate::model::quantity::Quantity;
 use std::collections::BTreeSet;

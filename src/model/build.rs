@@ -122,7 +122,7 @@ impl Model {
             }
             .constraints(question.interval),
         };
-        let (instants, constraints) = (made.effects, made.multipliers);
+        let (instants, constraints) = (made.terms, made.multipliers);
         present.extend(made.present);
         left_out.extend(made.left_out);
         plan::settle(&present, &mut left_out);

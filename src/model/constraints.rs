@@ -34,7 +34,7 @@ pub(super) struct Builder<'a> {
 /// Constraints collected for the action, with the names of their multipliers.
 #[derive(Default)]
 pub(super) struct Made {
-    pub(super) effects: Vec<Box<dyn Term>>,
+    pub(super) terms: Vec<Box<dyn Term>>,
     pub(super) multipliers: Vec<String>,
     pub(super) present: Vec<Present>,
     pub(super) left_out: Vec<LeftOut>,
@@ -71,7 +71,7 @@ impl Made {
             plan::note(&mut self.present, term, why, name);
         }
         let group = Group::<Formulas<E, M, NV, NS>>::instants(term, scale, elements);
-        self.effects.push(Box::new(group));
+        self.terms.push(Box::new(group));
     }
 }
 

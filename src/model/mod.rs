@@ -1,4 +1,4 @@
-//! Where physics meets indices: from a checked system to sums of effects over its coordinates.
+//! Where physics meets indices: from a checked system to sums of terms over its coordinates.
 
 mod analysis;
 mod attachment;

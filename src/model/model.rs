@@ -15,7 +15,7 @@ use crate::model::system::{Source, System};
 use crate::model::variables::{Size, Variable, Variables};
 use crate::sparse::Symmetry;
 
-/// A system with its coordinates, vectors and effects: constant during a run.
+/// A system with its coordinates, vectors and terms: constant during a run.
 #[derive(Debug)]
 pub struct Model {
     /// What the scene means.
@@ -28,7 +28,7 @@ pub struct Model {
     pub coordinates: Coordinates,
     /// The action as a function of coordinates and voltages.
     pub action: Reduced,
-    /// The vectors that effects read, in terms of poses.
+    /// The vectors that terms read, in terms of poses.
     pub vectors: Vec<MaterialVector>,
     /// What is unknown or prescribed, at instants and in intervals.
     pub variables: Variables,
@@ -130,8 +130,8 @@ impl Model {
     /// Whether the tangent of a step is symmetric: all coordinates are nodes', and every force has a potential.
     pub fn step_symmetry(&self) -> Symmetry {
         let motion = &self.action.motion;
-        let effects = &self.action.intervals.effects;
-        let has_potential = effects.iter().all(|e| e.kind() != Kind::VirtualWork);
+        let terms = &self.action.intervals.terms;
+        let has_potential = terms.iter().all(|e| e.kind() != Kind::VirtualWork);
         match motion.of_bodies == 0 && motion.multipliers == 0 && has_potential {
             true => Symmetry::Symmetric,
             false => Symmetry::Unsymmetric,

@@ -56,29 +56,29 @@ struct Collected {
 
 /// What elements of one type are together.
 pub(super) trait Member: Sized + 'static {
-    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term>;
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term>;
 }
 
 impl Member for Mass {
-    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         Box::new(Inertia::new(name, list))
     }
 }
 
 impl<F: Electrical> Member for FiniteElement<F> {
-    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         Box::new(Group::<FiniteElements<F>>::intervals(name, -1.0, list))
     }
 }
 
 impl Member for ViscousElement {
-    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         Box::new(Group::<ViscousElements>::intervals(name, 1.0, list))
     }
 }
 
 impl Member for Path {
-    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         Box::new(Group::<Paths>::intervals(name, -1.0, list))
     }
 }
@@ -93,7 +93,7 @@ impl<E, const M: usize, const NV: usize, const NS: usize, const KINETIC: bool> M
 where
     E: Energy<M> + 'static,
 {
-    fn effect(name: &str, list: Vec<Self>) -> Box<dyn Term> {
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         // The action has the kinetic energy less the potential one; a virtual work is added.
         let scale = if KINETIC || E::VIRTUAL > 0 { 1.0 } else { -1.0 };
         let elements = list.into_iter().map(|Self(element)| element).collect();
@@ -249,7 +249,7 @@ impl<'a> Terms<'a> {
             list: Box::new(vec![element]),
             finish: |name, list| {
                 let list = list.downcast::<Vec<T>>();
-                T::effect(name, *list.expect("a list of its own elements"))
+                T::term(name, *list.expect("a list of its own elements"))
             },
         });
     }
@@ -259,8 +259,8 @@ impl<'a> Terms<'a> {
         self.collected
             .sort_by_key(|collected| plan::rank(collected.term));
         let collected = self.collected.into_iter();
-        let effects = collected.map(|c| (c.finish)(c.term, c.list));
-        (effects.collect(), self.present, self.left_out)
+        let terms = collected.map(|c| (c.finish)(c.term, c.list));
+        (terms.collect(), self.present, self.left_out)
     }
 }
 

@@ -140,7 +140,7 @@ pub fn coupling(model: &Model, i: usize, j: usize) -> Vec<String> {
 /// The effects of a model one after the other.
 fn each(model: &Model) -> impl Iterator<Item = Coupled<'_>> {
     let sums = [&model.action.intervals, &model.action.instants];
-    let effects = sums.into_iter().flat_map(|sum| &sum.effects);
+    let effects = sums.into_iter().flat_map(|sum| &sum.terms);
     effects.map(|effect| Coupled::new(effect.as_ref(), &model.action.motion))
 }
 

@@ -20,21 +20,21 @@ pub(crate) fn times(model: &Model, spent: f64) -> Vec<f64> {
     let instant = action.motion.placed(&start);
     let scalars = vec![0.0; action.intervals.scalars];
     let interval = Interval::given(&scalars, model.analysis.interval);
-    let of_interval = interval.frame([&instant, &instant]);
+    let of_interval = interval.sample([&instant, &instant]);
     let multipliers = vec![0.0; action.instants.scalars];
     let of_instant = Sample {
         scalars: &multipliers,
         ..of_interval
     };
     let mut times = Vec::new();
-    for (sum, frame) in [
+    for (sum, sample) in [
         (&action.intervals, &of_interval),
         (&action.instants, &of_instant),
     ] {
         let mut output = sum.output(Order::Hessian);
         times.extend(
             sum.terms()
-                .map(|term| 1e6 * time(term, frame, &mut output, spent)),
+                .map(|term| 1e6 * time(term, sample, &mut output, spent)),
         );
     }
     times
@@ -43,14 +43,14 @@ pub(crate) fn times(model: &Model, spent: f64) -> Vec<f64> {
 /// Time of one evaluation in s.
 fn time(
     (effect, slots): (&dyn Term, &[u32]),
-    frame: &Sample<'_>,
+    sample: &Sample<'_>,
     output: &mut Output,
     spent: f64,
 ) -> f64 {
     let mut run = |count: u32| {
         let began = Instant::now();
         for _ in 0..count {
-            effect.evaluate(Order::Hessian, black_box(frame), slots, output);
+            effect.evaluate(Order::Hessian, black_box(sample), slots, output);
         }
         black_box(&output);
         began.elapsed().as_secs_f64() / f64::from(count)

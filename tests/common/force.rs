@@ -47,9 +47,9 @@ pub fn with_control<E: Energy<4> + 'static>(
         instants,
         ..
     } = model.action;
-    let mut effects = intervals.effects;
-    effects.push(Box::new(control) as Box<dyn Term>);
-    let intervals = Functional::new(effects, intervals.measures, intervals.vectors, 1);
+    let mut terms = intervals.terms;
+    terms.push(Box::new(control) as Box<dyn Term>);
+    let intervals = Functional::new(terms, intervals.measures, intervals.vectors, 1);
     model.action = Reduced::new(motion, intervals, instants);
     let control = Variable::voltage(0, "control".to_owned());
     assert_eq!(model.variables.add(control), 0);

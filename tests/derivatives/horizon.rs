@@ -141,7 +141,7 @@ impl Interval {
     fn energies(&self, vectors: [&[Vector]; 2], h: f64) -> [f64; 2] {
         let frame = self.frame(vectors, h, Horizon::Given);
         let of = |kind: Kind| {
-            let effects = self.model.action.intervals.effects.iter();
+            let effects = self.model.action.intervals.terms.iter();
             effects
                 .filter(|e| e.kind() == kind)
                 .map(|e| e.energy(&frame))

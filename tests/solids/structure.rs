@@ -240,7 +240,7 @@ fn kinds(solid: Solid) -> Vec<Kind> {
     model
         .action
         .intervals
-        .effects
+        .terms
         .iter()
         .map(|e| e.kind())
         .collect()

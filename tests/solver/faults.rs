@@ -302,7 +302,7 @@ fn swing(
     let mut model = Model::new(trunk(1), Some(coordinates), 10.0, &[]).unwrap();
     let start = Start::at_rest(&model, at_reference(&model));
     let calls = Arc::new(AtomicUsize::new(0));
-    let effects = &mut model.action.intervals.effects;
+    let effects = &mut model.action.intervals.terms;
     let effect = effects.remove(0);
     let failing = Failing {
         effect,

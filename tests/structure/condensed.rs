@@ -59,7 +59,7 @@ pub(crate) fn moved(system: &System, task: &Simulation) -> (Model, DiscreteTraje
 
 pub(crate) fn names(model: &Model) -> BTreeSet<String> {
     let sums = [&model.action.intervals, &model.action.instants];
-    let effects = sums.into_iter().flat_map(|sum| &sum.effects);
+    let effects = sums.into_iter().flat_map(|sum| &sum.terms);
     effects.map(|e| Term::name(e.as_ref()).to_owned()).collect()
 }
 
@@ -146,7 +146,7 @@ fn at_rest_there_is_neither_inertia_nor_friction() {
             let still = Model::answering(system.clone(), task.question(&system)).unwrap();
             let moving = Model::answering(system.clone(), of_motion).unwrap();
             let kinds = |model: &Model| -> Vec<Kind> {
-                let effects = model.action.intervals.effects.iter();
+                let effects = model.action.intervals.terms.iter();
                 effects.map(|e| e.kind()).collect()
             };
             for kind in [Kind::Kinetic, Kind::VirtualWork] {

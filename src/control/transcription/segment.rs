@@ -30,7 +30,7 @@ pub(super) struct Shared<'a> {
     pub(super) h: f64,
     pub(super) horizon: Horizon,
     pub(super) placed: Placed,
-    pub(super) level: Order,
+    pub(super) order: Order,
     /// Until when intervals are evaluated.
     pub(super) limit: Option<TimeLimit>,
 }
@@ -58,9 +58,9 @@ pub(super) struct Segment<'a> {
     pub(super) rows: &'a mut [f64],
 }
 
-/// What a level needs of an instant.
-pub(super) fn needed(level: Order) -> Placed {
-    match level {
+/// What a order needs of an instant.
+pub(super) fn needed(order: Order) -> Placed {
+    match order {
         Order::Gradient => Placed::Vectors,
         Order::Hessian | Order::Third => Placed::Columns,
     }
@@ -109,16 +109,16 @@ impl Segment<'_> {
         square
     }
 
-    /// Places an instant as far as the level needs it, and clears what is added to.
+    /// Places an instant as far as the order needs it, and clears what is added to.
     fn prepare(&mut self, j: usize) {
         let Shared {
             action,
-            level,
+            order,
             placed,
             ..
         } = self.shared;
         let segment = action.layout().same_at(j)..action.layout().same_at(j + 1);
-        if level >= Order::Hessian && segment.end <= self.values.len() {
+        if order >= Order::Hessian && segment.end <= self.values.len() {
             self.values[segment].fill(0.0);
         }
         let motion = &action.motion;
@@ -126,11 +126,11 @@ impl Segment<'_> {
         if placed < Placed::Vectors {
             motion.vectors(instant);
         }
-        if placed < needed(level) && needed(level) == Placed::Columns {
+        if placed < needed(order) && needed(order) == Placed::Columns {
             motion.tangent(instant);
         }
         instant.forces.fill(Vector::zeros());
-        if level == Order::Third {
+        if order == Order::Third {
             instant.contracted.fill(Vector::zeros());
             motion.along(instant);
         }
@@ -139,7 +139,7 @@ impl Segment<'_> {
     fn interval(&mut self, j: usize) -> f64 {
         let Shared {
             action,
-            level,
+            order,
             horizon,
             h,
             stride,
@@ -169,17 +169,17 @@ impl Segment<'_> {
             sides: BlockMask::ALL,
             weights,
         };
-        action.evaluate_interval(level, [a, b], &interval, scratch);
-        if level == Order::Gradient {
+        action.evaluate_interval(order, [a, b], &interval, scratch);
+        if order == Order::Gradient {
             let rows = &mut self.rows[j * stride + action.motion.unknowns()..(j + 1) * stride];
             rows.copy_from_slice(&scratch.interval.plain.rows);
         }
-        scratch.carry(level);
+        scratch.carry(order);
         let carried = Interval {
             sides: BlockMask::CARRIED,
             ..interval
         };
-        action.pull_back_interval(level, [a, b], &carried, j, scratch, self.values);
+        action.pull_back_interval(order, [a, b], &carried, j, scratch, self.values);
         scratch.interval.contracted.horizon
     }
 }
@@ -193,15 +193,15 @@ pub(super) fn instant_of(
     values: &mut [f64],
     rows: &mut [f64],
 ) {
-    let Shared { action, level, .. } = shared;
+    let Shared { action, order, .. } = shared;
     let Workspace {
         scratch,
         weights: [weights, _],
     } = bench;
     fill_weights(weights, shared.limits, Site::Instants, k, shared.costates);
-    action.evaluate_instant(level, instant, weights, scratch);
-    action.pull_back_instant(level, instant, j, scratch, values);
-    if level == Order::Gradient {
+    action.evaluate_instant(order, instant, weights, scratch);
+    action.pull_back_instant(order, instant, j, scratch, values);
+    if order == Order::Gradient {
         let count = action.motion.unknowns();
         let rows = &mut rows[j * shared.stride..j * shared.stride + count];
         rows.fill(0.0);

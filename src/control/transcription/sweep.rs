@@ -16,7 +16,7 @@ impl<'m> Transcription<'m> {
 
     /// Instant by instant and interval by interval, each while it is in the cache: forces, and second derivatives into
     /// the values. Contracted derivatives are taken along the costates in the instants.
-    pub(super) fn sweep(&mut self, level: Order) {
+    pub(super) fn sweep(&mut self, order: Order) {
         let (action, last) = (&self.model.action, self.intervals);
         let (layout, stride) = (action.layout(), self.stride());
         let (rows, costates) = self.rows.split_at_mut((last + 1) * stride);
@@ -30,7 +30,7 @@ impl<'m> Transcription<'m> {
             h: self.h,
             horizon: self.horizon,
             placed: self.placed,
-            level,
+            order,
             limit: interrupt::limit(),
         };
         let [bench, second] = &mut self.benches;
@@ -69,7 +69,7 @@ impl<'m> Transcription<'m> {
             };
             both(&mut instant.forces, &self.halo.forces);
             both(&mut instant.contracted, &self.halo.contracted);
-            action.pull_back_last(level, instant, middle, &mut self.benches[0].scratch, values);
+            action.pull_back_last(order, instant, middle, &mut self.benches[0].scratch, values);
             instant_of(
                 shared,
                 instant,
@@ -96,7 +96,7 @@ impl<'m> Transcription<'m> {
         }
         let bench = &mut self.benches[usize::from(self.middle.is_some())];
         action.pull_back_last(
-            level,
+            order,
             &self.instants[last],
             last,
             &mut bench.scratch,
@@ -110,18 +110,18 @@ impl<'m> Transcription<'m> {
             values,
             rows,
         );
-        if level == Order::Third && self.horizon == Horizon::Free {
+        if order == Order::Third && self.horizon == Horizon::Free {
             values[layout.horizon_square_at(last)] = square;
         }
         // A sweep that was stopped has placed some instants only.
         self.placed = match interrupt::stop() {
             Some(_) => Placed::Nothing,
-            None => self.placed.max(needed(level)),
+            None => self.placed.max(needed(order)),
         };
     }
 
     /// The frame in which a measure is read at instant or interval k.
-    fn frame(&self, site: Site, k: usize) -> Sample<'_> {
+    fn sample(&self, site: Site, k: usize) -> Sample<'_> {
         let scalar_count = self.model.action.layout().interval_scalars;
         let next = k + site.sides() - 1;
         Sample {
@@ -145,7 +145,7 @@ impl<'m> Transcription<'m> {
     }
 
     pub(super) fn limit_value(&self, limit: &LimitRow, k: usize) -> f64 {
-        self.measure(limit).value(&self.frame(limit.site, k))
+        self.measure(limit).value(&self.sample(limit.site, k))
     }
 }
 
@@ -160,7 +160,7 @@ impl Transcription<'_> {
             let measure = self.measure(&self.limits[limit]);
             let site = self.limits[limit].site;
             let mut part = std::mem::take(&mut self.measured);
-            measure.gradient(&self.frame(site, k), &mut part.forces, &mut part.rows);
+            measure.gradient(&self.sample(site, k), &mut part.forces, &mut part.rows);
             // Rows of the coordinates of one side at a time, in the storage of one instant's rows.
             let mut at = 0;
             for side in (0..site.sides()).filter(|&side| measure.reads(side)) {

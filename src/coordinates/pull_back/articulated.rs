@@ -1,7 +1,7 @@
 //! Pairs of articulated vectors: dense products of packed columns, four lanes at a time.
 //!
 //! Vectors with the same support (all vectors of one body, all spans between two) share one small local matrix, which is
-//! scattered once; so the cost of scattering does not grow with the number of effects.
+//! scattered once; so the cost of scattering does not grow with the number of terms.
 
 use crate::coordinates::pattern::{BlockPattern, StepPattern};
 use crate::coordinates::pull_back::destination::{Destination, Site};

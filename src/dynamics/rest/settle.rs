@@ -19,10 +19,10 @@ impl Statics<'_> {
         self.a.z[..m].copy_from_slice(&state[..m]);
         action.motion.place(&mut self.a);
         let interval = Interval::given(&self.scalars, 1.0);
-        let frame = interval.frame([&self.a, &self.a]);
-        let effects = action.intervals.effects.iter();
-        let potential = effects.filter(|effect| effect.kind() == Kind::Potential);
-        potential.map(|effect| effect.energy(&frame)).sum()
+        let sample = interval.sample([&self.a, &self.a]);
+        let terms = action.intervals.terms.iter();
+        let potential = terms.filter(|term| term.kind() == Kind::Potential);
+        potential.map(|term| term.energy(&sample)).sum()
     }
 
     /// The instant placed last.

@@ -375,11 +375,11 @@ fn weights(model: &Model) -> Vec<Vector> {
     let instant = motion.placed(&vec![0.0; motion.unknowns()]);
     let scalars = vec![0.0; model.action.layout().interval_scalars];
     let interval = Interval::given(&scalars, model.multiplier_time);
-    let frame = interval.frame([&instant, &instant]);
+    let sample = interval.sample([&instant, &instant]);
     let mut out = model.action.intervals.output(Order::Gradient);
     let terms = model.action.intervals.terms();
-    for (gravity, slots) in terms.filter(|(effect, _)| effect.name() == "gravity") {
-        gravity.evaluate(Order::Gradient, &frame, slots, &mut out);
+    for (load, slots) in terms.filter(|(term, _)| term.is_dead_load()) {
+        load.evaluate(Order::Gradient, &sample, slots, &mut out);
     }
     let [here, there] = &out.plain.forces;
     here.iter().zip(there).map(|(a, b)| a + b).collect()

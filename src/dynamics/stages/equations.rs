@@ -5,7 +5,7 @@ use crate::dynamics::equations::Equations;
 use crate::dynamics::momenta::vector_momenta;
 use crate::dynamics::stages::lobatto::lagrange;
 use crate::dynamics::stages::rule::Rule;
-use crate::dynamics::stages::state::{StagePoint, Stages, frame};
+use crate::dynamics::stages::state::{StagePoint, Stages, between};
 use crate::functional::{Kind, Order};
 use crate::math::Vector;
 use crate::model::Model;
@@ -40,14 +40,14 @@ impl Equations for Stages<'_> {
         }
     }
 
-    fn evaluate(&mut self, level: Order, h: f64, residual: &mut [f64]) {
-        self.sample(level, h);
+    fn evaluate(&mut self, order: Order, h: f64, residual: &mut [f64]) {
+        self.sample(order, h);
         let model = self.model;
         let action = &model.action;
         let motion = &action.motion;
         let (n, m) = (motion.coordinates, motion.unknowns());
         residual.fill(0.0);
-        if level >= Order::Hessian {
+        if order >= Order::Hessian {
             self.values.fill(0.0);
         }
         let last = self.points.len() - 1;
@@ -62,8 +62,8 @@ impl Equations for Stages<'_> {
         for at in 0..=last {
             let instant = &mut self.points[at];
             let values = &mut self.values[self.places.same(at)..];
-            action.evaluate_instant(level, instant, &[], &mut self.scratch);
-            action.pull_back_instant(level, instant, 0, &mut self.scratch, values);
+            action.evaluate_instant(order, instant, &[], &mut self.scratch);
+            action.pull_back_instant(order, instant, 0, &mut self.scratch, values);
             if at > 0 {
                 let rows = &mut residual[(at - 1) * m + n..at * m];
                 rows.copy_from_slice(&self.scratch.instant.plain.rows);
@@ -83,7 +83,7 @@ impl Equations for Stages<'_> {
         for (rows, sample) in of_samples.zip(&self.samples) {
             rows.copy_from_slice(&sample.out.plain.rows[algebraic.clone()]);
         }
-        if level >= Order::Hessian {
+        if order >= Order::Hessian {
             self.tangent_of_points(h);
             if !algebraic.is_empty() {
                 self.tangent_of_scalars();
@@ -152,13 +152,13 @@ impl Equations for Stages<'_> {
             return false;
         }
         if self.dissipates {
-            let effects = model.action.intervals.effects.iter();
-            let forces: Vec<_> = effects.filter(|e| e.kind() == Kind::VirtualWork).collect();
-            let work = |sample: &StagePoint| {
-                let [a, b] = &sample.x;
-                let frame = frame([a, b], &sample.scalars, h);
-                let work: f64 = forces.iter().map(|e| e.energy(&frame)).sum();
-                work * sample.weights.quadrature
+            let terms = model.action.intervals.terms.iter();
+            let forces: Vec<_> = terms.filter(|e| e.kind() == Kind::VirtualWork).collect();
+            let work = |point: &StagePoint| {
+                let [a, b] = &point.x;
+                let sample = between([a, b], &point.scalars, h);
+                let work: f64 = forces.iter().map(|e| e.energy(&sample)).sum();
+                work * point.weights.quadrature
             };
             self.work = Some(self.samples.iter().map(work).sum());
         }

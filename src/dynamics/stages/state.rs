@@ -108,7 +108,7 @@ impl<'m> Steps<Stages<'m>> {
         let n = motion.coordinates;
         let multipliers = vec![start.z[n..motion.unknowns()].to_vec(); degree];
         let algebraic = model.variables.algebraic();
-        let mut effects = action.intervals.effects.iter();
+        let mut terms = action.intervals.terms.iter();
         let equations = Stages {
             model,
             trail: vec![(0.0, start.z[..n].to_vec())],
@@ -123,7 +123,7 @@ impl<'m> Steps<Stages<'m>> {
                 vec![vec![0.0; algebraic.len()]; samples.len()],
             ),
             multipliers,
-            dissipates: effects.any(|e| e.kind() == Kind::VirtualWork),
+            dissipates: terms.any(|e| e.kind() == Kind::VirtualWork),
             work: None,
             rule,
             points,
@@ -153,8 +153,8 @@ fn moving(model: &Model, start: &Start) -> (Vec<Vector>, Vec<Vector>) {
     (instant.w, momenta)
 }
 
-/// What effects read of an interval of given length.
-pub(super) fn frame<'a>(vectors: [&'a [Vector]; 2], scalars: &'a [f64], h: f64) -> Sample<'a> {
+/// What terms read of an interval of given length.
+pub(super) fn between<'a>(vectors: [&'a [Vector]; 2], scalars: &'a [f64], h: f64) -> Sample<'a> {
     Sample {
         vectors,
         along: vectors,
@@ -169,7 +169,7 @@ pub(super) fn frame<'a>(vectors: [&'a [Vector]; 2], scalars: &'a [f64], h: f64) 
 
 impl Stages<'_> {
     /// Places the points and evaluates the samples.
-    pub(super) fn sample(&mut self, level: Order, h: f64) {
+    pub(super) fn sample(&mut self, order: Order, h: f64) {
         let Self {
             model,
             rule,
@@ -181,22 +181,22 @@ impl Stages<'_> {
         for point in &mut points[1..] {
             action.motion.place(point);
         }
-        for sample in samples {
-            for (side, x) in sample.x.iter_mut().enumerate() {
-                let take = &sample.weights.take[side];
+        for point in samples {
+            for (side, x) in point.x.iter_mut().enumerate() {
+                let take = &point.weights.take[side];
                 for (i, x) in x.iter_mut().enumerate() {
                     *x = Vector::zeros();
-                    for (point, &weight) in points.iter().zip(take) {
-                        *x += point.x[i] * weight;
+                    for (from, &weight) in points.iter().zip(take) {
+                        *x += from.x[i] * weight;
                     }
                     if let Rule::Alpha(alpha) = rule {
                         *x += alpha.carried_rate(i, h) * (0.5 * h * [-1.0, 1.0][side]);
                     }
                 }
             }
-            let [a, b] = &sample.x;
-            let frame = frame([a, b], &sample.scalars, h);
-            action.intervals.evaluate(level, &frame, &mut sample.out);
+            let [a, b] = &point.x;
+            let sample = between([a, b], &point.scalars, h);
+            action.intervals.evaluate(order, &sample, &mut point.out);
         }
     }
 
@@ -232,8 +232,8 @@ impl Stages<'_> {
                 for (i, a) in self.accelerations.iter_mut().enumerate() {
                     *a = alpha.acceleration(i, h, end.x[i] - start.x[i]) * -h;
                 }
-                for effect in &self.model.action.intervals.effects {
-                    effect.momentum(&end.x, &self.accelerations, &mut end.forces);
+                for term in &self.model.action.intervals.terms {
+                    term.momentum(&end.x, &self.accelerations, &mut end.forces);
                 }
             }
         }
