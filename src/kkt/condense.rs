@@ -73,7 +73,9 @@ impl Condensation {
         let kinds = condensation.classify(unknowns, rows, cols);
         condensation.sort(&kinds, rows, cols);
         let worth = condensation.multiplications() < WORTH * multiplications;
-        (worth && !condensation.states.is_empty()).then_some(condensation)
+        // Without inputs, as where start and goal leave nothing to choose, there is nothing to condense to.
+        let has_both = !condensation.states.is_empty() && !condensation.rest.is_empty();
+        (worth && has_both).then_some(condensation)
     }
 
     fn classify(&mut self, unknowns: &[Unknown], rows: &[u32], cols: &[u32]) -> Vec<Kind> {

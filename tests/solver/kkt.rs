@@ -345,3 +345,19 @@ fn singular_blocks_are_not_condensed() {
     let error = error(&system, &mut solver);
     assert!(error < 1e-9, "{error:e}");
 }
+
+#[test]
+fn systems_without_inputs_are_factorised_as_they_are() {
+    let mut random = Random(11);
+    let lone = Horizon {
+        inputs: 0,
+        ..CONDENSED
+    };
+    let system = System::of_horizon(lone, 1.0, &mut random);
+    let expected = system.inertia();
+    assert!(expected.negative > 0);
+    let mut solver = solver(&system, Some(&system.unknowns));
+    assert_eq!(solver.factor(&system.entries), expected);
+    let error = error(&system, &mut solver);
+    assert!(error < 1e-9, "{error:e}");
+}
