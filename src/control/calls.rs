@@ -105,7 +105,7 @@ impl<'a> Named<'a> {
         match state {
             BoundaryState::RestAtVoltages(_) => {}
             BoundaryState::JointAngles { angles, .. } => {
-                angles.keys().for_each(|&j| self.of_joint(j))
+                angles.keys().for_each(|&j| self.of_joint(j));
             }
             BoundaryState::Markers { places, .. } => places.keys().for_each(|&m| self.of_marker(m)),
         }

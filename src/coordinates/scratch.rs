@@ -6,7 +6,7 @@ use crate::math::Matrix;
 /// Storage that one evaluation needs, allocated once for each thread.
 ///
 /// In a sweep over a horizon the blocks of an instant are summed over both neighbouring intervals before they are pulled
-/// back: [`Scratch::carry`] after each interval, and [`Reduced::pull_back_last`] at the end.
+/// back: [`Scratch::carry`] after each interval, and [`Reduced::pull_back_last`](crate::coordinates::Reduced::pull_back_last) at the end.
 #[derive(Clone, Debug)]
 pub struct Scratch {
     /// Derivatives of the last interval.

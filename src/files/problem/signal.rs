@@ -37,7 +37,7 @@ pub(crate) fn signals(
 fn signal(spec: &SignalSpec, scope: &Scope<'_>) -> Result<Signal, SceneError> {
     let FunctionSpec { ramp, sine, table } = match spec {
         SignalSpec::Constant(voltage) => return Ok(Signal::Constant(voltage.value())),
-        SignalSpec::Function(function) => function,
+        SignalSpec::Function(function) => function.as_ref(),
     };
     type Build<'a> = Box<dyn FnOnce() -> Result<Signal, SceneError> + 'a>;
     let build = scope.exactly_one([

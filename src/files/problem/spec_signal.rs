@@ -15,7 +15,7 @@ pub enum SignalSpec {
     /// Constant.
     Constant(Quantity<Voltage>),
     /// A function of time.
-    Function(FunctionSpec),
+    Function(Box<FunctionSpec>),
 }
 
 /// A function of time: exactly one of the three.
@@ -76,6 +76,6 @@ pub struct SignalTableSpec {
 }
 
 scalar_or_object! {
-    SignalSpec: Quantity<Voltage> = Self::Constant, FunctionSpec = Self::Function,
+    SignalSpec: Quantity<Voltage> = Self::Constant, Box<FunctionSpec> = Self::Function,
         "a voltage such as \"1.7 kV\", or an object with \"ramp\", \"sine\" or \"table\"";
 }
