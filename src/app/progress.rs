@@ -52,32 +52,28 @@ impl Progress {
     /// A solve with an open number of iterations.
     pub(super) fn of_solve(shown: ProgressDisplay) -> Self {
         let bar = target(ProgressBar::no_length(), shown);
-        bar.set_style(style("{spinner} {elapsed_precise} {msg}"));
-        bar.enable_steady_tick(Duration::from_millis(120));
-        Self::starting(bar)
+        Self::starting(bar, "{spinner} {elapsed_precise} {msg}")
     }
 
     /// A simulation of `steps` steps.
     pub(super) fn of_steps(shown: ProgressDisplay, steps: usize) -> Self {
         let bar = target(ProgressBar::new(steps as u64), shown);
-        bar.set_style(style(
-            "{elapsed_precise} {bar:20} step {pos} of {len} {msg}",
-        ));
-        bar.enable_steady_tick(Duration::from_millis(120));
-        Self::starting(bar)
+        Self::starting(bar, "{elapsed_precise} {bar:20} step {pos} of {len} {msg}")
     }
 
     /// A solve from `starts` starting points.
     pub(super) fn of_starts(shown: ProgressDisplay, starts: usize) -> Self {
         let bar = target(ProgressBar::new(starts as u64), shown);
-        bar.set_style(style(
+        Self::starting(
+            bar,
             "{elapsed_precise} {wide_bar} start {pos} of {len} {msg}",
-        ));
-        bar.enable_steady_tick(Duration::from_millis(120));
-        Self::starting(bar)
+        )
     }
 
-    fn starting(bar: ProgressBar) -> Self {
+    /// Shows a bar by a template of indicatif, in the place of the one before.
+    fn starting(bar: ProgressBar, template: &str) -> Self {
+        bar.set_style(style(template));
+        bar.enable_steady_tick(Duration::from_millis(120));
         show_phases();
         let before = LINE.replace(Some(bar.clone()));
         if let Some(line) = &before {

@@ -1,5 +1,6 @@
 //! How a motion is integrated: by which method, and how the equations of a step are solved.
 
+use crate::model::system::{Fidelity, System};
 use crate::sparse::Backend;
 
 /// The method that leads from one instant to the next.
@@ -64,4 +65,17 @@ pub struct Solving {
     pub newton: Newton,
     /// Who factorises it; `None`: whoever is fastest as a rule.
     pub backend: Option<Backend>,
+}
+
+impl Newton {
+    /// What suits a system: the factorisation of finite elements is worth keeping, that of a few joint coordinates is not
+    /// (benches/README.md).
+    pub fn of(system: &System) -> Self {
+        let mut muscles = system.muscles.iter();
+        let of_muscles = muscles.any(|muscle| muscle.fidelity != Fidelity::Lumped);
+        match of_muscles || !system.solids.is_empty() {
+            true => Self::Modified,
+            false => Self::Full,
+        }
+    }
 }

@@ -41,7 +41,7 @@ impl Material {
 
     /// Poisson ratio, which finite elements need: λ = 2 μ ν/(1 − 2 ν).
     pub fn poisson_ratio(self, ratio: f64) -> Self {
-        let lame_lambda = Some(2.0 * self.shear_modulus * ratio / (1.0 - 2.0 * ratio));
+        let lame_lambda = Some(Self::first_lame_constant(self.shear_modulus, ratio));
         Self {
             lame_lambda,
             ..self

@@ -10,7 +10,6 @@ use crate::interface::motion::Motion;
 use crate::interface::state::State;
 use crate::ipopt::interrupt;
 use crate::model::System;
-use crate::model::system::{Fidelity, Muscle};
 use crate::workflow::integrate::{Simulated, integrate};
 use crate::workflow::{domain, memory, steps};
 use std::ops::ControlFlow;
@@ -124,8 +123,6 @@ impl Simulation {
             require(signal.is_sound(), "simulation", found, expected)?;
             signals[source(input, system)?] = signal.clone();
         }
-        let of_elements = |muscle: &Muscle| muscle.fidelity != Fidelity::Lumped;
-        let has_elements = !system.solids.is_empty() || system.muscles.iter().any(of_elements);
         Ok(problem::Simulation {
             duration: self.duration,
             step: self
@@ -137,10 +134,7 @@ impl Simulation {
             coordinates: None,
             solving: Solving {
                 integrator: self.integrator,
-                newton: match has_elements {
-                    true => Newton::Modified,
-                    false => Newton::Full,
-                },
+                newton: Newton::of(system),
                 backend: None,
             },
         })

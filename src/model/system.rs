@@ -320,6 +320,13 @@ pub struct Marker {
 /// Permittivity of vacuum in N/V² (F/m), CODATA value in the decimals of the reference solutions.
 pub const VACUUM_PERMITTIVITY: f64 = 8.854_187_817e-12;
 
+impl Material {
+    /// λ = 2 μ ν/(1 − 2 ν) of a shear modulus and a Poisson ratio.
+    pub fn first_lame_constant(shear_modulus: f64, poisson_ratio: f64) -> f64 {
+        2.0 * shear_modulus * poisson_ratio / (1.0 - 2.0 * poisson_ratio)
+    }
+}
+
 impl ElectricConstants {
     /// A dielectric of this relative permittivity whose polarisation is linear in the reference field.
     pub fn first_order(ratio: f64) -> Self {

@@ -28,7 +28,7 @@ fn numbers(csv: &str) -> Vec<Vec<f64>> {
 }
 
 /// Every tag closes, nothing is outside the root, no number is missing.
-fn assert_well_formed(svg: &str) {
+pub(crate) fn assert_well_formed(svg: &str) {
     assert!(svg.starts_with("<svg "));
     assert!(!svg.contains("NaN") && !svg.contains("inf"));
     let mut open = Vec::new();

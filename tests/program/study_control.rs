@@ -1,5 +1,6 @@
 //! Studies of control problems: re-simulation, points that fail, tables and figures.
 
+use crate::report::assert_well_formed;
 use crate::study::{numbers, of, results, steps, wheel};
 use proboscis::control::problem::Task;
 use proboscis::dynamics::simulate;
@@ -129,26 +130,6 @@ fn a_point_that_fails_is_listed_and_drawn_nowhere_and_the_others_go_on() {
     assert_well_formed(&svg);
     // Three points, and one in the legend, each a disc and its rim.
     assert_eq!(svg.matches("<circle").count(), 8, "{svg}");
-}
-
-/// Every tag closes, nothing is outside the root, no number is missing.
-fn assert_well_formed(svg: &str) {
-    assert!(svg.starts_with("<svg "));
-    assert!(!svg.contains("NaN") && !svg.contains("inf"));
-    let mut open = Vec::new();
-    let mut rest = svg;
-    while let Some(start) = rest.find('<') {
-        let end = start + rest[start..].find('>').expect("a tag ends");
-        let tag = &rest[start + 1..end];
-        assert_eq!(tag.matches('"').count() % 2, 0, "{tag}");
-        if let Some(name) = tag.strip_prefix('/') {
-            assert_eq!(open.pop(), Some(name));
-        } else if !tag.ends_with('/') {
-            open.push(tag.split(' ').next().unwrap());
-        }
-        rest = &rest[end + 1..];
-    }
-    assert!(open.is_empty() && rest.trim().is_empty());
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::files::problem::spec_integrator::integrator;
 use crate::files::problem::spec_simulate::{SimulateSpec, StepSpec};
 use crate::files::problem::state::start_state;
 use crate::files::problem::voltages::over_time;
-use crate::model::system::{Fidelity, System};
+use crate::model::system::System;
 use std::collections::BTreeMap;
 
 /// Tolerances below this ask for more than rounding allows.
@@ -45,7 +45,7 @@ pub(crate) fn simulation(
         coordinates: coordinates(spec.coordinates, system, scope)?,
         solving: Solving {
             integrator: method,
-            newton: spec.newton.map_or_else(|| newton(system), Into::into),
+            newton: spec.newton.map_or_else(|| Newton::of(system), Into::into),
             backend: spec.linear_solver.map(Into::into),
         },
     })
@@ -95,15 +95,4 @@ pub(crate) fn step(
         return Err(place.wrong(found, format!("no more than {MOST_STEPS:.0e} steps")));
     }
     Ok((step, None))
-}
-
-/// When the tangent of a step is factorised, where nothing is written: the factorisation of finite elements is worth keeping,
-/// that of a few joint coordinates is not (benches/README.md).
-pub(crate) fn newton(system: &System) -> Newton {
-    let mut muscles = system.muscles.iter();
-    let of_muscles = muscles.any(|muscle| muscle.fidelity != Fidelity::Lumped);
-    match of_muscles || !system.solids.is_empty() {
-        true => Newton::Modified,
-        false => Newton::Full,
-    }
 }

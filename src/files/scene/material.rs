@@ -52,7 +52,7 @@ fn lame_lambda(
             Err(scope.key("lame_lambda").wrong(lambda.to_string(), expected))
         }
         (None, Some(ratio)) if ratio > -1.0 && ratio < 0.5 => {
-            Ok(Some(2.0 * shear_modulus * ratio / (1.0 - 2.0 * ratio)))
+            Ok(Some(Material::first_lame_constant(shear_modulus, ratio)))
         }
         (None, Some(ratio)) => {
             let expected = "a number larger than -1 and smaller than 0.5";
