@@ -5,6 +5,7 @@ mod common;
 
 use common::cases::{all_limits, control, rest_to_rest};
 use common::systems::branched;
+use common::tracked::tracked;
 use common::trunk;
 use proboscis::control::problem::{Control, Duration, Objective};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
@@ -146,6 +147,11 @@ fn evaluations_allocate_nothing() {
         effort: 1.0,
         rate: 0.1,
         duration: 1.0,
+        ..Objective::default()
+    };
+    let followed = Objective {
+        rate: 0.1,
+        ..tracked(&[0, 1], &[(0, true), (1, false)])
     };
     for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
         let mut plain = rest_to_rest(3, 10, 100.0);
@@ -154,7 +160,7 @@ fn evaluations_allocate_nothing() {
         long.coordinates = Some(coordinates);
         let timed = Control {
             duration: free,
-            objective: every,
+            objective: every.clone(),
             ..plain.clone()
         };
         let mut limited = control(&branched(), 6);
@@ -162,15 +168,19 @@ fn evaluations_allocate_nothing() {
         limited.limits = all_limits();
         let both = Control {
             duration: free,
-            objective: every,
+            objective: followed.clone(),
             ..limited.clone()
         };
+        let mut follows = control(&branched(), 40);
+        follows.coordinates = Some(coordinates);
+        follows.objective = followed.clone();
         for (name, system, control) in [
             ("trunk", trunk(3), plain),
             ("trunk, long horizon", trunk(3), long),
             ("trunk, free time", trunk(3), timed),
             ("branched, limits", branched(), limited),
-            ("branched, limits, free time", branched(), both),
+            ("branched, limits, follows, free time", branched(), both),
+            ("branched, follows, long horizon", branched(), follows),
         ] {
             let counts = allocations(&system, &control);
             assert_eq!(counts, [0; 5], "{name} in {coordinates:?} coordinates");

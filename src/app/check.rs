@@ -163,7 +163,7 @@ fn as_control(task: Task, system: &System) -> Control {
         objective: Objective {
             effort: 1.0,
             rate: 1.0,
-            duration: 0.0,
+            ..Objective::default()
         },
         limits: Vec::new(),
         coordinates,

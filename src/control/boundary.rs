@@ -53,9 +53,16 @@ impl BoundaryConditions {
             }
             _ => {}
         }
+        let mut quantities = limits.quantities();
+        let paid = &control.objective.quantities;
+        let curved = paid.iter().enumerate().filter(|(_, c)| c.is_curved());
         let question = Analysis {
             coordinates: Some(coordinates),
-            quantities: limits.quantities(),
+            curved: curved.map(|(i, _)| quantities.len() + i).collect(),
+            quantities: {
+                quantities.extend(paid.iter().map(|cost| cost.quantity));
+                quantities
+            },
             ..question
         };
         let model = Model::of_presolved(system.clone(), question, presolved)?;

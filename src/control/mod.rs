@@ -12,6 +12,7 @@ mod limits;
 mod numbering;
 mod objective;
 pub mod problem;
+mod quantity_cost;
 mod resample;
 mod signal;
 mod solution;

@@ -1,4 +1,4 @@
-//! The objective: a weighted sum of effort, rate and duration, polynomial in voltages and interval length.
+//! The part of the objective that is a polynomial in voltages and interval length: a weighted sum of effort, rate and duration.
 //!
 //! Voltages v in kV, interval length τ in s:
 //!
@@ -6,12 +6,21 @@
 //! f = a τ Σ_k |v_k|² + b/τ Σ_{k=0..N} |v_k − v_{k−1}|² + c N τ,     v_{−1}, v_N: rest voltages of start and goal.
 //! ```
 
-use crate::control::problem::{Objective, nearest_thousand};
+use crate::control::problem::nearest_thousand;
+use crate::control::quantity_cost::Objective;
+
+/// Weights of effort, rate and duration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Weights {
+    effort: f64,
+    rate: f64,
+    duration: f64,
+}
 
 /// The objective with the voltages at rest before and after.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cost {
-    weights: Objective,
+    weights: Weights,
     scalars: usize,
     intervals: usize,
     /// Rest voltages before the first and after the last interval in kV.
@@ -21,11 +30,16 @@ pub struct Cost {
 impl Cost {
     /// An objective over `intervals` intervals; `ends` are the rest voltages in kV where they are known.
     pub fn new(
-        weights: Objective,
+        objective: &Objective,
         scalars: usize,
         intervals: usize,
         ends: [Option<Vec<f64>>; 2],
     ) -> Self {
+        let weights = Weights {
+            effort: objective.effort,
+            rate: objective.rate,
+            duration: objective.duration,
+        };
         Self {
             weights,
             scalars,
@@ -134,11 +148,18 @@ impl Cost {
     }
 }
 
-/// Factor of the objective: the power of a thousand that brings it near 1 where one voltage (kV) is its unit all the time (s).
-pub(super) fn objective_scale(weights: &Objective, kilovolt: f64, duration: f64) -> f64 {
+/// Factor of the objective: the power of a thousand that brings it near 1 where one voltage (kV) is its unit all the time (s)
+/// and costs of quantities are as large as `quantities`.
+pub(super) fn objective_scale(
+    weights: &Objective,
+    kilovolt: f64,
+    duration: f64,
+    quantities: f64,
+) -> f64 {
     let square = kilovolt * kilovolt;
     let size = weights.effort * square * duration
         + weights.rate * square / duration
-        + weights.duration * duration;
+        + weights.duration * duration
+        + quantities;
     1.0 / nearest_thousand(size)
 }

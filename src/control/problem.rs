@@ -1,5 +1,6 @@
 //! What is asked of a system: simulate it, find its equilibrium, or steer it. Units g, mm, ms, N, V.
 
+pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
 use crate::control::{Earlier, Signal};
 use crate::dynamics::Solving;
 use crate::ipopt::{LinearSolver, OptionValue};
@@ -267,17 +268,6 @@ pub fn nearest_thousand(size: f64) -> f64 {
         return 1.0;
     }
     1e3_f64.powf((size.log10() / 3.0).round())
-}
-
-/// Weights of the objective; a weight of zero leaves no trace.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Objective {
-    /// Of Σ h |V_k|², V in kV, h in s.
-    pub effort: f64,
-    /// Of Σ_{k=0..N} |V_k − V_{k−1}|²/h with the rest voltages of start and goal at the ends.
-    pub rate: f64,
-    /// Of the final time in s.
-    pub duration: f64,
 }
 
 /// An inequality that holds at every instant or in every interval.

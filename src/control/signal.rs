@@ -1,17 +1,17 @@
-//! Voltages as functions of time.
+//! Functions of time: voltages, and what quantities are to follow.
 
 use std::f64::consts::TAU;
 
-/// A voltage in V as a function of the time in ms.
+/// A voltage in V, a length in mm or an angle in rad as a function of the time in ms.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Signal {
     /// The same all the time.
     Constant(f64),
     /// Linear between two values, constant before and after.
     Ramp {
-        /// Value up to the start in V.
+        /// Value up to the start.
         from: f64,
-        /// Value from the end on in V.
+        /// Value from the end on.
         to: f64,
         /// Time at which it begins in ms.
         start: f64,
@@ -20,9 +20,9 @@ pub enum Signal {
     },
     /// `mean + amplitude sin(2π f t + phase)`.
     Sine {
-        /// Mean in V.
+        /// Mean.
         mean: f64,
-        /// Amplitude in V.
+        /// Amplitude.
         amplitude: f64,
         /// Frequency f in 1/ms.
         frequency: f64,
@@ -33,7 +33,7 @@ pub enum Signal {
     Table {
         /// Times in ms, growing, one or more.
         times: Vec<f64>,
-        /// A value in V at each.
+        /// A value at each.
         values: Vec<f64>,
     },
 }
@@ -81,6 +81,44 @@ impl Signal {
                 }
             }
         }
+    }
+
+    /// Value, rate per ms and second derivative at a time; at a corner those of the time after it.
+    pub fn derivatives(&self, time: f64) -> [f64; 3] {
+        let value = self.at(time);
+        let rate = match self {
+            Self::Constant(_) => 0.0,
+            Self::Ramp {
+                from,
+                to,
+                start,
+                duration,
+            } => match time - start {
+                part if part >= 0.0 && part < *duration => (to - from) / duration,
+                _ => 0.0,
+            },
+            Self::Sine {
+                amplitude,
+                frequency,
+                phase,
+                ..
+            } => {
+                let turns = TAU * frequency;
+                let angle = turns * time + phase;
+                let rate = amplitude * turns * angle.cos();
+                return [value, rate, -amplitude * turns * turns * angle.sin()];
+            }
+            Self::Table { times, values } => {
+                let next = times.partition_point(|&t| t <= time);
+                match (next.checked_sub(1), times.get(next)) {
+                    (Some(before), Some(&end)) => {
+                        (values[next] - values[before]) / (end - times[before])
+                    }
+                    _ => 0.0,
+                }
+            }
+        };
+        [value, rate, 0.0]
     }
 
     /// Whether it is zero all the time.

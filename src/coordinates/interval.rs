@@ -1,7 +1,7 @@
 //! What an interval is asked with.
 
 use crate::coordinates::configuration::Configuration;
-use crate::functional::{BlockMask, Horizon, Sample};
+use crate::functional::{BlockMask, Horizon, Outer, Sample};
 
 /// What an interval is asked with, besides its two instants.
 #[derive(Clone, Copy, Debug)]
@@ -16,8 +16,8 @@ pub struct Interval<'a> {
     pub horizon: Horizon,
     /// Which blocks are asked for.
     pub sides: BlockMask,
-    /// Weights of the measures of the site.
-    pub weights: &'a [f64],
+    /// Functions of the measures of the site.
+    pub outer: &'a [Outer],
 }
 
 impl<'a> Interval<'a> {
@@ -29,7 +29,7 @@ impl<'a> Interval<'a> {
             h,
             horizon: Horizon::Given,
             sides: BlockMask::ALL,
-            weights: &[],
+            outer: &[],
         }
     }
 
@@ -43,7 +43,7 @@ impl<'a> Interval<'a> {
             h: self.h,
             horizon: self.horizon,
             sides: self.sides,
-            weights: self.weights,
+            outer: self.outer,
         }
     }
 }

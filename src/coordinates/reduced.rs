@@ -6,7 +6,7 @@ use crate::coordinates::map::CoordinateMap;
 use crate::coordinates::pattern::StepPattern;
 use crate::coordinates::pull_back::{Destination, PullBack, Site};
 use crate::coordinates::scratch::{Carried, Scratch};
-use crate::functional::{BlockMask, Blocks, Functional, Horizon, Order, Part, Sample};
+use crate::functional::{BlockMask, Blocks, Functional, Horizon, Order, Outer, Part, Sample};
 use crate::math::Vector;
 
 /// Sums over intervals and instants as functions of the coordinates z of the instants and the scalars of the intervals.
@@ -72,7 +72,7 @@ impl Reduced {
     }
 
     /// Evaluates the interval between two instants and adds its forces to theirs; at order `Third` along their
-    /// directions, with contracted forces and the measures of the site by their weights.
+    /// directions, with contracted forces and functions of the measures of the site.
     pub fn evaluate_interval(
         &self,
         order: Order,
@@ -224,7 +224,7 @@ impl Reduced {
         &self,
         order: Order,
         instant: &mut Configuration,
-        weights: &[f64],
+        outer: &[Outer],
         scratch: &mut Scratch,
     ) {
         let n = self.motion.coordinates;
@@ -236,7 +236,7 @@ impl Reduced {
             h: 1.0,
             horizon: Horizon::Given,
             sides: BlockMask::HERE,
-            weights,
+            outer,
         };
         self.instants.evaluate(order, &sample, &mut scratch.instant);
         add(&mut instant.forces, &scratch.instant.plain.forces[0]);

@@ -1,9 +1,10 @@
 //! Elements of one kind as a quantity that is read by itself.
 
+use crate::functional::curved::OfQuantity;
 use crate::functional::scatter::{ALL, Places};
 use crate::functional::slots::Slots;
 use crate::functional::{
-    Couplings, Derivatives, Group, Kernel, Measure, Order, Part, Sample, Scatter,
+    Couplings, Derivatives, Group, Kernel, Measure, Order, Outer, Part, Sample, Scatter,
 };
 use crate::math::Vector;
 
@@ -25,22 +26,37 @@ impl<K: Kernel> Scatter for Gradient<'_, K> {
     fn along<D: Derivatives, W: Derivatives>(&mut self, _: &D, _: &W) {}
 }
 
-/// The gradient and Hessian of a quantity times a weight.
+/// The gradient and Hessian of a function of a quantity.
 struct Weighted<'a, K: Kernel> {
     places: Places<'a, K>,
-    c: f64,
+    scale: f64,
+    outer: Outer,
     part: &'a mut Part,
+}
+
+impl<K: Kernel> Weighted<'_, K> {
+    fn add<D: Derivatives>(&mut self, c: f64, d: &D) {
+        let part = &mut *self.part;
+        let derivatives = (|i| d.force(i), |s| d.row(s));
+        let to = (&mut part.forces, part.rows.as_mut_slice());
+        self.places.first(c, ALL, derivatives, to);
+        if K::DEGREE >= 2 {
+            self.places.second(c, (ALL, ALL), d, part);
+        }
+    }
 }
 
 impl<K: Kernel> Scatter for Weighted<'_, K> {
     fn plain<D: Derivatives>(&mut self, d: &D) {
-        let part = &mut *self.part;
-        let derivatives = (|i| d.force(i), |s| d.row(s));
-        let to = (&mut part.forces, part.rows.as_mut_slice());
-        self.places.first(self.c, ALL, derivatives, to);
-        if K::DEGREE >= 2 {
-            self.places.second(self.c, (ALL, ALL), d, part);
+        let Outer { slope, curvature } = self.outer;
+        if curvature == 0.0 {
+            return self.add(self.scale * slope, d);
         }
+        let outer = Outer {
+            slope: self.scale * slope,
+            curvature: self.scale * self.scale * curvature,
+        };
+        self.add(1.0, &OfQuantity { outer, of: d });
     }
 
     fn along<D: Derivatives, W: Derivatives>(&mut self, _: &D, _: &W) {}
@@ -91,13 +107,15 @@ impl<K: Kernel> Measure for Group<K> {
         }
     }
 
-    fn add_weighted(&self, weight: f64, sample: &Sample<'_>, slots: &[u32], part: &mut Part) {
-        let c = self.scale * weight;
+    fn add_function(&self, outer: Outer, sample: &Sample<'_>, slots: &[u32], part: &mut Part) {
+        let is_one = self.elements.len() == 1;
+        debug_assert!(outer.curvature == 0.0 || is_one, "a sum has one square");
         let order = Order::Hessian;
         self.each(order, sample, slots, |element, places, storage| {
             let mut weighted = Weighted {
                 places,
-                c,
+                scale: self.scale,
+                outer,
                 part: &mut *part,
             };
             K::derivatives(element, order, sample, storage, &mut weighted);

@@ -1,6 +1,6 @@
 //! A term of a sum, and the sum.
 
-use crate::functional::{BlockMask, Couplings, Part};
+use crate::functional::{BlockMask, Couplings, Outer, Part};
 use crate::math::Vector;
 use std::fmt::Debug;
 
@@ -32,8 +32,8 @@ pub struct Sample<'a> {
     pub horizon: Horizon,
     /// Which blocks are asked for.
     pub sides: BlockMask,
-    /// Weights of the measures of the site in the contraction at order `Third`.
-    pub weights: &'a [f64],
+    /// Functions of the measures of the site that join the contraction at order `Third`.
+    pub outer: &'a [Outer],
 }
 
 impl<'a> Sample<'a> {
@@ -47,7 +47,7 @@ impl<'a> Sample<'a> {
             h: 1.0,
             horizon: Horizon::Given,
             sides: BlockMask::ALL,
-            weights: &[],
+            outer: &[],
         }
     }
 }
@@ -142,8 +142,8 @@ pub trait Measure: Debug + Send + Sync {
     /// Adds its gradient.
     fn gradient(&self, sample: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]);
 
-    /// Adds its gradient and Hessian times a weight; `slots` are those of its couplings.
-    fn add_weighted(&self, weight: f64, sample: &Sample<'_>, slots: &[u32], part: &mut Part);
+    /// Adds the gradient and Hessian of a function of it; `slots` are those of its couplings.
+    fn add_function(&self, outer: Outer, sample: &Sample<'_>, slots: &[u32], part: &mut Part);
 }
 
 /// A sum of terms at one site, and the quantities that are measured there.
@@ -227,9 +227,9 @@ impl Functional {
         }
         if order == Order::Third {
             let measures = self.measures.iter().zip(&self.measure_slots);
-            for ((measure, slots), &weight) in measures.zip(sample.weights) {
-                if weight != 0.0 {
-                    measure.add_weighted(weight, sample, slots, &mut out.contracted);
+            for ((measure, slots), &outer) in measures.zip(sample.outer) {
+                if !outer.is_zero() {
+                    measure.add_function(outer, sample, slots, &mut out.contracted);
                 }
             }
         }

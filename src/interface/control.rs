@@ -273,7 +273,7 @@ impl Control {
             voltage_bounds: self.voltage_bounds,
             given: BTreeMap::new(),
             hold: Hold::Reported,
-            objective: self.objective,
+            objective: self.objective.clone(),
             limits: self.limits.clone(),
             coordinates: None,
             guess: self.guess.clone(),

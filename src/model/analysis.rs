@@ -31,6 +31,8 @@ pub struct Analysis {
     pub interval: f64,
     /// What can be measured.
     pub quantities: Vec<Quantity>,
+    /// Those of them, by index, of which a curved function is minimised.
+    pub curved: BTreeSet<usize>,
     /// Whether anything moves: a state of rest has neither inertia nor viscosity.
     pub of_motion: bool,
     /// Sources whose voltage is zero all the time.
@@ -56,6 +58,7 @@ impl Analysis {
             coordinates: None,
             interval,
             quantities: Vec::new(),
+            curved: BTreeSet::new(),
             of_motion: true,
             zero_voltage: BTreeSet::new(),
             stirred: None,

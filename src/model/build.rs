@@ -143,7 +143,7 @@ impl Model {
                 markers: &markers,
                 continua: &continua.list,
             };
-            Measures::new(&question.quantities, &known, &mut vectors)
+            Measures::new(&question, &known, &mut vectors)
         };
         let list = vectors.list();
         let multipliers = constraints.len();

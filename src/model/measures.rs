@@ -5,10 +5,12 @@ use crate::energy::{
     Angle, Energy, OutsideBox, PositionComponent, Projection, SquaredDistance, SquaredField,
 };
 use crate::functional::{
-    Element, ElementField, ElementFields, Formulas, Group, Measure, Stencil, VectorArg,
+    Curved, Element, ElementField, ElementFields, Formulas, Group, Kernel, Measure, Stencil,
+    VectorArg,
 };
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
+use crate::model::analysis::Analysis;
 use crate::model::joints::{JointCoordinate as Gauge, JointReading};
 use crate::model::presolved::Presolved;
 use crate::model::quantity::{FieldPlace, Quantity, Region};
@@ -36,15 +38,19 @@ pub(super) struct Known<'a> {
 }
 
 impl Measures {
-    /// The measures of a list of quantities.
-    pub(super) fn new(quantities: &[Quantity], known: &Known<'_>, vectors: &mut Vectors) -> Self {
+    /// The measures of the quantities of a question.
+    pub(super) fn new(question: &Analysis, known: &Known<'_>, vectors: &mut Vectors) -> Self {
         let mut out = Self::default();
-        for quantity in quantities {
+        for (index, quantity) in question.quantities.iter().enumerate() {
+            let shape = match question.curved.contains(&index) {
+                true => Shape::Curved,
+                false => Shape::Linear,
+            };
             let list = match quantity.is_of_intervals() {
                 true => &mut out.intervals,
                 false => &mut out.instants,
             };
-            let measure = known.measure(quantity, vectors);
+            let measure = known.measure(quantity, shape, vectors);
             out.places.push(measure.is_some().then_some(list.len()));
             list.extend(measure);
         }
@@ -53,7 +59,12 @@ impl Measures {
 }
 
 impl Known<'_> {
-    fn measure(&self, quantity: &Quantity, vectors: &mut Vectors) -> Option<Box<dyn Measure>> {
+    fn measure(
+        &self,
+        quantity: &Quantity,
+        shape: Shape,
+        vectors: &mut Vectors,
+    ) -> Option<Box<dyn Measure>> {
         let origin = Vector::zeros();
         Some(match *quantity {
             Quantity::Joint { joint, near } => {
@@ -61,10 +72,10 @@ impl Known<'_> {
                 let joint = &self.condensed.system.joints[joint];
                 match JointReading::new(joint, None, self.reference).measure {
                     Gauge::Angle { vectors: v } => {
-                        instant(Angle { near }, v.map(|x| vectors.index(x)))
+                        instant(shape, Angle { near }, v.map(|x| vectors.index(x)))
                     }
                     Gauge::Displacement { axis, span } => {
-                        instant(Projection, [axis, span].map(|x| vectors.index(x)))
+                        instant(shape, Projection, [axis, span].map(|x| vectors.index(x)))
                     }
                     Gauge::None => return None,
                 }
@@ -74,29 +85,33 @@ impl Known<'_> {
                     centre: origin,
                     scale: self.condensed.system.muscles[muscle].length(),
                 };
-                instant(energy, [self.span(muscle, vectors)])
+                instant(shape, energy, [self.span(muscle, vectors)])
             }
             Quantity::MarkerPlace { marker, axis } => {
                 let normal = Vector::ith(axis, 1.0);
-                instant(PositionComponent { origin, normal }, [self.markers[marker]])
+                instant(
+                    shape,
+                    PositionComponent { origin, normal },
+                    [self.markers[marker]],
+                )
             }
             Quantity::MarkerRegion { marker, region } => {
                 let vectors = [self.markers[marker]];
                 match region {
                     Region::Sphere { centre, radius } => {
                         let scale = radius;
-                        instant(SquaredDistance { centre, scale }, vectors)
+                        instant(shape, SquaredDistance { centre, scale }, vectors)
                     }
                     Region::Box { min, max } => {
                         let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
-                        instant(OutsideBox { centre, half }, vectors)
+                        instant(shape, OutsideBox { centre, half }, vectors)
                     }
                 }
             }
             Quantity::MarkerStep { marker, axis } => {
                 let normal = Vector::ith(axis, 1.0);
                 let marker = (self.markers[marker], Stencil::Difference);
-                interval::<_, 3, 1, 0>(PositionComponent { origin, normal }, [marker], [])
+                interval::<_, 3, 1, 0>(shape, PositionComponent { origin, normal }, [marker], [])
             }
             Quantity::SquaredField { place, limit, at } => match place {
                 FieldPlace::Muscle(muscle) => {
@@ -107,7 +122,7 @@ impl Known<'_> {
                         voltage: of.layer_thickness * limit,
                     };
                     let span = (self.span(muscle, vectors), at);
-                    interval::<_, 4, 1, 1>(energy, [span], [scalar])
+                    interval::<_, 4, 1, 1>(shape, energy, [span], [scalar])
                 }
                 FieldPlace::Element {
                     block,
@@ -128,11 +143,7 @@ impl Known<'_> {
                         terminals: continuum.terminals(element),
                         at,
                     };
-                    Box::new(Group::<ElementFields>::intervals(
-                        "measure",
-                        1.0,
-                        vec![field],
-                    ))
+                    shape.intervals::<ElementFields>(field)
                 }
             },
         })
@@ -147,36 +158,55 @@ impl Known<'_> {
     }
 }
 
+/// Whether a function of a quantity is curved, so that all that the quantity reads couples.
+#[derive(Clone, Copy, Debug)]
+enum Shape {
+    Linear,
+    Curved,
+}
+
+impl Shape {
+    fn instants<K: Kernel>(self, element: K::Element) -> Box<dyn Measure> {
+        let elements = vec![element];
+        match self {
+            Self::Linear => Box::new(Group::<K>::instants("measure", 1.0, elements)),
+            Self::Curved => Box::new(Group::<Curved<K>>::instants("measure", 1.0, elements)),
+        }
+    }
+
+    fn intervals<K: Kernel>(self, element: K::Element) -> Box<dyn Measure> {
+        let elements = vec![element];
+        match self {
+            Self::Linear => Box::new(Group::<K>::intervals("measure", 1.0, elements)),
+            Self::Curved => Box::new(Group::<Curved<K>>::intervals("measure", 1.0, elements)),
+        }
+    }
+}
+
 fn instant<E: Energy<M> + 'static, const M: usize, const NV: usize>(
+    shape: Shape,
     energy: E,
     vectors: [usize; NV],
 ) -> Box<dyn Measure> {
-    let element = Element {
+    shape.instants::<Formulas<E, M, NV, 0>>(Element {
         energy,
         vectors: vectors.map(|vector| VectorArg {
             vector,
             stencil: Stencil::Here,
         }),
         scalars: [],
-    };
-    let elements = vec![element];
-    Box::new(Group::<Formulas<E, M, NV, 0>>::instants(
-        "measure", 1.0, elements,
-    ))
+    })
 }
 
 fn interval<E: Energy<M> + 'static, const M: usize, const NV: usize, const NS: usize>(
+    shape: Shape,
     energy: E,
     vectors: [(usize, Stencil); NV],
     scalars: [usize; NS],
 ) -> Box<dyn Measure> {
-    let element = Element {
+    shape.intervals::<Formulas<E, M, NV, NS>>(Element {
         energy,
         vectors: vectors.map(|(vector, stencil)| VectorArg { vector, stencil }),
         scalars,
-    };
-    let elements = vec![element];
-    Box::new(Group::<Formulas<E, M, NV, NS>>::intervals(
-        "measure", 1.0, elements,
-    ))
+    })
 }

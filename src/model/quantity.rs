@@ -3,6 +3,8 @@
 use crate::functional::Stencil;
 use crate::math::Vector;
 use crate::model::system::{JointKind, System};
+use crate::model::variables::Size;
+use std::f64::consts::TAU;
 
 /// A region of space in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,6 +121,23 @@ impl Quantity {
                 Region::Sphere { radius, .. } => (value.sqrt() * radius, "mm from its centre"),
                 Region::Box { .. } => (value.powf(1.0 / 16.0), "half edges from its centre"),
             },
+        }
+    }
+
+    /// After how much its values repeat themselves: a full turn of an angle.
+    pub fn period(&self, system: &System) -> Option<f64> {
+        match *self {
+            Self::Joint { joint, .. } => (joint_unit(system, joint) == "rad").then_some(TAU),
+            _ => None,
+        }
+    }
+
+    /// Whether its values are lengths.
+    pub fn size(&self, system: &System) -> Size {
+        match *self {
+            Self::Joint { joint, .. } if joint_unit(system, joint) == "rad" => Size::One,
+            Self::Joint { .. } | Self::MarkerPlace { .. } | Self::MarkerStep { .. } => Size::Length,
+            _ => Size::One,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A list of control problems that together call for every effect, joint, limit, goal and objective.
 
 use super::systems::{GRAVITY, ball, blocks, branched, satellite, tied};
+use super::tracked::tracked;
 use super::trunk;
 use nalgebra::Vector3;
 use proboscis::control::problem::{
@@ -171,10 +172,11 @@ pub fn cases() -> Vec<Case> {
         max: 90.0,
         guess: 30.0,
     };
-    let every_objective = Objective {
+    let every_objective = || Objective {
         effort: 0.7,
         rate: 0.02,
         duration: 0.3,
+        ..Objective::default()
     };
     vec![
         case("pair at rest", trunk(1), &|c| {
@@ -199,7 +201,7 @@ pub fn cases() -> Vec<Case> {
             ),
             &|c| {
                 c.duration = free;
-                c.objective = every_objective;
+                c.objective = every_objective();
             },
         ),
         case(
@@ -226,13 +228,13 @@ pub fn cases() -> Vec<Case> {
         case("springs and a tendon", tied(trunk(2)), &|_| {}),
         case("springs and a tendon, free time", tied(trunk(2)), &|c| {
             c.duration = free;
-            c.objective = every_objective;
+            c.objective = every_objective();
         }),
         case("branched tree", branched(), &|_| {}),
         case("blocks", blocks(), &|c| c.goal = corner_goal()),
         case("blocks, marker at rest, free time", blocks(), &|c| {
             c.duration = free;
-            c.objective = every_objective;
+            c.objective = every_objective();
             let field = |block: usize, region: Option<usize>| PathConstraint::BlockField {
                 block,
                 region,
@@ -251,7 +253,7 @@ pub fn cases() -> Vec<Case> {
         }),
         case("branched tree, free time", branched(), &|c| {
             c.duration = free;
-            c.objective = every_objective;
+            c.objective = every_objective();
         }),
         case("branched tree, all limits", branched(), &|c| {
             c.limits = all_limits();
@@ -259,8 +261,20 @@ pub fn cases() -> Vec<Case> {
         case("branched tree, all limits, free time", branched(), &|c| {
             c.limits = all_limits();
             c.duration = free;
-            c.objective = every_objective;
+            c.objective = every_objective();
             c.goal = joints(&[(1, 2.0)]);
+        }),
+        case("branched tree that follows", branched(), &|c| {
+            c.objective = tracked(&[0, 1], &[(0, true), (1, false), (2, true)]);
+        }),
+        case("branched tree that follows, free time", branched(), &|c| {
+            c.objective = tracked(&[0, 1], &[(0, true), (1, false), (2, true)]);
+            c.duration = free;
+        }),
+        case("blocks that follow, free time", blocks(), &|c| {
+            c.objective = tracked(&[1], &[]);
+            c.duration = free;
+            c.goal = corner_goal();
         }),
         case("ball in a socket", ball(), &|c| {
             c.start = joints(&[(1, 0.2)]);
@@ -269,7 +283,7 @@ pub fn cases() -> Vec<Case> {
         case("satellite, free time", satellite(), &|c| {
             c.start = joints(&[(0, 0.1)]);
             c.duration = free;
-            c.objective = every_objective;
+            c.objective = every_objective();
         }),
         case("branched tree to a marker", branched(), &|c| {
             c.goal = BoundaryState::Markers {

@@ -10,6 +10,7 @@ pub mod random_goals;
 pub mod signals;
 pub mod solid;
 pub mod systems;
+pub mod tracked;
 pub mod trunk;
 
 use nalgebra::{Matrix3, SVector, Vector3};

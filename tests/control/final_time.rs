@@ -14,8 +14,8 @@ fn a_free_final_time_is_the_best_of_a_scan() {
     let mut control = rest_to_rest(1, 20, 60.0);
     control.objective = Objective {
         effort: 1.0,
-        rate: 0.0,
         duration: 1.5,
+        ..Objective::default()
     };
     let fixed = |t: f64| {
         let control = Control {

@@ -58,8 +58,7 @@ fn a_guess_changes_nothing_that_is_asked() {
         intervals,
         objective: proboscis::control::problem::Objective {
             effort: 1.0,
-            rate: 0.0,
-            duration: 0.0,
+            ..Default::default()
         },
         guess: Guess::Interpolate,
         ..given.clone()

@@ -141,6 +141,7 @@ pub(crate) fn problem(name: &str) -> (System, Control) {
         effort,
         rate,
         duration,
+        ..Objective::default()
     };
     match name {
         "pair_time" => {

@@ -23,7 +23,7 @@ fn problem(coordinates: Coordinates, intervals: usize) -> Control {
         objective: Objective {
             effort: 1.0,
             rate: 1.0,
-            duration: 0.0,
+            ..Objective::default()
         },
         duration: Duration::Free {
             min: 80.0,

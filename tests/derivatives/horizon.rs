@@ -133,7 +133,7 @@ impl Interval {
             h,
             horizon,
             sides: BlockMask::ALL,
-            weights: &[],
+            outer: &[],
         }
     }
 

@@ -248,7 +248,7 @@ fn one_scatter_serves_every_arity() {
             h,
             horizon: Horizon::Free,
             sides: BlockMask::ALL,
-            weights: &[],
+            outer: &[],
         };
         let mut out = sum.output(Order::Third);
         sum.evaluate(Order::Third, &sample, &mut out);

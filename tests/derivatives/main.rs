@@ -5,6 +5,7 @@ mod common;
 
 mod action;
 mod arithmetic;
+mod costs;
 mod differences;
 mod formulas;
 mod hexahedron;

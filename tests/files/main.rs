@@ -4,6 +4,7 @@ mod arbitrary;
 mod extremes;
 mod fuzz_reader;
 mod meaning;
+mod objectives;
 mod quantities;
 mod scene;
 mod solids;

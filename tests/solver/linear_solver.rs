@@ -43,6 +43,7 @@ fn cases() -> Vec<(&'static str, System, Control)> {
             effort: 1.0,
             rate: 0.1,
             duration: 1.0,
+            ..Objective::default()
         },
         ..plain.clone()
     };

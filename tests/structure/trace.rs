@@ -4,6 +4,7 @@
 use crate::common::cases::{control, rest_to_rest};
 use crate::common::random::Random;
 use crate::common::systems::{GRAVITY, branched};
+use crate::common::tracked::tracked;
 use crate::common::trunk;
 use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, PathConstraint};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
@@ -189,9 +190,14 @@ fn effects_cost_what_they_add() {
     assert_eq!(
         change(&|_, c| c.objective = Objective {
             rate: 1.0,
-            ..c.objective
+            ..c.objective.clone()
         }),
         rate
+    );
+    // What is followed couples coordinates of one instant, all of which inertia couples: no row, column or place is added.
+    assert_eq!(
+        change(&|_, c| c.objective = tracked(&[0], &[(1, true)])),
+        plain
     );
     // Stretch of a muscle at joint 3 at the inner instants, read off three angles.
     let stretch = Counts {

@@ -2,7 +2,8 @@
 
 use crate::control::limits::{BoundedQuantity, When};
 use crate::control::numbering::Numbering;
-use crate::functional::Measure;
+use crate::coordinates::Reduced;
+use crate::functional::{Functional, Measure, Outer};
 use crate::model::{Model, Quantity};
 use std::ops::Range;
 
@@ -113,11 +114,15 @@ impl Site {
 
     /// A measure of the site.
     pub(in crate::control) fn measure(self, model: &Model, index: usize) -> &dyn Measure {
-        let sum = match self {
-            Self::Instants => &model.action.instants,
-            Self::Intervals => &model.action.intervals,
-        };
-        sum.measures[index].as_ref()
+        self.sum(&model.action).measures[index].as_ref()
+    }
+
+    /// The sum of the site.
+    pub(super) fn sum(self, action: &Reduced) -> &Functional {
+        match self {
+            Self::Instants => &action.instants,
+            Self::Intervals => &action.intervals,
+        }
     }
 
     /// How many instants a quantity of the site reads.
@@ -129,19 +134,19 @@ impl Site {
     }
 }
 
-/// Weights of the measures of one site at instant or interval k: the costates of their rows.
-pub(super) fn fill_weights(
-    weights: &mut [f64],
+/// Functions of the measures of one site at instant or interval k: limits and goals times the costates of their rows.
+pub(super) fn fill_limits(
+    outer: &mut [Outer],
     limits: &[LimitRow],
     site: Site,
     k: usize,
     costates: &[f64],
 ) {
-    weights.fill(0.0);
+    outer.fill(Outer::default());
     for limit in limits
         .iter()
         .filter(|l| l.site == site && l.at.contains(&k))
     {
-        weights[limit.measure] = costates[limit.first + k - limit.at.start];
+        outer[limit.measure] = Outer::linear(costates[limit.first + k - limit.at.start]);
     }
 }

@@ -8,6 +8,8 @@
 //! bounds suggest, lengths in the length of the system, the interval length in its guess, the objective by a power of a
 //! thousand, so that one tolerance means the same everywhere.
 
+mod cost_rows;
+mod costs;
 pub(super) mod layout;
 mod limit_rows;
 mod placed;
@@ -17,6 +19,7 @@ mod scaling;
 mod segment;
 mod structure;
 mod sweep;
+mod units;
 
 use crate::control::BoundaryError;
 use crate::control::conditions::BoundaryConditions;
@@ -29,16 +32,13 @@ use crate::coordinates::Configuration;
 use crate::functional::{Horizon, Part};
 use crate::model::{Model, Role, Size, Time};
 use crate::nlp::{Bounds, Entries, Nlp};
+use cost_rows::{CostRow, cost_rows, costs_size};
 use layout::Layout;
 use limit_rows::LimitRow;
 pub(super) use limit_rows::Site;
 use placed::Placed;
 use segment::Workspace;
-
-/// V in a kV, the unit of voltages in objectives.
-const KILOVOLT: f64 = 1000.0;
-/// s in a ms.
-const MILLISECOND: f64 = 1e-3;
+use units::{KILOVOLT, MILLISECOND};
 
 /// A horizon of at least so many intervals is evaluated in two stretches.
 const TWO_STRETCHES: usize = 32;
@@ -60,6 +60,8 @@ pub struct Transcription<'m> {
     /// First row, instant or interval, of each stretch of limit rows.
     limit_rows: Vec<(usize, usize)>,
     cost: Cost,
+    /// Costs of quantities.
+    costs: Vec<CostRow>,
     objective_scale: f64,
     /// Unit of voltages in kV.
     kilovolt: f64,
@@ -85,6 +87,8 @@ pub struct Transcription<'m> {
     middle: Option<usize>,
     halo: Configuration,
     measured: Part,
+    /// Factor of the objective in the Hessian.
+    sigma: f64,
     /// Step by step the rows of an instant and those of the scalars of an interval, then costates of the limits.
     rows: Vec<f64>,
     values: Vec<f64>,
@@ -164,7 +168,9 @@ impl<'m> Transcription<'m> {
             boundary.rest[0].as_ref().map(kilo),
             boundary.rest[1].as_ref().map(kilo),
         ];
-        let cost = Cost::new(control.objective, voltages.len(), intervals, ends);
+        let cost = Cost::new(&control.objective, voltages.len(), intervals, ends);
+        let paid = &control.objective.quantities;
+        let duration = intervals as f64 * initial.h * MILLISECOND;
         let layout = model.action.layout();
         let length = model.length();
         let volts = control.voltage_unit(&model.system);
@@ -189,8 +195,10 @@ impl<'m> Transcription<'m> {
             objective_scale: objective_scale(
                 &control.objective,
                 volts / KILOVOLT,
-                intervals as f64 * initial.h * MILLISECOND,
+                duration,
+                costs_size(model, paid, duration),
             ),
+            costs: cost_rows(model, paid, boundary.limits.list.len(), intervals),
             kilovolt: volts / KILOVOLT,
             cost,
             momentum: boundary.start.momentum.clone(),
@@ -208,6 +216,7 @@ impl<'m> Transcription<'m> {
                 .then_some(intervals / 2),
             halo: motion.instant(),
             measured: Part::new(motion.vectors.len(), scalar_count, None),
+            sigma: 0.0,
             rows: vec![0.0; (intervals + 1) * (unknown_count + scalar_count) + limit_count],
             values: vec![0.0; layout.values(intervals) + extra],
             jacobian: Vec::new(),

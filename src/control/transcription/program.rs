@@ -35,7 +35,8 @@ impl Nlp for Transcription<'_> {
 
     fn objective(&mut self, x: &[f64]) -> f64 {
         self.load(x);
-        self.cost.value(&self.kilovolts, self.h * MILLISECOND)
+        let of_voltages = self.cost.value(&self.kilovolts, self.h * MILLISECOND);
+        of_voltages + self.costs()
     }
 
     fn objective_scale(&self) -> f64 {
@@ -44,16 +45,21 @@ impl Nlp for Transcription<'_> {
 
     fn gradient(&mut self, x: &[f64], grad: &mut [f64]) {
         self.load(x);
-        let by_horizon =
+        let mut by_horizon =
             self.cost
                 .gradient(&self.kilovolts, self.h * MILLISECOND, &mut self.gradient);
-        let scales = &self.variable_scales;
+        by_horizon *= MILLISECOND;
         grad.fill(0.0);
+        if !self.costs.is_empty() {
+            by_horizon += self.cost_gradients(|s| s.outer.slope, |s| s.by_h);
+            self.gather_cost_gradient(grad);
+        }
+        let scales = &self.variable_scales;
         for &(column, place) in &self.unknowns.voltages {
-            grad[column] = self.gradient[place] * scales[column] / KILOVOLT;
+            grad[column] += self.gradient[place] * scales[column] / KILOVOLT;
         }
         if let Some(column) = self.unknowns.horizon() {
-            grad[column] = by_horizon * MILLISECOND * scales[column];
+            grad[column] = by_horizon * scales[column];
         }
     }
 
@@ -109,6 +115,7 @@ impl Nlp for Transcription<'_> {
                 Row::Limit { .. } => self.rows[total + r - first] = y,
             }
         }
+        self.sigma = sigma;
         self.sweep(Order::Third);
         self.objective_curvature(sigma);
         let tau = self.h * MILLISECOND;

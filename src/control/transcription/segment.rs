@@ -4,10 +4,11 @@
 //! carried blocks are added when both are done. Where stretches meet depends on the number of intervals only, so results
 //! are the same for any number of threads.
 
-use crate::control::transcription::limit_rows::{LimitRow, Site, fill_weights};
+use crate::control::transcription::cost_rows::{CostRow, fill_costs};
+use crate::control::transcription::limit_rows::{LimitRow, Site, fill_limits};
 use crate::control::transcription::placed::Placed;
 use crate::coordinates::{Configuration, Interval, Reduced, Scratch};
-use crate::functional::{BlockMask, Horizon, Order};
+use crate::functional::{BlockMask, Horizon, Order, Outer, Sample};
 use crate::ipopt::interrupt::TimeLimit;
 use crate::math::Vector;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -19,6 +20,9 @@ use std::thread::available_parallelism;
 pub(super) struct Shared<'a> {
     pub(super) action: &'a Reduced,
     pub(super) limits: &'a [LimitRow],
+    pub(super) costs: &'a [CostRow],
+    /// Factor of the costs.
+    pub(super) sigma: f64,
     /// Costates of the limits.
     pub(super) costates: &'a [f64],
     /// Scalars of all intervals.
@@ -39,8 +43,8 @@ pub(super) struct Shared<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Workspace {
     pub(super) scratch: Scratch,
-    /// Weights of the measures of instants and intervals.
-    weights: [Vec<f64>; 2],
+    /// Functions of the measures of instants and intervals.
+    outer: [Vec<Outer>; 2],
 }
 
 /// The intervals from `first` on, one for each of the instants.
@@ -68,12 +72,12 @@ pub(super) fn needed(order: Order) -> Placed {
 
 impl Workspace {
     pub(super) fn new(action: &Reduced) -> Self {
-        let weights = |measures: usize| vec![0.0; measures];
+        let outer = |measures: usize| vec![Outer::default(); measures];
         Self {
             scratch: action.scratch(Order::Third),
-            weights: [
-                weights(action.instants.measures.len()),
-                weights(action.intervals.measures.len()),
+            outer: [
+                outer(action.instants.measures.len()),
+                outer(action.intervals.measures.len()),
             ],
         }
     }
@@ -152,23 +156,24 @@ impl Segment<'_> {
         let of_step = k * count..(k + 1) * count;
         let Workspace {
             scratch,
-            weights: [_, weights],
+            outer: [_, outer],
         } = &mut *self.bench;
-        fill_weights(
-            weights,
-            self.shared.limits,
-            Site::Intervals,
-            k,
-            self.shared.costates,
-        );
-        let interval = Interval {
+        let site = Site::Intervals;
+        fill_limits(outer, self.shared.limits, site, k, self.shared.costates);
+        let plain = Interval {
             scalars: &self.shared.scalars[of_step.clone()],
             along: &self.shared.along[of_step],
             h,
             horizon,
             sides: BlockMask::ALL,
-            weights,
+            outer: &[],
         };
+        if order == Order::Third {
+            let (costs, sigma) = (self.shared.costs, self.shared.sigma);
+            let sample = plain.sample([a, b]);
+            fill_costs(outer, costs, (site, k), sigma, (action, &sample));
+        }
+        let interval = Interval { outer, ..plain };
         action.evaluate_interval(order, [a, b], &interval, scratch);
         if order == Order::Gradient {
             let rows = &mut self.rows[j * stride + action.motion.unknowns()..(j + 1) * stride];
@@ -196,10 +201,19 @@ pub(super) fn instant_of(
     let Shared { action, order, .. } = shared;
     let Workspace {
         scratch,
-        weights: [weights, _],
+        outer: [outer, _],
     } = bench;
-    fill_weights(weights, shared.limits, Site::Instants, k, shared.costates);
-    action.evaluate_instant(order, instant, weights, scratch);
+    let site = Site::Instants;
+    fill_limits(outer, shared.limits, site, k, shared.costates);
+    if order == Order::Third {
+        let sample = Sample {
+            h: shared.h,
+            ..Sample::of_instant(&instant.x, &[])
+        };
+        let of = (action, &sample);
+        fill_costs(outer, shared.costs, (site, k), shared.sigma, of);
+    }
+    action.evaluate_instant(order, instant, outer, scratch);
     action.pull_back_instant(order, instant, j, scratch, values);
     if order == Order::Gradient {
         let count = action.motion.unknowns();

@@ -23,6 +23,8 @@ impl<'m> Transcription<'m> {
         let shared = Shared {
             action,
             limits: &self.limits,
+            costs: &self.costs,
+            sigma: self.sigma,
             costates,
             scalars: &self.scalars,
             along: &self.scalars_along,
@@ -121,7 +123,7 @@ impl<'m> Transcription<'m> {
     }
 
     /// The frame in which a measure is read at instant or interval k.
-    fn sample(&self, site: Site, k: usize) -> Sample<'_> {
+    pub(super) fn sample(&self, site: Site, k: usize) -> Sample<'_> {
         let scalar_count = self.model.action.layout().interval_scalars;
         let next = k + site.sides() - 1;
         Sample {
@@ -136,7 +138,7 @@ impl<'m> Transcription<'m> {
             h: self.h,
             horizon: Horizon::Given,
             sides: BlockMask::ALL,
-            weights: &[],
+            outer: &[],
         }
     }
 
@@ -216,6 +218,7 @@ impl Transcription<'_> {
             }
             self.values[layout.horizon_square_at(self.intervals)] +=
                 sigma * square * MILLISECOND * MILLISECOND;
+            self.cost_border(sigma);
         }
     }
 }

@@ -163,7 +163,7 @@ pub(super) fn between<'a>(vectors: [&'a [Vector]; 2], scalars: &'a [f64], h: f64
         h,
         horizon: Horizon::Given,
         sides: BlockMask::ALL,
-        weights: &[],
+        outer: &[],
     }
 }
 

@@ -12,16 +12,10 @@ pub(crate) struct Wording {
 }
 
 /// Keys of the file format that this version does not read, and what it says about them.
-const UNAVAILABLE: [(&str, &str); 2] = [
-    (
-        "tracking",
-        "this objective is not available in this version",
-    ),
-    (
-        "electrical_energy",
-        "this objective is not available in this version",
-    ),
-];
+const UNAVAILABLE: [(&str, &str); 1] = [(
+    "electrical_energy",
+    "this objective is not available in this version",
+)];
 
 /// Takes a message of serde apart; `key` is the last key of its place.
 pub(crate) fn wording(key: Option<&str>, message: &str) -> Wording {

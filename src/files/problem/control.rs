@@ -10,6 +10,7 @@ use crate::files::problem::spec_control::{
     ControlSolverSpec, ControlSpec, DurationSpec, ObjectiveSpec, OptionSpec, SolverSpec,
 };
 use crate::files::problem::state::{ELECTRIC_KEYS, driven, goal_state, start_state};
+use crate::files::problem::track::track;
 use crate::files::scene::graph::tree_freedoms;
 use crate::ipopt::{LinearSolver, OptionValue};
 use crate::model::system::{Fidelity, Muscle, System};
@@ -51,7 +52,7 @@ pub(crate) fn control(
         voltage_bounds,
         given,
         hold: spec.hold.into(),
-        objective: objective(&spec.objective, &scope.key("objective"))?,
+        objective: objective(&spec.objective, system, &scope.key("objective"))?,
         limits,
         coordinates: coordinates(spec.coordinates, system, scope)?,
         guess: guess(&spec.guess, system, voltage_bounds, &scope.key("guess"))?,
@@ -166,7 +167,11 @@ pub(crate) fn check_final_conditions(
     }
 }
 
-pub(crate) fn objective(spec: &ObjectiveSpec, scope: &Scope<'_>) -> Result<Objective, SceneError> {
+pub(crate) fn objective(
+    spec: &ObjectiveSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Objective, SceneError> {
     let weights = [
         ("effort", spec.effort),
         ("rate", spec.rate),
@@ -178,14 +183,20 @@ pub(crate) fn objective(spec: &ObjectiveSpec, scope: &Scope<'_>) -> Result<Objec
             return Err(scope.key(key).wrong(weight.to_string(), expected));
         }
     }
-    if weights.iter().all(|(_, weight)| *weight == 0.0) {
-        let expected = "a positive weight of \"effort\", \"rate\" or \"duration\"";
+    let mut quantities = Vec::new();
+    for (index, spec) in spec.track.iter().enumerate() {
+        quantities.extend(track(spec, system, &scope.key("track").index(index))?);
+    }
+    if quantities.is_empty() && weights.iter().all(|(_, weight)| *weight == 0.0) {
+        let expected =
+            "a positive weight of \"effort\", \"rate\" or \"duration\", or something to \"track\"";
         return Err(scope.wrong("no weight", expected));
     }
     Ok(Objective {
         effort: spec.effort,
         rate: spec.rate,
         duration: spec.duration,
+        quantities,
     })
 }
 

@@ -1,7 +1,8 @@
 //! The problem file: what is written (`spec`, `spec_*`) and how it becomes a [`Task`](crate::control::problem::Task).
 //!
 //! - `build`: the problem; `control`, `simulation`: its two longer tasks.
-//! - `state`, `limits`, `guess`, `voltages`, `signal`, `coordinates`: their parts; `solution_voltages`: voltages of an earlier solution.
+//! - `state`, `limits`, `guess`, `voltages`, `signal`, `track`, `coordinates`: their parts; `solution_voltages`, `solution_joints`:
+//!   what is read of an earlier solution.
 
 pub(crate) mod build;
 pub(crate) mod control;
@@ -10,6 +11,7 @@ pub(crate) mod guess;
 pub(crate) mod limits;
 pub(crate) mod signal;
 pub(crate) mod simulation;
+pub(crate) mod solution_joints;
 pub(crate) mod solution_voltages;
 pub mod spec;
 pub mod spec_control;
@@ -19,6 +21,8 @@ pub mod spec_limits;
 pub mod spec_signal;
 pub mod spec_simulate;
 pub mod spec_states;
+pub mod spec_track;
 pub mod spec_voltages;
 pub(crate) mod state;
+pub(crate) mod track;
 pub(crate) mod voltages;

@@ -1,19 +1,20 @@
-//! From voltages as functions of time as written to signals.
+//! From functions of time as written to signals.
 
 use crate::control::Signal;
 use crate::control::problem::Voltages;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_signal::{
-    FunctionSpec, RampSpec, SignalSpec, SignalTableSpec, SineSpec,
+    FollowedInTime, FunctionSpec, RampSpec, SignalSpec, SignalTableSpec, SineSpec,
 };
 use crate::files::problem::state::driven;
+use crate::files::units::quantity::{Kind, Quantity, Voltage};
 use crate::model::system::System;
 use std::collections::BTreeMap;
 
 /// Voltages by the names of sources; constant ones where all of them are.
 pub(crate) fn signals(
-    map: &BTreeMap<String, SignalSpec>,
+    map: &BTreeMap<String, SignalSpec<Voltage>>,
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<Voltages, SceneError> {
@@ -21,7 +22,7 @@ pub(crate) fn signals(
     let mut signals = vec![Signal::Constant(0.0); sources.len()];
     for (name, spec) in map {
         let scope = scope.key(name);
-        signals[driven(name, &sources, &scope)?] = signal(spec, &scope)?;
+        signals[driven(name, &sources, &scope)?] = signal(spec, &Voltage::kind(), &scope)?;
     }
     let constant = |signal: &Signal| match signal {
         Signal::Constant(value) => Some(*value),
@@ -34,52 +35,81 @@ pub(crate) fn signals(
     })
 }
 
-fn signal(spec: &SignalSpec, scope: &Scope<'_>) -> Result<Signal, SceneError> {
+/// A function of time whose values are of a kind.
+pub(crate) fn signal<M: FollowedInTime>(
+    spec: &SignalSpec<M>,
+    kind: &Kind,
+    scope: &Scope<'_>,
+) -> Result<Signal, SceneError> {
     let FunctionSpec { ramp, sine, table } = match spec {
-        SignalSpec::Constant(voltage) => return Ok(Signal::Constant(voltage.value())),
+        SignalSpec::Constant(value) => return of_kind(value, kind, scope).map(Signal::Constant),
         SignalSpec::Function(function) => function.as_ref(),
     };
     type Build<'a> = Box<dyn FnOnce() -> Result<Signal, SceneError> + 'a>;
-    let build = scope.exactly_one([
-        (
-            "ramp",
-            ramp.as_ref()
-                .map(|spec| -> Build<'_> { Box::new(|| of_ramp(spec, &scope.key("ramp"))) }),
-        ),
-        (
-            "sine",
-            sine.as_ref()
-                .map(|spec| -> Build<'_> { Box::new(|| of_sine(spec, &scope.key("sine"))) }),
-        ),
-        (
-            "table",
-            table
-                .as_ref()
-                .map(|spec| -> Build<'_> { Box::new(|| of_table(spec, &scope.key("table"))) }),
-        ),
-    ])?;
+    let ramp = ramp
+        .as_ref()
+        .map(|spec| -> Build<'_> { Box::new(|| of_ramp(spec, kind, &scope.key("ramp"))) });
+    let sine = sine
+        .as_ref()
+        .map(|spec| -> Build<'_> { Box::new(|| of_sine(spec, kind, &scope.key("sine"))) });
+    let table = table
+        .as_ref()
+        .map(|spec| -> Build<'_> { Box::new(|| of_table(spec, kind, &scope.key("table"))) });
+    let build = scope.exactly_one([("ramp", ramp), ("sine", sine), ("table", table)])?;
     build()
 }
 
-fn of_ramp(spec: &RampSpec, scope: &Scope<'_>) -> Result<Signal, SceneError> {
+/// A value of a kind in the units inside.
+fn of_kind<M: FollowedInTime>(
+    value: &Quantity<M>,
+    kind: &Kind,
+    scope: &Scope<'_>,
+) -> Result<f64, SceneError> {
+    let read = value.value_as(kind);
+    read.map_err(|found| scope.wrong(found, kind.expected()))
+}
+
+/// A value of a kind; 0 where not written.
+fn or_zero<M: FollowedInTime>(
+    value: &Option<Quantity<M>>,
+    kind: &Kind,
+    scope: &Scope<'_>,
+) -> Result<f64, SceneError> {
+    let read = |value| of_kind(value, kind, scope);
+    value.as_ref().map_or(Ok(0.0), read)
+}
+
+fn of_ramp<M: FollowedInTime>(
+    spec: &RampSpec<M>,
+    kind: &Kind,
+    scope: &Scope<'_>,
+) -> Result<Signal, SceneError> {
     Ok(Signal::Ramp {
-        from: spec.from.as_ref().map_or(0.0, |v| v.value()),
-        to: spec.to.value(),
+        from: or_zero(&spec.from, kind, &scope.key("from"))?,
+        to: of_kind(&spec.to, kind, &scope.key("to"))?,
         start: spec.start.as_ref().map_or(0.0, |t| t.value()),
         duration: scope.key("duration").positive(&spec.duration)?,
     })
 }
 
-fn of_sine(spec: &SineSpec, scope: &Scope<'_>) -> Result<Signal, SceneError> {
+fn of_sine<M: FollowedInTime>(
+    spec: &SineSpec<M>,
+    kind: &Kind,
+    scope: &Scope<'_>,
+) -> Result<Signal, SceneError> {
     Ok(Signal::Sine {
-        mean: spec.mean.as_ref().map_or(0.0, |v| v.value()),
-        amplitude: spec.amplitude.value(),
+        mean: or_zero(&spec.mean, kind, &scope.key("mean"))?,
+        amplitude: of_kind(&spec.amplitude, kind, &scope.key("amplitude"))?,
         frequency: scope.key("period").positive(&spec.period)?.recip(),
         phase: spec.phase.as_ref().map_or(0.0, |v| v.value()),
     })
 }
 
-fn of_table(spec: &SignalTableSpec, scope: &Scope<'_>) -> Result<Signal, SceneError> {
+fn of_table<M: FollowedInTime>(
+    spec: &SignalTableSpec<M>,
+    kind: &Kind,
+    scope: &Scope<'_>,
+) -> Result<Signal, SceneError> {
     let times: Vec<f64> = spec.time.iter().map(|t| t.value()).collect();
     if times.is_empty() {
         return Err(scope.key("time").wrong("no times", "one or more"));
@@ -89,13 +119,16 @@ fn of_table(spec: &SignalTableSpec, scope: &Scope<'_>) -> Result<Signal, SceneEr
         let place = scope.key("time").index(k + 1);
         return Err(place.wrong(found, "increasing times"));
     }
+    let values = scope.key("values");
     if spec.values.len() != times.len() {
-        let found = format!("{} voltages", spec.values.len());
+        let found = format!("{} values", spec.values.len());
         let expected = format!("{}, one for each time", times.len());
-        return Err(scope.key("values").wrong(found, expected));
+        return Err(values.wrong(found, expected));
     }
+    let read = spec.values.iter().enumerate();
+    let read = read.map(|(k, value)| of_kind(value, kind, &values.index(k)));
     Ok(Signal::Table {
         times,
-        values: spec.values.iter().map(|v| v.value()).collect(),
+        values: read.collect::<Result<_, _>>()?,
     })
 }

@@ -4,6 +4,7 @@ use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::files::problem::spec_coordinates::CoordinatesSpec;
 use crate::files::problem::spec_limits::LimitSpec;
 use crate::files::problem::spec_states::{GoalSpec, HoldSpec, StartSpec};
+use crate::files::problem::spec_track::TrackSpec;
 use crate::files::problem::spec_voltages::{VoltageMap, VoltagesSpec};
 use crate::files::units::quantity::{Quantity, Time, Voltage};
 use schemars::JsonSchema;
@@ -74,6 +75,9 @@ pub struct ObjectiveSpec {
     /// Weight of the final time in s.
     #[serde(default)]
     pub duration: f64,
+    /// What markers and joints follow in time.
+    #[serde(default)]
+    pub track: Vec<TrackSpec>,
 }
 
 /// Options of the solver.

@@ -1,47 +1,49 @@
-//! A voltage as a function of time, as it is written.
+//! A voltage, length or joint coordinate as a function of time, as it is written.
 
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Deserializer};
+use std::borrow::Cow;
 use std::marker::PhantomData;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer};
+use crate::files::json::either::{Either, ScalarOrObject};
+use crate::files::units::quantity::{
+    Angle, JointCoordinate, Length, PhysicalQuantity, Quantity, Time, Voltage,
+};
 
-use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
-use crate::files::units::quantity::{Angle, Quantity, Time, Voltage};
-
-/// A constant voltage (SI unit V), or exactly one of `ramp`, `sine` and `table`.
+/// A constant in its SI unit, or exactly one of `ramp`, `sine` and `table`.
 #[derive(Clone, Debug, JsonSchema)]
 #[serde(untagged)]
-pub enum SignalSpec {
+pub enum SignalSpec<M: FollowedInTime> {
     /// Constant.
-    Constant(Quantity<Voltage>),
+    Constant(Quantity<M>),
     /// A function of time.
-    Function(Box<FunctionSpec>),
+    Function(Box<FunctionSpec<M>>),
 }
 
 /// A function of time: exactly one of the three.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FunctionSpec {
+#[serde(deny_unknown_fields, bound = "M: FollowedInTime")]
+pub struct FunctionSpec<M: FollowedInTime> {
     /// Linear between two values, constant before and after.
     #[serde(default)]
-    pub ramp: Option<RampSpec>,
+    pub ramp: Option<RampSpec<M>>,
     /// A sine.
     #[serde(default)]
-    pub sine: Option<SineSpec>,
+    pub sine: Option<SineSpec<M>>,
     /// Linear between values at times, constant before and after.
     #[serde(default)]
-    pub table: Option<SignalTableSpec>,
+    pub table: Option<SignalTableSpec<M>>,
 }
 
 /// Linear between two values, constant before and after.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RampSpec {
-    /// Value up to the start, SI unit V; 0 where not written.
+#[serde(deny_unknown_fields, bound = "M: FollowedInTime")]
+pub struct RampSpec<M: FollowedInTime> {
+    /// Value up to the start; 0 where not written.
     #[serde(default)]
-    pub from: Option<Quantity<Voltage>>,
-    /// Value from the end on, SI unit V.
-    pub to: Quantity<Voltage>,
+    pub from: Option<Quantity<M>>,
+    /// Value from the end on.
+    pub to: Quantity<M>,
     /// Time at which it begins, SI unit s; 0 where not written.
     #[serde(default)]
     pub start: Option<Quantity<Time>>,
@@ -51,13 +53,13 @@ pub struct RampSpec {
 
 /// `mean + amplitude sin(2π t/period + phase)`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SineSpec {
-    /// Mean, SI unit V; 0 where not written.
+#[serde(deny_unknown_fields, bound = "M: FollowedInTime")]
+pub struct SineSpec<M: FollowedInTime> {
+    /// Mean; 0 where not written.
     #[serde(default)]
-    pub mean: Option<Quantity<Voltage>>,
-    /// Amplitude, SI unit V.
-    pub amplitude: Quantity<Voltage>,
+    pub mean: Option<Quantity<M>>,
+    /// Amplitude.
+    pub amplitude: Quantity<M>,
     /// Period, SI unit s.
     pub period: Quantity<Time>,
     /// Phase, SI unit rad; 0 where not written.
@@ -67,15 +69,63 @@ pub struct SineSpec {
 
 /// Values at times.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SignalTableSpec {
+#[serde(deny_unknown_fields, bound = "M: FollowedInTime")]
+pub struct SignalTableSpec<M: FollowedInTime> {
     /// Times, growing, SI unit s.
     pub time: Vec<Quantity<Time>>,
-    /// A value at each, SI unit V.
-    pub values: Vec<Quantity<Voltage>>,
+    /// A value at each.
+    pub values: Vec<Quantity<M>>,
 }
 
-scalar_or_object! {
-    SignalSpec: Quantity<Voltage> = Self::Constant, Box<FunctionSpec> = Self::Function,
-        "a voltage such as \"1.7 kV\", or an object with \"ramp\", \"sine\" or \"table\"";
+/// A measure that may be a function of time.
+pub trait FollowedInTime: PhysicalQuantity + JsonSchema {
+    /// What is expected, for messages.
+    const EXPECTED: &'static str;
+}
+
+impl<'de, M: FollowedInTime> ScalarOrObject<'de> for SignalSpec<M> {
+    const EXPECTED: &'static str = M::EXPECTED;
+    type Scalar = Quantity<M>;
+    type Object = Box<FunctionSpec<M>>;
+
+    fn scalar(scalar: Quantity<M>) -> Self {
+        Self::Constant(scalar)
+    }
+
+    fn object(object: Box<FunctionSpec<M>>) -> Self {
+        Self::Function(object)
+    }
+}
+
+impl<'de, M: FollowedInTime> Deserialize<'de> for SignalSpec<M> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Either(PhantomData))
+    }
+}
+
+/// Declares measures that may be functions of time; the schema of a measure is that of a quantity of it.
+macro_rules! followed_in_time {
+    ($($measure:ident: $expected:literal;)*) => {
+        $(
+            impl FollowedInTime for $measure {
+                const EXPECTED: &'static str = $expected;
+            }
+
+            impl JsonSchema for $measure {
+                fn schema_name() -> Cow<'static, str> {
+                    Self::NAME.into()
+                }
+
+                fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+                    Quantity::<Self>::json_schema(generator)
+                }
+            }
+        )*
+    };
+}
+
+followed_in_time! {
+    Voltage: "a voltage such as \"1.7 kV\", or an object with \"ramp\", \"sine\" or \"table\"";
+    Length: "a length such as \"50 mm\", or an object with \"ramp\", \"sine\" or \"table\"";
+    JointCoordinate: "an angle or a length, or an object with \"ramp\", \"sine\" or \"table\"";
 }

@@ -20,7 +20,7 @@ pub enum VoltagesSpec {
     /// A table.
     Table(TableSpec),
     /// Constant, or functions of time.
-    Signals(BTreeMap<String, SignalSpec>),
+    Signals(BTreeMap<String, SignalSpec<Voltage>>),
 }
 
 /// A solution by its path.

@@ -1,0 +1,169 @@
+//! Costs of quantities on a horizon: their values and derivatives, step by step.
+//!
+//! At instant k, t = k h, a cost with the deviation e = m − r(t) is the summand
+//!
+//! ```text
+//! f_k = w φ e²,     φ = ω_k τ of an integral (trapezoidal rule: ω = ½ at both ends, else 1; τ = h in s),  φ = 1 at the end.
+//! ```
+
+use crate::control::quantity_cost::{CostFunction, During, QuantityCost};
+use crate::control::transcription::limit_rows::Site;
+use crate::control::transcription::units::MILLISECOND;
+use crate::coordinates::Reduced;
+use crate::functional::{Outer, Sample};
+use crate::model::{Model, Size};
+use std::ops::Range;
+
+/// A cost of a quantity before it is summed.
+#[derive(Clone, Debug)]
+pub(super) struct CostRow {
+    cost: QuantityCost,
+    /// Index among the measures of its site.
+    pub(super) measure: usize,
+    pub(super) site: Site,
+    /// Instants or intervals at which it is paid.
+    pub(super) at: Range<usize>,
+    /// Vectors that it reads.
+    pub(super) vectors: Vec<usize>,
+    /// Scalars that it reads.
+    pub(super) scalars: Vec<usize>,
+    /// After which values repeat themselves: angles.
+    period: Option<f64>,
+    intervals: usize,
+}
+
+/// A summand of the objective with its derivatives by the value m of its quantity and by the interval length h in ms.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Summand {
+    pub(super) value: f64,
+    /// By m, and by m twice.
+    pub(super) outer: Outer,
+    pub(super) by_h: f64,
+    pub(super) by_value_and_h: f64,
+    pub(super) by_h_twice: f64,
+}
+
+/// The costs of the quantities that the model can change; their measures follow those of `limits` limits and goals.
+pub(super) fn cost_rows(
+    model: &Model,
+    costs: &[QuantityCost],
+    limits: usize,
+    intervals: usize,
+) -> Vec<CostRow> {
+    let row = |(cost, measure): (&QuantityCost, &Option<usize>)| {
+        let measure = (*measure)?;
+        let site = Site::of(&cost.quantity);
+        let reads = site.measure(model, measure);
+        let mut vectors = reads.vectors();
+        vectors.sort_unstable();
+        vectors.dedup();
+        let count = intervals + 2 - site.sides();
+        let at = match cost.during {
+            During::Motion => 0..count,
+            During::End => count - 1..count,
+        };
+        Some(CostRow {
+            cost: cost.clone(),
+            measure,
+            site,
+            at,
+            vectors,
+            scalars: reads.scalars(),
+            period: cost.quantity.period(&model.system),
+            intervals,
+        })
+    };
+    costs
+        .iter()
+        .zip(&model.measured[limits..])
+        .filter_map(row)
+        .collect()
+}
+
+/// Part of a length or of a radian that is the deviation of a motion at first, about.
+const DEVIATION: f64 = 0.1;
+
+/// The size of the costs of quantities, about, for a motion of `duration` s.
+pub(super) fn costs_size(model: &Model, costs: &[QuantityCost], duration: f64) -> f64 {
+    let size = |cost: &QuantityCost| {
+        let deviation = DEVIATION
+            * match cost.quantity.size(&model.system) {
+                Size::Length => model.length(),
+                _ => 1.0,
+            };
+        let time = match cost.during {
+            During::Motion => duration,
+            During::End => 1.0,
+        };
+        match cost.function {
+            CostFunction::Square { .. } => cost.weight * time * deviation * deviation,
+        }
+    };
+    costs.iter().map(size).sum()
+}
+
+impl CostRow {
+    /// Its summand at instant or interval k, where the quantity is m.
+    pub(super) fn summand(&self, m: f64, k: usize, h: f64) -> Summand {
+        let weight = self.cost.weight;
+        // φ and ∂φ/∂h.
+        let [factor, by_h] = match self.cost.during {
+            During::Motion => {
+                let is_end = k == 0 || k == self.intervals;
+                let part = if is_end { 0.5 } else { 1.0 } * MILLISECOND;
+                [part * h, part]
+            }
+            During::End => [1.0, 0.0],
+        };
+        match &self.cost.function {
+            CostFunction::Square { reference } => {
+                let steps = k as f64;
+                let [at, rate, second] = reference.derivatives(steps * h);
+                let e = self.nearest(m - at);
+                // ∂e/∂h and ∂²e/∂h².
+                let (e_h, e_hh) = (-steps * rate, -steps * steps * second);
+                Summand {
+                    value: weight * factor * e * e,
+                    outer: Outer {
+                        slope: 2.0 * weight * factor * e,
+                        curvature: 2.0 * weight * factor,
+                    },
+                    by_h: weight * (by_h * e * e + 2.0 * factor * e * e_h),
+                    by_value_and_h: 2.0 * weight * (by_h * e + factor * e_h),
+                    by_h_twice: 2.0
+                        * weight
+                        * (2.0 * by_h * e * e_h + factor * (e_h * e_h + e * e_hh)),
+                }
+            }
+        }
+    }
+
+    /// A deviation, of an angle without its full turns.
+    fn nearest(&self, deviation: f64) -> f64 {
+        match self.period {
+            Some(period) => deviation - period * (deviation / period).round(),
+            None => deviation,
+        }
+    }
+}
+
+/// Functions of the measures of one site at instant or interval k: costs times σ.
+pub(super) fn fill_costs(
+    outer: &mut [Outer],
+    costs: &[CostRow],
+    (site, k): (Site, usize),
+    sigma: f64,
+    (action, sample): (&Reduced, &Sample<'_>),
+) {
+    for cost in costs
+        .iter()
+        .filter(|cost| cost.site == site && cost.at.contains(&k))
+    {
+        let value = site.sum(action).measures[cost.measure].value(sample);
+        let Outer { slope, curvature } = cost.summand(value, k, sample.h).outer;
+        outer[cost.measure] = Outer {
+            slope: sigma * slope,
+            curvature: sigma * curvature,
+        };
+    }
+}

@@ -1,0 +1,75 @@
+//! What an objective follows in time, as it is written.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::files::problem::spec_signal::SignalSpec;
+use crate::files::units::quantity::{JointCoordinate, Length};
+
+/// What is to be followed: exactly one of the three.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrackSpec {
+    /// A marker follows a path in time.
+    #[serde(default)]
+    pub marker: Option<TrackMarkerSpec>,
+    /// The coordinate of a joint follows a function of time.
+    #[serde(default)]
+    pub joint: Option<TrackJointSpec>,
+    /// The coordinates of all joints follow an earlier solution.
+    #[serde(default)]
+    pub joints: Option<TrackJointsSpec>,
+}
+
+/// A marker and its path.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrackMarkerSpec {
+    /// Name of the marker.
+    pub marker: String,
+    /// The path.
+    pub along: PathSpec,
+    /// Weight of ∫ |x − r|² dt over the directions of the path, in mm² s; 1 where not written.
+    #[serde(default)]
+    pub weight: Option<f64>,
+}
+
+/// Coordinates as functions of time, SI unit m; one or more. Directions that are not written are free.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PathSpec {
+    /// Along x.
+    #[serde(default)]
+    pub x: Option<SignalSpec<Length>>,
+    /// Along y.
+    #[serde(default)]
+    pub y: Option<SignalSpec<Length>>,
+    /// Along z.
+    #[serde(default)]
+    pub z: Option<SignalSpec<Length>>,
+}
+
+/// A joint and the function that its coordinate follows.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrackJointSpec {
+    /// Name of the joint, revolute or prismatic.
+    pub joint: String,
+    /// The function of time, SI unit rad or m.
+    pub along: SignalSpec<JointCoordinate>,
+    /// Weight of ∫ (θ − r)² dt in rad² s, or mm² s of a prismatic joint; 1 where not written.
+    #[serde(default)]
+    pub weight: Option<f64>,
+}
+
+/// All joints along an earlier solution.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrackJointsSpec {
+    /// Path of a `solution.json`, relative to this file or to the current folder; linear between its instants, constant after
+    /// the last.
+    pub solution: String,
+    /// Weight of the sum over all joints of ∫ (θ − r)² dt in rad² s, or mm² s of prismatic joints; 1 where not written.
+    #[serde(default)]
+    pub weight: Option<f64>,
+}

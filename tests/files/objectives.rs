@@ -1,0 +1,126 @@
+//! What an objective names, and its mistakes.
+
+use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
+use proboscis::control::Signal;
+use proboscis::control::problem::{Control, CostFunction, During, QuantityCost, Task};
+use proboscis::files::read_problem;
+use proboscis::model::Quantity;
+use std::fs;
+
+/// The problem with another objective.
+fn with(objective: &str) -> String {
+    PROBLEM.replace("{ \"effort\": 1.0 }", objective)
+}
+
+fn read(objective: &str) -> Control {
+    let (folder, path) = folder(SCENE, &with(objective));
+    let solution = r#"{ "time": [0, 0.1, 0.2], "voltages": {},
+        "configuration": { "joints": { "joint1": [0, 0.1, 0.2], "joint2": [0, 0.002, 0.003] } } }"#;
+    fs::write(folder.path().join("solution.json"), solution).expect("a solution");
+    match read_problem(&path, &[]).expect("a problem").task {
+        Task::Control(control) => *control,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn square(quantity: Quantity, weight: f64, reference: Signal) -> QuantityCost {
+    QuantityCost {
+        quantity,
+        weight,
+        function: CostFunction::Square { reference },
+        during: During::Motion,
+    }
+}
+
+#[test]
+fn markers_and_joints_may_follow_functions_of_time() {
+    let objective = r#"{ "track": [
+        { "marker": { "marker": "tip", "weight": 2.5, "along": {
+            "z": "50 mm", "x": { "sine": { "mean": "-1 mm", "amplitude": 0.02, "period": "0.4 s", "phase": "90 deg" } } } } },
+        { "joint": { "joint": "joint2", "along": { "ramp": { "to": "3 mm", "duration": "0.1 s" } } } },
+        { "joint": { "joint": "joint1", "along": { "table": { "time": [0, 1], "values": [0, "9 deg"] } } } },
+        { "joints": { "solution": "solution.json", "weight": 10 } } ] }"#;
+    let found = read(objective).objective;
+    assert_eq!([found.effort, found.rate, found.duration], [0.0; 3]);
+    let axis = |axis| Quantity::MarkerPlace { marker: 0, axis };
+    let joint = |joint| Quantity::Joint { joint, near: 0.0 };
+    let right = std::f64::consts::FRAC_PI_2;
+    let table = |times: &[f64], values: &[f64]| Signal::Table {
+        times: times.to_vec(),
+        values: values.to_vec(),
+    };
+    let sine = Signal::Sine {
+        mean: -1.0,
+        amplitude: 20.0,
+        frequency: 400.0_f64.recip(),
+        phase: right,
+    };
+    let expected = [
+        square(axis(0), 2.5, sine),
+        square(axis(2), 2.5, Signal::Constant(50.0)),
+        square(joint(1), 1.0, Signal::ramp(0.0, 3.0, 100.0)),
+        square(joint(0), 1.0, table(&[0.0, 1000.0], &[0.0, 0.1 * right])),
+        square(
+            joint(0),
+            10.0,
+            table(&[0.0, 100.0, 200.0], &[0.0, 0.1, 0.2]),
+        ),
+        square(
+            joint(1),
+            10.0,
+            table(&[0.0, 100.0, 200.0], &[0.0, 2.0, 3.0]),
+        ),
+    ];
+    assert_eq!(found.quantities, expected);
+}
+
+#[test]
+fn what_cannot_be_followed_is_refused() {
+    const TRACK: &str =
+        r#"{ "track": [ { "marker": { "marker": "tip", "along": { "x": 0 } } } ] }"#;
+    let problem = with(TRACK);
+    #[rustfmt::skip]
+    let cases: &[Case] = &[
+        ("\"tip\"", "\"tipp\"", "control.objective.track[0].marker.marker", "\"tipp\"", "the name of a marker", "\"tipp\""),
+        ("{ \"x\": 0 }", "{}", "control.objective.track[0].marker.along", "no direction", "\"x\", \"y\" or \"z\"", "{}"),
+        ("{ \"x\": 0 }", "{ \"w\": 0 }", "control.objective.track[0].marker.along.w", "the key \"w\"", "\"x\"", "\"w\""),
+        ("\"x\": 0", "\"x\": \"1 V\"", "control.objective.track[0].marker.along.x", "which is a voltage", "a length", "1 V"),
+        ("\"x\": 0", "\"x\": true", "control.objective.track[0].marker.along.x", "true", "a length such as", "true"),
+        ("\"x\": 0", "\"x\": { \"ramp\": { \"to\": 1, \"duration\": 0 } }", "control.objective.track[0].marker.along.x.ramp.duration", "0", "positive", "0"),
+        ("\"x\": 0", "\"x\": { \"table\": { \"time\": [0, 1], \"values\": [0] } }", "control.objective.track[0].marker.along.x.table.values", "1 values", "2, one for each time", "[0]"),
+        ("\"along\": { \"x\": 0 }", "\"along\": { \"x\": 0 }, \"weight\": 0", "control.objective.track[0].marker.weight", "0", "a positive weight", "0"),
+        ("\"along\": { \"x\": 0 }", "\"along\": { \"x\": 0 }, \"weight\": -1", "control.objective.track[0].marker.weight", "-1", "a positive weight", "-1"),
+        ("\"marker\": { \"marker\": \"tip\", \"along\": { \"x\": 0 } }", "", "control.objective.track[0]", "none of them", "exactly one of \"marker\", \"joint\", \"joints\"", "{  }"),
+        ("\"marker\": { \"marker\": \"tip\", \"along\": { \"x\": 0 } }", "\"joint\": { \"joint\": \"joint2\", \"along\": \"3 deg\" }", "control.objective.track[0].joint.along", "which is an angle", "a length", "3 deg"),
+        ("\"marker\": { \"marker\": \"tip\", \"along\": { \"x\": 0 } }", "\"joint\": { \"joint\": \"joint1\", \"along\": { \"sine\": { \"amplitude\": \"3 mm\", \"period\": 1 } } }", "control.objective.track[0].joint.along.sine.amplitude", "which is a length", "an angle", "3 mm"),
+        ("\"marker\": { \"marker\": \"tip\", \"along\": { \"x\": 0 } }", "\"joints\": { \"solution\": \"none.json\" }", "control.objective.track[0].joints.solution", "\"none.json\", where there is no file", "the path of a solution.json", "none.json"),
+        ("\"track\": [ {", "\"effort\": 1, \"track\": [ 3, {", "control.objective.track[0]", "3", "", "3"),
+    ];
+    check(cases, &problem, |problem| mistake(SCENE, problem, &[]));
+}
+
+#[test]
+fn a_solution_to_follow_is_checked() {
+    let objective = r#"{ "track": [ { "joints": { "solution": "solution.json" } } ] }"#;
+    let (folder, path) = folder(SCENE, &with(objective));
+    for (solution, place, found) in [
+        (r#"{ "time": [0, 1] }"#, "", "neither of them"),
+        (r#"{ "time": [], "joints": {} }"#, "time", "no instant"),
+        (r#"{ "time": [0, 0], "joints": {} }"#, "time[1]", "0 s"),
+        (
+            r#"{ "time": [0, 1], "joints": { "joint1": [0] } }"#,
+            "joints.joint1",
+            "1 values",
+        ),
+        (
+            r#"{ "time": [0, 1], "joints": { "elbow": [0, 1] } }"#,
+            "joints.elbow",
+            "\"elbow\"",
+        ),
+    ] {
+        fs::write(folder.path().join("solution.json"), solution).expect("a solution");
+        let error = read_problem(&path, &[]).expect_err(solution);
+        assert_eq!(error.path(), place, "{error}");
+        assert!(error.found().contains(found), "{error}");
+    }
+}
