@@ -1,6 +1,6 @@
 //! Kinetic energy of constant masses: the one term whose second derivative never changes.
 
-use crate::functional::{Couplings, Horizon, Kind, Order, Output, Sample, Term};
+use crate::functional::{BlockMask, Couplings, Horizon, Kind, Order, Output, Sample, Term};
 use crate::math::Vector;
 
 /// A mass m on a material vector, ½ m |ẋ|², or between two, m ẋ·ẏ.
@@ -88,53 +88,75 @@ impl Term for Inertia {
     }
 
     fn evaluate(&self, order: Order, sample: &Sample<'_>, slots: &[u32], out: &mut Output) {
-        for (m, slots) in self.masses.iter().zip(slots.chunks_exact(2)) {
-            let [a, b] = m.vectors;
-            add(order, sample, m.mass, [a, b], slots[0] as usize, out);
-            if !m.is_point() {
-                add(order, sample, m.mass, [b, a], slots[1] as usize, out);
+        let r = 1.0 / sample.h;
+        let is_free = sample.horizon == Horizon::Free;
+        let plain = &mut out.plain;
+        self.add_momenta(sample.vectors, r, 1.0, &mut plain.forces);
+        if order >= Order::Hessian {
+            self.add_blocks(r, sample.sides, slots, &mut plain.blocks.isotropic);
+            if is_free {
+                self.add_momenta(sample.vectors, r, -r, &mut plain.horizon_forces);
+            }
+        }
+        if order == Order::Third {
+            let along = &mut out.contracted;
+            self.add_momenta(sample.along, r, 1.0, &mut along.forces);
+            if is_free {
+                self.add_momenta(sample.along, r, -r, &mut along.horizon_forces);
+                self.add_horizon(r, sample, &mut along.horizon);
             }
         }
     }
 }
 
-/// The rows of vector `a` against the rate of vector `b`.
-#[inline]
-fn add(
-    order: Order,
-    sample: &Sample<'_>,
-    mass: f64,
-    [a, b]: [usize; 2],
-    slot: usize,
-    out: &mut Output,
-) {
-    let ([x, y], [wx, wy]) = (sample.vectors, sample.along);
-    let r = 1.0 / sample.h;
-    let step = y[b] - x[b];
-    let momentum = step * (mass * r);
-    out.plain.forces[0][a] -= momentum;
-    out.plain.forces[1][a] += momentum;
-    if order >= Order::Hessian {
-        let block = &mut out.plain.blocks.isotropic[slot];
-        let c = mass * r;
-        block[0] += c;
-        block[1] -= c;
-        block[2] -= c;
-        block[3] += c;
-        if sample.horizon == Horizon::Free {
-            out.plain.horizon_forces[0][a] += momentum * r;
-            out.plain.horizon_forces[1][a] -= momentum * r;
+impl Inertia {
+    /// Each row of the mass matrix, by its vector, with the other vector and the mass.
+    #[inline(always)]
+    fn each_row(&self, mut row: impl FnMut(usize, usize, f64)) {
+        for m in &self.masses {
+            let [a, b] = m.vectors;
+            let rows = [(a, b), (b, a)];
+            let count = if m.is_point() { 1 } else { 2 };
+            for &(a, b) in &rows[..count] {
+                row(a, b, m.mass);
+            }
         }
     }
-    if order == Order::Third {
-        let momentum_w = (wy[b] - wx[b]) * (mass * r);
-        out.contracted.forces[0][a] -= momentum_w;
-        out.contracted.forces[1][a] += momentum_w;
-        if sample.horizon == Horizon::Free {
-            out.contracted.horizon_forces[0][a] += momentum_w * r;
-            out.contracted.horizon_forces[1][a] -= momentum_w * r;
-            let step_w = wy[a] - wx[a];
-            out.contracted.horizon += 2.0 * mass * step.dot(&step_w) * r * r * r;
+
+    /// Adds ∓c m r (y − x) to the forces at both instants.
+    fn add_momenta(
+        &self,
+        [x, y]: [&[Vector]; 2],
+        r: f64,
+        c: f64,
+        [here, next]: &mut [Vec<Vector>; 2],
+    ) {
+        self.each_row(|a, b, mass| {
+            let momentum = (y[b] - x[b]) * (mass * r) * c;
+            here[a] -= momentum;
+            next[a] += momentum;
+        });
+    }
+
+    /// Adds ±r m to the blocks that are asked for.
+    fn add_blocks(&self, r: f64, mask: BlockMask, slots: &[u32], blocks: &mut [[f64; 4]]) {
+        const SIGNS: [f64; 4] = [1.0, -1.0, -1.0, 1.0];
+        for side in (0..4).filter(|&side| mask.blocks[side]) {
+            for (m, slots) in self.masses.iter().zip(slots.chunks_exact(2)) {
+                let c = SIGNS[side] * (m.mass * r);
+                blocks[slots[0] as usize][side] += c;
+                if !m.is_point() {
+                    blocks[slots[1] as usize][side] += c;
+                }
+            }
         }
+    }
+
+    /// Adds 2 r³ Σ m_ij (y − x)_j·w_i of the differences y − x of the vectors and w of the direction.
+    fn add_horizon(&self, r: f64, sample: &Sample<'_>, sum: &mut f64) {
+        let [[x, y], [wx, wy]] = [sample.vectors, sample.along];
+        self.each_row(|a, b, mass| {
+            *sum += 2.0 * mass * (y[b] - x[b]).dot(&(wy[a] - wx[a])) * r * r * r;
+        });
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::functional::slots::Slots;
 use crate::functional::{BlockMask, Derivatives, Kernel, Part, Sample};
-use crate::math::Vector;
+use crate::math::{Matrix, Vector};
 use std::ops::Range;
 
 /// All arguments.
@@ -66,25 +66,12 @@ impl<'a, K: Kernel> Places<'a, K> {
         part: &mut Part,
     ) {
         let vectors = K::vectors(self.element);
-        for a in 0..vectors {
-            for b in 0..vectors {
-                let Some(slot) = self.slots.vectors(a, b) else {
-                    continue;
-                };
-                for k in 0..K::READINGS {
-                    for l in 0..K::READINGS {
-                        let (i, j) = (k * vectors + a, l * vectors + b);
-                        if rows.contains(&i) && columns.contains(&j) && K::couples(i, j) {
-                            self.block(c, (i, j), slot, d, part);
-                        }
-                    }
-                }
-            }
-            for k in 0..K::READINGS {
-                let i = k * vectors + a;
-                if rows.contains(&i) {
-                    self.columns(c, i, d, part);
-                }
+        for side in (0..4).filter(|&side| self.mask.blocks[side]) {
+            self.blocks(c, (rows.clone(), columns.clone()), side, d, part);
+        }
+        for i in 0..vectors * K::READINGS {
+            if rows.contains(&i) {
+                self.columns(c, i, d, part);
             }
         }
         for s in 0..K::scalars(self.element) {
@@ -92,28 +79,41 @@ impl<'a, K: Kernel> Places<'a, K> {
         }
     }
 
-    /// Adds the block of two arguments.
+    /// Adds the blocks of all pairs of arguments on one side: rows of the instant `side / 2`, columns of `side % 2`.
     #[inline(always)]
-    fn block<D: Derivatives>(
+    fn blocks<D: Derivatives>(
         &self,
         c: f64,
-        (i, j): (usize, usize),
-        slot: usize,
+        (rows, columns): (Range<usize>, Range<usize>),
+        side: usize,
         d: &D,
         part: &mut Part,
     ) {
-        let weights = |i: usize| K::vector(self.element, i).stencil.weights(self.h);
-        let (wi, wj) = (weights(i), weights(j));
-        let block = d.block(i, j);
-        for side in 0..4 {
-            let weight = c * wi[side / 2] * wj[side % 2];
-            if !self.mask.blocks[side] || weight == 0.0 {
-                continue;
-            }
-            if K::ISOTROPIC {
-                part.blocks.isotropic[slot][side] += weight * block[(0, 0)];
-            } else {
-                part.blocks.full[slot][side] += block * weight;
+        let vectors = K::vectors(self.element);
+        let weight = |i: usize, at: usize| {
+            let stencil = K::vector(self.element, i).stencil;
+            stencil.weights(self.h)[at]
+        };
+        for a in 0..vectors {
+            for b in 0..vectors {
+                let Some(slot) = self.slots.vectors(a, b) else {
+                    continue;
+                };
+                let mut sum = Matrix::zeros();
+                for k in 0..K::READINGS {
+                    for l in 0..K::READINGS {
+                        let (i, j) = (k * vectors + a, l * vectors + b);
+                        if rows.contains(&i) && columns.contains(&j) && K::couples(i, j) {
+                            let weight = c * weight(i, side / 2) * weight(j, side % 2);
+                            sum += d.block(i, j) * weight;
+                        }
+                    }
+                }
+                if K::ISOTROPIC {
+                    part.blocks.isotropic[slot][side] += sum[(0, 0)];
+                } else {
+                    part.blocks.full[slot][side] += sum;
+                }
             }
         }
     }
