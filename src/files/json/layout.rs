@@ -13,25 +13,26 @@ pub(crate) fn lay_out(compact: &str) -> String {
 
 /// Writes one value that starts `used` columns into a line, its parts indented one step further.
 fn lay_out_value(value: &str, indent: usize, used: usize, text: &mut String) {
-    let line = spaced(value);
     let is_list = value.starts_with(['{', '[']) && value.len() > 2;
-    if !is_list || used + line.chars().count() <= WIDTH && indent > 0 {
-        text.push_str(&line);
-        return;
+    // A character takes at most four bytes: a long list is not read in vain.
+    let may_fit = !is_list || indent > 0 && value.len() <= 4 * WIDTH;
+    if may_fit {
+        let line = spaced(value);
+        if !is_list || used + line.chars().count() <= WIDTH {
+            text.push_str(&line);
+            return;
+        }
     }
     let (open, close) = (&value[..1], &value[value.len() - 1..]);
     let inner = " ".repeat(2 * (indent + 1));
     text.push_str(open);
-    for (index, item) in split(&value[1..value.len() - 1], ',')
-        .into_iter()
-        .enumerate()
-    {
+    for (index, item) in split(&value[1..value.len() - 1]).into_iter().enumerate() {
         text.push_str(if index == 0 { "\n" } else { ",\n" });
         text.push_str(&inner);
         let mut column = inner.len();
         let mut rest = item;
         if open == "{"
-            && let [key, entry] = split(item, ':')[..]
+            && let Some((key, entry)) = entry(item)
         {
             text.push_str(key);
             text.push_str(": ");
@@ -63,24 +64,44 @@ fn spaced(value: &str) -> String {
     text
 }
 
-/// The parts of a compact list, split outside of strings and brackets.
-fn split(list: &str, separator: char) -> Vec<&str> {
+/// Key, with its quotation marks, and value of an entry of an object.
+fn entry(item: &str) -> Option<(&str, &str)> {
+    let colon = structure(item).find(|&(_, byte)| byte == b':')?.0;
+    Some((&item[..colon], &item[colon + 1..]))
+}
+
+/// The parts of a compact list, split at the commas outside of strings and brackets.
+fn split(list: &str) -> Vec<&str> {
     let mut parts = Vec::new();
-    let (mut depth, mut start, mut at) = (0_usize, 0, 0);
-    for (character, quoted) in characters(list) {
-        match character {
-            '{' | '[' if !quoted => depth += 1,
-            '}' | ']' if !quoted => depth = depth.saturating_sub(1),
-            _ if character == separator && !quoted && depth == 0 => {
+    let (mut depth, mut start) = (0_usize, 0);
+    for (at, byte) in structure(list) {
+        match byte {
+            b'{' | b'[' => depth += 1,
+            b'}' | b']' => depth = depth.saturating_sub(1),
+            b',' if depth == 0 => {
                 parts.push(&list[start..at]);
                 start = at + 1;
             }
             _ => {}
         }
-        at += character.len_utf8();
     }
     parts.push(&list[start..]);
     parts
+}
+
+/// Bytes outside of strings, with their places.
+fn structure(text: &str) -> impl Iterator<Item = (usize, u8)> {
+    let (mut quoted, mut escaped) = (false, false);
+    text.bytes().enumerate().filter(move |&(_, byte)| {
+        let inside = quoted;
+        match byte {
+            _ if escaped => escaped = false,
+            b'\\' if quoted => escaped = true,
+            b'"' => quoted = !quoted,
+            _ => {}
+        }
+        !inside && byte != b'"'
+    })
 }
 
 /// Characters with whether they belong to a string.
