@@ -16,7 +16,7 @@ use tracing_subscriber::EnvFilter;
 #[derive(Debug, Parser)]
 #[command(
     version,
-    after_help = "Exit status: 0 solved; 1 no solution, or stopped short; 2 wrong input."
+    after_help = "Exit status: 0 solved; 1 no solution, or stopped early; 2 wrong input."
 )]
 struct Arguments {
     #[command(subcommand)]

@@ -207,7 +207,7 @@ impl Rest {
             };
             text.push_str(&format!(
                 ": the potential energy falls in {directions} ({cause}); no stable one was found on the path of growing \
-                 loads, on its continuation, or downhill from them"
+                 loads, on its continuation, or by descent of the potential energy from them"
             ));
         }
         if let (Some(lost), false) = (&self.lost, self.route == "growing_loads") {
@@ -235,7 +235,7 @@ impl Rest {
 /// One line: what is lost, at which loads, what gives way, and where the last state is.
 pub(super) fn lost(rest: &Rest, loss: StabilityLoss, folder: &Path) -> String {
     let mut text = format!(
-        "no equilibrium was found, neither on the path of growing loads nor downhill from it: {} at {:.6} % of the {}",
+        "no equilibrium was found, neither on the path of growing loads nor by descent of the potential energy from it: {} at {:.6} % of the {}",
         kind(loss),
         100.0 * loss.fraction,
         load(loss.load).1

@@ -362,7 +362,7 @@ fn unresolved(model: &Model, interval: usize, muscle: usize) -> String {
 
 /// What is told of an optimum that the first start did not find.
 fn restarted(first: Status) -> String {
-    format!("found from a displaced second start; the first ended {first}")
+    format!("found from a second, displaced initial guess; the first ended {first}")
 }
 
 /// A further reason why a solve failed, where there is one.
@@ -381,7 +381,7 @@ fn redundancy(redundant: &[String]) -> String {
 fn meaning(status: Status) -> &'static str {
     match status {
         Status::Infeasible | Status::RestorationFailed => {
-            "no motion meets the goal and the limits, or none was found from this guess; the files hold the closest one"
+            "no motion that satisfies the goal and the limits was found from this guess; the files hold the iterate that violates them least"
         }
         Status::IterationLimit => {
             "the iterations allowed were used up; the files hold the last iterate"
@@ -389,9 +389,9 @@ fn meaning(status: Status) -> &'static str {
         Status::TimeLimit => "the time allowed was used up; the files hold the last iterate",
         Status::Interrupted => "interrupted; the files hold the last iterate",
         Status::InvalidNumber => {
-            "an equation or a derivative of one has no value where the solver went: the ends of a muscle meet there, or an element is turned inside out; the files hold the last iterate; take another guess or more intervals"
+            "an equation or a derivative has no value at an iterate: the ends of a muscle meet there, or an element is inverted; the files hold the last iterate; take another guess or more intervals"
         }
         Status::TooFewDegreesOfFreedom => "there are more equations than unknowns",
-        _ => "the solver stopped short; the files hold the last iterate",
+        _ => "the solver stopped early; the files hold the last iterate",
     }
 }

@@ -30,7 +30,7 @@ pub struct AtRest {
     /// `None`: reduced where the joints form a tree.
     pub coordinates: Option<Coordinates>,
     /// How many equilibria of the path from zero voltage are followed by arc length, past limit points; `None`: only the
-    /// equilibrium under the voltages is looked for.
+    /// equilibrium under the voltages is sought.
     pub path: Option<usize>,
 }
 
@@ -219,7 +219,7 @@ pub struct Control {
     pub start: BoundaryState,
     /// Final state, at rest.
     pub goal: BoundaryState,
-    /// Bounds of the voltages that are looked for in V.
+    /// Bounds of the voltages that are sought in V.
     pub voltage_bounds: [f64; 2],
     /// Voltages that are given for all the time (V, by source): no unknowns.
     pub given: BTreeMap<usize, f64>,

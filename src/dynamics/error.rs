@@ -35,9 +35,9 @@ pub enum StepError {
         /// The muscle.
         muscle: String,
     },
-    /// An element of a block is turned inside out at the end of the step, although it was halved.
+    /// An element of a block is inverted at the end of the step, although it was halved.
     #[error(
-        "the step from t = {time} ms turns an element inside out (J ≤ 0), even with a step of {step} ms: it is crushed, as in pull-in, or the motion is too fast for the step"
+        "the step from t = {time} ms inverts an element (J ≤ 0), even with a step of {step} ms: it is crushed, as in pull-in, or the motion is too fast for the step"
     )]
     Inverted {
         /// Start of the step in ms.
@@ -57,7 +57,7 @@ pub enum StepError {
     },
     /// A joint turned by more than half a turn or a body by more than a right angle, although the step was halved.
     #[error(
-        "the step from t = {time} ms turns {what} by {angle:.4} rad, even with a step of {step} ms: too far for a step to tell it from other turns; the motion is too fast for the step: take shorter ones"
+        "the step from t = {time} ms turns {what} by {angle:.4} rad, even with a step of {step} ms: the rotation in one step is not unique; the motion is too fast for the step: take shorter steps"
     )]
     Turned {
         /// Start of the step in ms.
@@ -71,7 +71,7 @@ pub enum StepError {
     },
     /// The energy balance of the step does not close, although it was halved.
     #[error(
-        "the energy balance of the step from t = {time} ms does not close, even with a step of {step} ms: {made:+.4e} N mm from nowhere, while {exchanged:.4e} N mm are exchanged; the motion is too fast for the step, as in pull-in or at a bounce: take shorter ones"
+        "the energy balance of the step from t = {time} ms does not close, even with a step of {step} ms: the energy changes by {made:+.4e} N mm without a source, while {exchanged:.4e} N mm are exchanged; the motion is too fast for the step, as in pull-in or at a bounce: take shorter ones"
     )]
     Unbalanced {
         /// Start of the step in ms.
@@ -145,7 +145,7 @@ pub enum EquilibriumError {
     NoStart,
     /// Joints that neither a muscle nor a block nor a weight holds.
     #[error(
-        "no unique equilibrium: no stiffness acts on {}; a muscle, a block or a weight has to hold what it moves",
+        "no unique equilibrium: no stiffness acts on {}; a muscle, a spring, a block or a weight must act on what it moves",
         .0.join(", ")
     )]
     NoStiffness(Vec<String>),
@@ -204,8 +204,7 @@ fn hint(residuals: &[f64], muscle: Option<&(String, f64)>) -> String {
         ),
         None if is_finite => String::new(),
         None => {
-            "; an element is turned inside out there (J ≤ 0): take shorter steps from further back"
-                .to_owned()
+            "; an element is inverted there (J ≤ 0): use shorter steps, starting earlier".to_owned()
         }
     }
 }

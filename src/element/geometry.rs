@@ -32,7 +32,7 @@ const fn slope(i: usize, g: usize, m: usize) -> f64 {
     0.125 * CORNERS[i][m] * factor(i, g, (m + 1) % 3) * factor(i, g, (m + 2) % 3)
 }
 
-/// A hexahedron that is turned inside out at a Gauss point.
+/// A hexahedron that is inverted at a Gauss point.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error("a hexahedron has the Jacobian determinant {determinant} at its Gauss point {point}")]
 pub struct Inverted {
@@ -105,7 +105,7 @@ impl ElementGeometry<8> {
         VALUES.map(|value| value.iter().zip(&self.weights).map(|(n, w)| n * w).sum())
     }
 
-    /// Gradients of all N_i at the centre of a hexahedron with these nodes; `None` where it is turned inside out there.
+    /// Gradients of all N_i at the centre of a hexahedron with these nodes; `None` where it is inverted there.
     pub fn central_gradients(nodes: &[Vector; 8]) -> Option<[Vector; 8]> {
         let slopes = CORNERS.map(|corner| Vector::from(corner) * 0.125);
         let both = nodes.iter().zip(&slopes);

@@ -362,7 +362,7 @@ impl Solid {
 impl Potential {
     /// Zero.
     pub const GROUNDED: Self = Self::Given(0.0);
-    /// The voltage that is given or looked for under the name of the electrode.
+    /// The voltage that is given or sought under the name of the electrode.
     pub const DRIVEN: Self = Self::Driven {
         source: 0,
         factor: 1.0,

@@ -31,7 +31,7 @@ pub fn install() {
             if REQUESTED.swap(true, Ordering::SeqCst) {
                 process::exit(EXIT_STATUS);
             }
-            eprintln!("\nstopping; what there is will be written; Ctrl-C again ends at once");
+            eprintln!("\nstopping; the results so far will be written; Ctrl-C again ends the program at once");
         });
         if let Err(error) = installed {
             tracing::warn!("Ctrl-C will not stop a solve in good order: {error}");

@@ -5,7 +5,7 @@ use super::topology::FACES;
 use nalgebra::Vector3;
 
 impl Mesh {
-    /// The mesh with its nodes moved to `map(x)`; a map that turns space inside out makes a mesh that
+    /// The mesh with its nodes moved to `map(x)`; a map that mirrors space makes a mesh that
     /// [`check`](Self::check) refuses.
     pub fn transformed(mut self, map: impl FnMut(Vector3<f64>) -> Vector3<f64>) -> Self {
         self.nodes = self.nodes.into_iter().map(map).collect();

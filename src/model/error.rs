@@ -13,7 +13,7 @@ pub enum ModelError {
         /// The joint that closes a loop.
         joint: String,
     },
-    /// An element has no volume, or is turned inside out.
+    /// An element has no volume, or is inverted.
     #[error("element {element} of block \"{solid}\" is inverted or degenerate")]
     Inverted {
         /// The block.

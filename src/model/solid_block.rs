@@ -35,7 +35,7 @@ impl SolidBlock {
         self.solid.mesh.hexahedra[element].map(|node| self.vectors[node])
     }
 
-    /// Gradients of the shape functions at the centre of an element; `None` where it is turned inside out there.
+    /// Gradients of the shape functions at the centre of an element; `None` where it is inverted there.
     pub(super) fn central_gradients(&self, element: usize) -> Option<[Vector; 8]> {
         let mesh = &self.solid.mesh;
         ElementGeometry::central_gradients(&mesh.hexahedra[element].map(|node| mesh.nodes[node]))

@@ -40,7 +40,7 @@ impl Solids {
     /// voltages; glued nodes keep coordinates of their own where `ties` says so.
     ///
     /// # Errors
-    /// An element of a mesh is turned inside out.
+    /// An element of a mesh is inverted.
     pub(super) fn new(
         solids: Vec<Solid>,
         scene: usize,

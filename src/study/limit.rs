@@ -35,7 +35,7 @@ impl How {
     pub fn words(self) -> &'static str {
         match self {
             Self::Extrapolated => "extrapolated from the three finest values",
-            Self::Rounding => "the finest value: the last ones differ by rounding alone",
+            Self::Rounding => "the finest value: the last ones differ by round-off only",
             Self::NoOrder => {
                 "the finest value: no order between 0.5 and 8 is observed, so nothing can be extrapolated"
             }

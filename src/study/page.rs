@@ -46,8 +46,7 @@ pub(super) fn markdown(
     }
     add(format!("## All points\n\n```text\n{}```", table));
     add(
-        "Seconds are the median of the timed runs. An error written `<` is below what the limit itself is known to; `–` is \
-         not known. `table.csv` and `study.json` have the input, the quartiles and every run of each point."
+        "Seconds are the median of the timed runs. An error written with `<` is below the uncertainty of the limit itself; `–` means not known. `table.csv` and `study.json` have the input, the quartiles and every run of each point."
             .to_owned(),
     );
     if let Some(failed) = failed(study, results) {
@@ -137,7 +136,7 @@ fn section(study: &Study, judged: &Judged, figure: Option<&str>) -> String {
     let mut text = format!("## {}{}\n\n", first.unwrap_or_default(), capital.as_str());
     match figure {
         Some(name) => text.push_str(&format!("![{label} against seconds]({name})\n\n")),
-        None => text.push_str("No error is above zero, or above what its reference is known to: nothing is drawn.\n\n"),
+        None => text.push_str("No error is above zero and above the uncertainty of its reference: nothing is drawn.\n\n"),
     }
     for (index, limit) in judged.limits.iter().enumerate() {
         let Some(limit) = limit else { continue };

@@ -86,7 +86,7 @@ pub(crate) fn reproduced(
                     optimum: found,
                     iterations,
                     note: Some(format!(
-                        "{of_problem}; solved again on {intervals} intervals, whose optimum its voltages reproduce"
+                        "{of_problem}; solved again on {intervals} intervals; this optimum is reproduced by its voltages"
                     )),
                 });
             }
@@ -96,7 +96,9 @@ pub(crate) fn reproduced(
         }
     }
     let note = finest.map(|n| {
-        format!("finer grids of up to {n} intervals gave no optimum that its voltages reproduce")
+        format!(
+            "on finer grids of up to {n} intervals no optimum was reproduced by its voltages either"
+        )
     });
     Ok(Cured {
         optimum,

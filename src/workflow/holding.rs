@@ -26,7 +26,7 @@ pub(crate) fn check(
         })
     };
     if boundary.rest[1].is_none() {
-        let reason = "the end has to be held, but the goal names no voltages that hold it: take \"rest_at_voltages\", or \
+        let reason = "the final state must be held, but the goal names no voltages that hold it: take \"rest_at_voltages\", or \
                       \"markers\" with \"hold\"";
         return refused("goal", reason.to_owned());
     }
@@ -34,7 +34,10 @@ pub(crate) fn check(
         return refused(&format!("goal.hold.{name}"), reason);
     }
     match unstable(boundary) {
-        Some(reason) => refused("goal", format!("the end has to be held, but {reason}")),
+        Some(reason) => refused(
+            "goal",
+            format!("the final state must be held, but {reason}"),
+        ),
         None => Ok(()),
     }
 }
@@ -53,14 +56,14 @@ pub(crate) fn warning(
         && !tested.is_held(model)
     {
         reasons.push(match &tested.failure {
-            Some(failure) => format!("held, it ends early: {failure}"),
-            None => format!("held for {held} s it drifts by {drift}"),
+            Some(failure) => format!("under the held voltages the motion ends early: {failure}"),
+            None => format!("under the held voltages it moves by {drift} in {held} s"),
         });
     }
     (!reasons.is_empty()).then(|| format!("the goal cannot be kept: {}", reasons.join("; ")))
 }
 
-/// The first source that is looked for and held at a voltage that it may not have, and why not.
+/// The first source that is sought and held at a voltage that it may not have, and why not.
 fn beyond_bounds(control: &Control, model: &Model) -> Option<(String, String)> {
     let BoundaryState::Markers {
         hold: Some(hold), ..

@@ -192,7 +192,7 @@ pub fn optimise(
     let mut solution = solve(&mut program, &point, &options)?;
     let mut restarted = None;
     if is_infeasible(solution.status) && matches!(start, Start::Cold | Start::Simulated) {
-        phase("a second start from elsewhere");
+        phase("a second, displaced initial guess");
         let displaced = displaced(control, &boundary, model.sources.len());
         let initial = guess(&model, &boundary, &displaced, interval(control), None);
         let left = |limit: f64| (limit - began.elapsed().as_secs_f64()).max(0.0);
@@ -211,7 +211,7 @@ pub fn optimise(
         let Some(initial) = far.filter(|_| interrupt::stop().is_none()) else {
             break;
         };
-        phase("again, from where the first solution turned to");
+        phase("solving again, from the state that the first solution reached");
         program = Transcription::of_any(&model, &boundary, control, &initial);
         let left = |limit: f64| (limit - began.elapsed().as_secs_f64()).max(0.0);
         let options = Options {

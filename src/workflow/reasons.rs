@@ -49,7 +49,7 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
         add("voltage".to_owned(), why);
     }
     if !cut.is_empty() {
-        let why = format!("no field at {} without the others", names(&cut));
+        let why = format!("{} have no field without the others", names(&cut));
         add("voltage".to_owned(), why);
     }
     let joints = model.system.joints.iter();

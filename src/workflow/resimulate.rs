@@ -331,20 +331,19 @@ impl Cause {
                     format!(", where joint \"{joint}\" turns by {angle:.2} rad")
                 });
                 format!(
-                    "simulated forward under its own voltages the optimum is another motion: in interval {interval} (from \
-                     {time:.4} s){turn}, its equations have several roots, and it is not the one that a step forward finds \
+                    "forward simulation under the optimal voltages gives another motion: in interval {interval} (from \
+                     {time:.4} s){turn}, the equations have several roots, and the optimum has another one than a forward step \
                      ({distance} apart after it); the intervals are too long for the motion"
                 )
             }
             Self::Ends { steps: 1, failure } => {
-                format!("simulated forward under its own voltages the motion ends early: {failure}")
+                format!("forward simulation under the optimal voltages ends early: {failure}")
             }
             Self::Ends { steps, failure } => format!(
-                "simulated forward under its own voltages with {steps} steps for an interval the motion ends early: {failure}"
+                "forward simulation under the optimal voltages with {steps} steps per interval ends early: {failure}"
             ),
             Self::Unstable { rate, distance } => format!(
-                "simulated forward under its own voltages the motion leaves the optimum ({distance}): it is unstable, rounding \
-                 grows at a rate of {rate:.3} 1/s"
+                "forward simulation under the optimal voltages leaves the optimum ({distance}): the motion is unstable, round-off grows at a rate of {rate:.3} 1/s"
             ),
             Self::Coarse { error, distance } => format!(
                 "the intervals do not resolve the motion: under the same voltages the motion with finer steps deviates \

@@ -31,7 +31,7 @@ fn derivatives_are_differences() {
             let mut random = Random(11);
             let mut x = program.start(&initial).x;
             for (i, value) in x.iter_mut().enumerate() {
-                // Nodes are measured by the whole system, and elements must not turn inside out.
+                // Nodes are measured by the whole system, and elements must not be inverted.
                 let of_node = program.variable_name(i).contains("of node");
                 let noise = if of_node { NODE_NOISE } else { NOISE };
                 *value += noise * random.unit();

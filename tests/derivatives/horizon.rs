@@ -78,7 +78,7 @@ fn a_free_horizon_at_its_guess_is_the_given_one() {
             let mut random = Random(2);
             let mut x = plain.start(&initial).x;
             for (i, v) in x.iter_mut().enumerate() {
-                // Elements must not turn inside out.
+                // Elements must not be inverted.
                 let of_node = plain.variable_name(i).contains("of node");
                 *v += if of_node { 0.004 } else { 0.05 } * random.unit();
             }

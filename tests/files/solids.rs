@@ -150,7 +150,7 @@ fn mistakes_in_a_block_name_place_found_and_expected() {
         ("\"z\": \"6 mm\"", "\"z\": \"6.2 mm\"", "solids[0].electrodes[1].plane.z", "electrode \"middle\" in the plane z = 6.2 mm, which holds no node", "z = 5, 5.5, 6, 7.5, 9 mm", "6.2 mm"),
         ("\"plane\": { \"z\": \"6 mm\" }", "\"plane\": {}", "solids[0].electrodes[1].plane", "none of them", "exactly one of", "{}"),
         ("\"plane\": { \"z\": \"6 mm\" }", "\"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, \"2 mm\"] }", "solids[0].electrodes[1].box", "electrode \"middle\" in a box that holds no node", "from (0, 0, 5) mm to (6, 4, 9) mm", "2 mm"),
-        ("\"plane\": { \"z\": \"6 mm\" }", "\"face\": \"x_max\"", "solids[0].electrodes[1]", "electrode \"ends\" lays claim too", "do not meet", "middle"),
+        ("\"plane\": { \"z\": \"6 mm\" }", "\"face\": \"x_max\"", "solids[0].electrodes[1]", "belongs to electrode \"ends\" too", "do not meet", "middle"),
         ("\"name\": \"middle\"", "\"name\": \"ends\"", "solids[0].electrodes[1].name", "\"ends\" a second time", "only driven electrodes share one", "ends"),
         ("\"grounded\"", "\"ground\"", "solids[0].electrodes[1].potential", "\"ground\"", "\"grounded\"", "ground"),
         ("\"grounded\"", "{ \"given\": \"5 mm\" }", "solids[0].electrodes[1].potential.given", "a length", "a voltage", "5 mm"),

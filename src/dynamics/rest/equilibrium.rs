@@ -31,7 +31,7 @@ pub enum Route {
     Loads,
     /// On the path that goes on beyond the point where growing loads lose their equilibrium, and comes back to all loads.
     Beyond(StabilityLoss),
-    /// At a minimum of the potential energy, downhill from a state where the path ends or is unstable.
+    /// At a minimum of the potential energy, by descent from a state where the path ends or is unstable.
     Minimum(StabilityLoss),
 }
 

@@ -21,7 +21,7 @@ const HALVINGS: usize = 30;
 /// Muscles shorter than this part of their length have collapsed.
 const COLLAPSED: f64 = 0.03;
 
-/// A state of least potential energy downhill from another; `None` where the energy falls without end.
+/// A state of least potential energy by descent from another; `None` where the energy falls without end.
 pub(super) fn minimise(
     statics: &mut Statics<'_>,
     from: &[f64],

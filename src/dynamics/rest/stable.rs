@@ -2,7 +2,7 @@
 //!
 //! 1. on the path of growing loads, the weights first, then the voltages;
 //! 2. where that path turns back or is unstable, on its continuation by arc length, where all loads act again;
-//! 3. at a minimum of the potential energy, downhill from the unstable states met, from where the path is lost, and from
+//! 3. at a minimum of the potential energy, by descent from the unstable states met, from where the path is lost, and from
 //!    where no load acts, to either side of their softest modes.
 //!
 //! The first stable one is the answer.
@@ -54,7 +54,7 @@ pub fn stable_equilibrium(
                 kind: last.loss().and_then(|l| l.kind),
             };
             let state = statics.state_without_field(&last.z);
-            let found = downhill(&mut statics, &[state], voltages)?;
+            let found = descend(&mut statics, &[state], voltages)?;
             let found = found.ok_or(error)?;
             let route = Route::Minimum(loss);
             Ok(Equilibrium::new(&mut statics, &found, voltages, route))
@@ -109,7 +109,7 @@ fn under_weight(
         fraction: 0.0,
         kind: None,
     };
-    match downhill(statics, &from, none)? {
+    match descend(statics, &from, none)? {
         Some(found) => Ok((found, Route::Minimum(loss))),
         None => match begun {
             Ok(state) => Ok((state, Route::Loads)),
@@ -196,7 +196,7 @@ fn under(
         met.extend([before, rest]);
     }
     ramp.apply(statics, 1.0);
-    if let Some(found) = downhill(statics, &met, &voltages)? {
+    if let Some(found) = descend(statics, &met, &voltages)? {
         return Ok((found, Route::Minimum(loss)));
     }
     ramp.apply(statics, 1.0);
@@ -213,11 +213,11 @@ fn is_stable(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64]) -> Opti
     statics.unstable().map(|count| count == 0)
 }
 
-/// The first stable equilibrium downhill from one of some states, pushed to either side along its softest mode.
+/// The first stable equilibrium found by descent from one of some states, pushed to either side along its softest mode.
 ///
 /// # Errors
 /// It was stopped.
-fn downhill(
+fn descend(
     statics: &mut Statics<'_>,
     from: &[RestState],
     voltages: &[f64],

@@ -140,7 +140,7 @@ impl Located {
         Some((self.place(index), &self.0[index]))
     }
 
-    /// Index of the value one step inside another, looked for from an index on.
+    /// Index of the value one step inside another, sought from an index on.
     fn of(&self, parent: Option<usize>, step: Option<&Step>, from: usize) -> Option<usize> {
         let matches = |found: &Found| (found.parent, found.step.as_ref()) == (parent, step);
         let inside = self.0.get(from..)?;

@@ -97,7 +97,7 @@ pub(crate) fn voltage_bounds(
     Ok(bounds)
 }
 
-/// Voltages that are given for all the time; one is left to be looked for.
+/// Voltages that are given for all the time; one is left to be sought.
 pub(crate) fn given_voltages(
     spec: &ControlSpec,
     system: &System,
@@ -113,13 +113,10 @@ pub(crate) fn given_voltages(
         return Ok(given);
     }
     let found = "all voltages";
-    Err(scope.wrong(
-        found,
-        "one voltage or more that is not given, to be looked for",
-    ))
+    Err(scope.wrong(found, "at least one voltage that is not given"))
 }
 
-/// Rest voltages of sources that are looked for lie in the bounds.
+/// Rest voltages of sources that are sought lie in the bounds.
 pub(crate) fn check_rest_voltages(
     state: &BoundaryState,
     system: &System,

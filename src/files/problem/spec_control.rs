@@ -24,7 +24,7 @@ pub struct ControlSpec {
     pub start: StartSpec,
     /// Final state, at rest.
     pub goal: GoalSpec,
-    /// Lower and upper bound of every voltage that is looked for, SI unit V.
+    /// Lower and upper bound of every voltage that is sought, SI unit V.
     pub voltage_bounds: [Quantity<Voltage>; 2],
     /// Voltages that are given for all the time, by the names of muscles and driven electrodes (`block.electrode`), SI unit V:
     /// they are no unknowns, and one of 0 leaves no electric term at all.

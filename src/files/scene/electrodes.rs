@@ -102,7 +102,7 @@ impl Placed<'_> {
                     let other = &self.electrodes[owner].name;
                     let at = place(&self.mesh.nodes[node]);
                     let found = format!(
-                        "electrode {name:?}, to whose node at {at} electrode {other:?} lays claim too"
+                        "electrode {name:?}, whose node at {at} belongs to electrode {other:?} too"
                     );
                     return Err(scope.wrong(found, "electrodes that do not meet"));
                 }
