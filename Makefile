@@ -56,6 +56,7 @@ check: install-deps
 	@$(CARGO) fmt --check
 	@$(CARGO) clippy --quiet --locked --all-targets -- -D warnings
 	@RUSTDOCFLAGS='-D warnings' $(CARGO) doc --quiet --locked --no-deps
+	@RUSTDOCFLAGS='-D warnings --cfg internals' $(CARGO) doc --quiet --locked --no-deps
 
 bench: install-deps
 	@$(CARGO) bench --locked --bench transcription --bench step

@@ -1,6 +1,6 @@
 //! The transcription of a control problem as a nonlinear program: values and exact sparse derivatives for any other solver.
 
-use proboscis::nlp::Nlp;
+use proboscis::Nlp;
 use proboscis::prelude::*;
 
 pub(crate) fn main() -> Result<()> {

@@ -1,11 +1,8 @@
 //! A component of one's own: a nonlinear spring that stiffens, `¼ k |r|⁴`, with its formula and its term.
 
 use nalgebra::{SVector, Vector3};
-use proboscis::energy::Energy;
-use proboscis::functional::Element;
-use proboscis::math::Jet;
-use proboscis::model::{Terms, mid};
 use proboscis::prelude::*;
+use proboscis::{Element, Energy, Jet, Terms, mid};
 use std::sync::Arc;
 
 /// `¼ k |r|⁴` of a span r.

@@ -17,8 +17,11 @@
 //! # }
 //! ```
 //!
-//! [`Simulation`] and [`Control`] are asked of a [`System`] of parts; [`units`] are written as functions. The modules below show
-//! all that they are made of.
+//! [`Simulation`] and [`Control`] are asked of a [`System`] of parts: [`Body`], [`Joint`], [`Muscle`], [`Solid`], [`Spring`], [`Tendon`],
+//! [`Marker`], and whatever implements [`Component`]. [`units`] are written as functions; all else is in g, mm, ms, N, V. A [`Motion`] and an
+//! [`Optimum`] are what comes back; [`Nlp`] is the transcription for a solver of one's own.
+//!
+//! # How it works
 //!
 //! Everything a problem is made of is a scalar, and everything the solvers need is a derivative of a sum of scalars.
 //! The midpoint rule turns the action of a scene into a sum over intervals `[t_k, t_{k+1}]` and instants `t_k`,
@@ -40,60 +43,65 @@
 //!
 //! Coordinates are chosen on top: x = F(u) with joint coordinates u of a kinematic tree, or directors with multipliers.
 //!
-//! From the formulas upwards:
-//!
-//! | module | owns |
-//! |---|---|
-//! | [`math`], [`sparse`], [`nlp`] | jets; direct solution; what a nonlinear program is, and its check by differences |
-//! | [`kkt`] | symmetric indefinite systems along a horizon |
-//! | [`mesh`] | hexahedral meshes: nodes, elements, named sets |
-//! | [`energy`] | formulas: energies and virtual works with exact derivatives |
-//! | [`element`] | formulas of the trilinear hexahedron: material law, viscosity, fields |
-//! | [`ipopt`] | the solver behind one safe function |
-//! | [`kinematics`] | material vectors, linear in the poses of bodies |
-//! | [`functional`] | sums of effects over intervals and instants |
-//! | [`coordinates`] | the same sums as functions of coordinates |
-//! | [`model`] | from a system of bodies, joints and muscles to its action |
-//! | [`dynamics`] | simulation, equilibrium, observations |
-//! | [`control`] | the transcription of a control problem (DMOCC) |
-//! | [`interface`], [`units`] | systems built part by part, simulated and steered |
-//! | [`workflow`] | simulate, optimise, refine, verify: in memory |
-//! | [`files`], [`report`] | files in and files out |
-//! | [`app`], [`study`] | what the commands do with one problem, and with many variants of it |
+//! The modules that do this are public for tests and tools and not part of the interface; `docs/architecture.md` describes them, and
+//! `RUSTDOCFLAGS="--cfg internals" cargo doc` shows them.
 
 #[cfg(feature = "cli")]
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod app;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod control;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod coordinates;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod dynamics;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod element;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod energy;
 #[cfg(feature = "files")]
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod files;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod functional;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod interface;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod ipopt;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod kinematics;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod kkt;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod math;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod mesh;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod model;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod nlp;
 #[cfg(feature = "report")]
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod report;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod sparse;
 #[cfg(feature = "cli")]
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod study;
 pub mod units;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod workflow;
 
 pub use control::{EarlierSolution, Signal, Solution};
 pub use dynamics::Integrator;
+pub use energy::Energy;
+pub use functional::Element;
 pub use interface::{
     Carrier, Control, Error, GROUND, Handle, Input, Motion, Optimum, Part, Result, Simulation,
     State,
 };
 pub use kinematics::Pose;
+pub use math::Jet;
 pub use mesh::Mesh;
 pub use mesh::grid::Grid;
 pub use model::components::{Spring, Tendon};
@@ -101,7 +109,7 @@ pub use model::system::{
     Attachment, Body, Electrode, Glue, Joint, JointKind, Marker, Material, Muscle, Potential,
     Shape, Solid, Support,
 };
-pub use model::{Component, System, SystemError};
+pub use model::{Component, System, SystemError, Terms, mid};
 pub use nlp::Nlp;
 
 /// All that a program needs: `use proboscis::prelude::*;`.
