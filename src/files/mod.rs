@@ -3,8 +3,9 @@
 //! - [`units`]: numbers with units; [`json`]: text, places in it, mistakes, overrides.
 //! - [`scene`], [`problem`]: what is written in the two files, and what it becomes: [`System`] and [`Task`].
 //! - [`study`]: what is written in a study of variants of a problem.
-//! - `typed`: scenes and voltages named on the command line.
+//! - `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
 
+mod columns;
 pub mod json;
 pub mod problem;
 pub mod scene;

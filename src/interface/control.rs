@@ -213,6 +213,7 @@ impl Control {
         read: impl FnOnce(&mut dyn Nlp, &[f64]) -> R,
     ) -> Result<R> {
         let system = &system.checked()?;
+        memory::of_elements(system)?;
         let control = self.resolve(system)?;
         let (model, boundary) = resolve(system, &control)?;
         let Prepared {

@@ -153,6 +153,58 @@ fn voltages_may_be_functions_of_time() {
     }
 }
 
+/// The voltages of a simulation beside a file `voltages.csv` of this text.
+fn with_csv(text: &[u8], csv: &str) -> Result<Voltages, String> {
+    let problem = r#"{ "scene": "scene.json", "simulate": { "duration": "1 s", "step": "10 ms", "voltages": { "muscle1": { "csv": CSV } } } }"#;
+    let (folder, path) = folder(SCENE, &problem.replace("CSV", csv));
+    std::fs::write(folder.path().join("voltages.csv"), text).unwrap();
+    match read_problem(&path, &[]) {
+        Ok(loaded) => match loaded.task {
+            Task::Simulate(simulation) => Ok(simulation.voltages),
+            _ => panic!("a simulation"),
+        },
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+#[test]
+fn voltages_may_come_from_a_csv_file() {
+    let text = b"# measured\ntime [ms], left [kV], right\n0, 1, 100\n100, 2, 300\n";
+    let columns = r#"{ "file": "voltages.csv", "values": "left" }"#;
+    let voltages = with_csv(text, columns).unwrap();
+    assert!((voltages.at(25.0)[0] - 1250.0).abs() < 1e-9);
+    assert_eq!(voltages.at(500.0)[0], 2000.0);
+    let columns = r#"{ "file": "voltages.csv", "time": "time [ms]", "values": "right" }"#;
+    assert!((with_csv(text, columns).unwrap().at(50.0)[0] - 200.0).abs() < 1e-9);
+    let left = r#"{ "file": "voltages.csv", "values": "left" }"#;
+    for (text, csv, told) in [
+        (
+            &text[..],
+            r#"{ "file": "none.csv", "values": "left" }"#,
+            "none.csv",
+        ),
+        (
+            &text[..],
+            r#"{ "file": "voltages.csv", "values": "lift" }"#,
+            "time [ms], left [kV], right",
+        ),
+        (&text[..], r#"{ "file": "voltages.csv" }"#, "values"),
+        (b"time,left [kV]\n0,1\n0,2\n", left, "increasing times"),
+        (b"time,left [kV]\n0,1\n1,x\n", left, "in line 3 of"),
+        (b"time,left [kg]\n0,1\n", left, "a mass"),
+        (b"time,left [furlong]\n0,1\n", left, "furlong"),
+        (b"time,left\n0,\n", left, "which is no number"),
+        (b"time,left\n0,inf\n", left, "not finite"),
+        (b"time,left\n0,1,2\n", left, "cannot be read"),
+        (b"time,left\n\xff\xfe,1\n", left, "cannot be read"),
+        (b"time,left\n", left, "one or more"),
+        (b"", left, "a column of"),
+    ] {
+        let error = with_csv(text, csv).unwrap_err();
+        assert!(error.contains(told), "{error}");
+    }
+}
+
 #[test]
 fn voltages_may_be_a_table() {
     let table = r#"{ "time": [0, "500 ms", 1], "voltages": { "muscle1": [100, "0.2 kV"] }, "hold": { "muscle1": 50 } }"#;

@@ -113,7 +113,10 @@ pub(crate) fn given_voltages(
         return Ok(given);
     }
     let found = "all voltages";
-    Err(scope.wrong(found, "at least one voltage that is not given"))
+    Err(scope.wrong(
+        found,
+        "at least one voltage that is not given, to be sought",
+    ))
 }
 
 /// Rest voltages of sources that are sought lie in the bounds.

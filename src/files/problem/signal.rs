@@ -2,13 +2,14 @@
 
 use crate::control::Signal;
 use crate::control::problem::Voltages;
+use crate::files::columns::Columns;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_signal::{
-    FollowedInTime, FunctionSpec, RampSpec, SignalSpec, SignalTableSpec, SineSpec,
+    FollowedInTime, FunctionSpec, RampSpec, SignalCsvSpec, SignalSpec, SignalTableSpec, SineSpec,
 };
 use crate::files::problem::state::driven;
-use crate::files::units::quantity::{Kind, Quantity, Voltage};
+use crate::files::units::quantity::{Kind, Quantity, Time, Voltage};
 use crate::model::system::System;
 use std::collections::BTreeMap;
 
@@ -41,7 +42,12 @@ pub(crate) fn signal<M: FollowedInTime>(
     kind: &Kind,
     scope: &Scope<'_>,
 ) -> Result<Signal, SceneError> {
-    let FunctionSpec { ramp, sine, table } = match spec {
+    let FunctionSpec {
+        ramp,
+        sine,
+        table,
+        csv,
+    } = match spec {
         SignalSpec::Constant(value) => return of_kind(value, kind, scope).map(Signal::Constant),
         SignalSpec::Function(function) => function.as_ref(),
     };
@@ -55,7 +61,16 @@ pub(crate) fn signal<M: FollowedInTime>(
     let table = table
         .as_ref()
         .map(|spec| -> Build<'_> { Box::new(|| of_table(spec, kind, &scope.key("table"))) });
-    let build = scope.exactly_one([("ramp", ramp), ("sine", sine), ("table", table)])?;
+    let csv = csv
+        .as_ref()
+        .map(|spec| -> Build<'_> { Box::new(|| of_csv::<M>(spec, kind, &scope.key("csv"))) });
+    let functions = [
+        ("ramp", ramp),
+        ("sine", sine),
+        ("table", table),
+        ("csv", csv),
+    ];
+    let build = scope.exactly_one(functions)?;
     build()
 }
 
@@ -110,25 +125,58 @@ fn of_table<M: FollowedInTime>(
     kind: &Kind,
     scope: &Scope<'_>,
 ) -> Result<Signal, SceneError> {
-    let times: Vec<f64> = spec.time.iter().map(|t| t.value()).collect();
-    if times.is_empty() {
-        return Err(scope.key("time").wrong("no times", "one or more"));
+    let [time, values] = ["time", "values"].map(|key| scope.key(key));
+    linear(
+        (&spec.time, &|k| time.index(k)),
+        (&spec.values, &|k| values.index(k)),
+        kind,
+        [&time, &values],
+    )
+}
+
+fn of_csv<M: FollowedInTime>(
+    spec: &SignalCsvSpec,
+    kind: &Kind,
+    scope: &Scope<'_>,
+) -> Result<Signal, SceneError> {
+    let columns = Columns::read(&spec.file, &scope.key("file"))?;
+    let [time, values] = ["time", "values"].map(|key| scope.key(key));
+    let times = columns.column::<Time>(&spec.time, &time)?;
+    let column = columns.column::<M>(&spec.values, &values)?;
+    linear(
+        (&times, &|_| time.clone()),
+        (&column, &|_| values.clone()),
+        kind,
+        [&time, &values],
+    )
+}
+
+/// Quantities, and the place of each.
+type Placed<'a, 's, M> = (&'a [Quantity<M>], &'a dyn Fn(usize) -> Scope<'s>);
+
+/// Linear between values at times.
+fn linear<'s, M: FollowedInTime>(
+    (times, time): Placed<'_, 's, Time>,
+    (values, value): Placed<'_, 's, M>,
+    kind: &Kind,
+    [whole_times, whole_values]: [&Scope<'s>; 2],
+) -> Result<Signal, SceneError> {
+    let instants: Vec<f64> = times.iter().map(Quantity::value).collect();
+    if instants.is_empty() {
+        return Err(whole_times.wrong("no times", "one or more"));
     }
-    if let Some(k) = times.windows(2).position(|pair| pair[0] >= pair[1]) {
-        let found = spec.time[k + 1].to_string();
-        let place = scope.key("time").index(k + 1);
-        return Err(place.wrong(found, "increasing times"));
+    if let Some(k) = instants.windows(2).position(|pair| pair[0] >= pair[1]) {
+        return Err(time(k + 1).wrong(times[k + 1].to_string(), "increasing times"));
     }
-    let values = scope.key("values");
-    if spec.values.len() != times.len() {
-        let found = format!("{} values", spec.values.len());
-        let expected = format!("{}, one for each time", times.len());
-        return Err(values.wrong(found, expected));
+    if values.len() != instants.len() {
+        let found = format!("{} values", values.len());
+        let expected = format!("{}, one for each time", instants.len());
+        return Err(whole_values.wrong(found, expected));
     }
-    let read = spec.values.iter().enumerate();
-    let read = read.map(|(k, value)| of_kind(value, kind, &values.index(k)));
+    let read = values.iter().enumerate();
+    let read = read.map(|(k, written)| of_kind(written, kind, &value(k)));
     Ok(Signal::Table {
-        times,
+        times: instants,
         values: read.collect::<Result<_, _>>()?,
     })
 }

@@ -10,7 +10,7 @@ use crate::files::units::quantity::{
     Angle, JointCoordinate, Length, PhysicalQuantity, Quantity, Time, Voltage,
 };
 
-/// A constant in its SI unit, or exactly one of `ramp`, `sine` and `table`.
+/// A constant in its SI unit, or exactly one of `ramp`, `sine`, `table` and `csv`.
 #[derive(Clone, Debug, JsonSchema)]
 #[serde(untagged)]
 pub enum SignalSpec<M: FollowedInTime> {
@@ -20,7 +20,7 @@ pub enum SignalSpec<M: FollowedInTime> {
     Function(Box<FunctionSpec<M>>),
 }
 
-/// A function of time: exactly one of the three.
+/// A function of time: exactly one of the four.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, bound = "M: FollowedInTime")]
 pub struct FunctionSpec<M: FollowedInTime> {
@@ -33,6 +33,9 @@ pub struct FunctionSpec<M: FollowedInTime> {
     /// Linear between values at times, constant before and after.
     #[serde(default)]
     pub table: Option<SignalTableSpec<M>>,
+    /// The same, with times and values from columns of a CSV file.
+    #[serde(default)]
+    pub csv: Option<SignalCsvSpec>,
 }
 
 /// Linear between two values, constant before and after.
@@ -75,6 +78,25 @@ pub struct SignalTableSpec<M: FollowedInTime> {
     pub time: Vec<Quantity<Time>>,
     /// A value at each.
     pub values: Vec<Quantity<M>>,
+}
+
+/// Values at times, from a CSV file: one line of headers such as `muscle1 [kV]`, SI units where a header has none; lines that
+/// begin with `#` are comments.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SignalCsvSpec {
+    /// Path of the file, relative to the problem or to the current folder.
+    pub file: String,
+    /// Header of the times, with or without its unit.
+    #[serde(default = "time")]
+    pub time: String,
+    /// Header of the values, with or without its unit.
+    pub values: String,
+}
+
+/// The usual header of times.
+fn time() -> String {
+    "time".to_owned()
 }
 
 /// A measure that may be a function of time.
@@ -125,7 +147,7 @@ macro_rules! followed_in_time {
 }
 
 followed_in_time! {
-    Voltage: "a voltage such as \"1.7 kV\", or an object with \"ramp\", \"sine\" or \"table\"";
-    Length: "a length such as \"50 mm\", or an object with \"ramp\", \"sine\" or \"table\"";
-    JointCoordinate: "an angle or a length, or an object with \"ramp\", \"sine\" or \"table\"";
+    Voltage: "a voltage such as \"1.7 kV\", or an object with \"ramp\", \"sine\", \"table\" or \"csv\"";
+    Length: "a length such as \"50 mm\", or an object with \"ramp\", \"sine\", \"table\" or \"csv\"";
+    JointCoordinate: "an angle or a length, or an object with \"ramp\", \"sine\", \"table\" or \"csv\"";
 }

@@ -160,8 +160,8 @@ pub struct Quantity<M> {
 }
 
 impl<M: PhysicalQuantity> Quantity<M> {
-    /// A number in SI units.
-    fn try_from_number(number: f64) -> Result<Self, String> {
+    /// A number in SI units; the error says what was found instead.
+    pub(crate) fn try_from_number(number: f64) -> Result<Self, String> {
         Self {
             written: Written::Number(number),
             number,

@@ -1,0 +1,91 @@
+//! Columns of a CSV file, with the units of their headers: `muscle1 [kV]`.
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::units::quantity::{PhysicalQuantity, Quantity};
+use std::fs::File;
+use std::path::PathBuf;
+
+/// A CSV file with one line of headers; lines that begin with `#` are comments.
+pub(crate) struct Columns {
+    path: PathBuf,
+    headers: StringRecord,
+    rows: Vec<StringRecord>,
+}
+
+/// Name and unit of a header; a column without a unit is in SI units.
+fn parts(header: &str) -> (&str, Option<&str>) {
+    let unit = header
+        .strip_suffix(']')
+        .and_then(|head| head.rsplit_once('['));
+    unit.map_or((header, None), |(name, unit)| (name.trim_end(), Some(unit)))
+}
+
+impl Columns {
+    /// Reads a file that a problem names: relative to the problem, otherwise to the current folder.
+    pub(crate) fn read(path: &str, scope: &Scope<'_>) -> Result<Self, SceneError> {
+        let candidates = [scope.document.beside(path), PathBuf::from(path)];
+        let Some(path) = candidates.into_iter().find(|path| path.is_file()) else {
+            let found = format!("{path:?}, where there is no file");
+            return Err(scope.wrong(found, "the path of a CSV file"));
+        };
+        let mistake = |cause: &dyn std::fmt::Display| {
+            let found = format!("{:?}, which cannot be read ({cause})", path.display());
+            scope.wrong(
+                found,
+                "a CSV file in UTF-8: a line of headers, then lines of numbers",
+            )
+        };
+        let file = File::open(&path).map_err(|cause| mistake(&cause))?;
+        let mut reader = ReaderBuilder::new()
+            .comment(Some(b'#'))
+            .trim(Trim::All)
+            .from_reader(file);
+        let headers = reader.headers().map_err(|cause| mistake(&cause))?.clone();
+        let rows: Result<_, _> = reader.records().collect();
+        Ok(Self {
+            rows: rows.map_err(|cause| mistake(&cause))?,
+            headers,
+            path,
+        })
+    }
+
+    /// The column with a header, or with a header of this name and any unit.
+    pub(crate) fn column<M: PhysicalQuantity>(
+        &self,
+        name: &str,
+        scope: &Scope<'_>,
+    ) -> Result<Vec<Quantity<M>>, SceneError> {
+        let mut headers = self.headers.iter();
+        let whole = headers.position(|header| header == name);
+        let named = |header: &str| parts(header).0 == name;
+        let Some(at) = whole.or_else(|| self.headers.iter().position(named)) else {
+            let file = self.path.display();
+            let candidates = self.headers.iter().map(|header| parts(header).0);
+            let listed: Vec<&str> = self.headers.iter().take(20).collect();
+            let expected = format!("a column of {file}, such as {}", listed.join(", "));
+            return Err(scope
+                .document
+                .wrong_name(&scope.place, name, &expected, candidates));
+        };
+        let (_, unit) = parts(&self.headers[at]);
+        let read = |row: &StringRecord| {
+            let cell = &row[at];
+            let quantity = match unit {
+                Some(unit) => Quantity::try_from_text(&format!("{cell} {unit}")),
+                None => match cell.parse() {
+                    Ok(number) => Quantity::try_from_number(number),
+                    Err(_) => Err(format!("{cell:?}, which is no number")),
+                },
+            };
+            quantity.map_err(|found| {
+                let line = row.position().map_or(0, csv::Position::line);
+                let place = format!("{found}, in line {line} of {}", self.path.display());
+                scope.wrong(place, Quantity::<M>::expected())
+            })
+        };
+        self.rows.iter().map(read).collect()
+    }
+}
