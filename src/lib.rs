@@ -92,7 +92,7 @@ pub mod units;
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod workflow;
 
-pub use control::{EarlierSolution, Signal, Solution};
+pub use control::{EarlierSolution, Orientation, Signal, Solution};
 pub use dynamics::Integrator;
 pub use energy::Energy;
 pub use functional::Element;
@@ -117,8 +117,8 @@ pub mod prelude {
     pub use crate::units::*;
     pub use crate::{
         Attachment, Body, Carrier, Component, Control, Error, GROUND, Grid, Handle, Input,
-        Integrator, Joint, JointKind, Marker, Material, Motion, Muscle, Optimum, Part, Potential,
-        Result, Signal, Simulation, Solid, Spring, State, System, Tendon, X, Y, Z,
+        Integrator, Joint, JointKind, Marker, Material, Motion, Muscle, Optimum, Orientation, Part,
+        Potential, Result, Signal, Simulation, Solid, Spring, State, System, Tendon, X, Y, Z,
     };
 }
 

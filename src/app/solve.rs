@@ -146,6 +146,7 @@ pub(super) fn control(
     let coarse = tested.and_then(Resimulation::warning);
     summary.notes.extend(note.into_iter().chain(coarse));
     summary.notes.extend(not_kept.filter(|_| is_solved));
+    summary.notes.extend(holding::free_end(control));
     summary.notes.extend(optimum.stretched.map(stretched));
     summary.notes.extend(optimum.restarted.map(restarted));
     if is_infeasible(solution.status) {

@@ -1,8 +1,9 @@
 //! Start and goal: which coordinates they give, which equations they add, and the voltages at rest.
 
-use crate::control::conditions::{BoundaryConditions, TerminalState};
+use crate::control::conditions::{BoundaryConditions, Rests, TerminalState};
 use crate::control::ends;
 use crate::control::error::BoundaryError;
+use crate::control::goal_rows;
 use crate::control::limits::Limits;
 use crate::control::problem::{BoundaryState, Control, Rest};
 use crate::dynamics::{Equilibrium, Start, muscle_without_length, stable_equilibrium};
@@ -26,24 +27,14 @@ impl BoundaryConditions {
         let mut limits = Limits::new(&control.limits, system, redundant);
         let all_joints = all_joints_given(system, &control.goal);
         match &control.goal {
-            BoundaryState::Markers { places, rest, .. } => {
-                for (&marker, place) in places {
-                    for axis in (0..3).filter(|&axis| !system.holds_marker(marker, axis)) {
-                        let name = format!(
-                            "goal {} of marker {}",
-                            ["x", "y", "z"][axis],
-                            system.markers[marker].name
-                        );
-                        limits.add_goal(Quantity::MarkerPlace { marker, axis }, place[axis], name);
-                        if *rest == Rest::Markers {
-                            let axis_name = ["x", "y", "z"][axis];
-                            let marker_name = &system.markers[marker].name;
-                            let name =
-                                format!("rest at the goal, {axis_name} of marker {marker_name}");
-                            limits.add_goal(Quantity::MarkerStep { marker, axis }, 0.0, name);
-                        }
-                    }
-                }
+            BoundaryState::Markers {
+                places,
+                orientations,
+                rest,
+                ..
+            } => {
+                goal_rows::add_places(&mut limits, system, places, *rest == Rest::Markers);
+                goal_rows::add_orientations(&mut limits, system, orientations);
             }
             BoundaryState::JointAngles { angles, .. } if redundant && !all_joints => {
                 for (&joint, &near) in angles {
@@ -65,7 +56,7 @@ impl BoundaryConditions {
             },
             ..question
         };
-        let model = Model::of_presolved(system.clone(), question, presolved)?;
+        let mut model = Model::of_presolved(system.clone(), question, presolved)?;
         let mut scalars = [None, None];
         let start = match &control.start {
             BoundaryState::RestAtVoltages(voltages) => {
@@ -75,6 +66,7 @@ impl BoundaryConditions {
             }
             state => resolve_start(&model, state, "start")?,
         };
+        goal_rows::leave_out_constant(&mut model, &limits, &start.z)?;
         let n = model.coordinate_count();
         let mut given = vec![None; n];
         let mut charts = Vec::new();
@@ -117,13 +109,14 @@ impl BoundaryConditions {
             goal: TerminalState {
                 coordinates: given,
                 charts,
-                nodes_rest: !matches!(
-                    control.goal,
+                rests: match &control.goal {
+                    BoundaryState::Free => Rests::Nothing,
                     BoundaryState::Markers {
                         rest: Rest::Markers,
                         ..
-                    }
-                ),
+                    } => Rests::Bodies,
+                    _ => Rests::Everything,
+                },
                 rest: at_goal,
             },
             rest,
@@ -201,7 +194,7 @@ pub fn resolve_start(
             let rates = with_nodes(model, rates);
             Ok(Start::with_rates(model, z, &rates))
         }
-        BoundaryState::Markers { .. } => unreachable!("marker positions are a goal"),
+        BoundaryState::Markers { .. } | BoundaryState::Free => unreachable!("it is a goal only"),
     }
 }
 

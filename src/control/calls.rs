@@ -63,7 +63,7 @@ fn zero_voltage<const N: usize>(
         ends.iter().any(|state| match state {
             BoundaryState::RestAtVoltages(voltages) => voltages[s] != 0.0,
             BoundaryState::Markers { hold, .. } => hold.as_ref().is_some_and(|v| v[s] != 0.0),
-            BoundaryState::JointAngles { .. } => false,
+            BoundaryState::JointAngles { .. } | BoundaryState::Free => false,
         })
     };
     let sources = system.sources();
@@ -103,11 +103,18 @@ impl<'a> Named<'a> {
 
     fn of_goal(&mut self, state: &BoundaryState) {
         match state {
-            BoundaryState::RestAtVoltages(_) => {}
+            BoundaryState::RestAtVoltages(_) | BoundaryState::Free => {}
             BoundaryState::JointAngles { angles, .. } => {
                 angles.keys().for_each(|&j| self.of_joint(j));
             }
-            BoundaryState::Markers { places, .. } => places.keys().for_each(|&m| self.of_marker(m)),
+            BoundaryState::Markers {
+                places,
+                orientations,
+                ..
+            } => {
+                places.keys().for_each(|&m| self.of_marker(m));
+                self.stirred.bodies.extend(orientations.keys());
+            }
         }
     }
 

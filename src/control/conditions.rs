@@ -16,15 +16,26 @@ pub struct BoundaryConditions {
     pub limits: Limits,
 }
 
-/// The final state: at rest, with these coordinates given.
+/// What comes to rest at the end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rests {
+    /// Every coordinate.
+    Everything,
+    /// Bodies, and nodes that are held to them.
+    Bodies,
+    /// Nothing.
+    Nothing,
+}
+
+/// The final state, with these coordinates given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TerminalState {
     /// Given coordinates; `None` where the optimisation decides.
     pub coordinates: Vec<Option<f64>>,
     /// Charts of the final configuration, where its coordinates are given; none otherwise, and where there are none.
     pub charts: Vec<f64>,
-    /// Whether the nodes of elastic blocks rest too.
-    pub nodes_rest: bool,
+    /// What rests.
+    pub rests: Rests,
     /// The equilibrium that it is, where it is one under voltages that are named.
     pub rest: Option<Equilibrium>,
 }

@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use crate::control::conditions::BoundaryConditions;
 use crate::control::error::BoundaryError;
+use crate::control::goal::Place;
 use crate::control::limits::{BoundedQuantity, When};
 use crate::control::problem::{BoundaryState, Control, PathConstraint};
 use crate::control::transcription::Site;
@@ -41,7 +42,7 @@ pub(super) fn check(
         match state {
             BoundaryState::JointAngles { angles, .. } => end.angles = angles.clone(),
             BoundaryState::Markers { places, .. } => end.places = places.clone(),
-            BoundaryState::RestAtVoltages(_) => {}
+            BoundaryState::RestAtVoltages(_) | BoundaryState::Free => {}
         }
         let of_joints = control.limits.iter().find_map(|limit| end.joint(limit));
         let bounded = || {
@@ -68,7 +69,7 @@ struct End<'a> {
     /// Joint coordinates that it names.
     angles: BTreeMap<usize, f64>,
     /// Places of markers that it names.
-    places: BTreeMap<usize, Vector3<f64>>,
+    places: BTreeMap<usize, Place>,
 }
 
 impl<'a> End<'a> {
@@ -134,11 +135,16 @@ impl<'a> End<'a> {
     fn value(&self, bounded: &BoundedQuantity, measure: Option<usize>) -> Option<f64> {
         match bounded.quantity {
             Quantity::Joint { .. } => return None,
-            Quantity::MarkerPlace { marker, axis } if self.places.contains_key(&marker) => {
-                return Some(self.places[&marker][axis]);
+            Quantity::MarkerPlace { marker, axis } => {
+                let given = self.places.get(&marker).and_then(|place| place.0[axis]);
+                if given.is_some() {
+                    return given;
+                }
             }
-            Quantity::MarkerRegion { marker, region } if self.places.contains_key(&marker) => {
-                return Some(region_value(&region, &self.places[&marker]));
+            Quantity::MarkerRegion { marker, region } => {
+                if let Some(place) = self.places.get(&marker).and_then(Place::whole) {
+                    return Some(region_value(&region, &place));
+                }
             }
             _ => {}
         }

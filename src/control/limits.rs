@@ -175,6 +175,17 @@ impl Limits {
         });
     }
 
+    /// Adds a lower bound at the final instant.
+    pub fn add_goal_above(&mut self, quantity: Quantity, lower: f64, name: String) {
+        self.list.push(BoundedQuantity {
+            quantity,
+            lower,
+            upper: f64::INFINITY,
+            when: When::Goal,
+            name,
+        });
+    }
+
     /// What is measured, in order.
     pub fn quantities(&self) -> Vec<Quantity> {
         self.list.iter().map(|b| b.quantity).collect()

@@ -1,5 +1,6 @@
 //! What is asked of a system: simulate it, find its equilibrium, or steer it. Units g, mm, ms, N, V.
 
+pub use crate::control::goal::{Orientation, Place};
 pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
 use crate::control::{Earlier, Signal};
 use crate::dynamics::Solving;
@@ -49,15 +50,19 @@ pub enum BoundaryState {
         /// of the first body of a free part and of those on a spherical or floating joint. Others follow from their joints.
         velocities: BTreeMap<usize, [Vector3<f64>; 2]>,
     },
-    /// Positions of markers in mm, by marker index, at rest; only as a goal.
+    /// Positions of markers in mm by marker index and orientations of bodies by body index, at rest; only as a goal.
     Markers {
         /// The places.
-        places: BTreeMap<usize, Vector3<f64>>,
+        places: BTreeMap<usize, Place>,
+        /// The orientations.
+        orientations: BTreeMap<usize, Orientation>,
         /// What comes to rest there.
         rest: Rest,
         /// Voltages that are held afterwards (V, one per source), where they are known.
         hold: Option<Vec<f64>>,
     },
+    /// Anything, in motion or at rest; only as a goal.
+    Free,
 }
 
 /// What comes to rest at a goal.
@@ -217,7 +222,7 @@ pub struct Control {
     pub intervals: usize,
     /// Initial state.
     pub start: BoundaryState,
-    /// Final state, at rest.
+    /// Final state, at rest unless it is free.
     pub goal: BoundaryState,
     /// Bounds of the voltages that are sought in V.
     pub voltage_bounds: [f64; 2],

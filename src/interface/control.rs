@@ -1,6 +1,8 @@
 //! Optimal control problems.
 
-use crate::control::problem::{self, Duration, Guess, Hold, Objective, PathConstraint, Solver};
+use crate::control::problem::{
+    self, CostFunction, Duration, Guess, Hold, Objective, PathConstraint, QuantityCost, Solver,
+};
 use crate::control::{Earlier, EarlierSolution};
 use crate::dynamics::out_of_domain;
 use crate::interface::error::{Result, require};
@@ -8,8 +10,8 @@ use crate::interface::handle::Handle;
 use crate::interface::motion::Motion;
 use crate::interface::optimum::Optimum;
 use crate::interface::state::State;
-use crate::model::System;
 use crate::model::system::{Joint, Muscle};
+use crate::model::{Quantity, System};
 use crate::nlp::Nlp;
 use crate::workflow::cure::{Cured, reproduced};
 use crate::workflow::domain;
@@ -24,7 +26,7 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::ops::RangeInclusive;
 
-/// An optimal control problem: voltages that steer a system from rest to rest.
+/// An optimal control problem: voltages that steer a system from rest to rest, or along a path.
 #[derive(Clone, Debug)]
 pub struct Control {
     duration: Duration,
@@ -69,7 +71,7 @@ impl Control {
         Self { start, ..self }
     }
 
-    /// The goal, at rest.
+    /// The goal, at rest unless it is [`State::Free`].
     pub fn goal(self, goal: State) -> Self {
         Self { goal, ..self }
     }
@@ -98,6 +100,12 @@ impl Control {
     /// Minimises the duration in s, with a weight.
     pub fn time(mut self, weight: f64) -> Self {
         self.objective.duration = weight;
+        self
+    }
+
+    /// Minimises a function of a quantity; [`Control::track`] and its neighbours make the usual ones.
+    pub fn minimise(mut self, cost: QuantityCost) -> Self {
+        self.objective.quantities.push(cost);
         self
     }
 
@@ -187,6 +195,7 @@ impl Control {
             tested.and_then(Resimulation::warning),
             holding::warning(&control, model, &found.boundary, tested),
             domain::note(&outside, true),
+            holding::free_end(&control),
         ];
         Ok(Optimum {
             status: found.word(),
@@ -242,9 +251,12 @@ impl Control {
         require(takes, "control", found, "a muscle with a permittivity")?;
         let weights = &self.objective;
         let weights = [weights.effort, weights.rate, weights.duration];
-        let holds = weights.iter().all(|w| *w >= 0.0 && w.is_finite()) && weights != [0.0; 3];
+        let costs = &self.objective.quantities;
+        let is_any = !costs.is_empty() || weights != [0.0; 3];
+        let holds = weights.iter().all(|w| *w >= 0.0 && w.is_finite()) && is_any;
         let found = || format!("weights {weights:?} of effort, rate and time");
         require(holds, "control", found, "weights of which one is positive")?;
+        check_costs(costs, system)?;
         for limit in &self.limits {
             let holds = match *limit {
                 PathConstraint::ElectricField { muscle, max } => {
@@ -281,4 +293,25 @@ impl Control {
             solver: Solver::default(),
         })
     }
+}
+
+/// Refuses costs of what the system does not have, and weights and functions of time that are no numbers.
+fn check_costs(costs: &[QuantityCost], system: &System) -> Result<()> {
+    for cost in costs {
+        let exists = match cost.quantity {
+            Quantity::Joint { joint, .. } => {
+                let joint = system.joints.get(joint);
+                joint.is_some_and(Joint::has_coordinate)
+            }
+            Quantity::MarkerPlace { marker, axis } => marker < system.markers.len() && axis < 3,
+            _ => true,
+        };
+        let CostFunction::Square { reference } = &cost.function;
+        let is_sound = cost.weight > 0.0 && cost.weight.is_finite() && reference.is_sound();
+        let found = || format!("{cost:?}");
+        let expected =
+            "a positive weight of a marker, or of a joint with one coordinate, along finite values";
+        require(exists && is_sound, "cost", found, expected)?;
+    }
+    Ok(())
 }

@@ -5,6 +5,7 @@
 //! - `motion`, `optimum`, `error`: what comes back.
 
 mod control;
+mod costs;
 mod error;
 mod handle;
 mod input;

@@ -1,11 +1,11 @@
 //! States at the ends of a motion.
 
-use crate::control::problem::{BoundaryState, Rest};
+use crate::control::problem::{BoundaryState, Orientation, Place, Rest};
 use crate::interface::error::{Result, require, source};
 use crate::interface::handle::Handle;
 use crate::interface::input::Input;
 use crate::model::System;
-use crate::model::system::{Joint, Marker};
+use crate::model::system::{Body, Joint, Marker};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -20,6 +20,15 @@ pub enum State {
     Joints(Vec<(Handle<Joint>, f64)>),
     /// Places of markers in mm, everything at rest; a goal only.
     Markers(Vec<(Handle<Marker>, Vector3<f64>)>),
+    /// Places of markers in mm, in the directions that have one, and orientations of bodies, everything at rest; a goal only.
+    Places {
+        /// Places.
+        markers: Vec<(Handle<Marker>, [Option<f64>; 3])>,
+        /// Orientations.
+        bodies: Vec<(Handle<Body>, Orientation)>,
+    },
+    /// Anything, in motion or at rest; a goal only.
+    Free,
 }
 
 impl State {
@@ -58,6 +67,28 @@ impl State {
                 let values = values.iter().map(|&(joint, value)| (joint.index(), value));
                 of_joints(values.collect())
             }
+            Self::Free => BoundaryState::Free,
+            Self::Places { markers, bodies } => {
+                for (marker, place) in markers {
+                    let finite = place.iter().flatten().all(|x| x.is_finite());
+                    let holds = marker.index() < system.markers.len() && finite;
+                    let found = || format!("{place:?} of marker {}", marker.index());
+                    require(holds, "state", found, "a finite place of a marker")?;
+                }
+                for (body, orientation) in bodies {
+                    let holds = body.index() < system.bodies.len() && orientation.is_sound();
+                    let found = || format!("{orientation:?} of body {}", body.index());
+                    require(holds, "state", found, "unit vectors and a finite angle")?;
+                }
+                let places = markers.iter().map(|&(m, place)| (m.index(), Place(place)));
+                let turned = bodies.iter().map(|&(b, turned)| (b.index(), turned));
+                BoundaryState::Markers {
+                    places: places.collect(),
+                    orientations: turned.collect(),
+                    rest: Rest::Everything,
+                    hold: None,
+                }
+            }
             Self::Markers(places) => {
                 for (marker, place) in places {
                     let finite = place.iter().all(|x| x.is_finite());
@@ -67,9 +98,10 @@ impl State {
                 }
                 let places = places
                     .iter()
-                    .map(|&(marker, place)| (marker.index(), place));
+                    .map(|&(marker, place)| (marker.index(), place.into()));
                 BoundaryState::Markers {
                     places: places.collect(),
+                    orientations: BTreeMap::new(),
                     rest: Rest::Everything,
                     hold: None,
                 }

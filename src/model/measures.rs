@@ -95,6 +95,13 @@ impl Known<'_> {
                     [self.markers[marker]],
                 )
             }
+            Quantity::Direction { body, axis, along } => {
+                let body = self.condensed.carrier(Some(body));
+                let direction = MaterialVector::direction(body, &axis, self.reference);
+                let normal = along;
+                let component = PositionComponent { origin, normal };
+                instant(shape, component, [vectors.index(direction)])
+            }
             Quantity::MarkerRegion { marker, region } => {
                 let vectors = [self.markers[marker]];
                 match region {

@@ -79,6 +79,15 @@ pub enum Quantity {
         /// Component 0, 1 or 2.
         axis: usize,
     },
+    /// a·b of a direction a fixed to a body and a direction b, at the instants.
+    Direction {
+        /// Body index.
+        body: usize,
+        /// a in the reference configuration, a unit vector of the ground frame.
+        axis: Vector,
+        /// b, a unit vector of the ground frame.
+        along: Vector,
+    },
     /// (|x − c|/r)² of a marker for a ball, Σ ((x − c)_i/a_i)¹⁶ for a box, at the instants.
     MarkerRegion {
         /// Marker index.
@@ -115,6 +124,7 @@ impl Quantity {
         match *self {
             Self::Joint { joint, .. } => (value, joint_unit(system, joint)),
             Self::SquaredStretch { .. } => (value.sqrt(), ""),
+            Self::Direction { .. } => (value, ""),
             Self::SquaredField { limit, .. } => (value.sqrt() * limit / MEGAVOLT_PER_METRE, "V/um"),
             Self::MarkerPlace { .. } | Self::MarkerStep { .. } => (value, "mm"),
             Self::MarkerRegion { region, .. } => match region {

@@ -63,6 +63,13 @@ pub(crate) fn warning(
     (!reasons.is_empty()).then(|| format!("the goal cannot be kept: {}", reasons.join("; ")))
 }
 
+/// That nothing is known of what follows the end of a motion, where it is free.
+pub(crate) fn free_end(control: &Control) -> Option<String> {
+    (control.goal == BoundaryState::Free).then(|| {
+        "the end is free: the motion need not come to rest there, and what follows it is not verified".to_owned()
+    })
+}
+
 /// The first source that is sought and held at a voltage that it may not have, and why not.
 fn beyond_bounds(control: &Control, model: &Model) -> Option<(String, String)> {
     let BoundaryState::Markers {

@@ -2,11 +2,11 @@
 
 use std::ops::ControlFlow;
 
-use crate::control::BoundaryConditions;
 use crate::control::problem::{BoundaryState, Control, Duration, Objective};
+use crate::control::{BoundaryConditions, Place, Rests};
 use crate::coordinates::Configuration;
 use crate::dynamics::simulate;
-use crate::math::{Vector, significant};
+use crate::math::significant;
 use crate::model::{Model, System, joint_unit};
 use crate::workflow::optimise::{Iterate, Optimum, SolveLimits, optimise};
 use crate::workflow::second_start::is_infeasible;
@@ -85,8 +85,8 @@ fn distances(
     goal: &BoundaryState,
     end: &Configuration,
 ) -> Vec<(String, f64)> {
-    let of_marker = |m: usize, place: &Vector| {
-        let far = (end.x[model.markers[m]] - place).norm();
+    let of_marker = |m: usize, place: &Place| {
+        let far = place.distance(&end.x[model.markers[m]]);
         let name = &model.system.markers[m].name;
         let words = format!("{name} comes within {} mm of its goal", significant(far, 3));
         (words, far / model.length())
@@ -111,6 +111,7 @@ fn distances(
             all.map(|(&j, &angle)| of_joint(j, angle, found[j]))
                 .collect()
         }
+        BoundaryState::Free => Vec::new(),
         BoundaryState::RestAtVoltages(_) => {
             let goal: Option<Vec<f64>> = boundary.goal.coordinates.iter().copied().collect();
             let Some(goal) = goal else {
@@ -121,7 +122,7 @@ fn distances(
             there.z[model.action.motion.unknowns()..].copy_from_slice(&boundary.goal.charts);
             model.action.motion.place(&mut there);
             let markers = 0..model.markers.len();
-            let places = markers.map(|m| of_marker(m, &there.x[model.markers[m]]));
+            let places = markers.map(|m| of_marker(m, &there.x[model.markers[m]].into()));
             let (asked, found) = (joints(&there), joints(end));
             let turned = (0..asked.len()).map(|j| of_joint(j, asked[j], found[j]));
             let places: Vec<_> = places.collect();
@@ -197,7 +198,7 @@ fn changes(control: &Control, optimum: &Optimum, longer: Longer) -> Vec<String> 
         lines.push("change: wider voltage_bounds, if the muscles withstand them".to_owned());
     }
     let has_nodes = !model.action.motion.of_nodes.is_empty();
-    if has_nodes && optimum.boundary.goal.nodes_rest {
+    if has_nodes && optimum.boundary.goal.rests == Rests::Everything {
         let few = "a few voltages cannot bring every node of an elastic block to rest";
         lines.push(format!(
             "change: \"rest\": \"markers\" at a goal of markers; {few}"

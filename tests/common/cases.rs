@@ -5,7 +5,8 @@ use super::tracked::tracked;
 use super::trunk;
 use nalgebra::Vector3;
 use proboscis::control::problem::{
-    BoundaryState, Control, Duration, Guess, Objective, PathConstraint, Rest, Side, Solver,
+    BoundaryState, Control, Duration, Guess, Objective, Orientation, PathConstraint, Place, Rest,
+    Side, Solver,
 };
 use proboscis::ipopt::LinearSolver;
 use proboscis::model::system::{ElectricConstants, Material, System, VACUUM_PERMITTIVITY};
@@ -132,9 +133,34 @@ pub fn all_limits() -> Vec<PathConstraint> {
 /// The marker of the block at a place, at rest, while the rest of the block may still move.
 fn corner_goal() -> BoundaryState {
     BoundaryState::Markers {
-        places: BTreeMap::from([(1, Vector3::new(10.0, 60.0, 39.5))]),
+        places: BTreeMap::from([(1, Vector3::new(10.0, 60.0, 39.5).into())]),
+        orientations: BTreeMap::new(),
         rest: Rest::Markers,
         hold: None,
+    }
+}
+
+/// Parts of places of markers and orientations of bodies, at rest.
+pub fn partly(
+    markers: &[(usize, [Option<f64>; 3])],
+    bodies: &[(usize, Orientation)],
+) -> BoundaryState {
+    let places = markers
+        .iter()
+        .map(|&(marker, place)| (marker, Place(place)));
+    BoundaryState::Markers {
+        places: places.collect(),
+        orientations: bodies.iter().copied().collect(),
+        rest: Rest::Everything,
+        hold: None,
+    }
+}
+
+/// A direction fixed to a body that points to an oblique one.
+pub fn direction() -> Orientation {
+    Orientation::Towards {
+        axis: Vector3::y(),
+        towards: Vector3::new(0.2, 0.95, -0.1).normalize(),
     }
 }
 
@@ -142,6 +168,7 @@ fn corner_goal() -> BoundaryState {
 pub fn open_end() -> BoundaryState {
     BoundaryState::Markers {
         places: BTreeMap::new(),
+        orientations: BTreeMap::new(),
         rest: Rest::Markers,
         hold: None,
     }
@@ -276,6 +303,24 @@ pub fn cases() -> Vec<Case> {
             c.duration = free;
             c.goal = corner_goal();
         }),
+        case("branched tree, free end", branched(), &|c| {
+            c.objective = tracked(&[0], &[(0, true)]);
+            c.goal = BoundaryState::Free;
+        }),
+        case(
+            "branched tree, part of a place and a direction",
+            branched(),
+            &|c| {
+                c.goal = partly(&[(0, [None, Some(128.0), None])], &[(1, direction())]);
+            },
+        ),
+        case("satellite, orientation, free time", satellite(), &|c| {
+            let axis = Vector3::new(0.48, 0.6, 0.64);
+            let turned = Orientation::Turned { axis, angle: 0.3 };
+            c.start = joints(&[(0, 0.1)]);
+            c.goal = partly(&[], &[(0, turned)]);
+            c.duration = free;
+        }),
         case("ball in a socket", ball(), &|c| {
             c.start = joints(&[(1, 0.2)]);
             c.goal = joints(&[(1, 0.3), (2, -0.2)]);
@@ -287,7 +332,8 @@ pub fn cases() -> Vec<Case> {
         }),
         case("branched tree to a marker", branched(), &|c| {
             c.goal = BoundaryState::Markers {
-                places: BTreeMap::from([(0, Vector3::new(25.0, 128.0, 12.0))]),
+                places: BTreeMap::from([(0, Vector3::new(25.0, 128.0, 12.0).into())]),
+                orientations: BTreeMap::new(),
                 rest: Rest::Everything,
                 hold: None,
             };

@@ -16,4 +16,5 @@ mod limits;
 mod optimality;
 mod reference;
 mod resample;
+mod tracking;
 mod verdicts;

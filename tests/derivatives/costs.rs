@@ -7,7 +7,7 @@ use crate::common::systems::branched;
 use crate::common::tracked::tracked;
 use nalgebra::Vector3;
 use proboscis::control::Signal;
-use proboscis::control::problem::{Control, CostFunction, Duration, QuantityCost};
+use proboscis::control::problem::{Control, CostFunction, Duration, During, QuantityCost};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::model::system::System;
 use proboscis::model::{Coordinates, Model, Quantity};
@@ -95,6 +95,10 @@ fn problems() -> Vec<Control> {
             given.duration = Duration::Given(36.0);
             given.coordinates = Some(coordinates);
             given.objective = tracked(&[0, 1], &[(0, true), (1, false), (2, true)]);
+            // Some of them at the end only.
+            for cost in given.objective.quantities.iter_mut().step_by(4) {
+                cost.during = During::End;
+            }
             let mut free = given.clone();
             free.duration = Duration::Free {
                 min: 10.0,
@@ -123,7 +127,11 @@ fn the_sum_is_the_trapezoidal_rule() {
                     .collect();
                 assert!(squares.iter().sum::<f64>() > 1e-3, "{cost:?}");
                 let pairs = squares.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
-                expected += cost.weight * pairs.sum::<f64>() * motion.times[1] / 1e3;
+                expected += cost.weight
+                    * match cost.during {
+                        During::Motion => pairs.sum::<f64>() * motion.times[1] / 1e3,
+                        During::End => squares[motion.z.len() - 1],
+                    };
             }
             let mut without = control.clone();
             without.objective.quantities.clear();

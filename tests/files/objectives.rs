@@ -2,7 +2,9 @@
 
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
 use proboscis::control::Signal;
-use proboscis::control::problem::{Control, CostFunction, During, QuantityCost, Task};
+use proboscis::control::problem::{
+    BoundaryState, Control, CostFunction, During, Orientation, Place, QuantityCost, Rest, Task,
+};
 use proboscis::files::read_problem;
 use proboscis::model::Quantity;
 use std::fs;
@@ -123,4 +125,89 @@ fn a_solution_to_follow_is_checked() {
         assert_eq!(error.path(), place, "{error}");
         assert!(error.found().contains(found), "{error}");
     }
+}
+
+#[test]
+fn an_end_may_be_drawn_near_and_free() {
+    let objective = r#"{ "effort": 1, "final": [
+        { "marker": { "marker": "tip", "at": [null, "90 mm", null], "weight": 3 } },
+        { "joint": { "joint": "joint2", "at": "2 mm" } } ] }"#;
+    let cost = |quantity, weight, at: f64| QuantityCost {
+        during: During::End,
+        ..square(quantity, weight, Signal::Constant(at))
+    };
+    let place = Quantity::MarkerPlace { marker: 0, axis: 1 };
+    let joint = Quantity::Joint {
+        joint: 1,
+        near: 0.0,
+    };
+    let expected = [cost(place, 3.0, 90.0), cost(joint, 1.0, 2.0)];
+    assert_eq!(read(objective).objective.quantities, expected);
+
+    // Without a goal the end is free; the word says so too.
+    let goal = "\"goal\": { \"rest_at_voltages\": { \"muscle1\": \"1.7 kV\" } },";
+    for (new, objective) in [
+        ("", objective),
+        ("\"goal\": \"free\",", "{ \"effort\": 1.0 }"),
+    ] {
+        let problem = with(objective).replace(goal, new);
+        let (_folder, path) = folder(SCENE, &problem);
+        let Task::Control(control) = read_problem(&path, &[]).expect("a problem").task else {
+            panic!("a control problem")
+        };
+        assert_eq!(control.goal, BoundaryState::Free);
+    }
+    let error = mistake(SCENE, &PROBLEM.replace(goal, ""), &[]);
+    assert_eq!(error.path(), "control");
+    assert!(error.found().contains("no key \"goal\""), "{error}");
+    #[rustfmt::skip]
+    let cases: &[Case] = &[
+        ("\"at\": [null, \"90 mm\", null]", "\"at\": [null, null, null]", "control.objective.final[0].marker.at", "no coordinate", "not null", "null"),
+        ("\"weight\": 3", "\"weight\": -3", "control.objective.final[0].marker.weight", "-3", "a positive weight", "-3"),
+        ("\"2 mm\"", "\"2 rad\"", "control.objective.final[1].joint.at", "which is an angle", "a length", "2 rad"),
+    ];
+    check(cases, &with(objective), |problem| {
+        mistake(SCENE, problem, &[])
+    });
+}
+
+#[test]
+fn a_goal_may_be_a_part_of_a_place_and_an_orientation() {
+    const GOAL: &str = r#"{ "markers": { "tip": [null, "90 mm", null] }, "rest": "markers", "orientations": {
+        "segment1": { "axis": [0, 2, 0], "towards": [3, 4, 0] }, "segment2": { "axis": [1, 0, 0], "angle": "90 deg" } } }"#;
+    let problem = PROBLEM.replace(
+        "{ \"rest_at_voltages\": { \"muscle1\": \"1.7 kV\" } }",
+        GOAL,
+    );
+    let (_folder, path) = folder(SCENE, &problem);
+    let Task::Control(control) = read_problem(&path, &[]).expect("a problem").task else {
+        panic!("a control problem")
+    };
+    let direction = |x, y, z| nalgebra::Vector3::new(x, y, z);
+    let towards = Orientation::Towards {
+        axis: direction(0.0, 1.0, 0.0),
+        towards: direction(0.6, 0.8, 0.0),
+    };
+    let turned = Orientation::Turned {
+        axis: direction(1.0, 0.0, 0.0),
+        angle: std::f64::consts::FRAC_PI_2,
+    };
+    let expected = BoundaryState::Markers {
+        places: [(0, Place([None, Some(90.0), None]))].into(),
+        orientations: [(0, towards), (1, turned)].into(),
+        rest: Rest::Markers,
+        hold: None,
+    };
+    assert_eq!(control.goal, expected);
+    #[rustfmt::skip]
+    let cases: &[Case] = &[
+        ("[null, \"90 mm\", null]", "[null, null, null]", "control.goal.markers.tip", "no coordinate", "not null", "null"),
+        ("\"segment1\":", "\"segment\":", "control.goal.orientations.segment", "\"segment\"", "the name of a body", "segment"),
+        ("[0, 2, 0]", "[0, 0, 0]", "control.goal.orientations.segment1.axis", "[0.0, 0.0, 0.0]", "a direction", "0, 0, 0"),
+        ("\"angle\": \"90 deg\"", "\"angle\": \"90 mm\"", "control.goal.orientations.segment2.angle", "which is a length", "an angle", "90 mm"),
+        (", \"angle\": \"90 deg\"", "", "control.goal.orientations.segment2", "none of them", "exactly one of \"towards\", \"angle\"", "axis"),
+        ("\"rest\": \"markers\"", "\"joint_angles\": { \"joint1\": 0 }", "control.goal", "\"joint_angles\", \"markers\"", "exactly one of", "tip"),
+        (GOAL, "\"fre\"", "control.goal", "\"fre\"", "\"free\"", "fre"),
+    ];
+    check(cases, &problem, |problem| mistake(SCENE, problem, &[]));
 }

@@ -1,7 +1,7 @@
 //! A variable that is given has no column, one with an equation has a row; the unknowns of a step are those with an equation.
 
 use crate::common::cases::{Case, cases};
-use proboscis::control::problem::{Control, Duration};
+use proboscis::control::problem::{BoundaryState, Control, Duration};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::model::{Coordinates, Model, Role, System, Time};
 use proboscis::nlp::Nlp;
@@ -63,7 +63,11 @@ fn check(system: &System, control: &Control) -> [usize; 2] {
     let goal = &boundary.goal.coordinates[..n];
     let open = goal.iter().filter(|value| value.is_none()).count();
     let multipliers = names(&columns, "multiplier of ").len();
-    assert_eq!(multipliers, (intervals + 1) * m);
+    // A free end has no balance for a constraint force.
+    let is_free = control.goal == BoundaryState::Free;
+    assert_eq!(multipliers, (intervals + usize::from(!is_free)) * m);
+    let balances = names(&rows, "rest at the goal, ").len();
+    assert_eq!(balances == 0, is_free, "{balances} balances at the end");
     // At the start, and where the goal gives all, nothing is left for a constraint to decide.
     let decided = 1 + usize::from(open == 0);
     let constraints = names(&rows, "constraint ").len();

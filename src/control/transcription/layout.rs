@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::control::conditions::BoundaryConditions;
+use crate::control::conditions::{BoundaryConditions, Rests};
 use crate::control::limits::When;
 use crate::control::numbering::{Column, Numbering, Row};
 use crate::control::problem::{Control, Duration};
@@ -28,18 +28,19 @@ impl Layout {
     ) -> Self {
         let motion = &model.action.motion;
         let goal = &boundary.goal.coordinates;
+        let ends_anyhow = boundary.goal.rests == Rests::Nothing;
         let is_given = |column: Column| {
             let variable = column.of(&model.variables);
             match (column, variable.role) {
                 (Column::Instant { k, i }, Role::Coordinate) => {
                     k == 0 || (k == intervals && goal[i].is_some())
                 }
-                (Column::Instant { .. }, _) => false,
+                // No balance at the end, so nothing that a constraint force would balance.
+                (Column::Instant { k, .. }, _) => k == intervals && ends_anyhow,
                 (Column::Interval { .. }, _) => control.given(variable).is_some(),
                 (Column::Horizon, _) => matches!(control.duration, Duration::Given(_)),
             }
         };
-        let at_rest = boundary.goal.nodes_rest;
         // A node that multipliers hold rests with what they hold it to: its balance gives their last value.
         let mut is_held = vec![false; motion.coordinates];
         for &(i, j) in model.action.layout().same.entries() {
@@ -47,7 +48,11 @@ impl Layout {
                 is_held[j] = true;
             }
         }
-        let rests = |i: usize| i < motion.of_bodies || is_held[i] || at_rest;
+        let rests = |i: usize| match boundary.goal.rests {
+            Rests::Everything => true,
+            Rests::Bodies => i < motion.of_bodies || is_held[i],
+            Rests::Nothing => false,
+        };
         let is_balanced = |k: usize, i: usize| k < intervals || rests(i);
         let mut unknowns = Numbering::new(&model.variables, intervals, is_given, is_balanced);
         let limits = limit_rows(model, &boundary.limits.list, intervals, &unknowns);

@@ -112,7 +112,7 @@ impl<'m> Transcription<'m> {
         initial: &InitialGuess,
     ) -> Result<Self, BoundaryError> {
         let program = Self::of_any(model, boundary, control, initial);
-        program.count(&boundary.limits.list)?;
+        program.count()?;
         Ok(program)
     }
 
@@ -240,8 +240,10 @@ impl<'m> Transcription<'m> {
         out
     }
 
-    fn count(&self, limits: &[BoundedQuantity]) -> Result<(), BoundaryError> {
-        let goals = limits.iter().filter(|l| l.when == When::Goal).count();
+    fn count(&self) -> Result<(), BoundaryError> {
+        let is_goal =
+            |l: &&LimitRow| l.bounded.when == When::Goal && l.bounded.lower == l.bounded.upper;
+        let goals = self.limits.iter().filter(is_goal).count();
         let given = self.instants.len().saturating_sub(1);
         let equations = self
             .unknowns

@@ -4,13 +4,14 @@ use crate::control::problem::{BoundaryState, Control, Duration, Objective, Solve
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::coordinates::{coordinates, count};
+use crate::files::problem::goal::goal_state;
 use crate::files::problem::guess::guess;
 use crate::files::problem::limits::limit;
 use crate::files::problem::spec_control::{
     ControlSolverSpec, ControlSpec, DurationSpec, ObjectiveSpec, OptionSpec, SolverSpec,
 };
-use crate::files::problem::state::{ELECTRIC_KEYS, driven, goal_state, start_state};
-use crate::files::problem::track::track;
+use crate::files::problem::state::{ELECTRIC_KEYS, driven, start_state};
+use crate::files::problem::track::{at_the_end, track};
 use crate::files::scene::graph::tree_freedoms;
 use crate::ipopt::{LinearSolver, OptionValue};
 use crate::model::system::{Fidelity, Muscle, System};
@@ -34,7 +35,15 @@ pub(crate) fn control(
     }
     let voltage_bounds = voltage_bounds(spec, &scope.key("voltage_bounds"))?;
     let start = start_state(&spec.start, system, &scope.key("start"))?;
-    let goal = goal_state(&spec.goal, system, &scope.key("goal"))?;
+    let objective = objective(&spec.objective, system, &scope.key("objective"))?;
+    let goal = match &spec.goal {
+        Some(goal) => goal_state(goal, system, &scope.key("goal"))?,
+        None if objective.quantities.is_empty() => {
+            let expected = "the key \"goal\", or an objective that names something to \"track\" or a \"final\" place";
+            return Err(scope.wrong("no key \"goal\"", expected));
+        }
+        None => BoundaryState::Free,
+    };
     let given = given_voltages(spec, system, &scope.key("voltages"))?;
     for (key, state) in [("start", &start), ("goal", &goal)] {
         check_rest_voltages(state, system, &given, voltage_bounds, &scope.key(key))?;
@@ -52,7 +61,7 @@ pub(crate) fn control(
         voltage_bounds,
         given,
         hold: spec.hold.into(),
-        objective: objective(&spec.objective, system, &scope.key("objective"))?,
+        objective,
         limits,
         coordinates: coordinates(spec.coordinates, system, scope)?,
         guess: guess(&spec.guess, system, voltage_bounds, &scope.key("guess"))?,
@@ -153,9 +162,12 @@ pub(crate) fn check_final_conditions(
         return Ok(());
     }
     let (conditions, key) = match goal {
-        BoundaryState::Markers { places, .. } => (3 * places.len(), "markers"),
+        BoundaryState::Markers { places, .. } => {
+            let given = places.values().map(|place| place.given().count());
+            (given.sum(), "markers")
+        }
         BoundaryState::JointAngles { angles, .. } => (angles.len(), "joint_angles"),
-        BoundaryState::RestAtVoltages(_) => return Ok(()),
+        BoundaryState::RestAtVoltages(_) | BoundaryState::Free => return Ok(()),
     };
     match tree_freedoms(system.bodies.len(), &system.joints) {
         Some(freedoms) if conditions > freedoms => {
@@ -187,9 +199,11 @@ pub(crate) fn objective(
     for (index, spec) in spec.track.iter().enumerate() {
         quantities.extend(track(spec, system, &scope.key("track").index(index))?);
     }
+    for (index, spec) in spec.at_the_end.iter().enumerate() {
+        quantities.extend(at_the_end(spec, system, &scope.key("final").index(index))?);
+    }
     if quantities.is_empty() && weights.iter().all(|(_, weight)| *weight == 0.0) {
-        let expected =
-            "a positive weight of \"effort\", \"rate\" or \"duration\", or something to \"track\"";
+        let expected = "a positive weight of \"effort\", \"rate\" or \"duration\", or something to \"track\" or a \"final\" place";
         return Err(scope.wrong("no weight", expected));
     }
     Ok(Objective {

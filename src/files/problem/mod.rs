@@ -1,12 +1,13 @@
 //! The problem file: what is written (`spec`, `spec_*`) and how it becomes a [`Task`](crate::control::problem::Task).
 //!
 //! - `build`: the problem; `control`, `simulation`: its two longer tasks.
-//! - `state`, `limits`, `guess`, `voltages`, `signal`, `track`, `coordinates`: their parts; `solution_voltages`, `solution_joints`:
+//! - `state`, `goal`, `limits`, `guess`, `voltages`, `signal`, `track`, `coordinates`: their parts; `solution_voltages`, `solution_joints`:
 //!   what is read of an earlier solution.
 
 pub(crate) mod build;
 pub(crate) mod control;
 pub(crate) mod coordinates;
+pub(crate) mod goal;
 pub(crate) mod guess;
 pub(crate) mod limits;
 pub(crate) mod signal;

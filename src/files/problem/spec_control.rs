@@ -4,7 +4,7 @@ use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::files::problem::spec_coordinates::CoordinatesSpec;
 use crate::files::problem::spec_limits::LimitSpec;
 use crate::files::problem::spec_states::{GoalSpec, HoldSpec, StartSpec};
-use crate::files::problem::spec_track::TrackSpec;
+use crate::files::problem::spec_track::{FinalSpec, TrackSpec};
 use crate::files::problem::spec_voltages::{VoltageMap, VoltagesSpec};
 use crate::files::units::quantity::{Quantity, Time, Voltage};
 use schemars::JsonSchema;
@@ -22,8 +22,9 @@ pub struct ControlSpec {
     pub intervals: usize,
     /// Initial state.
     pub start: StartSpec,
-    /// Final state, at rest.
-    pub goal: GoalSpec,
+    /// Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then.
+    #[serde(default)]
+    pub goal: Option<GoalSpec>,
     /// Lower and upper bound of every voltage that is sought, SI unit V.
     pub voltage_bounds: [Quantity<Voltage>; 2],
     /// Voltages that are given for all the time, by the names of muscles and driven electrodes (`block.electrode`), SI unit V:
@@ -78,6 +79,9 @@ pub struct ObjectiveSpec {
     /// What markers and joints follow in time.
     #[serde(default)]
     pub track: Vec<TrackSpec>,
+    /// Where markers and joints are to end.
+    #[serde(default, rename = "final")]
+    pub at_the_end: Vec<FinalSpec>,
 }
 
 /// Options of the solver.

@@ -1,14 +1,16 @@
 //! Start and goal as they are written.
 
 use crate::control::problem::{Hold, Rest};
+use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::files::problem::spec_voltages::VoltageMap;
-use crate::files::scene::point::Point;
+use crate::files::scene::point::PartialPoint;
 use crate::files::units::quantity::{
-    AngularVelocity, JointCoordinate, JointRate, Quantity, Velocity,
+    Angle, AngularVelocity, JointCoordinate, JointRate, Quantity, Velocity,
 };
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
+use std::marker::PhantomData;
 
 /// A state at the start: exactly one of `rest_at_voltages` and joint coordinates.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -41,26 +43,67 @@ pub struct BodyVelocitySpec {
     pub angular: Option<[Quantity<AngularVelocity>; 3]>,
 }
 
-/// A state at the end, at rest: exactly one of the three.
+/// `"free"`, or a state at the end, at rest.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum GoalSpec {
+    /// Anything, in motion or at rest.
+    Word(GoalWord),
+    /// A state of rest.
+    Rest(Box<RestGoalSpec>),
+}
+
+/// A word of a goal.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GoalWord {
+    /// Anything, in motion or at rest.
+    Free,
+}
+
+scalar_or_object! {
+    GoalSpec: GoalWord = Self::Word, Box<RestGoalSpec> = Self::Rest,
+        "\"free\", or an object with \"rest_at_voltages\", \"joint_angles\", \"markers\" or \"orientations\"";
+}
+
+/// A state at the end, at rest: `rest_at_voltages`, or `joint_angles`, or `markers` and `orientations`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct GoalSpec {
+pub struct RestGoalSpec {
     /// Static equilibrium under these voltages, SI unit V; 0 where not named.
     #[serde(default)]
     pub rest_at_voltages: Option<VoltageMap>,
     /// Joint coordinates by joint, SI unit rad or m; free where not named.
     #[serde(default)]
     pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
-    /// Positions by marker, SI unit m.
+    /// Positions by marker, SI unit m; directions that are `null` are free.
     #[serde(default)]
-    pub markers: Option<BTreeMap<String, Point>>,
-    /// What comes to rest at positions of markers: `everything` (where not written), or bodies and these `markers` alone, for
+    pub markers: Option<BTreeMap<String, PartialPoint>>,
+    /// Orientations by body.
+    #[serde(default)]
+    pub orientations: Option<BTreeMap<String, OrientationSpec>>,
+    /// What comes to rest at positions of markers and orientations: `everything` (where not written), or bodies and these `markers` alone, for
     /// elastic blocks, which a few voltages cannot bring to rest everywhere.
     #[serde(default)]
     pub rest: Option<RestSpec>,
-    /// Voltages that are held after positions of markers are reached, SI unit V; 0 where not named.
+    /// Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named.
     #[serde(default)]
     pub hold: Option<VoltageMap>,
+}
+
+/// An orientation of a body: `axis` with exactly one of `towards` and `angle`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OrientationSpec {
+    /// A direction of the ground frame, of any length: with `towards` one that moves with the body, as it is in the reference
+    /// configuration; with `angle` the axis about which the body is turned.
+    pub axis: [f64; 3],
+    /// Direction of the ground frame, of any length, to which `axis` points.
+    #[serde(default)]
+    pub towards: Option<[f64; 3]>,
+    /// Angle by which the body is turned from its reference configuration, SI unit rad.
+    #[serde(default)]
+    pub angle: Option<Quantity<Angle>>,
 }
 
 /// What comes to rest at a goal.

@@ -1,10 +1,11 @@
-//! What an objective follows in time, as it is written.
+//! What an objective follows in time and where it is to end, as it is written.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::files::problem::spec_signal::SignalSpec;
-use crate::files::units::quantity::{JointCoordinate, Length};
+use crate::files::scene::point::PartialPoint;
+use crate::files::units::quantity::{JointCoordinate, Length, Quantity};
 
 /// What is to be followed: exactly one of the three.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -70,6 +71,44 @@ pub struct TrackJointsSpec {
     /// the last.
     pub solution: String,
     /// Weight of the sum over all joints of ∫ (θ − r)² dt in rad² s, or mm² s of prismatic joints; 1 where not written.
+    #[serde(default)]
+    pub weight: Option<f64>,
+}
+
+/// What is to end near a place: exactly one of the two.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FinalSpec {
+    /// A marker ends near a place.
+    #[serde(default)]
+    pub marker: Option<FinalMarkerSpec>,
+    /// The coordinate of a joint ends near a value.
+    #[serde(default)]
+    pub joint: Option<FinalJointSpec>,
+}
+
+/// A marker and where it is to end.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FinalMarkerSpec {
+    /// Name of the marker.
+    pub marker: String,
+    /// The place, SI unit m; directions that are `null` are free.
+    pub at: PartialPoint,
+    /// Weight of |x − r|² at the final instant, in mm²; 1 where not written.
+    #[serde(default)]
+    pub weight: Option<f64>,
+}
+
+/// A joint and where it is to end.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FinalJointSpec {
+    /// Name of the joint, revolute or prismatic.
+    pub joint: String,
+    /// The value, SI unit rad or m.
+    pub at: Quantity<JointCoordinate>,
+    /// Weight of (θ − r)² at the final instant, in rad², or mm² of a prismatic joint; 1 where not written.
     #[serde(default)]
     pub weight: Option<f64>,
 }

@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 use crate::control::problem::BoundaryState;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::spec_states::{BodyVelocitySpec, GoalSpec, StartSpec};
+use crate::files::problem::spec_states::{BodyVelocitySpec, StartSpec};
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::scene::names::names;
-use crate::files::scene::point::{Point, vector};
+use crate::files::scene::point::vector;
 use crate::files::units::quantity::{
     Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity,
 };
@@ -125,79 +125,24 @@ fn velocities(
     Ok(velocities)
 }
 
-/// A state at the end.
-pub(crate) fn goal_state(
-    spec: &GoalSpec,
+/// Index of a marker that may move.
+pub(crate) fn moving_marker(
+    name: &str,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<BoundaryState, SceneError> {
-    let key = scope.exactly_one([
-        (
-            "rest_at_voltages",
-            spec.rest_at_voltages.as_ref().map(|_| "rest_at_voltages"),
-        ),
-        (
-            "joint_angles",
-            spec.joint_angles.as_ref().map(|_| "joint_angles"),
-        ),
-        ("markers", spec.markers.as_ref().map(|_| "markers")),
-    ])?;
-    let outer = scope;
-    let scope = outer.key(key);
-    for (name, is_written) in [("hold", spec.hold.is_some()), ("rest", spec.rest.is_some())] {
-        if is_written && spec.markers.is_none() {
-            let found = format!("{name:?} beside {key:?}");
-            return Err(outer.key(name).wrong(found, "it beside \"markers\" only"));
-        }
-    }
-    if let Some(map) = &spec.rest_at_voltages {
-        return voltages(map, system, &scope).map(BoundaryState::RestAtVoltages);
-    }
-    if let Some(markers) = &spec.markers {
-        let held = |map| voltages(map, system, &outer.key("hold"));
-        return Ok(BoundaryState::Markers {
-            places: marker_goals(markers, system, &scope)?,
-            rest: spec.rest.unwrap_or_default().into(),
-            hold: spec.hold.as_ref().map(held).transpose()?,
-        });
-    }
-    let kinds = [Angle::kind(), Length::kind()];
-    let angles = by_joint(&spec.joint_angles, &kinds, system, &scope)?;
-    if angles.is_empty() {
-        return Err(scope.wrong("no joint", "the coordinate of a joint or more"));
-    }
-    Ok(BoundaryState::JointAngles {
-        angles,
-        rates: BTreeMap::new(),
-        velocities: BTreeMap::new(),
-    })
-}
-
-fn marker_goals(
-    markers: &BTreeMap<String, Point>,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<BTreeMap<usize, Vector3<f64>>, SceneError> {
+) -> Result<usize, SceneError> {
     let all = names(&system.markers, |marker| &marker.name);
-    let mut goals = BTreeMap::new();
-    for (name, at) in markers {
-        let place = scope.key(name);
-        let index = place.find(name, &all, "the name of a marker")?;
-        let marker = &system.markers[index];
-        if marker.point.body.is_none() && marker.solid.is_none() {
-            let found = format!("{name:?}, which is fixed to the ground");
-            return Err(place.wrong(found, "a marker on a body or a block"));
-        }
-        goals.insert(index, vector(at));
+    let index = scope.find(name, &all, "the name of a marker")?;
+    let marker = &system.markers[index];
+    if marker.point.body.is_none() && marker.solid.is_none() {
+        let found = format!("{name:?}, which is fixed to the ground");
+        return Err(scope.wrong(found, "a marker on a body or a block"));
     }
-    if goals.is_empty() {
-        return Err(scope.wrong("no marker", "the position of a marker or more"));
-    }
-    Ok(goals)
+    Ok(index)
 }
 
 /// Values by joint index, of the first kind for rotations and of the second for translations.
-fn by_joint<M: PhysicalQuantity>(
+pub(crate) fn by_joint<M: PhysicalQuantity>(
     map: &Option<BTreeMap<String, Quantity<M>>>,
     kinds: &[Kind; 2],
     system: &System,

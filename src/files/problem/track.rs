@@ -1,4 +1,4 @@
-//! From what an objective follows as written to costs of quantities.
+//! From what an objective follows, and where it is to end, as written to costs of quantities.
 
 use crate::control::Signal;
 use crate::control::problem::{CostFunction, During, QuantityCost};
@@ -7,11 +7,11 @@ use crate::files::json::scope::Scope;
 use crate::files::problem::signal::signal;
 use crate::files::problem::solution_joints;
 use crate::files::problem::spec_track::{
-    TrackJointSpec, TrackJointsSpec, TrackMarkerSpec, TrackSpec,
+    FinalJointSpec, FinalMarkerSpec, FinalSpec, TrackJointSpec, TrackJointsSpec, TrackMarkerSpec,
+    TrackSpec,
 };
-use crate::files::problem::state::joint_with_coordinate;
+use crate::files::problem::state::{joint_value, joint_with_coordinate, moving_marker};
 use crate::files::problem::voltages::existing;
-use crate::files::scene::names::names;
 use crate::files::units::quantity::{Angle, Length};
 use crate::model::system::System;
 use crate::model::{Quantity, joint_unit};
@@ -57,29 +57,13 @@ fn of_marker(
         if let Some(along) = along {
             let reference = signal(along, &Length::kind(), &place.key(key))?;
             let quantity = Quantity::MarkerPlace { marker, axis };
-            costs.push(followed(quantity, reference, weight));
+            costs.push(square(quantity, reference, weight, During::Motion));
         }
     }
     match costs.is_empty() {
         true => Err(place.wrong("no direction", "\"x\", \"y\" or \"z\"")),
         false => Ok(costs),
     }
-}
-
-/// Index of a marker that may move.
-pub(crate) fn moving_marker(
-    name: &str,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<usize, SceneError> {
-    let all = names(&system.markers, |marker| &marker.name);
-    let index = scope.find(name, &all, "the name of a marker")?;
-    let marker = &system.markers[index];
-    if marker.point.body.is_none() && marker.solid.is_none() {
-        let found = format!("{name:?}, which is fixed to the ground");
-        return Err(scope.wrong(found, "a marker on a body or a block"));
-    }
-    Ok(index)
 }
 
 fn of_joint(
@@ -94,11 +78,8 @@ fn of_joint(
     };
     let reference = signal(&spec.along, &kind, &scope.key("along"))?;
     let quantity = Quantity::Joint { joint, near: 0.0 };
-    Ok(vec![followed(
-        quantity,
-        reference,
-        weight(spec.weight, scope)?,
-    )])
+    let weight = weight(spec.weight, scope)?;
+    Ok(vec![square(quantity, reference, weight, During::Motion)])
 }
 
 fn of_joints(
@@ -116,17 +97,64 @@ fn of_joints(
     }
     let cost = |(joint, reference)| {
         let quantity = Quantity::Joint { joint, near: 0.0 };
-        followed(quantity, reference, weight)
+        square(quantity, reference, weight, During::Motion)
     };
     Ok(joints.into_iter().map(cost).collect())
 }
 
-fn followed(quantity: Quantity, reference: Signal, weight: f64) -> QuantityCost {
+/// The costs of an end that one entry stands for.
+pub(crate) fn at_the_end(
+    spec: &FinalSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<QuantityCost>, SceneError> {
+    let marker = spec.marker.as_ref().map(|_| "marker");
+    let joint = spec.joint.as_ref().map(|_| "joint");
+    let key = scope.exactly_one([("marker", marker), ("joint", joint)])?;
+    let scope = scope.key(key);
+    let mut costs = Vec::new();
+    if let Some(FinalMarkerSpec {
+        marker,
+        at,
+        weight: w,
+    }) = &spec.marker
+    {
+        let marker = moving_marker(marker, system, &scope.key("marker"))?;
+        let weight = weight(*w, &scope)?;
+        for (axis, at) in at.iter().enumerate() {
+            if let Some(at) = at {
+                let quantity = Quantity::MarkerPlace { marker, axis };
+                let reference = Signal::Constant(at.value());
+                costs.push(square(quantity, reference, weight, During::End));
+            }
+        }
+        if costs.is_empty() {
+            let expected = "one that is not null, or more";
+            return Err(scope.key("at").wrong("no coordinate", expected));
+        }
+    }
+    if let Some(FinalJointSpec {
+        joint,
+        at,
+        weight: w,
+    }) = &spec.joint
+    {
+        let joint = joint_with_coordinate(joint, system, &scope.key("joint"))?;
+        let kinds = [Angle::kind(), Length::kind()];
+        let at = joint_value(at, &kinds, joint, system, &scope.key("at"))?;
+        let quantity = Quantity::Joint { joint, near: 0.0 };
+        let weight = weight(*w, &scope)?;
+        costs.push(square(quantity, Signal::Constant(at), weight, During::End));
+    }
+    Ok(costs)
+}
+
+fn square(quantity: Quantity, reference: Signal, weight: f64, during: During) -> QuantityCost {
     QuantityCost {
         quantity,
         weight,
         function: CostFunction::Square { reference },
-        during: During::Motion,
+        during,
     }
 }
 

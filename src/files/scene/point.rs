@@ -9,6 +9,9 @@ use crate::files::units::quantity::{Length, PhysicalQuantity, Quantity};
 /// A point or a vector of lengths.
 pub type Point = [Quantity<Length>; 3];
 
+/// A point of which some coordinates are given.
+pub type PartialPoint = [Option<Quantity<Length>>; 3];
+
 /// A material point of a body.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

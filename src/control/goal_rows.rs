@@ -1,0 +1,125 @@
+//! Places and orientations of a goal as equations of the last instant, without those that nothing can change.
+
+use crate::control::error::BoundaryError;
+use crate::control::goal::{Orientation, Place, Product};
+use crate::control::limits::{Limits, When};
+use crate::control::transcription::Site;
+use crate::functional::Sample;
+use crate::math::Vector;
+use crate::math::random::Random;
+use crate::model::{Coordinates, Model, Quantity, System};
+use std::collections::BTreeMap;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+/// Configurations at which a gradient has to vanish.
+const TRIALS: u64 = 3;
+/// How far they are from the start, in rad and lengths of the system.
+const NEAR: f64 = 0.3;
+/// A gradient of this size is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Adds the equations of places of markers; where only markers rest, also those of their rest.
+pub(super) fn add_places(
+    limits: &mut Limits,
+    system: &System,
+    places: &BTreeMap<usize, Place>,
+    only_markers_rest: bool,
+) {
+    for (&marker, place) in places {
+        let name = &system.markers[marker].name;
+        let is_free = |axis: &usize| !system.holds_marker(marker, *axis);
+        for axis in (0..3).filter(is_free) {
+            let axis_name = AXES[axis];
+            if let Some(value) = place.0[axis] {
+                let name = format!("goal {axis_name} of marker {name}");
+                limits.add_goal(Quantity::MarkerPlace { marker, axis }, value, name);
+            }
+            if only_markers_rest {
+                let name = format!("rest at the goal, {axis_name} of marker {name}");
+                limits.add_goal(Quantity::MarkerStep { marker, axis }, 0.0, name);
+            }
+        }
+    }
+}
+
+/// Adds the conditions of orientations of bodies.
+pub(super) fn add_orientations(
+    limits: &mut Limits,
+    system: &System,
+    orientations: &BTreeMap<usize, Orientation>,
+) {
+    for (&body, orientation) in orientations {
+        let name = format!("goal orientation of body {}", system.bodies[body].name);
+        for Product {
+            axis,
+            along,
+            is_acute,
+        } in orientation.products()
+        {
+            let quantity = Quantity::Direction { body, axis, along };
+            match is_acute {
+                true => limits.add_goal_above(quantity, 0.0, name.clone()),
+                false => limits.add_goal(quantity, 0.0, name.clone()),
+            }
+        }
+    }
+}
+
+/// Leaves out directions at the goal that no joint coordinate changes, such as those across the plane of a plane robot: as
+/// equations they would have no slope. A direction that is not kept by itself is refused.
+///
+/// # Errors
+/// Nothing turns a direction to where the goal wants it.
+pub(super) fn leave_out_constant(
+    model: &mut Model,
+    limits: &Limits,
+    start: &[f64],
+) -> Result<(), BoundaryError> {
+    if model.coordinates != Coordinates::Reduced {
+        return Ok(());
+    }
+    for (index, bounded) in limits.list.iter().enumerate() {
+        let is_direction = matches!(bounded.quantity, Quantity::Direction { .. });
+        let Some(measure) = model.measured[index] else {
+            continue;
+        };
+        if bounded.when != When::Goal || !is_direction || changes(model, measure, start) {
+            continue;
+        }
+        let instant = model.action.motion.placed(start);
+        let measure = Site::Instants.measure(model, measure);
+        let value = measure.value(&Sample::of_instant(&instant.x, &[]));
+        if let Some(reason) = bounded.broken(value, &model.system) {
+            let reason = format!("{reason}; no joint changes it");
+            let place = "goal";
+            return Err(BoundaryError::Limit { place, reason });
+        }
+        model.measured[index] = None;
+    }
+    Ok(())
+}
+
+/// Whether coordinates change a quantity of the instants somewhere.
+fn changes(model: &Model, measure: usize, start: &[f64]) -> bool {
+    let motion = &model.action.motion;
+    let measure = Site::Instants.measure(model, measure);
+    let length = model.length();
+    (0..TRIALS).any(|seed| {
+        let mut random = Random::new(seed);
+        let mut z = start.to_vec();
+        for (i, value) in z[..motion.of_bodies].iter_mut().enumerate() {
+            let size = if model.is_length(i) { length } else { 1.0 };
+            *value += random.between(-NEAR, NEAR) * size;
+        }
+        let mut instant = motion.placed(&z);
+        motion.tangent(&mut instant);
+        let zeros = || vec![Vector::zeros(); instant.x.len()];
+        let (mut forces, mut rows) = ([zeros(), zeros()], Vec::new());
+        measure.gradient(&Sample::of_instant(&instant.x, &[]), &mut forces, &mut rows);
+        let mut slopes = vec![0.0; motion.unknowns()];
+        for vector in measure.vectors() {
+            motion.pull_back_one(vector, &instant.columns, &forces[0][vector], &mut slopes);
+        }
+        slopes.iter().any(|slope| slope.abs() > ROUNDING)
+    })
+}
