@@ -211,7 +211,7 @@ fn mistakes_in_a_problem_name_place_found_and_expected() {
         ("{ \"effort\": 1.0 }", "{ \"tracking\": 1.0 }", "control.objective.tracking", "the key \"tracking\"", "\"track\"", "\"tracking\""),
         ("{ \"effort\": 1.0 }", "{ \"efort\": 1.0 }", "control.objective.efort", "the key \"efort\"", "\"effort\"", "\"efort\""),
         ("\"intervals\": 20,", "\"intervals\": 20, \"voltages\": { \"muscle2\": 0 },", "control.voltages.muscle2", "no electric term", "relative_permittivity", "0"),
-        ("\"intervals\": 20,", "\"intervals\": 20, \"voltages\": { \"muscle1\": 0 },", "control.voltages", "all voltages", "not given, to be sought", "{ \"muscle1\": 0 }"),
+        ("\"intervals\": 20,", "\"intervals\": 20, \"voltages\": { \"muscle1\": 0 },", "control.voltages", "all voltages", "at least one voltage that is not given", "{ \"muscle1\": 0 }"),
         ("{ \"effort\": 1.0 }", "{}", "control.objective", "no weight", "a positive weight", "{}"),
         ("\"joint\": \"joint1\"", "\"joint\": \"joint\"", "control.limits[0].joint_angle.joint", "\"joint\"", "the name of a joint", "\"joint\""),
         ("\"max\": \"0.3 rad\"", "\"max\": \"-40 deg\"", "control.limits[0].joint_angle.max", "below", "not crossed", "-40 deg"),
