@@ -184,6 +184,7 @@ pub(super) fn simulation(
         observations: &observed,
         comparison: earlier.as_ref().map(|e| ("the solution", e)),
         held: None,
+        tracked: &[],
         origin: &origin,
         title: "Simulation",
         summary: &rows,

@@ -28,6 +28,7 @@ mod rest_refused;
 mod rest_words;
 mod solution_file;
 mod solve;
+mod solve_words;
 mod sparsity;
 mod summary;
 mod task;

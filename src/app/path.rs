@@ -83,6 +83,7 @@ pub(super) fn follow(
         observations: &observed,
         comparison: None,
         held: Some(&motion.voltages[0]),
+        tracked: &[],
         origin: &origin,
         title: "Path of equilibria",
         summary: &rows,

@@ -139,6 +139,7 @@ pub(super) fn at(
         observations: &observed,
         comparison: None,
         held: Some(&motion.voltages[0]),
+        tracked: &[],
         origin: &origin,
         title: match failure {
             None => "Static equilibrium",

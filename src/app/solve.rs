@@ -11,13 +11,14 @@ use crate::app::folder::make_folder;
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::solution_file;
+use crate::app::solve_words::{meaning, redundancy};
 use crate::app::summary::{
     Evaluations, LinearSystems, MEASURED, PerInterval, Program, Seconds, Summary,
 };
 use crate::app::unfinished::Unfinished;
 use crate::app::words::counted;
 use crate::control::problem::{Control, Hold};
-use crate::control::{BoundaryConditions, Solution};
+use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{observations, out_of_domain};
 use crate::ipopt::{Status, interrupt};
 use crate::math::significant;
@@ -36,6 +37,7 @@ use crate::workflow::motion::{history, solved, trajectory};
 use crate::workflow::optimise::{Iterate, Optimum, SolveLimits};
 use crate::workflow::resimulate::{Cause, Resimulation, under_constant_voltages};
 use crate::workflow::second_start::is_infeasible;
+use crate::workflow::tracking::{self, Tracked, tracked};
 use crate::workflow::violations::Violation;
 
 /// Length of the motion under constant voltages that is drawn beside the optimal one, in durations.
@@ -167,7 +169,7 @@ pub(super) fn control(
         jacobian: seconds.jacobian,
         hessian: seconds.hessian,
     };
-    write_files(request, &folder, model, boundary, kept, &mut summary)?;
+    write_files(request, &folder, (control, &optimum), &mut summary)?;
     unfinished.done();
     Ok(told(&summary, violated, &folder))
 }
@@ -222,11 +224,15 @@ fn find(
 fn write_files(
     request: &CommandInput,
     folder: &Path,
-    model: &Model,
-    boundary: &BoundaryConditions,
-    kept: &Solution,
+    (control, optimum): (&Control, &Optimum),
     summary: &mut Summary,
 ) -> Result<(), WriteError> {
+    let Optimum {
+        model,
+        boundary,
+        motion: kept,
+        ..
+    } = optimum;
     solution_file::write(&folder.join("solution.json"), model, kept)?;
     let history = history(model, kept);
     let observed = observations(model, &history);
@@ -235,8 +241,12 @@ fn write_files(
     summary.blocks = BlockSizes::of(model).map(|b| b.after(model, &observed, written));
     summary.domain = domain::told(&out_of_domain(model, &history));
     summary.notes.extend(domain::note(&summary.domain, true));
-    summary.write(folder)?;
     let motion = trajectory(model, kept);
+    let half = optimum.resimulation.as_ref().and_then(|r| r.half.as_ref());
+    let half = half.map(|history| Trajectory::from_history(model, history));
+    summary.tracking = tracked(&model.system, control, &motion, half.as_ref());
+    summary.notes.extend(tracking::told(&summary.tracking));
+    summary.write(folder)?;
     let is_solved = summary.message.is_none();
     let compared = is_solved
         .then(|| under_constant_voltages(model, boundary, kept, COMPARED))
@@ -255,6 +265,7 @@ fn write_files(
         observations: &observed,
         comparison: compared.as_ref().map(|c| ("constant voltages", c)),
         held: boundary.rest[1].as_deref().filter(|_| is_solved),
+        tracked: &summary.tracking,
         origin: &origin,
         title: "Optimal control",
         summary: &rows,
@@ -286,6 +297,9 @@ fn rows(summary: &Summary) -> Vec<(String, String)> {
             if let (Some(drift), Some(held)) = (&r.drift, r.held) {
                 row(&format!("drift when held for {held} s"), of(drift));
             }
+        }
+        for (key, value) in summary.tracking.iter().map(Tracked::row) {
+            row(&key, value);
         }
         for violation in &program.violations {
             row("violated", describe(violation));
@@ -364,35 +378,4 @@ fn unresolved(model: &Model, interval: usize, muscle: usize) -> String {
 /// What is told of an optimum that the first start did not find.
 fn restarted(first: Status) -> String {
     format!("found from a second, displaced initial guess; the first ended {first}")
-}
-
-/// A further reason why a solve failed, where there is one.
-fn redundancy(redundant: &[String]) -> String {
-    match redundant {
-        [] => String::new(),
-        names => format!(
-            "; constraints are redundant at the start: {} more than is needed, such as {}",
-            names.len(),
-            names.join(", ")
-        ),
-    }
-}
-
-/// What a status means for the problem.
-fn meaning(status: Status) -> &'static str {
-    match status {
-        Status::Infeasible | Status::RestorationFailed => {
-            "no motion that satisfies the goal and the limits was found from this guess; the files hold the iterate that violates them least"
-        }
-        Status::IterationLimit => {
-            "the iterations allowed were used up; the files hold the last iterate"
-        }
-        Status::TimeLimit => "the time allowed was used up; the files hold the last iterate",
-        Status::Interrupted => "interrupted; the files hold the last iterate",
-        Status::InvalidNumber => {
-            "an equation or a derivative has no value at an iterate: the ends of a muscle meet there, or an element is inverted; the files hold the last iterate; take another guess or more intervals"
-        }
-        Status::TooFewDegreesOfFreedom => "there are more equations than unknowns",
-        _ => "the solver stopped early; the files hold the last iterate",
-    }
 }

@@ -14,6 +14,7 @@ use crate::dynamics::{DiscreteTrajectory, LocalError};
 use crate::files::lay_out;
 use crate::ipopt::{self, LinearReport};
 use crate::report::atomic::{self, WriteError};
+use crate::workflow::Tracked;
 use crate::workflow::accuracy::Accuracy;
 use crate::workflow::domain::Outside;
 use crate::workflow::effects::Plan;
@@ -42,6 +43,9 @@ pub(super) struct Summary {
     pub(super) simulation: Option<Simulation>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) accuracy: Option<Accuracy>,
+    /// How closely markers and joints follow what the objective names.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) tracking: Vec<Tracked>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) comparison: Option<Comparison>,
     #[serde(flatten)]
@@ -298,6 +302,7 @@ impl Summary {
             program: None,
             simulation: None,
             accuracy: None,
+            tracking: Vec::new(),
             comparison: None,
             rest: None,
             path: None,

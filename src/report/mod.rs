@@ -22,6 +22,7 @@ pub mod style;
 pub mod table;
 mod ties;
 pub mod tip_path;
+pub mod tracking;
 pub mod view;
 pub mod voltages;
 
@@ -72,7 +73,10 @@ pub fn write_run(folder: &Path, run: &Run<'_>) -> Result<Vec<PathBuf>, WriteErro
         files.push(("voltages.svg", voltages::svg(system, trajectory, origin)));
     }
     if !system.markers.is_empty() {
-        files.push(("tip_path.svg", tip_path::svg(system, &motions, origin)));
+        files.push((
+            "tip_path.svg",
+            tip_path::svg(system, &motions, run.tracked, origin),
+        ));
     }
     if !trajectory.coordinates(system).is_empty() {
         files.push(("joint_angles.svg", joints::svg(system, trajectory, origin)));
@@ -83,6 +87,11 @@ pub fn write_run(folder: &Path, run: &Run<'_>) -> Result<Vec<PathBuf>, WriteErro
     }
     if !energies.is_empty() {
         files.push(("energy.svg", joints::energy_svg(energies, origin)));
+    }
+    if !run.tracked.is_empty() {
+        let (times, tracked) = (&trajectory.times, run.tracked);
+        files.push(("tracking.csv", tracking::table(times, tracked, origin)));
+        files.push(("tracking.svg", tracking::svg(times, tracked, origin)));
     }
     files.push(("report.html", page::html(run)));
 

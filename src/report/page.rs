@@ -6,7 +6,7 @@ use crate::report::lines::Series;
 use crate::report::markup::escape;
 use crate::report::plotly::{Figure, Trace, layout, library, rgb};
 use crate::report::style::{self, Dash};
-use crate::report::{Run, animation, joints, voltages};
+use crate::report::{Run, animation, joints, tracking, voltages};
 
 /// The page of a run.
 pub fn html(run: &Run<'_>) -> String {
@@ -37,6 +37,12 @@ pub fn html(run: &Run<'_>) -> String {
             "energies",
             "energy [mJ]",
             joints::energies(run.trajectory, run.observations),
+        ),
+        (
+            "Deviations",
+            "deviations",
+            tracking::label(run.tracked),
+            tracking::curves(&run.trajectory.times, run.tracked),
         ),
     ];
     figures.retain(|(_, _, _, series)| moves && !series.is_empty());

@@ -4,6 +4,7 @@ use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::model::system::System;
 use crate::report::origin::Origin;
 use crate::report::skins::Skins;
+use crate::workflow::Tracked;
 
 /// What there is to show of a run.
 #[derive(Clone, Copy, Debug)]
@@ -22,6 +23,8 @@ pub struct Run<'a> {
     pub comparison: Option<(&'a str, &'a Trajectory)>,
     /// Voltages in V, one per muscle, that hold the last instant, where they are known; they colour the configuration.
     pub held: Option<&'a [f64]>,
+    /// What markers and joints were to follow.
+    pub tracked: &'a [Tracked],
     /// Where the results come from.
     pub origin: &'a Origin,
     /// Title of the page.

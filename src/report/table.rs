@@ -80,7 +80,11 @@ pub fn aligned(rows: &[Vec<String>]) -> String {
 }
 
 /// Rows of numbers as CSV under a line and a header; empty cells where there is no number.
-fn csv<R>(line: &str, header: impl Iterator<Item = String>, rows: impl Iterator<Item = R>) -> String
+pub(super) fn csv<R>(
+    line: &str,
+    header: impl Iterator<Item = String>,
+    rows: impl Iterator<Item = R>,
+) -> String
 where
     R: Iterator<Item = f64>,
 {

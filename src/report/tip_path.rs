@@ -7,7 +7,9 @@ use crate::model::system::System;
 use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{Aspect, LinePlot, Mark, Series};
 use crate::report::origin::Origin;
-use crate::report::style;
+use crate::report::style::{self, Dash};
+use crate::report::tracking;
+use crate::workflow::Tracked;
 
 /// The two axes of largest extent, horizontal first: y is never horizontal, and x goes before z.
 fn plane<'a>(points: impl Iterator<Item = &'a Vector3<f64>>) -> [usize; 2] {
@@ -32,8 +34,13 @@ fn plane<'a>(points: impl Iterator<Item = &'a Vector3<f64>>) -> [usize; 2] {
 
 /// `tip_path.svg`: the motion of each marker under each named trajectory, with its start and end.
 ///
-/// The last trajectory is the one that matters: drawn strong and on top of the others.
-pub fn svg(system: &System, trajectories: &[(&str, &Trajectory)], origin: &Origin) -> String {
+/// The last trajectory is the one that matters: drawn strong and on top of the others, below what its markers were to follow, dashed.
+pub fn svg(
+    system: &System,
+    trajectories: &[(&str, &Trajectory)],
+    tracked: &[Tracked],
+    origin: &Origin,
+) -> String {
     let paths: Vec<_> = trajectories
         .iter()
         .map(|(name, trajectory)| {
@@ -65,6 +72,16 @@ pub fn svg(system: &System, trajectories: &[(&str, &Trajectory)], origin: &Origi
                 starts.extend(path.first().map(flat));
                 ends.extend(path.last().map(flat));
             }
+        }
+    }
+    for marker in &system.markers {
+        if let Some(points) = tracking::reference(tracked, &marker.name, [horizontal, vertical]) {
+            let name = match system.markers.len() {
+                1 => "to follow".to_owned(),
+                _ => format!("{}, to follow", marker.name),
+            };
+            let curve = Series::curve(name, points, style::INK);
+            series.push(curve.dashed(Dash::Dashed));
         }
     }
     for (name, points, mark) in [("start", starts, Mark::Ring), ("end", ends, Mark::Disc)] {

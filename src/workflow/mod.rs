@@ -6,6 +6,7 @@
 //! - `second_start`, `infeasible`, `active`, `violations`: what is tried before a problem is called infeasible, and why it is.
 //! - `effects`, `reasons`, `stopwatch`: what a model consists of and why, what each term takes; `memory`: what is more than the machine has.
 //! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material.
+//! - `tracking`: how closely a motion follows what its objective names.
 //! - `motion`: between what is solved for and a trajectory.
 
 pub mod accuracy;
@@ -29,6 +30,7 @@ pub(crate) mod resimulate;
 pub(crate) mod second_start;
 pub(crate) mod steps;
 pub(crate) mod stopwatch;
+pub(crate) mod tracking;
 pub(crate) mod violations;
 
 pub use active::{Active, active};
@@ -42,4 +44,5 @@ pub use phase::listen_to_phases;
 pub use reasons::{Absent, absent};
 pub use resimulate::{Cause, Resimulation, under_constant_voltages};
 pub use steps::counted;
+pub use tracking::{Tracked, TrackedPath, TrackingError, tracked};
 pub use violations::{Violation, violations};

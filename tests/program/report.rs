@@ -293,6 +293,7 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
         observations: &observations,
         comparison: Some(("again", &trajectory)),
         held: None,
+        tracked: &[],
         origin: &origin(),
         title: "A <title>",
         summary: &[("status".to_owned(), "a < b".to_owned())],

@@ -1,0 +1,227 @@
+//! How closely a motion follows what its objective names: deviations of markers and joints, read off the motion itself.
+
+use serde::Serialize;
+
+use crate::control::Signal;
+use crate::control::problem::{Control, CostFunction, During, QuantityCost};
+use crate::dynamics::trajectory::Trajectory;
+use crate::math::significant;
+use crate::model::system::{Joint, System};
+use crate::model::{Quantity, joint_unit};
+
+/// Most joints that notes name one by one.
+const NAMED: usize = 3;
+
+/// A marker or a joint, what it was to follow, and how closely it did.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Tracked {
+    /// `marker` or `joint`.
+    pub kind: &'static str,
+    /// Its name.
+    pub name: String,
+    /// Unit of the deviations: m or rad.
+    pub unit: &'static str,
+    /// Deviations of the motion.
+    #[serde(flatten)]
+    pub error: TrackingError,
+    /// Deviations of a simulation under the same voltages with half the step; absent where there was none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub simulated: Option<TrackingError>,
+    /// What it tracked, one for each direction of a marker.
+    #[serde(skip)]
+    pub paths: Vec<TrackedPath>,
+    /// Deviation at each instant, in mm or rad.
+    #[serde(skip)]
+    pub deviation: Vec<f64>,
+}
+
+/// Deviations over time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TrackingError {
+    /// Root of the mean square over time.
+    pub rms: f64,
+    /// The greatest at an instant.
+    pub maximum: f64,
+    /// The time in s of the greatest.
+    pub time_of_maximum: f64,
+}
+
+/// A coordinate and what it was to be, at each instant, in mm or rad.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackedPath {
+    /// `tip_x`, `joint1`.
+    pub name: String,
+    /// Direction of a marker.
+    pub axis: Option<usize>,
+    /// What it is.
+    pub value: Vec<f64>,
+    /// What it was to be.
+    pub reference: Vec<f64>,
+    /// Their difference, of angles without full turns.
+    difference: Vec<f64>,
+}
+
+/// All that a motion of a control problem follows; `simulated` is the motion under its voltages with half the step.
+pub fn tracked(
+    system: &System,
+    control: &Control,
+    motion: &Trajectory,
+    simulated: Option<&Trajectory>,
+) -> Vec<Tracked> {
+    let mut groups: Vec<Vec<&QuantityCost>> = Vec::new();
+    let costs = control.objective.quantities.iter();
+    for cost in costs.filter(|cost| cost.during == During::Motion) {
+        let same = groups
+            .iter_mut()
+            .find(|group| of_marker(group[0]).is_some() && of_marker(group[0]) == of_marker(cost));
+        match same {
+            Some(group) => group.push(cost),
+            None => groups.push(vec![cost]),
+        }
+    }
+    let of = |group: Vec<&QuantityCost>| {
+        let paths: Vec<_> = group
+            .iter()
+            .filter_map(|c| path(system, c, motion))
+            .collect();
+        let deviation = deviations(&paths);
+        let (kind, name, unit) = match (of_marker(group[0]), group[0].quantity) {
+            (Some(m), _) => ("marker", &system.markers[m].name, "m"),
+            (None, Quantity::Joint { joint, .. }) => {
+                let unit = if joint_unit(system, joint) == "mm" {
+                    "m"
+                } else {
+                    "rad"
+                };
+                ("joint", &system.joints[joint].name, unit)
+            }
+            _ => return None,
+        };
+        let scale = if unit == "m" { 1e-3 } else { 1.0 };
+        let again = simulated.map(|motion| {
+            let paths: Vec<_> = group
+                .iter()
+                .filter_map(|c| path(system, c, motion))
+                .collect();
+            TrackingError::of(&motion.times, &deviations(&paths), scale)
+        });
+        Some(Tracked {
+            kind,
+            name: name.clone(),
+            unit,
+            error: TrackingError::of(&motion.times, &deviation, scale),
+            simulated: again,
+            paths,
+            deviation,
+        })
+    };
+    groups.into_iter().filter_map(of).collect()
+}
+
+fn of_marker(cost: &QuantityCost) -> Option<usize> {
+    match cost.quantity {
+        Quantity::MarkerPlace { marker, .. } => Some(marker),
+        _ => None,
+    }
+}
+
+/// A coordinate of a motion beside what it was to be.
+fn path(system: &System, cost: &QuantityCost, motion: &Trajectory) -> Option<TrackedPath> {
+    let CostFunction::Square { reference } = &cost.function;
+    let (name, axis, value): (String, Option<usize>, Vec<f64>) = match cost.quantity {
+        Quantity::MarkerPlace { marker, axis } => {
+            let name = format!("{}_{}", system.markers[marker].name, ["x", "y", "z"][axis]);
+            let marks = motion.marks.iter().map(|places| places[marker][axis]);
+            (name, Some(axis), marks.collect())
+        }
+        Quantity::Joint { joint, .. } => {
+            let before = system.joints[..joint].iter();
+            let column = before.filter(|j| Joint::has_coordinate(j)).count();
+            let values = motion.joints.iter().map(|row| row[column]);
+            (system.joints[joint].name.clone(), None, values.collect())
+        }
+        _ => return None,
+    };
+    let at = |t: &f64| Signal::at(reference, *t);
+    let reference: Vec<f64> = motion.times.iter().map(at).collect();
+    let period = cost.quantity.period(system);
+    let difference = value.iter().zip(&reference).map(|(value, reference)| {
+        let far = value - reference;
+        period.map_or(far, |period| far - period * (far / period).round())
+    });
+    Some(TrackedPath {
+        difference: difference.collect(),
+        name,
+        axis,
+        value,
+        reference,
+    })
+}
+
+/// The distance over all directions at each instant.
+fn deviations(paths: &[TrackedPath]) -> Vec<f64> {
+    let count = paths.first().map_or(0, |path| path.value.len());
+    let at = |k: usize| {
+        let squares = paths.iter().map(|path| path.difference[k].powi(2));
+        squares.sum::<f64>().sqrt()
+    };
+    (0..count).map(at).collect()
+}
+
+impl TrackingError {
+    /// Of deviations at times in ms, by the trapezoidal rule.
+    fn of(times: &[f64], deviations: &[f64], scale: f64) -> Self {
+        let mut integral = 0.0;
+        for (t, e) in times.windows(2).zip(deviations.windows(2)) {
+            integral += 0.5 * (t[1] - t[0]) * (e[0] * e[0] + e[1] * e[1]);
+        }
+        let duration = times[times.len() - 1] - times[0];
+        let worst = (0..deviations.len()).max_by(|&a, &b| deviations[a].total_cmp(&deviations[b]));
+        let worst = worst.unwrap_or(0);
+        Self {
+            rms: scale * (integral / duration).sqrt(),
+            maximum: scale * deviations[worst],
+            time_of_maximum: times[worst] / 1e3,
+        }
+    }
+}
+
+impl Tracked {
+    /// Its deviations in words.
+    fn words(&self) -> String {
+        let shown = |value: f64| match self.unit {
+            "m" => format!("{} mm", significant(1e3 * value, 3)),
+            unit => format!("{} {unit}", significant(value, 3)),
+        };
+        let [rms, most] = [self.error.rms, self.error.maximum].map(shown);
+        format!("{rms} rms and at most {most}")
+    }
+
+    /// A row of a table: what follows, and its deviations.
+    pub(crate) fn row(&self) -> (String, String) {
+        let Self { kind, name, .. } = self;
+        let key = format!("deviation of {kind} {name} from its path");
+        (key, self.words())
+    }
+}
+
+/// Lines that tell how closely a motion follows; of many joints the worst.
+pub(crate) fn told(tracked: &[Tracked]) -> Vec<String> {
+    let joints = tracked.iter().filter(|one| one.kind == "joint");
+    let count = joints.clone().count();
+    let worst = joints.max_by(|a, b| a.error.maximum.total_cmp(&b.error.maximum));
+    let line = |one: &Tracked| {
+        let Tracked {
+            kind, name, error, ..
+        } = one;
+        let time = significant(error.time_of_maximum, 3);
+        let words = one.words();
+        format!("{kind} {name} deviates from its path by {words} (at {time} s)")
+    };
+    let is_told = |one: &&Tracked| one.kind == "marker" || count <= NAMED;
+    let mut lines: Vec<String> = tracked.iter().filter(is_told).map(line).collect();
+    if let Some(worst) = worst.filter(|_| count > NAMED) {
+        lines.push(format!("of {count} joints that follow, {}", line(worst)));
+    }
+    lines
+}
