@@ -6,11 +6,13 @@ use crate::common::trunk;
 use nalgebra::{Rotation3, Vector3};
 use proboscis::control::Signal;
 use proboscis::control::problem::{
-    BoundaryState, Control, CostFunction, Duration, During, Guess, Objective, Orientation, Voltages,
+    BoundaryState, Control, CostFunction, Duration, During, Guess, Objective, Orientation, Task,
+    Voltages,
 };
+use proboscis::files::read_problem;
 use proboscis::model::system::{JointKind, System};
 use proboscis::model::{Coordinates, Quantity};
-use proboscis::workflow::{Iterate, Optimum, SolveLimits, optimise};
+use proboscis::workflow::{Iterate, Optimum, SolveLimits, optimise, tracked, trajectory};
 use std::ops::ControlFlow;
 
 fn solve(system: &System, control: &Control) -> Optimum {
@@ -236,4 +238,45 @@ fn a_cost_of_the_end_draws_it_near() {
         (end - 0.2).abs()
     });
     assert!(ends[0] > 0.01 && ends[1] < 1e-3, "{ends:?}");
+}
+
+#[test]
+fn the_trunk_writes_a_figure_of_eight() {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let file = file.join("problems/elephant_trunk_figure_eight.json");
+    let loaded = read_problem(&file, &["control.intervals=60".to_owned()]).unwrap();
+    let Task::Control(control) = loaded.task else {
+        panic!("a control problem");
+    };
+    let found = solve(&loaded.system, &control);
+    let motion = trajectory(&found.model, &found.motion);
+    let report = tracked(&loaded.system, &control, &motion, None);
+    assert_eq!(report.len(), 1);
+    assert_eq!(
+        (report[0].kind, report[0].name.as_str(), report[0].unit),
+        ("marker", "tip", "m")
+    );
+    // The eight, written out, in mm; deviations by the trapezoidal rule.
+    let far = |k: usize| {
+        let turn = std::f64::consts::PI * found.motion.times[k] / 1e3;
+        let at = [40.0 * turn.sin(), 20.0 * (2.0 * turn).sin()];
+        let tip = tip(&found, k);
+        (tip.x - at[0]).hypot(tip.z - at[1])
+    };
+    let all: Vec<f64> = (0..=60).map(far).collect();
+    let inner: f64 = all[1..60].iter().map(|far| far * far).sum();
+    let ends = 0.5 * (all[0] * all[0] + all[60] * all[60]);
+    let rms = ((inner + ends) / 60.0).sqrt();
+    let (worst, most) = (1..=60).fold((0, 0.0), |(at, most), k| match all[k] > most {
+        true => (k, all[k]),
+        false => (at, most),
+    });
+    let error = report[0].error;
+    println!("{rms} mm rms, at most {most} mm");
+    assert!(rms > 1e-3 && rms < 0.5 && most < 4.0);
+    assert!((1e3 * error.rms - rms).abs() < 1e-9 && (1e3 * error.maximum - most).abs() < 1e-9);
+    assert_eq!(error.time_of_maximum, found.motion.times[worst] / 1e3);
+    // It goes around both loops.
+    let side = |sign: f64| (0..=60).any(|k| sign * tip(&found, k).x > 38.0);
+    assert!(side(1.0) && side(-1.0));
 }

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use crate::common::tracked::tracked;
 use nalgebra::Vector3;
 use proboscis::dynamics::trajectory::{Column, Observations, Trajectory};
 use proboscis::model::system::{JointKind, Shape, System};
@@ -202,7 +203,7 @@ fn what_is_not_finite_is_not_drawn() {
     let plot = LinePlot::new(Axis::log("work"), Axis::log("error"), vec![series]);
     for svg in [
         voltages::svg(&system, &trajectory, &origin()),
-        tip_path::svg(&system, &[("swing", &trajectory)], &origin()),
+        tip_path::svg(&system, &[("swing", &trajectory)], &[], &origin()),
         pose::svg(&system, &trajectory, &Skins::default(), None, &origin()),
         plot.svg(&origin()),
     ] {
@@ -285,6 +286,9 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
         unit: "N mm",
         values: trajectory.times.clone(),
     });
+    let mut control = crate::common::cases::control(&system, trajectory.intervals());
+    control.objective = tracked(&[0], &[(1, true)]);
+    let tracked = proboscis::workflow::tracked(&system, &control, &trajectory, None);
     let run = Run {
         system: &system,
         trajectory: &trajectory,
@@ -293,7 +297,7 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
         observations: &observations,
         comparison: Some(("again", &trajectory)),
         held: None,
-        tracked: &[],
+        tracked: &tracked,
         origin: &origin(),
         title: "A <title>",
         summary: &[("status".to_owned(), "a < b".to_owned())],
@@ -313,9 +317,26 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
         "tip_path.svg",
         "joint_angles.svg",
         "energy.svg",
+        "tracking.csv",
+        "tracking.svg",
         "report.html",
     ];
     assert_eq!(names, expected);
+    let table = fs::read_to_string(inner.join("tracking.csv")).unwrap();
+    let mut lines = table.lines().skip(1);
+    let header = "time [ms],tip_x [mm],tip_x_reference [mm],tip_y [mm],tip_y_reference [mm],tip_z [mm],\
+                  tip_z_reference [mm],tip_deviation [mm],joint2 [rad],joint2_reference [rad],joint2_deviation [rad]";
+    assert_eq!(lines.next(), Some(header));
+    for (k, line) in lines.enumerate() {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let mark = trajectory.marks[k][0];
+        assert_eq!([cells[1], cells[3], cells[5]], [mark.x, mark.y, mark.z]);
+        let far = [cells[2], cells[4], cells[6]];
+        let far = (mark - Vector3::from(far)).norm();
+        assert!(far > 1.0 && (cells[7] - far).abs() < 1e-12 * far);
+        assert_eq!(cells[8], trajectory.joints[k][1]);
+    }
+    assert_eq!(table.lines().count(), 2 + trajectory.times.len());
     for path in &files {
         let text = fs::read_to_string(path).unwrap();
         if path.extension().is_some_and(|e| e == "svg") {
