@@ -160,7 +160,8 @@ fn an_end_that_cannot_be_kept_is_told_or_refused() {
     };
     let error = run(&ignored).unwrap_err().to_string();
     assert!(
-        error.contains("control.goal.hold: ") && error.contains("\"markers\" only"),
+        error.contains("control.goal.hold: ")
+            && error.contains("\"markers\" or \"orientations\" only"),
         "{error}"
     );
 }

@@ -105,6 +105,62 @@ fn a_trunk_made_by_a_program_is_steered_as_that_of_a_file() {
 }
 
 #[test]
+fn a_tip_follows_a_path_of_a_program_as_that_of_a_file() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let file = file.join("problems/elephant_trunk_figure_eight.json");
+    let loaded = read_problem(&file, &["control.intervals=40".to_owned()]).unwrap();
+    let Task::Control(control) = loaded.task else {
+        unreachable!("the file asks for control");
+    };
+    let limits = SolveLimits::default();
+    let go_on = &mut |_: &Iterate<'_>| ControlFlow::Continue(());
+    let of_file = optimise(&loaded.system, &control, None, limits, go_on).unwrap();
+    let (trunk, muscles, tip) = elephant();
+    let sine = |amplitude: f64, period: f64| {
+        Some(Signal::Sine {
+            mean: 0.0,
+            amplitude: mm(amplitude),
+            frequency: s(period).recip(),
+            phase: 0.0,
+        })
+    };
+    let problem = Control::over(s(2.0), 40)
+        .goal(State::Free)
+        .voltage_bounds(0.0, kv(3.0))
+        .rate(1e-4)
+        .track(tip, [sine(40.0, 2.0), None, sine(20.0, 1.0)], 1.0)
+        .field_below(&muscles, 80e3);
+    let found = problem.solve(&trunk).unwrap();
+    assert!(found.is_solved(), "{}", found.status);
+    let objective = of_file.solution.objective;
+    assert!(objective > 1e-3 && (found.objective - objective).abs() < 1e-7 * objective);
+    let warned = found.motion.warnings.iter();
+    assert!(
+        warned
+            .filter(|line| line.contains("the end is free"))
+            .count()
+            == 1
+    );
+    // Ends near a place, without a path.
+    let near = Y * 290.0 + X * 40.0;
+    let problem = Control::over(s(0.4), 20)
+        .goal(State::Free)
+        .voltage_bounds(0.0, kv(3.0))
+        .effort(1e-3)
+        .end_near(tip, near, 1.0);
+    let found = problem.solve(&trunk).unwrap();
+    let end = *found.motion.position(tip).last().unwrap();
+    assert!(found.is_solved() && (end - near).norm() < 2.0, "{end}");
+    let weightless = problem.end_near(tip, near, -1.0).solve(&trunk);
+    assert!(
+        weightless
+            .unwrap_err()
+            .to_string()
+            .contains("a positive weight")
+    );
+}
+
+#[test]
 fn what_makes_no_sense_is_refused() {
     let (trunk, muscles, _) = elephant();
     let told = |result: Result<Motion>| result.unwrap_err().to_string();
