@@ -118,7 +118,7 @@ fn a_cube_moves_into_pull_in() {
         } else {
             assert_eq!((motion.exit, motion.status()), (1, "step_failed"));
             let words = motion.refusal();
-            let why = ["inverts an element", "energy balance"];
+            let why = ["an element is inverted", "energy balance"];
             assert!(why.iter().any(|why| words.contains(why)), "{words}");
             assert!(words.contains("even with a step of"), "{words}");
             seen.push(format!("{ratio} of the critical voltage: {words}"));
