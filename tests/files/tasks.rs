@@ -157,7 +157,7 @@ fn voltages_may_be_functions_of_time() {
 fn with_csv(text: &[u8], csv: &str) -> Result<Voltages, String> {
     let problem = r#"{ "scene": "scene.json", "simulate": { "duration": "1 s", "step": "10 ms", "voltages": { "muscle1": { "csv": CSV } } } }"#;
     let (folder, path) = folder(SCENE, &problem.replace("CSV", csv));
-    std::fs::write(folder.path().join("voltages.csv"), text).unwrap();
+    fs::write(folder.path().join("voltages.csv"), text).unwrap();
     match read_problem(&path, &[]) {
         Ok(loaded) => match loaded.task {
             Task::Simulate(simulation) => Ok(simulation.voltages),
