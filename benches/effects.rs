@@ -592,7 +592,7 @@ fn conclusion(mut factors: Vec<(&str, f64)>, [by_hand, again]: [f64; 2]) -> Stri
 
 fn main() {
     let (system, control) = trunk::read(1, Coordinates::Reduced);
-    let BoundaryState::RestAtVoltages(volts) = &control.goal else {
+    let BoundaryState::RestAtVoltages(volts, _) = &control.goal else {
         panic!("the goal of the trunk problem is a state of rest");
     };
     let (of_trunk, mut factors) = table(pairs_of_trunk(&system, volts));

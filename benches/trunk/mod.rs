@@ -111,7 +111,7 @@ pub(crate) fn at_rest(coordinates: Coordinates) -> (Model, Start, Vec<f64>) {
     let (system, control) = read(1, coordinates);
     let joints = vec![0.0; system.joints.len()];
     let model = Model::new(system, Some(coordinates), STEP, &[]).expect("the joints form a tree");
-    let BoundaryState::RestAtVoltages(voltages) = &control.goal else {
+    let BoundaryState::RestAtVoltages(voltages, _) = &control.goal else {
         panic!("the goal of the trunk problem is a state of rest");
     };
     let start = Start::at_rest(&model, model.coordinates_at(&joints));

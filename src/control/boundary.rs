@@ -33,7 +33,7 @@ impl BoundaryConditions {
                 rest,
                 ..
             } => {
-                goal_rows::add_places(&mut limits, system, places, *rest == Rest::Markers);
+                goal_rows::add_places(&mut limits, system, places, *rest == Rest::Bodies);
                 goal_rows::add_orientations(&mut limits, system, orientations);
             }
             BoundaryState::JointAngles { angles, .. } if redundant && !all_joints => {
@@ -59,7 +59,7 @@ impl BoundaryConditions {
         let mut model = Model::of_presolved(system.clone(), question, presolved)?;
         let mut scalars = [None, None];
         let start = match &control.start {
-            BoundaryState::RestAtVoltages(voltages) => {
+            BoundaryState::RestAtVoltages(voltages, _) => {
                 let rest = rest_at(&model, voltages, "start")?;
                 scalars[0] = Some(rest.scalars);
                 at_rest(&model, rest.z)
@@ -72,10 +72,16 @@ impl BoundaryConditions {
         let mut charts = Vec::new();
         let mut at_goal = None;
         match &control.goal {
-            BoundaryState::RestAtVoltages(voltages) => {
+            BoundaryState::RestAtVoltages(voltages, of) => {
                 let rest = rest_at(&model, voltages, "goal")?;
                 scalars[1] = Some(rest.scalars.clone());
-                given = rest.z[..n].iter().copied().map(Some).collect();
+                let reached = match of {
+                    Rest::Everything => n,
+                    Rest::Bodies => model.action.motion.of_bodies.min(n),
+                };
+                for (given, value) in given.iter_mut().zip(&rest.z[..reached]) {
+                    *given = Some(*value);
+                }
                 charts = rest.z[model.action.motion.unknowns()..].to_vec();
                 at_goal = Some(rest);
             }
@@ -99,7 +105,7 @@ impl BoundaryConditions {
             check_muscles(&model, &z, "goal")?;
         }
         let voltages = |state: &BoundaryState| match state {
-            BoundaryState::RestAtVoltages(v) => Some(v.clone()),
+            BoundaryState::RestAtVoltages(v, _) => Some(v.clone()),
             BoundaryState::Markers { hold, .. } => hold.clone(),
             _ => None,
         };
@@ -112,9 +118,9 @@ impl BoundaryConditions {
                 rests: match &control.goal {
                     BoundaryState::Free => Rests::Nothing,
                     BoundaryState::Markers {
-                        rest: Rest::Markers,
-                        ..
-                    } => Rests::Bodies,
+                        rest: Rest::Bodies, ..
+                    }
+                    | BoundaryState::RestAtVoltages(_, Rest::Bodies) => Rests::Bodies,
                     _ => Rests::Everything,
                 },
                 rest: at_goal,
@@ -167,7 +173,7 @@ pub fn resolve_start(
     place: &'static str,
 ) -> Result<Start, BoundaryError> {
     match state {
-        BoundaryState::RestAtVoltages(voltages) => {
+        BoundaryState::RestAtVoltages(voltages, _) => {
             Ok(at_rest(model, rest_at(model, voltages, place)?.z))
         }
         BoundaryState::JointAngles {

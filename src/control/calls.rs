@@ -61,7 +61,7 @@ fn zero_voltage<const N: usize>(
 ) -> BTreeSet<usize> {
     let is_held = |s: usize| {
         ends.iter().any(|state| match state {
-            BoundaryState::RestAtVoltages(voltages) => voltages[s] != 0.0,
+            BoundaryState::RestAtVoltages(voltages, _) => voltages[s] != 0.0,
             BoundaryState::Markers { hold, .. } => hold.as_ref().is_some_and(|v| v[s] != 0.0),
             BoundaryState::JointAngles { .. } | BoundaryState::Free => false,
         })
@@ -103,7 +103,7 @@ impl<'a> Named<'a> {
 
     fn of_goal(&mut self, state: &BoundaryState) {
         match state {
-            BoundaryState::RestAtVoltages(_) | BoundaryState::Free => {}
+            BoundaryState::RestAtVoltages(..) | BoundaryState::Free => {}
             BoundaryState::JointAngles { angles, .. } => {
                 angles.keys().for_each(|&j| self.of_joint(j));
             }

@@ -42,7 +42,7 @@ pub(super) fn check(
         match state {
             BoundaryState::JointAngles { angles, .. } => end.angles = angles.clone(),
             BoundaryState::Markers { places, .. } => end.places = places.clone(),
-            BoundaryState::RestAtVoltages(_) | BoundaryState::Free => {}
+            BoundaryState::RestAtVoltages(..) | BoundaryState::Free => {}
         }
         let of_joints = control.limits.iter().find_map(|limit| end.joint(limit));
         let bounded = || {

@@ -88,6 +88,9 @@ fn interpolate(
     for (value, given) in end.iter_mut().zip(&boundary.goal.coordinates) {
         *value = given.unwrap_or(*value);
     }
+    if let Some(rest) = &boundary.goal.rest {
+        end[..n].copy_from_slice(&rest.z[..n]);
+    }
     let motion = &model.action.motion;
     let charts = end[motion.unknowns()..].iter_mut();
     charts

@@ -38,8 +38,8 @@ pub struct AtRest {
 /// A state of rest, or of given motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BoundaryState {
-    /// Static equilibrium under these voltages (V, one per muscle).
-    RestAtVoltages(Vec<f64>),
+    /// Static equilibrium under these voltages (V, one per muscle), and at a goal what of it is reached; the start has all of it.
+    RestAtVoltages(Vec<f64>, Rest),
     /// Joint coordinates by joint index (rad or mm); at a start, joints not named stay at zero.
     JointAngles {
         /// Coordinates.
@@ -72,7 +72,7 @@ pub enum Rest {
     #[default]
     Everything,
     /// Bodies and the markers of the goal; elastic blocks have more coordinates than a few voltages can bring to rest.
-    Markers,
+    Bodies,
 }
 
 /// What becomes of a goal that its voltages do not keep.

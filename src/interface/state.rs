@@ -53,7 +53,7 @@ impl State {
                     require(voltage.is_finite(), "state", found, "a finite voltage")?;
                     row[source(input, system)?] = *voltage;
                 }
-                BoundaryState::RestAtVoltages(row)
+                BoundaryState::RestAtVoltages(row, Rest::Everything)
             }
             Self::Joints(values) => {
                 for &(joint, value) in values {

@@ -112,14 +112,14 @@ fn distances(
                 .collect()
         }
         BoundaryState::Free => Vec::new(),
-        BoundaryState::RestAtVoltages(_) => {
-            let goal: Option<Vec<f64>> = boundary.goal.coordinates.iter().copied().collect();
-            let Some(goal) = goal else {
+        BoundaryState::RestAtVoltages(..) => {
+            let Some(rest) = &boundary.goal.rest else {
                 return Vec::new();
             };
             let mut there = model.action.motion.instant();
-            there.z[..goal.len()].copy_from_slice(&goal);
-            there.z[model.action.motion.unknowns()..].copy_from_slice(&boundary.goal.charts);
+            let (n, charts) = (boundary.goal.coordinates.len(), &boundary.goal.charts);
+            there.z[..n].copy_from_slice(&rest.z[..n]);
+            there.z[model.action.motion.unknowns()..].copy_from_slice(charts);
             model.action.motion.place(&mut there);
             let markers = 0..model.markers.len();
             let places = markers.map(|m| of_marker(m, &there.x[model.markers[m]].into()));
@@ -200,9 +200,7 @@ fn changes(control: &Control, optimum: &Optimum, longer: Longer) -> Vec<String> 
     let has_nodes = !model.action.motion.of_nodes.is_empty();
     if has_nodes && optimum.boundary.goal.rests == Rests::Everything {
         let few = "a few voltages cannot bring every node of an elastic block to rest";
-        lines.push(format!(
-            "change: \"rest\": \"markers\" at a goal of markers; {few}"
-        ));
+        lines.push(format!("change: \"rest\": \"bodies\" in the goal; {few}"));
     }
     if has_nodes && control.objective.rate == 0.0 {
         let jumps =

@@ -37,7 +37,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
     Control {
         duration: Duration::Given(10.0 * intervals as f64),
         intervals,
-        start: BoundaryState::RestAtVoltages(vec![0.0; system.sources().len()]),
+        start: BoundaryState::RestAtVoltages(vec![0.0; system.sources().len()], Rest::Everything),
         goal: joints(&[]),
         voltage_bounds: [0.0, 3000.0],
         given: BTreeMap::new(),
@@ -74,7 +74,7 @@ pub fn hold(segments: usize) -> Vec<f64> {
 pub fn rest_to_rest(segments: usize, intervals: usize, duration: f64) -> Control {
     Control {
         duration: Duration::Given(duration),
-        goal: BoundaryState::RestAtVoltages(hold(segments)),
+        goal: BoundaryState::RestAtVoltages(hold(segments), Rest::Everything),
         ..control(&trunk(segments), intervals)
     }
 }
@@ -135,7 +135,7 @@ fn corner_goal() -> BoundaryState {
     BoundaryState::Markers {
         places: BTreeMap::from([(1, Vector3::new(10.0, 60.0, 39.5).into())]),
         orientations: BTreeMap::new(),
-        rest: Rest::Markers,
+        rest: Rest::Bodies,
         hold: None,
     }
 }
@@ -169,7 +169,7 @@ pub fn open_end() -> BoundaryState {
     BoundaryState::Markers {
         places: BTreeMap::new(),
         orientations: BTreeMap::new(),
-        rest: Rest::Markers,
+        rest: Rest::Bodies,
         hold: None,
     }
 }
@@ -207,11 +207,11 @@ pub fn cases() -> Vec<Case> {
     };
     vec![
         case("pair at rest", trunk(1), &|c| {
-            c.goal = BoundaryState::RestAtVoltages(hold(1));
+            c.goal = BoundaryState::RestAtVoltages(hold(1), Rest::Everything);
         }),
         case("two segments", trunk(2), &|_| {}),
         case("three segments, smooth", trunk(3), &|c| {
-            c.goal = BoundaryState::RestAtVoltages(hold(3));
+            c.goal = BoundaryState::RestAtVoltages(hold(3), Rest::Everything);
             c.objective = Objective {
                 rate: 0.3,
                 ..Objective::default()

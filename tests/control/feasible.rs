@@ -7,7 +7,7 @@ use crate::common::cases::{control, hold, joints};
 use crate::common::random::Random;
 use crate::common::systems::{BRANCHED_VOLTAGES, blocks, branched};
 use crate::common::trunk;
-use proboscis::control::problem::{BoundaryState, Duration};
+use proboscis::control::problem::{BoundaryState, Duration, Rest};
 use proboscis::control::{BoundaryConditions, Row, Transcription, guess};
 use proboscis::dynamics::{Start, simulate};
 use proboscis::model::Coordinates;
@@ -27,7 +27,8 @@ fn law(
 ) {
     let mut control = control(system, INTERVALS);
     control.coordinates = Some(coordinates);
-    control.start = BoundaryState::RestAtVoltages(vec![0.0; system.sources().len()]);
+    control.start =
+        BoundaryState::RestAtVoltages(vec![0.0; system.sources().len()], Rest::Everything);
     control.goal = joints(&[]);
     let duration = STEP * INTERVALS as f64;
     control.duration = if free {

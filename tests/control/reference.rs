@@ -1,7 +1,9 @@
 //! Optimal control against the reference solutions.
 
 use crate::common::{numbers, reference, trunk};
-use proboscis::control::problem::{BoundaryState, Control, Duration, Guess, Objective, Solver};
+use proboscis::control::problem::{
+    BoundaryState, Control, Duration, Guess, Objective, Rest, Solver,
+};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::ipopt::{self, LinearSolver, Options, Start};
 use proboscis::model::Coordinates;
@@ -31,8 +33,8 @@ fn problem(name: &str, coordinates: Coordinates) -> Control {
     Control {
         duration,
         intervals: control["intervals"].as_u64().unwrap() as usize,
-        start: BoundaryState::RestAtVoltages(vec![0.0; hold.len()]),
-        goal: BoundaryState::RestAtVoltages(hold),
+        start: BoundaryState::RestAtVoltages(vec![0.0; hold.len()], Rest::Everything),
+        goal: BoundaryState::RestAtVoltages(hold, Rest::Everything),
         voltage_bounds: [0.0, 3000.0],
         given: BTreeMap::new(),
         hold: Default::default(),

@@ -1,7 +1,7 @@
 //! What a scene means, chains written out included.
 
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
-use proboscis::control::problem::{BoundaryState, PathConstraint, Task};
+use proboscis::control::problem::{BoundaryState, PathConstraint, Rest, Task};
 use proboscis::files::expand;
 use proboscis::files::read_problem;
 use proboscis::files::read_scene;
@@ -64,7 +64,7 @@ fn a_scene_means_what_is_written() {
     };
     assert_eq!(
         control.goal,
-        BoundaryState::RestAtVoltages(vec![1700.0, 0.0])
+        BoundaryState::RestAtVoltages(vec![1700.0, 0.0], Rest::Everything)
     );
     assert_eq!(
         control.limits[1..],

@@ -195,7 +195,7 @@ fn a_goal_may_be_a_part_of_a_place_and_an_orientation() {
     let expected = BoundaryState::Markers {
         places: [(0, Place([None, Some(90.0), None]))].into(),
         orientations: [(0, towards), (1, turned)].into(),
-        rest: Rest::Markers,
+        rest: Rest::Bodies,
         hold: None,
     };
     assert_eq!(control.goal, expected);
@@ -208,6 +208,36 @@ fn a_goal_may_be_a_part_of_a_place_and_an_orientation() {
         (", \"angle\": \"90 deg\"", "", "control.goal.orientations.segment2", "none of them", "exactly one of \"towards\", \"angle\"", "axis"),
         ("\"rest\": \"markers\"", "\"joint_angles\": { \"joint1\": 0 }", "control.goal", "\"joint_angles\", \"markers\"", "exactly one of", "tip"),
         (GOAL, "\"fre\"", "control.goal", "\"fre\"", "\"free\"", "fre"),
+    ];
+    check(cases, &problem, |problem| mistake(SCENE, problem, &[]));
+}
+
+#[test]
+fn a_goal_may_be_the_equilibrium_of_bodies_alone() {
+    const GOAL: &str = r#"{ "rest_at_voltages": { "muscle1": "1.7 kV" }, "rest": "bodies" }"#;
+    const ALL: &str = "{ \"rest_at_voltages\": { \"muscle1\": \"1.7 kV\" } }";
+    let problem = PROBLEM.replace(ALL, GOAL);
+    let goal = |problem: &str| {
+        let (_folder, path) = folder(SCENE, problem);
+        let Task::Control(control) = read_problem(&path, &[]).expect("a problem").task else {
+            panic!("a control problem")
+        };
+        control.goal
+    };
+    let row = vec![1700.0, 0.0];
+    assert_eq!(
+        goal(&problem),
+        BoundaryState::RestAtVoltages(row.clone(), Rest::Bodies)
+    );
+    assert_eq!(
+        goal(PROBLEM),
+        BoundaryState::RestAtVoltages(row, Rest::Everything)
+    );
+    #[rustfmt::skip]
+    let cases: &[Case] = &[
+        ("\"rest\": \"bodies\"", "\"rest\": \"body\"", "control.goal.rest", "body", "bodies", "body"),
+        ("\"rest_at_voltages\": { \"muscle1\": \"1.7 kV\" }", "\"joint_angles\": { \"joint1\": 0 }", "control.goal.rest", "\"rest\" beside \"joint_angles\"", "beside \"rest_at_voltages\"", "bodies"),
+        ("\"rest\": \"bodies\"", "\"hold\": {}", "control.goal.hold", "\"hold\" beside \"rest_at_voltages\"", "beside \"markers\"", "{}"),
     ];
     check(cases, &problem, |problem| mistake(SCENE, problem, &[]));
 }

@@ -5,7 +5,7 @@ use crate::common::random::Random;
 use crate::common::systems::{GRAVITY, branched};
 use crate::trace::with_program;
 use proboscis::control::BoundaryConditions;
-use proboscis::control::problem::{BoundaryState, Control, PathConstraint};
+use proboscis::control::problem::{BoundaryState, Control, PathConstraint, Rest};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
 use proboscis::nlp::Nlp;
@@ -107,7 +107,7 @@ fn absent_effects_change_no_bit() {
             // A state of rest that names a voltage of it keeps its electric term.
             let mut volts = vec![0.0; 4];
             volts[muscle] = 300.0;
-            silent.start = BoundaryState::RestAtVoltages(volts);
+            silent.start = BoundaryState::RestAtVoltages(volts, Rest::Everything);
             let (model, _) = BoundaryConditions::resolve(&system, &silent, 10.0).unwrap();
             assert!(model.variables.sources().eq(0..3));
         }

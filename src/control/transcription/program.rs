@@ -131,8 +131,11 @@ impl Nlp for Transcription<'_> {
         if self.model.coordinate_count() < self.model.action.motion.unknowns() {
             return None;
         }
+        let has_equation = |column: &Column| column.of(&self.model.variables).role.has_equation();
         let stage = |column: &Column| match *column {
             Column::Instant { k, .. } => Stage::Of(2 * k as u32),
+            // A step finds potentials together with the motion at its end.
+            Column::Interval { k, .. } if has_equation(column) => Stage::Of(2 * k as u32 + 2),
             Column::Interval { k, .. } => Stage::Of(2 * k as u32 + 1),
             Column::Horizon => Stage::Border,
         };

@@ -136,7 +136,7 @@ pub(crate) fn check_rest_voltages(
     [lower, upper]: [f64; 2],
     scope: &Scope<'_>,
 ) -> Result<(), SceneError> {
-    let BoundaryState::RestAtVoltages(voltages) = state else {
+    let BoundaryState::RestAtVoltages(voltages, _) = state else {
         return Ok(());
     };
     for (s, (source, &voltage)) in system.sources().iter().zip(voltages).enumerate() {
@@ -167,7 +167,7 @@ pub(crate) fn check_final_conditions(
             (given.sum(), "markers")
         }
         BoundaryState::JointAngles { angles, .. } => (angles.len(), "joint_angles"),
-        BoundaryState::RestAtVoltages(_) | BoundaryState::Free => return Ok(()),
+        BoundaryState::RestAtVoltages(..) | BoundaryState::Free => return Ok(()),
     };
     match tree_freedoms(system.bodies.len(), &system.joints) {
         Some(freedoms) if conditions > freedoms => {

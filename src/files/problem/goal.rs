@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::control::problem::{BoundaryState, Orientation, Place};
+use crate::control::problem::{BoundaryState, Orientation, Place, Rest};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_states::{GoalSpec, OrientationSpec, RestGoalSpec};
@@ -47,16 +47,26 @@ pub(crate) fn goal_state(
         ),
         (of_places, is_of_places.then_some(of_places)),
     ])?;
-    for (name, is_written) in [("hold", hold.is_some()), ("rest", rest.is_some())] {
-        if is_written && !is_of_places {
+    let beside_places = "it beside \"markers\" or \"orientations\" only";
+    let beside_rest = "it beside \"rest_at_voltages\", \"markers\" or \"orientations\" only";
+    let is_of_angles = joint_angles.is_some();
+    for (name, is_ignored, expected) in [
+        ("hold", hold.is_some() && !is_of_places, beside_places),
+        ("rest", rest.is_some() && is_of_angles, beside_rest),
+    ] {
+        if is_ignored {
             let found = format!("{name:?} beside {key:?}");
-            let expected = "it beside \"markers\" or \"orientations\" only";
             return Err(scope.key(name).wrong(found, expected));
         }
     }
+    let reached = Rest::from(rest.unwrap_or_default());
     if let Some(map) = rest_at_voltages {
-        let place = scope.key(key);
-        return voltages(map, system, &place).map(BoundaryState::RestAtVoltages);
+        if reached == Rest::Bodies && system.bodies.is_empty() {
+            let expected = "a scene with bodies; goals of elastic blocks alone are \"markers\"";
+            return Err(scope.key("rest").wrong("a scene without bodies", expected));
+        }
+        let row = voltages(map, system, &scope.key(key))?;
+        return Ok(BoundaryState::RestAtVoltages(row, reached));
     }
     if is_of_places {
         let places = markers
@@ -69,7 +79,7 @@ pub(crate) fn goal_state(
         return Ok(BoundaryState::Markers {
             places: places.transpose()?.unwrap_or_default(),
             orientations: turned.transpose()?.unwrap_or_default(),
-            rest: rest.unwrap_or_default().into(),
+            rest: reached,
             hold: hold.as_ref().map(held).transpose()?,
         });
     }

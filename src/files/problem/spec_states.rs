@@ -82,8 +82,8 @@ pub struct RestGoalSpec {
     /// Orientations by body.
     #[serde(default)]
     pub orientations: Option<BTreeMap<String, OrientationSpec>>,
-    /// What comes to rest at positions of markers and orientations: `everything` (where not written), or bodies and these `markers` alone, for
-    /// elastic blocks, which a few voltages cannot bring to rest everywhere.
+    /// What comes to rest at an equilibrium, at positions of markers and at orientations: `everything` (where not written), or `bodies` and these
+    /// markers alone, for elastic blocks, which a few voltages cannot bring to rest everywhere.
     #[serde(default)]
     pub rest: Option<RestSpec>,
     /// Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named.
@@ -114,6 +114,8 @@ pub enum RestSpec {
     #[default]
     Everything,
     /// Bodies and the markers of the goal.
+    Bodies,
+    /// The same.
     Markers,
 }
 
@@ -141,7 +143,7 @@ impl From<RestSpec> for Rest {
     fn from(spec: RestSpec) -> Self {
         match spec {
             RestSpec::Everything => Self::Everything,
-            RestSpec::Markers => Self::Markers,
+            RestSpec::Bodies | RestSpec::Markers => Self::Bodies,
         }
     }
 }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
-use crate::control::problem::BoundaryState;
+use crate::control::problem::{BoundaryState, Rest};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_states::{BodyVelocitySpec, StartSpec};
@@ -65,7 +65,8 @@ pub(crate) fn start_state(
         ("joint_angles", moving.then_some(None)),
     ])? {
         Some(map) => {
-            voltages(map, system, &scope.key("rest_at_voltages")).map(BoundaryState::RestAtVoltages)
+            let row = voltages(map, system, &scope.key("rest_at_voltages"))?;
+            Ok(BoundaryState::RestAtVoltages(row, Rest::Everything))
         }
         None => {
             let kinds = [Angle::kind(), Length::kind()];
