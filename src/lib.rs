@@ -109,7 +109,9 @@ pub use model::system::{
     Attachment, Body, Electrode, Glue, Joint, JointKind, Marker, Material, Muscle, Potential,
     Shape, Solid, Support,
 };
-pub use model::{Component, System, SystemError, Terms, mid};
+pub use model::{
+    Component, Constant, DielectricLaw, FoundParameter, Parameter, System, SystemError, Terms, mid,
+};
 pub use nlp::Nlp;
 
 /// All that a program needs: `use proboscis::prelude::*;`.
@@ -117,8 +119,9 @@ pub mod prelude {
     pub use crate::units::*;
     pub use crate::{
         Attachment, Body, Carrier, Component, Control, Error, GROUND, Grid, Handle, Input,
-        Integrator, Joint, JointKind, Marker, Material, Motion, Muscle, Optimum, Orientation, Part,
-        Potential, Result, Signal, Simulation, Solid, Spring, State, System, Tendon, X, Y, Z,
+        Integrator, Joint, JointKind, Marker, Material, Motion, Muscle, Optimum, Orientation,
+        Parameter, Part, Potential, Result, Signal, Simulation, Solid, Spring, State, System,
+        Tendon, X, Y, Z,
     };
 }
 

@@ -4,6 +4,7 @@
 mod common;
 
 use common::cases::{all_limits, control, rest_to_rest};
+use common::sought;
 use common::systems::branched;
 use common::tracked::tracked;
 use common::trunk;
@@ -174,7 +175,12 @@ fn evaluations_allocate_nothing() {
         let mut follows = control(&branched(), 40);
         follows.coordinates = Some(coordinates);
         follows.objective = followed.clone();
+        let seeks = Control {
+            coordinates: Some(coordinates),
+            ..sought::problem(&sought::robot(), true, None)
+        };
         for (name, system, control) in [
+            ("sought parameters, free time", sought::robot(), seeks),
             ("trunk", trunk(3), plain),
             ("trunk, long horizon", trunk(3), long),
             ("trunk, free time", trunk(3), timed),

@@ -8,7 +8,7 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::control::problem::{
     BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, Task, Voltages,
 };
-use crate::control::{Column, Row, Transcription};
+use crate::control::{Column, Row, Signal, Transcription};
 use crate::files::read_problem;
 use crate::ipopt::LinearSolver;
 use crate::ipopt::interrupt::TimeLimit;
@@ -18,7 +18,8 @@ use crate::nlp::Nlp;
 use crate::nlp::differences::{self, Along};
 use crate::workflow::effects;
 use crate::workflow::memory;
-use crate::workflow::optimise::{Counted, Prepared, prepare, resolve};
+use crate::workflow::optimise::{Counted, Prepared, prepare};
+use crate::workflow::resolve::resolve;
 
 /// Noise on each variable, relative to its size.
 const NOISE: f64 = 1e-2;
@@ -123,7 +124,7 @@ fn coupling(program: &Transcription<'_>, model: &Model, row: &str, column: &str)
     let n = model.coordinate_count();
     let of_column = |column: &Column| match *column {
         Column::Instant { i, .. } => Some(i),
-        Column::Interval { s, .. } => Some(n + s),
+        Column::Interval { s, .. } | Column::Parameter { s } => Some(n + s),
         Column::Horizon => None,
     };
     let mut entries = HashMap::new();
@@ -159,6 +160,8 @@ fn as_control(task: Task, system: &System) -> Control {
         goal: at_reference(),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
         given: BTreeMap::new(),
+        course: None,
+        parameters: Vec::new(),
         hold: Default::default(),
         objective: Objective {
             effort: 1.0,
@@ -190,7 +193,7 @@ fn as_control(task: Task, system: &System) -> Control {
             Control {
                 given: zero_voltage
                     .into_iter()
-                    .map(|source| (source, 0.0))
+                    .map(|source| (source, Signal::Constant(0.0)))
                     .collect(),
                 ..without_goal(start, step, row, coordinates)
             }

@@ -17,7 +17,8 @@ use crate::sparse::Symmetry;
 use crate::workflow::WorkflowError;
 use crate::workflow::effects::Plan;
 use crate::workflow::memory;
-use crate::workflow::optimise::{Counted, Prepared, prepare, resolve};
+use crate::workflow::optimise::{Counted, Prepared, prepare};
+use crate::workflow::resolve::resolve;
 
 /// The plan: effects in numbers, what calls for them, and what is not there; with sizes; with a folder also pictures of Jacobian and Hessian.
 ///

@@ -13,7 +13,7 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::solution_file;
 use crate::app::solve_words::{meaning, redundancy};
 use crate::app::summary::{
-    Evaluations, LinearSystems, MEASURED, PerInterval, Program, Seconds, Summary,
+    Evaluations, LinearSystems, MEASURED, PerInterval, Program, Seconds, SoughtValue, Summary,
 };
 use crate::app::unfinished::Unfinished;
 use crate::app::words::counted;
@@ -144,6 +144,7 @@ pub(super) fn control(
         infeasibility: Some(optimum.infeasibility).filter(|value| value.is_finite()),
         violations: violated.clone(),
         resimulation: resimulation.clone(),
+        parameters: kept.parameters.iter().map(SoughtValue::new).collect(),
     });
     let coarse = tested.and_then(Resimulation::warning);
     summary.notes.extend(note.into_iter().chain(coarse));
@@ -158,7 +159,11 @@ pub(super) fn control(
         summary.notes.extend(lines);
     }
     summary.accuracy = accuracy;
-    summary.plan = Plan::of(model, Some(control), MEASURED);
+    summary.plan = Plan::of(
+        optimum.sought.as_ref().unwrap_or(model),
+        Some(control),
+        MEASURED,
+    );
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),
         setup: read + optimum.setup,
@@ -282,6 +287,9 @@ fn rows(summary: &Summary) -> Vec<(String, String)> {
         row("iterations", program.iterations.to_string());
         row("duration", format!("{:.6} s", program.duration));
         row("intervals", program.intervals.to_string());
+        for parameter in &program.parameters {
+            row(&parameter.name, parameter.told());
+        }
         row("coordinates", summary.coordinates.to_owned());
         row("variables", program.variables.to_string());
         row("constraints", program.constraints.to_string());
@@ -338,6 +346,8 @@ fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> CommandOutp
     let mut notes: Vec<String> = summary.message.iter().cloned().collect();
     notes.extend(violated.iter().map(describe));
     notes.extend(summary.notes.iter().cloned());
+    let parameters = program.iter().flat_map(|program| &program.parameters);
+    notes.extend(parameters.map(|found| format!("{}: {}", found.name, found.told())));
     let mut grid = String::new();
     if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
         notes.extend(accuracy.notes());

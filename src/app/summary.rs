@@ -13,6 +13,8 @@ use crate::control::problem;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
 use crate::files::lay_out;
 use crate::ipopt::{self, LinearReport};
+use crate::math::significant;
+use crate::model::FoundParameter;
 use crate::report::atomic::{self, WriteError};
 use crate::workflow::Tracked;
 use crate::workflow::accuracy::Accuracy;
@@ -89,6 +91,43 @@ pub(super) struct Program {
     pub(super) violations: Vec<Violation>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) resimulation: Option<Resimulation>,
+    /// Parameters that were sought.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) parameters: Vec<SoughtValue>,
+}
+
+/// A parameter that was sought: the value that was found.
+#[derive(Debug, Serialize)]
+pub(super) struct SoughtValue {
+    /// Its path in the scene.
+    pub(super) name: String,
+    /// In the unit.
+    pub(super) value: f64,
+    /// Of the International System, empty for a ratio.
+    pub(super) unit: &'static str,
+    /// Whether it lies at a bound.
+    pub(super) at_bound: bool,
+}
+
+impl SoughtValue {
+    /// Of a solution.
+    pub(super) fn new(found: &FoundParameter) -> Self {
+        Self {
+            name: found.name.clone(),
+            value: found.value * found.unit.factor,
+            unit: found.unit.symbol,
+            at_bound: found.is_at_bound,
+        }
+    }
+
+    /// In words.
+    pub(super) fn told(&self) -> String {
+        let value = format!("{} {}", significant(self.value, 8), self.unit);
+        match self.at_bound {
+            true => format!("{}, at its bound", value.trim_end()),
+            false => value.trim_end().to_owned(),
+        }
+    }
 }
 
 /// The linear systems of the solver.

@@ -6,7 +6,9 @@ use crate::control::error::BoundaryError;
 use crate::control::goal_rows;
 use crate::control::limits::Limits;
 use crate::control::problem::{BoundaryState, Control, Rest};
-use crate::dynamics::{Equilibrium, Start, muscle_without_length, stable_equilibrium};
+use crate::control::rest::rest_at;
+use crate::control::sought;
+use crate::dynamics::{Start, muscle_without_length};
 use crate::functional::Order;
 use crate::model::{Analysis, Coordinates, Graph, Model, Presolved, Quantity, Role, System};
 
@@ -20,6 +22,7 @@ impl BoundaryConditions {
         control: &Control,
         h0: f64,
     ) -> Result<(Model, Self), BoundaryError> {
+        let system = &sought::at_guess(system, control)?;
         let question = control.question(system, h0);
         let presolved = Presolved::new(system, &question);
         let coordinates = Model::choose(&presolved.system, control.coordinates)?;
@@ -128,6 +131,9 @@ impl BoundaryConditions {
             rest,
             limits,
         };
+        let rest = boundary.goal.rest.as_ref();
+        let ends = [Some(&boundary.start.z[..]), rest.map(|rest| &rest.z[..])];
+        sought::check(&model, control, ends)?;
         ends::check(&model, &boundary, control, scalars)?;
         Ok((model, boundary))
     }
@@ -142,17 +148,6 @@ fn all_joints_given(system: &System, goal: &BoundaryState) -> bool {
     let named = |(j, c): (usize, &Option<usize>)| c.is_none() || angles.contains_key(&j);
     Graph::new(system).has_one_coordinate_a_joint(system)
         && coordinates.iter().enumerate().all(named)
-}
-
-/// The equilibrium under voltages (V, one per muscle).
-fn rest_at(
-    model: &Model,
-    voltages: &[f64],
-    place: &'static str,
-) -> Result<Equilibrium, BoundaryError> {
-    let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
-    let found = stable_equilibrium(model, &zero, &model.scalars(voltages));
-    found.map_err(|source| BoundaryError::NoEquilibrium { place, source })
 }
 
 /// A start at coordinates of rest; nodes may have velocities of their own.

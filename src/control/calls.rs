@@ -39,15 +39,19 @@ impl AtRest {
 impl Control {
     /// The question of a horizon of intervals of about `interval` ms, without the quantities that are measured.
     pub fn question(&self, system: &System, interval: f64) -> Analysis {
-        let is_sought = |s: usize| self.given.get(&s).is_none_or(|&voltage| voltage != 0.0);
+        let is_driven = |s: usize| match &self.course {
+            Some(course) => course.drive(s),
+            None => self.given.get(&s).is_none_or(|signal| !signal.is_zero()),
+        };
         let mut named = Named::new(system);
         named.of_start(&self.start);
         named.of_goal(&self.goal);
         self.limits.iter().for_each(|limit| named.of_limit(limit));
         Analysis {
             coordinates: self.coordinates,
-            zero_voltage: zero_voltage(system, is_sought, [&self.start, &self.goal]),
+            zero_voltage: zero_voltage(system, is_driven, [&self.start, &self.goal]),
             stirred: Some(named.stirred),
+            parameters: self.parameters.clone(),
             ..Analysis::of_motion(interval)
         }
     }

@@ -38,7 +38,11 @@ pub(super) fn check(
         ("goal", goal, charts[1], at_goal, &control.goal),
     ];
     for (place, coordinates, charts, scalars, state) in ends {
-        let mut end = End::new(model, control, coordinates, charts, scalars);
+        let time = match place {
+            "start" => control.middle(0),
+            _ => control.middle(control.intervals - 1),
+        };
+        let mut end = End::new(model, (control, time), coordinates, charts, scalars);
         match state {
             BoundaryState::JointAngles { angles, .. } => end.angles = angles.clone(),
             BoundaryState::Markers { places, .. } => end.places = places.clone(),
@@ -75,7 +79,7 @@ struct End<'a> {
 impl<'a> End<'a> {
     fn new(
         model: &'a Model,
-        control: &Control,
+        (control, time): (&Control, f64),
         coordinates: &[Option<f64>],
         charts: &[f64],
         scalars: Option<Vec<f64>>,
@@ -101,7 +105,9 @@ impl<'a> End<'a> {
                 Some(scalars) => scalars.into_iter().map(Some).collect(),
                 None => {
                     let variables = model.variables.of(Time::Interval).iter();
-                    variables.map(|variable| control.given(variable)).collect()
+                    variables
+                        .map(|variable| control.given(variable, time))
+                        .collect()
                 }
             },
             angles: BTreeMap::new(),

@@ -46,6 +46,14 @@ pub enum BoundaryError {
         /// The muscle.
         muscle: String,
     },
+    /// A parameter cannot be sought.
+    #[error("sought parameter \"{name}\": {reason}")]
+    Parameter {
+        /// Its name.
+        name: String,
+        /// Why.
+        reason: String,
+    },
     /// What is known of the start or the goal breaks a limit.
     #[error("{place}: {reason}")]
     Limit {

@@ -45,9 +45,10 @@ pub fn guess(
         (_, Some(solved)) => from_solution(model, boundary, control, solved),
         (Guess::Simulate(voltages), _) => {
             let scalars = |from: f64, to: f64| {
-                let mut voltages = voltages.at(0.5 * (from + to)).to_vec();
-                for (&source, &voltage) in &control.given {
-                    voltages[source] = voltage;
+                let time = 0.5 * (from + to);
+                let mut voltages = voltages.at(time).to_vec();
+                for (source, voltage) in voltages.iter_mut().enumerate() {
+                    *voltage = control.given_voltage(source, time).unwrap_or(*voltage);
                 }
                 model.scalars(&voltages)
             };
@@ -118,8 +119,9 @@ fn interpolate(
         }
     });
     let rest = boundary.rest[1].as_ref().or(boundary.rest[0].as_ref());
-    let held: Vec<f64> = rest.map_or_else(|| vec![0.0; model.sources.len()], Clone::clone);
-    let scalars: Vec<f64> = model.scalars(&held).iter().map(|v| v + lift).collect();
+    let mut held: Vec<f64> = rest.map_or_else(|| vec![0.0; model.sources.len()], Clone::clone);
+    held.iter_mut().for_each(|voltage| *voltage += lift);
+    let scalars = model.scalars(&held);
     let history = DiscreteTrajectory {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),
         z: z.collect(),
@@ -200,6 +202,13 @@ fn from_solution(
         let mut scalars = model
             .variables
             .scalars(&model.scalars(&grids.mean(&solved.voltages, k)));
+        let of_parameters = model.variables.range(Role::Parameter);
+        for (s, parameter) in of_parameters.zip(&model.analysis.parameters) {
+            let mut found = solved.parameters.iter();
+            if let Some(found) = found.find(|found| found.name == parameter.name) {
+                scalars[s] = found.value.clamp(parameter.lower, parameter.upper);
+            }
+        }
         if has_potentials {
             scalars[potentials.clone()].copy_from_slice(&grids.mean(&solved.potentials, k));
         }

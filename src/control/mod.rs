@@ -16,8 +16,10 @@ mod objective;
 pub mod problem;
 mod quantity_cost;
 mod resample;
+mod rest;
 mod signal;
 mod solution;
+mod sought;
 mod transcription;
 
 pub use boundary::resolve_start;

@@ -1,6 +1,6 @@
 //! Which columns and rows a horizon has: the one place that drops what is given.
 //!
-//! Interleaved step by step: the variables of instant k, then those of interval k; the interval length last. A variable has a column
+//! Interleaved step by step: the variables of instant k, then those of interval k; sought parameters and the interval length last. A variable has a column
 //! unless start, goal or problem give its value, and a row if its role has an equation; the constraints of an instant are rows
 //! only where one of its coordinates has a column.
 
@@ -23,6 +23,11 @@ pub enum Column {
         /// Which scalar.
         s: usize,
     },
+    /// Sought parameter, scalar `s` of every interval.
+    Parameter {
+        /// Which scalar.
+        s: usize,
+    },
     /// The interval length.
     Horizon,
 }
@@ -32,7 +37,7 @@ impl Column {
     pub fn of(self, variables: &Variables) -> &Variable {
         match self {
             Self::Instant { i, .. } => &variables.of(Time::Instant)[i],
-            Self::Interval { s, .. } => &variables.of(Time::Interval)[s],
+            Self::Interval { s, .. } | Self::Parameter { s } => &variables.of(Time::Interval)[s],
             Self::Horizon => &variables.of(Time::Horizon)[0],
         }
     }
@@ -133,6 +138,9 @@ impl Numbering {
                 break;
             }
             for (s, variable) in variables.of(Time::Interval).iter().enumerate() {
+                if variable.role.time() == Time::Horizon {
+                    continue;
+                }
                 let at = k * of_interval + s;
                 let column = Column::Interval { k, s };
                 let number = out.column(column, is_given(column));
@@ -144,6 +152,11 @@ impl Numbering {
                 let is_row = variable.role.has_equation();
                 out.row_of_interval[at] = out.row_where(is_row, Row::Interval { k, s });
             }
+        }
+        for s in variables.range(Role::Parameter) {
+            let column = Column::Parameter { s };
+            let number = out.column(column, is_given(column));
+            (0..intervals).for_each(|k| out.column_of_interval[k * of_interval + s] = number);
         }
         out.column_of_horizon = out.column(Column::Horizon, is_given(Column::Horizon));
         out

@@ -6,7 +6,7 @@ use crate::control::{Earlier, Signal};
 use crate::dynamics::Solving;
 use crate::ipopt::{LinearSolver, OptionValue};
 use crate::model::system::{ElectricConstants, Muscle};
-use crate::model::{Coordinates, Region, System, Variable};
+use crate::model::{Coordinates, Parameter, Region, System, Variable};
 use nalgebra::Vector3;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -226,8 +226,12 @@ pub struct Control {
     pub goal: BoundaryState,
     /// Bounds of the voltages that are sought in V.
     pub voltage_bounds: [f64; 2],
-    /// Voltages that are given for all the time (V, by source): no unknowns.
-    pub given: BTreeMap<usize, f64>,
+    /// Voltages that are given (V, by source): no unknowns.
+    pub given: BTreeMap<usize, Signal>,
+    /// Voltages of all sources in intervals of time, where they are given: none is looked for.
+    pub course: Option<Voltages>,
+    /// Constants of the system that are sought.
+    pub parameters: Vec<Parameter>,
     /// What becomes of a goal that cannot be kept.
     pub hold: Hold,
     /// What is minimised.
@@ -243,9 +247,27 @@ pub struct Control {
 }
 
 impl Control {
-    /// The value of a variable of the intervals that is given for all the time, in its unit.
-    pub fn given(&self, variable: &Variable) -> Option<f64> {
-        self.given.get(&variable.source?).copied()
+    /// The value of a variable of the intervals that is given at a time in ms, in its unit.
+    pub fn given(&self, variable: &Variable, time: f64) -> Option<f64> {
+        self.given_voltage(variable.source?, time)
+    }
+
+    /// The voltage of a source that is given at a time in ms.
+    pub fn given_voltage(&self, source: usize, time: f64) -> Option<f64> {
+        match &self.course {
+            Some(course) => Some(course.at(time)[source]),
+            None => self.given.get(&source).map(|signal| signal.at(time)),
+        }
+    }
+
+    /// Whether the voltage of a source is given.
+    pub fn is_given(&self, source: usize) -> bool {
+        self.course.is_some() || self.given.contains_key(&source)
+    }
+
+    /// The middle of interval `k` in ms, where the duration is given or at its guess.
+    pub fn middle(&self, k: usize) -> f64 {
+        (k as f64 + 0.5) * self.duration.first() / self.intervals as f64
     }
 
     /// Unit of voltages in V that suits their bounds and what moves a muscle much, t √(μ/ε): V, kV, MV, or another power of

@@ -171,6 +171,7 @@ pub(super) fn costates(
             let place = from.unknowns.scalar(grids.interval(k), s);
             ratio * place.map_or(0.0, |v| list[v])
         }
+        Column::Parameter { s } => from.unknowns.scalar(0, s).map_or(0.0, |v| list[v]),
         // The duration is so many times the interval length.
         Column::Horizon => {
             let intervals = grids.to as f64 / grids.from as f64;

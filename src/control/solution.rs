@@ -1,7 +1,7 @@
 //! What is kept of a solution: enough to start any later run exactly.
 
 use crate::kinematics::Pose;
-use crate::model::Coordinates;
+use crate::model::{Coordinates, FoundParameter};
 
 /// A motion with voltages and, from an optimisation, costates. Times in ms, voltages in V.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +24,8 @@ pub struct Solution {
     pub hold: Option<Vec<f64>>,
     /// Potentials by interval, where a scene has any.
     pub potentials: Vec<Vec<f64>>,
+    /// Parameters that were sought.
+    pub parameters: Vec<FoundParameter>,
     /// Multipliers of the optimisation.
     pub costates: Option<Costates>,
 }

@@ -1,19 +1,27 @@
 //! Energies and virtual works: pure formulas, without index, mesh or time.
 
+mod affine;
 mod constraint;
 mod damper;
 mod gravity;
 mod limit;
 mod muscle;
+mod sought_damper;
+mod sought_muscle;
+mod sought_spring;
 mod spring;
 mod tendon;
 mod viscosity;
 
+pub use affine::Affine;
 pub use constraint::{Coincidence, Orthogonality};
 pub use damper::{AngularDamper, CoordinateDamper, LinearDamper};
 pub use gravity::Gravity;
 pub use limit::{Angle, OutsideBox, PositionComponent, Projection, SquaredDistance, SquaredField};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
+pub use sought_damper::SoughtDamper;
+pub use sought_muscle::{SoughtCell, SoughtDielectric, SoughtShape, SoughtViscousCell};
+pub use sought_spring::{SoughtSpanDamper, SoughtSpring};
 pub use spring::{LinearSpring, SpanDamper};
 pub use tendon::Cable;
 pub use viscosity::ViscousCell;
@@ -27,7 +35,7 @@ pub trait Energy<const M: usize>: Send + Sync {
     const DEGREE: usize = usize::MAX;
 
     /// How many leading vectors are virtual displacements: 0 for a potential; otherwise the scalar is a virtual work
-    /// δx·f, linear in them, and has no scalar arguments.
+    /// δx·f, linear in them, whose scalar arguments are sought parameters.
     const VIRTUAL: usize = 0;
 
     /// Whether second derivatives between two vectors are multiples of the identity.

@@ -13,12 +13,12 @@ pub struct ViscousCell {
     pub coefficient: f64,
 }
 
-/// A function of the invariants α = r̄·ṙ, β = r̄·δr, γ = |r̄|² of the arguments δr, r̄, ṙ.
-pub(super) fn of_invariants<const ORDER: usize>(
-    p: &SVector<f64, 9>,
-    w: &SVector<f64, 9>,
+/// A function of the invariants α = r̄·ṙ, β = r̄·δr, γ = |r̄|² of the first arguments δr, r̄, ṙ.
+pub(super) fn of_invariants<const M: usize, const ORDER: usize>(
+    p: &SVector<f64, M>,
+    w: &SVector<f64, M>,
     outer: impl FnOnce([Jet<3, ORDER>; 3]) -> Jet<3, ORDER>,
-) -> Jet<9, ORDER> {
+) -> Jet<M, ORDER> {
     let inner = [
         Jet::dot(3, 6, p, w),
         Jet::dot(3, 0, p, w),

@@ -74,10 +74,11 @@ pub fn read_problem(path: &Path, overrides: &[String]) -> Result<Loaded, SceneEr
     }
     let problem: ProblemSpec = document.parse()?;
     let scope = Scope::of(&document);
-    let (system, scene, scene_path) = match &problem.scene {
+    let (written, system, scene, scene_path) = match &problem.scene {
         SceneSource::Inline(scene) => {
             let system = build_scene(scene, &scope.key("scene"))?;
-            (system, document.value["scene"].clone(), None)
+            let written = scene.as_ref().clone();
+            (written, system, document.value["scene"].clone(), None)
         }
         SceneSource::Path(path) => {
             let file = document.beside(path);
@@ -89,12 +90,13 @@ pub fn read_problem(path: &Path, overrides: &[String]) -> Result<Loaded, SceneEr
             for change in of_scene.iter().filter_map(Override::in_scene) {
                 change.apply(&mut scene)?;
             }
-            let system = build_scene(&scene.parse()?, &Scope::of(&scene))?;
-            (system, scene.value, Some(file))
+            let written: SceneSpec = scene.parse()?;
+            let system = build_scene(&written, &Scope::of(&scene))?;
+            (written, system, scene.value, Some(file))
         }
     };
     Ok(Loaded {
-        task: build_problem(&problem, &system, &scope)?,
+        task: build_problem(&problem, (&written, &system), &scope)?,
         system,
         scene_path,
         scene,

@@ -19,7 +19,7 @@ use crate::files::lay_out;
 use crate::kinematics::Pose;
 use crate::math::Matrix;
 use crate::model::system::{Joint, JointKind, Source, System};
-use crate::model::{Coordinates, Model};
+use crate::model::{Coordinates, FoundParameter, Model};
 
 /// ms in a s.
 const SECOND: f64 = 1e3;
@@ -80,6 +80,9 @@ struct File {
     /// Potentials of elastic blocks by interval, as multiples of their unit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     potentials: Vec<Vec<f64>>,
+    /// Sought parameters by their names, in SI units.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    parameters: BTreeMap<String, f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     coordinates: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -153,6 +156,11 @@ pub fn text(model: &Model, solved: &Solution) -> String {
             model.reached.iter().map(held).collect()
         }),
         potentials: solved.potentials.clone(),
+        parameters: solved
+            .parameters
+            .iter()
+            .map(|found| (found.name.clone(), found.value * found.unit.factor))
+            .collect(),
         coordinates: Some(solved.coordinates.name().to_owned()),
         state: Some(StateRecord {
             times_ms: solved.times.clone(),
@@ -297,12 +305,24 @@ fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
         voltages,
         hold,
         potentials: file.potentials,
+        parameters: sought(&file.parameters, model),
         costates: file.costates.map(|c| Costates {
             rows: c.rows,
             lower: c.lower,
             upper: c.upper,
         }),
     })
+}
+
+/// Values of those parameters of a file that a model seeks.
+fn sought(file: &BTreeMap<String, f64>, model: &Model) -> Vec<FoundParameter> {
+    let parameters = model.analysis.parameters.iter();
+    let found = parameters.filter_map(|parameter| {
+        let unit = parameter.unit(&model.system);
+        let value = file.get(&parameter.name)? / unit.factor;
+        Some(parameter.found(value, &model.system))
+    });
+    found.collect()
 }
 
 /// Poses by instant and body; none where the file gives none.

@@ -29,7 +29,8 @@ pub trait Kernel: Debug + Send + Sync + 'static {
     /// Polynomial degree of E: derivatives above it vanish and are never asked for.
     const DEGREE: usize = usize::MAX;
 
-    /// How many leading arguments are virtual displacements: 0 for an energy; otherwise E is linear in them and has no scalars.
+    /// How many leading arguments are virtual displacements: 0 for an energy; otherwise E is linear in them, and its scalars
+    /// have no equations: they are parameters.
     const VIRTUAL: usize = 0;
 
     /// How many arguments there are for each vector of an element.

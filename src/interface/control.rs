@@ -3,15 +3,16 @@
 use crate::control::problem::{
     self, CostFunction, Duration, Guess, Hold, Objective, PathConstraint, QuantityCost, Solver,
 };
-use crate::control::{Earlier, EarlierSolution};
+use crate::control::{Earlier, EarlierSolution, Signal};
 use crate::dynamics::out_of_domain;
-use crate::interface::error::{Result, require};
+use crate::interface::error::{Result, require, source};
 use crate::interface::handle::Handle;
+use crate::interface::input::Input;
 use crate::interface::motion::Motion;
 use crate::interface::optimum::Optimum;
 use crate::interface::state::State;
 use crate::model::system::{Joint, Muscle};
-use crate::model::{Quantity, System};
+use crate::model::{Parameter, Quantity, System};
 use crate::nlp::Nlp;
 use crate::workflow::cure::{Cured, reproduced};
 use crate::workflow::domain;
@@ -19,8 +20,9 @@ use crate::workflow::holding;
 use crate::workflow::infeasible::explain;
 use crate::workflow::memory;
 use crate::workflow::motion::{history, trajectory};
-use crate::workflow::optimise::{Counted, Prepared, SolveLimits, prepare, resolve};
+use crate::workflow::optimise::{Counted, Prepared, SolveLimits, prepare};
 use crate::workflow::resimulate::{Cause, Resimulation};
+use crate::workflow::resolve::resolve;
 use crate::workflow::second_start::is_infeasible;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -36,6 +38,8 @@ pub struct Control {
     voltage_bounds: [f64; 2],
     objective: Objective,
     limits: Vec<PathConstraint>,
+    voltages: Vec<(Input, Signal)>,
+    parameters: Vec<Parameter>,
     guess: Guess,
     max_seconds: Option<f64>,
 }
@@ -51,6 +55,8 @@ impl Control {
             voltage_bounds: [0.0, f64::INFINITY],
             objective: Objective::default(),
             limits: Vec::new(),
+            voltages: Vec::new(),
+            parameters: Vec::new(),
             guess: Guess::Interpolate,
             max_seconds: None,
         }
@@ -139,6 +145,18 @@ impl Control {
         self
     }
 
+    /// A voltage that is given: a constant in V, or a [`Signal`] whose value in the middle of each interval acts during the interval.
+    pub fn voltage(mut self, input: impl Into<Input>, signal: impl Into<Signal>) -> Self {
+        self.voltages.push((input.into(), signal.into()));
+        self
+    }
+
+    /// Seeks constants of the system within bounds; see [`Optimum::parameters`].
+    pub fn seek(mut self, parameter: Parameter) -> Self {
+        self.parameters.push(parameter);
+        self
+    }
+
     /// Starts from an earlier solution, also of another grid or goal.
     pub fn starting_from(self, earlier: impl EarlierSolution + 'static) -> Self {
         let guess = Guess::Solution(Earlier::new(earlier));
@@ -208,6 +226,7 @@ impl Control {
                 warnings: warnings.into_iter().flatten().chain(reasons).collect(),
             },
             is_solved: found.is_solved(),
+            parameters: found.motion.parameters.clone(),
             solution: found.motion,
         })
     }
@@ -249,6 +268,16 @@ impl Control {
         let found = || "a system without a muscle that takes a voltage".to_owned();
         let takes = sources.iter().any(|source| source.takes_voltage);
         require(takes, "control", found, "a muscle with a permittivity")?;
+        let given = self.given(system)?;
+        let all = || "all voltages".to_owned();
+        let is_open = |s: usize| sources[s].takes_voltage && !given.contains_key(&s);
+        let open = !self.parameters.is_empty() || (0..sources.len()).any(is_open);
+        require(
+            open,
+            "control",
+            all,
+            "a voltage to look for, or a sought parameter",
+        )?;
         let weights = &self.objective;
         let weights = [weights.effort, weights.rate, weights.duration];
         let costs = &self.objective.quantities;
@@ -284,7 +313,9 @@ impl Control {
             start: self.start.resolve(system, sources.len())?,
             goal: self.goal.resolve(system, sources.len())?,
             voltage_bounds: self.voltage_bounds,
-            given: BTreeMap::new(),
+            given,
+            course: None,
+            parameters: self.parameters.clone(),
             hold: Hold::Reported,
             objective: self.objective.clone(),
             limits: self.limits.clone(),
@@ -292,6 +323,23 @@ impl Control {
             guess: self.guess.clone(),
             solver: Solver::default(),
         })
+    }
+
+    /// The voltages that are given, by source.
+    fn given(&self, system: &System) -> Result<BTreeMap<usize, Signal>> {
+        let is_constant = |signal: &Signal| matches!(signal, Signal::Constant(_));
+        let holds = matches!(self.duration, Duration::Given(_))
+            || self.voltages.iter().all(|(_, signal)| is_constant(signal));
+        let found = || "voltages over time where the duration is free".to_owned();
+        require(
+            holds,
+            "control",
+            found,
+            "constant ones, or a given duration",
+        )?;
+        let place =
+            |(input, signal): &(Input, Signal)| Ok((source(input, system)?, signal.clone()));
+        self.voltages.iter().map(place).collect()
     }
 }
 

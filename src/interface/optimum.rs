@@ -2,6 +2,7 @@
 
 use crate::control::Solution;
 use crate::interface::motion::Motion;
+use crate::model::FoundParameter;
 
 /// What the solver found: an optimal motion, or its last iterate.
 #[derive(Clone, Debug)]
@@ -16,6 +17,8 @@ pub struct Optimum {
     pub message: Option<String>,
     /// The motion with its voltages.
     pub motion: Motion,
+    /// Parameters that were sought.
+    pub parameters: Vec<FoundParameter>,
     pub(super) is_solved: bool,
     /// All that a later solve can start from, see [`Control::starting_from`](crate::interface::Control::starting_from).
     pub solution: Solution,

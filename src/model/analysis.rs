@@ -1,5 +1,6 @@
 //! What is asked of a system, as far as it decides which terms are called for.
 
+use crate::model::constant::Parameter;
 use crate::model::quantity::Quantity;
 use std::collections::BTreeSet;
 
@@ -33,6 +34,8 @@ pub struct Analysis {
     pub quantities: Vec<Quantity>,
     /// Those of them, by index, of which a curved function is minimised.
     pub curved: BTreeSet<usize>,
+    /// Constants that are sought.
+    pub parameters: Vec<Parameter>,
     /// Whether anything moves: a state of rest has neither inertia nor viscosity.
     pub of_motion: bool,
     /// Sources whose voltage is zero all the time.
@@ -59,6 +62,7 @@ impl Analysis {
             interval,
             quantities: Vec::new(),
             curved: BTreeSet::new(),
+            parameters: Vec::new(),
             of_motion: true,
             zero_voltage: BTreeSet::new(),
             stirred: None,

@@ -75,6 +75,9 @@ impl Model {
         for source in voltages {
             variables.add(Variable::voltage(source, sources[source].name.clone()));
         }
+        for parameter in &question.parameters {
+            variables.add(Variable::parameter(parameter.name.clone()));
+        }
         let ties = coordinates == Coordinates::Redundant;
         let scene = system.solids.len();
         let continua = Solids::new(
@@ -86,13 +89,13 @@ impl Model {
             &mut vectors,
         )?;
         let (intervals, mut present, mut left_out, spans) = {
-            let motion = question.of_motion;
             let carriers = (0..system.bodies.len()).map(|body| condensed.carrier(Some(body)));
             let bodies = Carriers {
                 of: carriers.collect(),
                 reference: &reference,
             };
-            let mut terms = Terms::new(bodies, system.gravity, &variables, motion, &mut vectors);
+            let called = (question.of_motion, &question.parameters[..]);
+            let mut terms = Terms::new(bodies, system.gravity, called, &variables, &mut vectors);
             let span = |m: &Muscle, terms: &mut Terms<'_>| {
                 let span = MaterialVector::span(&terms.point(&m.from), &terms.point(&m.to));
                 terms.vector(span)
@@ -107,7 +110,7 @@ impl Model {
                 Some(_) => "nothing that moves has a mass",
             };
             terms.without(plan::GRAVITY, no_weight);
-            dampers::build(rest, &reference, coordinates, &mut terms);
+            dampers::build(&condensed, &reference, coordinates, &mut terms);
             system.components.build(&mut terms);
             let (intervals, present, left_out) = terms.finish();
             (intervals, present, left_out, spans)

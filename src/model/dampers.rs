@@ -1,18 +1,20 @@
 //! Terms of joint dampers: on the coordinate of the joint where it is one, on vectors of its bodies otherwise.
 
-use crate::energy::{AngularDamper, CoordinateDamper, LinearDamper};
-use crate::functional::Element;
+use crate::energy::{AngularDamper, CoordinateDamper, Energy, LinearDamper, SoughtDamper};
+use crate::functional::{Element, VectorArg};
 use crate::kinematics::{MaterialVector, Pose};
 use crate::model::analysis::Coordinates;
+use crate::model::constant::{Constant, Follower};
 use crate::model::joints::{JointCoordinate, JointReading};
-use crate::model::system::{Joint, System};
+use crate::model::presolved::Presolved;
+use crate::model::system::Joint;
 use crate::model::terms::{Terms, mid, rate};
 
 const DAMPING: &str = "joint damping";
 
 /// Dampers of the joints that are solved for.
 pub(super) fn build(
-    system: &System,
+    condensed: &Presolved,
     reference: &[Pose],
     coordinates: Coordinates,
     terms: &mut Terms<'_>,
@@ -20,43 +22,73 @@ pub(super) fn build(
     if !terms.is_of_motion() {
         return terms.without(DAMPING, "a state of rest dissipates nothing");
     }
+    let system = &condensed.system;
     let joints = system.joints.iter().zip(system.joint_coordinates());
-    match coordinates {
-        Coordinates::Reduced => {
-            for (joint, coordinate) in joints {
-                if let (Some(coefficient), Some(coordinate)) = (joint.damping, coordinate) {
-                    on_coordinate(&joint.name, coefficient, coordinate, terms);
-                }
-            }
-        }
-        Coordinates::Redundant => {
-            for (joint, _) in joints {
-                if let Some(coefficient) = joint.damping {
-                    on_vectors(joint, coefficient, reference, terms);
-                }
-            }
+    for ((joint, coordinate), &index) in joints.zip(&condensed.joints) {
+        let Some(coefficient) = joint.damping else {
+            continue;
+        };
+        let damper = Damper {
+            joint,
+            coefficient,
+            sought: terms.sought().find(Constant::JointDamping(index)),
+        };
+        match (coordinates, coordinate) {
+            (Coordinates::Reduced, Some(coordinate)) => damper.on_coordinate(coordinate, terms),
+            (Coordinates::Reduced, None) => {}
+            (Coordinates::Redundant, _) => damper.on_vectors(reference, terms),
         }
     }
     terms.without(DAMPING, "no joint that moves names a damping");
 }
 
-fn on_coordinate(joint: &str, coefficient: f64, coordinate: usize, terms: &mut Terms<'_>) {
-    let vector = terms.vector(MaterialVector::joint(coordinate));
-    let element = Element {
-        energy: CoordinateDamper { coefficient },
-        vectors: [mid(vector), rate(vector)],
-        scalars: [],
-    };
-    terms.add(DAMPING, "damping of", joint, element);
+/// The damper of a joint.
+struct Damper<'a> {
+    joint: &'a Joint,
+    coefficient: f64,
+    /// The parameter that the coefficient is, where it is sought.
+    sought: Option<(usize, Follower)>,
 }
 
-fn on_vectors(joint: &Joint, coefficient: f64, reference: &[Pose], terms: &mut Terms<'_>) {
-    match JointReading::new(joint, None, reference).measure {
-        JointCoordinate::Angle { vectors } => {
-            let [a, b, x] = vectors.map(|v| terms.vector(v));
+impl Damper<'_> {
+    /// Adds the term of a formula with a coefficient.
+    fn add<E, const M: usize, const WITH: usize, const NV: usize>(
+        &self,
+        of_coefficient: impl Fn(f64) -> E,
+        vectors: [VectorArg; NV],
+        terms: &mut Terms<'_>,
+    ) where
+        E: Energy<M> + 'static,
+        SoughtDamper<E>: Energy<WITH> + 'static,
+    {
+        let (why, name) = ("damping of", &self.joint.name);
+        let Some((parameter, follower)) = self.sought else {
             let element = Element {
-                energy: AngularDamper { coefficient },
-                vectors: [
+                energy: of_coefficient(self.coefficient),
+                vectors,
+                scalars: [],
+            };
+            return terms.add::<E, M, NV, 0>(DAMPING, why, name, element);
+        };
+        let element = Element {
+            energy: SoughtDamper(of_coefficient(follower.factor)),
+            vectors,
+            scalars: [terms.sought().scalar(parameter)],
+        };
+        terms.add::<SoughtDamper<E>, WITH, NV, 1>(DAMPING, why, name, element);
+    }
+
+    fn on_coordinate(&self, coordinate: usize, terms: &mut Terms<'_>) {
+        let vector = terms.vector(MaterialVector::joint(coordinate));
+        let damper = |coefficient| CoordinateDamper { coefficient };
+        self.add::<_, 6, 7, 2>(damper, [mid(vector), rate(vector)], terms);
+    }
+
+    fn on_vectors(&self, reference: &[Pose], terms: &mut Terms<'_>) {
+        match JointReading::new(self.joint, None, reference).measure {
+            JointCoordinate::Angle { vectors } => {
+                let [a, b, x] = vectors.map(|v| terms.vector(v));
+                let vectors = [
                     mid(a),
                     mid(b),
                     mid(x),
@@ -66,20 +98,17 @@ fn on_vectors(joint: &Joint, coefficient: f64, reference: &[Pose], terms: &mut T
                     rate(a),
                     rate(b),
                     rate(x),
-                ],
-                scalars: [],
-            };
-            terms.add(DAMPING, "damping of", &joint.name, element);
+                ];
+                let damper = |coefficient| AngularDamper { coefficient };
+                self.add::<_, 27, 28, 9>(damper, vectors, terms);
+            }
+            JointCoordinate::Displacement { axis, span } => {
+                let [n, r] = [axis, span].map(|v| terms.vector(v));
+                let vectors = [mid(n), mid(r), mid(n), mid(r), rate(n), rate(r)];
+                let damper = |coefficient| LinearDamper { coefficient };
+                self.add::<_, 18, 19, 6>(damper, vectors, terms);
+            }
+            JointCoordinate::None => {}
         }
-        JointCoordinate::Displacement { axis, span } => {
-            let [n, r] = [axis, span].map(|v| terms.vector(v));
-            let element = Element {
-                energy: LinearDamper { coefficient },
-                vectors: [mid(n), mid(r), mid(n), mid(r), rate(n), rate(r)],
-                scalars: [],
-            };
-            terms.add(DAMPING, "damping of", &joint.name, element);
-        }
-        JointCoordinate::None => {}
     }
 }

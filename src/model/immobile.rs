@@ -5,6 +5,7 @@
 
 use crate::math::DisjointSets;
 use crate::model::analysis::Analysis;
+use crate::model::constant::Constant;
 use crate::model::field_extent;
 use crate::model::system::System;
 
@@ -58,13 +59,20 @@ pub(super) fn immobile(system: &System, question: &Analysis) -> Immobile {
     }
     let weighs = system.gravity.is_some();
     let mut moved: Vec<usize> = Vec::new();
-    for component in system.components.iter() {
+    let is_sought = |spring: usize| {
+        let constants = question.parameters.iter().flat_map(|p| &p.constants);
+        constants
+            .into_iter()
+            .any(|c| c.constant == Constant::SpringLength(spring))
+    };
+    for (index, component) in system.components.iter().enumerate() {
         let points = component.points();
         let bodies: Vec<usize> = points.iter().filter_map(|point| point.body).collect();
         for pair in bodies.windows(2) {
             join(Some(pair[0]), pair[1]);
         }
-        if component.is_prestressed() {
+        // Springs come first.
+        if component.is_prestressed() || is_sought(index) {
             moved.extend(bodies);
         }
     }

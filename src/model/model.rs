@@ -5,6 +5,7 @@ use crate::functional::Kind;
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
 use crate::model::analysis::{Analysis, Coordinates};
+use crate::model::constant::Parameter;
 use crate::model::floating::{self, Floating};
 use crate::model::graph::Graph;
 use crate::model::joints::JointReading;
@@ -176,9 +177,21 @@ impl Model {
         self.action.motion.poses(instant, bodies)
     }
 
-    /// Inputs of an interval from one voltage a source.
+    /// Inputs of an interval from one voltage a source; sought parameters are at their guesses.
     pub fn scalars(&self, voltages: &[f64]) -> Vec<f64> {
-        self.variables.sources().map(|s| voltages[s]).collect()
+        let voltages = self.variables.sources().map(|s| voltages[s]);
+        let parameters = self.analysis.parameters.iter();
+        voltages.chain(parameters.map(|p| p.guess)).collect()
+    }
+
+    /// The sought parameter that a variable is.
+    ///
+    /// # Panics
+    /// It is no parameter.
+    pub fn parameter(&self, variable: &Variable) -> &Parameter {
+        let mut all = self.analysis.parameters.iter();
+        let found = all.find(|parameter| parameter.name == variable.name);
+        found.expect("a parameter of the analysis")
     }
 
     /// Typical sizes of the unknowns of a step: 1 rad, the length of the system; infinite where the model does not tell.

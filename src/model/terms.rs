@@ -4,13 +4,16 @@
 use crate::energy::{Energy, Gravity};
 use crate::functional::{
     Electrical, Element, FiniteElement, FiniteElements, Formulas, Group, Inertia, Mass, Path,
-    Paths, Stencil, Term, VectorArg, ViscousElement, ViscousElements,
+    Paths, SoughtElement, SoughtFormulas, Stencil, Term, VectorArg, ViscousElement,
+    ViscousElements,
 };
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::attachment::Attachment;
+use crate::model::constant::Parameter;
 use crate::model::plan::{self, LeftOut, Present};
-use crate::model::variables::Variables;
+use crate::model::sought::Sought;
+use crate::model::variables::{Role, Variables};
 use std::any::Any;
 use std::fmt;
 
@@ -35,6 +38,7 @@ pub struct Terms<'a> {
     vectors: &'a mut Vectors,
     variables: &'a Variables,
     of_motion: bool,
+    sought: Sought,
     collected: Vec<Collected>,
     present: Vec<Present>,
     left_out: Vec<LeftOut>,
@@ -103,20 +107,38 @@ where
     }
 }
 
+/// An element with sought parameters, with the number of arguments of its formula.
+struct OfSought<E, const M: usize, const R: usize, const N: usize>(SoughtElement<E, N>);
+
+impl<E, const M: usize, const R: usize, const N: usize> Member for OfSought<E, M, R, N>
+where
+    E: Energy<M> + 'static,
+{
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
+        let scale = if E::VIRTUAL > 0 { 1.0 } else { -1.0 };
+        let elements = list.into_iter().map(|Self(element)| element).collect();
+        Box::new(Group::<SoughtFormulas<E, M, R, N>>::intervals(
+            name, scale, elements,
+        ))
+    }
+}
+
 impl<'a> Terms<'a> {
     pub(super) fn new(
         bodies: Carriers<'a>,
         gravity: Option<Vector>,
+        (of_motion, parameters): (bool, &[Parameter]),
         variables: &'a Variables,
-        of_motion: bool,
         vectors: &'a mut Vectors,
     ) -> Self {
+        let first = variables.range(Role::Parameter).start;
         Self {
             bodies,
             gravity,
             vectors,
             variables,
             of_motion,
+            sought: Sought::new(parameters, first),
             collected: Vec::new(),
             present: Vec::new(),
             left_out: Vec::new(),
@@ -138,6 +160,17 @@ impl<'a> Terms<'a> {
     pub fn is_immobile(&self, points: &[Attachment]) -> bool {
         let mut carriers = points.iter().map(|p| self.bodies.carrier(p.body));
         carriers.all(|carrier| carrier.is_none())
+    }
+
+    /// The direction fixed in the body of a point that it has in the reference configuration.
+    pub fn direction(&self, point: &Attachment, direction: &Vector) -> MaterialVector {
+        let body = self.bodies.carrier(point.body);
+        MaterialVector::direction(body, direction, self.bodies.reference)
+    }
+
+    /// The sought parameters.
+    pub fn sought(&self) -> Sought {
+        self.sought.clone()
     }
 
     /// Index of a vector, for [`mid`] and [`rate`].
@@ -173,6 +206,19 @@ impl<'a> Terms<'a> {
         E: Energy<M> + 'static,
     {
         self.collect(term, why, of, Of::<_, _, _, _, false>(element));
+    }
+
+    /// Adds a formula of one span and of sought parameters, like [`add`](Self::add).
+    pub fn add_sought<E, const M: usize, const R: usize, const N: usize>(
+        &mut self,
+        term: &'static str,
+        why: &'static str,
+        of: &str,
+        element: SoughtElement<E, N>,
+    ) where
+        E: Energy<M> + 'static,
+    {
+        self.collect(term, why, of, OfSought::<_, M, R, N>(element));
     }
 
     /// Adds a kinetic energy of vectors and rates of the intervals.

@@ -26,6 +26,8 @@ pub enum Role {
     Multiplier,
     /// Voltage of a source, in V: an input.
     Voltage,
+    /// Constant of the system that is sought, in its unit: an input with one value for all intervals, in each of which terms read it.
+    Parameter,
     /// Electric potential of a node or a floating electrode, with Gauss's law.
     Potential,
     /// Length of the intervals, in ms.
@@ -33,10 +35,11 @@ pub enum Role {
 }
 
 /// All roles, in order.
-const ROLES: [Role; 5] = [
+const ROLES: [Role; 6] = [
     Role::Coordinate,
     Role::Multiplier,
     Role::Voltage,
+    Role::Parameter,
     Role::Potential,
     Role::Duration,
 ];
@@ -45,8 +48,16 @@ impl Role {
     /// What a variable of this role belongs to.
     pub const fn time(self) -> Time {
         match self {
+            Self::Parameter => Time::Horizon,
+            other => other.list(),
+        }
+    }
+
+    /// In which list it stands: a parameter in that of the scalars that terms read.
+    const fn list(self) -> Time {
+        match self {
             Self::Coordinate | Self::Multiplier => Time::Instant,
-            Self::Voltage | Self::Potential => Time::Interval,
+            Self::Voltage | Self::Parameter | Self::Potential => Time::Interval,
             Self::Duration => Time::Horizon,
         }
     }
@@ -56,7 +67,7 @@ impl Role {
     pub const fn has_equation(self) -> bool {
         match self {
             Self::Coordinate | Self::Multiplier | Self::Potential => true,
-            Self::Voltage | Self::Duration => false,
+            Self::Voltage | Self::Parameter | Self::Duration => false,
         }
     }
 }
@@ -96,6 +107,11 @@ impl Variable {
         }
     }
 
+    /// A sought parameter.
+    pub(super) fn parameter(name: String) -> Self {
+        Self::of(Role::Parameter, name, Size::Unknown)
+    }
+
     /// A potential, counted in `unit` V, in which it is as large as a length.
     pub(super) fn potential(name: String, unit: f64) -> Self {
         Self {
@@ -119,7 +135,7 @@ impl Variable {
 impl fmt::Display for Variable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let of = match self.role {
-            Role::Coordinate | Role::Duration => "",
+            Role::Coordinate | Role::Parameter | Role::Duration => "",
             Role::Multiplier => "multiplier of ",
             Role::Voltage => "voltage of ",
             Role::Potential => "potential of ",
@@ -164,7 +180,7 @@ impl Variables {
     /// A variable of a later role stands there already.
     pub fn add(&mut self, variable: Variable) -> usize {
         let role = variable.role;
-        let list = match role.time() {
+        let list = match role.list() {
             Time::Instant => &mut self.instant,
             Time::Interval => &mut self.interval,
             Time::Horizon => &mut self.horizon,
@@ -180,13 +196,13 @@ impl Variables {
             *range = place..place;
         }
         range.end += 1;
-        if role.time() == Time::Interval && !role.has_equation() {
+        if role.list() == Time::Interval && !role.has_equation() {
             self.inputs = self.interval.len();
         }
         place
     }
 
-    /// Variables of an instant, of an interval or of the horizon, in order.
+    /// Variables of an instant, scalars that terms read in an interval, or other variables of the horizon, in order.
     pub fn of(&self, time: Time) -> &[Variable] {
         match time {
             Time::Instant => &self.instant,
@@ -202,7 +218,7 @@ impl Variables {
 
     /// The variables of a role.
     pub fn with(&self, role: Role) -> &[Variable] {
-        &self.of(role.time())[self.range(role)]
+        &self.of(role.list())[self.range(role)]
     }
 
     /// Number of variables of a role.

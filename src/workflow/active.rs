@@ -72,6 +72,17 @@ pub fn active(
                     }
                 }
             }
+            (Column::Parameter { .. }, _) => {
+                let parameter = model.parameter(column.of(&model.variables));
+                let unit = parameter.unit(&model.system);
+                let bounds = [parameter.lower, parameter.upper];
+                for (bound, is_reached) in bounds.into_iter().zip(side) {
+                    let value = significant(bound * unit.factor, 4);
+                    let what =
+                        format!("{} at its bound of {value} {}", parameter.name, unit.symbol);
+                    seen.add(what.trim_end().to_owned(), is_reached, "", false);
+                }
+            }
             (Column::Horizon, _) => {
                 let Duration::Free { min, max, .. } = control.duration else {
                     continue;

@@ -84,7 +84,9 @@ pub fn effect_counts(model: &Model, control: Option<&Control>, spent: f64) -> Ve
     let scalar = |variable: &Variable| {
         let has_equation = variable.role.has_equation();
         let is_unknown = match control {
-            Some(control) => control.given(variable).is_none(),
+            Some(control) => variable
+                .source
+                .is_none_or(|source| !control.is_given(source)),
             None => has_equation,
         };
         Scalar {

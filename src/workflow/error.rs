@@ -80,6 +80,9 @@ impl WorkflowError {
                 let reason = text.strip_prefix(&format!("{place}: ")).unwrap_or(&text);
                 (*place, reason.to_owned())
             }
+            BoundaryError::Parameter { name, reason } => {
+                ("free", format!("parameter \"{name}\": {reason}"))
+            }
             BoundaryError::Overdetermined { .. } => ("goal", error.to_string()),
         };
         Self::Problem {

@@ -82,7 +82,7 @@ fn beyond_bounds(control: &Control, model: &Model) -> Option<(String, String)> {
     let mut held = model.sources.iter().zip(hold).enumerate();
     held.find_map(|(s, (source, &voltage))| {
         let is_beyond = voltage < lower || voltage > upper;
-        let is_sought = source.takes_voltage && !control.given.contains_key(&s);
+        let is_sought = source.takes_voltage && !control.is_given(s);
         (is_beyond && is_sought).then(|| {
             let reason =
                 format!("a hold of {voltage} V is beyond the bounds {lower} V to {upper} V");

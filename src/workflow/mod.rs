@@ -27,6 +27,7 @@ pub(crate) mod optimise;
 pub(crate) mod phase;
 pub(crate) mod reasons;
 pub(crate) mod resimulate;
+pub(crate) mod resolve;
 pub(crate) mod second_start;
 pub(crate) mod steps;
 pub(crate) mod stopwatch;

@@ -5,7 +5,7 @@ use crate::dynamics::DiscreteTrajectory;
 use crate::dynamics::trajectory::Trajectory;
 use crate::math::Vector;
 use crate::model::system::Joint;
-use crate::model::{Model, Role};
+use crate::model::{FoundParameter, Model, Role};
 
 /// What is kept of a motion.
 pub fn solved(model: &Model, history: &DiscreteTrajectory, costates: Option<Costates>) -> Solution {
@@ -27,8 +27,23 @@ pub fn solved(model: &Model, history: &DiscreteTrajectory, costates: Option<Cost
         voltages: motion.voltages,
         hold: None,
         potentials: potentials(model, history),
+        parameters: parameters(model, history),
         costates,
     }
+}
+
+/// Values of the parameters that a motion was found with; none where none is sought.
+pub(crate) fn parameters(model: &Model, history: &DiscreteTrajectory) -> Vec<FoundParameter> {
+    let range = model.variables.range(Role::Parameter);
+    let values = history
+        .scalars
+        .first()
+        .into_iter()
+        .flat_map(|row| &row[range.clone()]);
+    let parameters = model.analysis.parameters.iter().zip(values);
+    parameters
+        .map(|(parameter, &value)| parameter.found(value, &model.system))
+        .collect()
 }
 
 /// The motion as tables and figures show it.

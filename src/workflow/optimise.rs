@@ -13,11 +13,11 @@ use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
 use crate::workflow::active::{Active, active};
 use crate::workflow::error::WorkflowError;
-use crate::workflow::holding;
 use crate::workflow::memory;
 use crate::workflow::motion::solved;
 use crate::workflow::phase::phase;
 use crate::workflow::resimulate::{Cause, Resimulation, resimulate};
+use crate::workflow::resolve::{interval, resolve, with_found};
 use crate::workflow::second_start::{ITERATIONS, displaced, is_infeasible, one_of_both};
 use crate::workflow::violations::{Violation, violations};
 
@@ -48,8 +48,10 @@ pub struct SolveLimits {
 /// A control problem and how its solve ended.
 #[derive(Debug)]
 pub struct Optimum {
-    /// The model it was solved in.
+    /// The model, with the parameters that were found put in.
     pub model: Model,
+    /// The model of the program, where it has sought parameters.
+    pub sought: Option<Model>,
     /// Start and goal.
     pub boundary: BoundaryConditions,
     /// The motion: the optimal one, or the last iterate.
@@ -228,22 +230,10 @@ pub fn optimise(
         hold: boundary.rest[1].clone(),
         ..solved(&model, &history, Some(program.costates(&solution.costates)))
     };
-    let reversed = match solution.status.is_solved() {
-        true => reversed_muscle(&model, &history),
-        false => None,
-    };
     let violated = match solution.status.is_solved() {
         true => Vec::new(),
         false => violations(&mut program, &solution.x, HOLDS, NAMED),
     };
-    let is_motion = solution.status.is_solved() && reversed.is_none();
-    if is_motion {
-        phase("simulating under the optimal voltages");
-    }
-    let solved = Instant::now();
-    let resimulation =
-        is_motion.then(|| resimulate(&model, &boundary.start, &motion, control.solver.tolerance));
-    let tested = solved.elapsed().as_secs_f64();
     let active = match solution.status.is_solved() {
         true => Vec::new(),
         false => active(&mut program, &solution.x, &model, control),
@@ -253,8 +243,28 @@ pub fn optimise(
     let jacobian_nonzeros = program.jacobian_structure().rows.len();
     let hessian_nonzeros = program.hessian_structure().rows.len();
     drop(program);
+    let (model, boundary, sought) = match control.parameters.is_empty() {
+        true => (model, boundary, None),
+        false => {
+            let (found, boundary) = with_found(system, control, &model, &motion)?;
+            (found, boundary, Some(model))
+        }
+    };
+    let reversed = match solution.status.is_solved() {
+        true => reversed_muscle(&model, &history),
+        false => None,
+    };
+    let is_motion = solution.status.is_solved() && reversed.is_none();
+    if is_motion {
+        phase("simulating under the optimal voltages");
+    }
+    let solved = Instant::now();
+    let resimulation =
+        is_motion.then(|| resimulate(&model, &boundary.start, &motion, control.solver.tolerance));
+    let tested = solved.elapsed().as_secs_f64();
     Ok(Optimum {
         model,
+        sought,
         boundary,
         motion,
         solution,
@@ -302,22 +312,6 @@ pub(crate) struct Prepared<'m> {
     pub(crate) start: Start,
     /// Durations in ms of the earlier solution and of the start, where they differ.
     pub(crate) stretched: Option<[f64; 2]>,
-}
-
-/// Model and boundary of a control problem.
-pub(crate) fn resolve(
-    system: &System,
-    control: &Control,
-) -> Result<(Model, BoundaryConditions), WorkflowError> {
-    let (model, boundary) = BoundaryConditions::resolve(system, control, interval(control))
-        .map_err(|error| WorkflowError::boundary("control", &error))?;
-    holding::check(control, &model, &boundary)?;
-    Ok((model, boundary))
-}
-
-/// Interval length in ms, or its guess.
-fn interval(control: &Control) -> f64 {
-    control.duration.first() / control.intervals as f64
 }
 
 /// Whether a program with more equations than unknowns is refused.

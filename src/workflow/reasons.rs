@@ -90,9 +90,9 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
 }
 
 fn absent_of_control(model: &Model, control: &Control, add: &mut impl FnMut(String, String)) {
-    let present = |source: &&usize| model.variables.voltage(**source).is_some();
-    for source in control.given.keys().filter(present) {
-        let name = format!("unknown of the voltage of {}", model.sources[*source].name);
+    let is_absent = |&s: &usize| control.is_given(s) && model.variables.voltage(s).is_some();
+    for source in (0..model.sources.len()).filter(is_absent) {
+        let name = format!("unknown of the voltage of {}", model.sources[source].name);
         add(name, "the problem gives it".to_owned());
     }
     if let Duration::Given(_) = control.duration {

@@ -41,6 +41,8 @@ pub fn control(system: &System, intervals: usize) -> Control {
         goal: joints(&[]),
         voltage_bounds: [0.0, 3000.0],
         given: BTreeMap::new(),
+        course: None,
+        parameters: Vec::new(),
         hold: Default::default(),
         objective: Objective {
             effort: 1.0,

@@ -9,6 +9,7 @@ pub mod random;
 pub mod random_goals;
 pub mod signals;
 pub mod solid;
+pub mod sought;
 pub mod systems;
 pub mod tracked;
 pub mod trunk;

@@ -55,6 +55,8 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
         goal: rest_at(GOAL),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
         given: Default::default(),
+        course: None,
+        parameters: Vec::new(),
         hold: Default::default(),
         // h is in ms and the effort in s.
         objective: Objective {

@@ -54,6 +54,8 @@ fn optimum(
         goal: rest_at(goal),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
         given: BTreeMap::new(),
+        course: None,
+        parameters: Vec::new(),
         hold: Default::default(),
         // h is in ms and the effort in s.
         objective: Objective {

@@ -37,6 +37,8 @@ fn problem(name: &str, coordinates: Coordinates) -> Control {
         goal: BoundaryState::RestAtVoltages(hold, Rest::Everything),
         voltage_bounds: [0.0, 3000.0],
         given: BTreeMap::new(),
+        course: None,
+        parameters: Vec::new(),
         hold: Default::default(),
         objective,
         limits: Vec::new(),

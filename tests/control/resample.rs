@@ -87,6 +87,7 @@ fn kinds(costates: &Costates, variables: &[Column], rows: &[Row], count: usize) 
         let kind = match variable {
             Column::Instant { .. } => "bound of a coordinate",
             Column::Interval { .. } => "bound of a voltage",
+            Column::Parameter { .. } => "bound of a parameter",
             Column::Horizon => "bound of the duration",
         };
         let both = [costates.lower[i], costates.upper[i]];

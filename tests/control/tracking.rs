@@ -67,7 +67,7 @@ fn voltages_are_found_again_from_the_motion_of_the_joints() {
     for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
         let mut problem = free(&system, 20);
         problem.coordinates = Some(coordinates);
-        problem.given = [(0, 0.0), (2, 0.0)].into();
+        problem.given = [0, 2].map(|s| (s, Signal::Constant(0.0))).into();
         let along = |j: usize| Signal::Table {
             times: motion.times.clone(),
             values: motion.joints.iter().map(|row| row[j]).collect(),

@@ -54,7 +54,7 @@ fn derivatives_are_differences() {
 
 /// Nothing that is compared is zero all over: each row has a slope, each variable shows somewhere in the Jacobian, and
 /// the Hessian along the costates is not the objective's alone.
-fn not_trivial(name: &str, program: &mut Transcription<'_>, x: &[f64]) {
+pub(crate) fn not_trivial(name: &str, program: &mut Transcription<'_>, x: &[f64]) {
     let (jacobian, hessian) = (program.jacobian_structure(), program.hessian_structure());
     let rows = program.constraints().lower.len();
     let mut values = vec![0.0; jacobian.rows.len()];

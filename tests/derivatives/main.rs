@@ -15,3 +15,4 @@ mod horizon;
 mod kernel;
 mod naive_formulas;
 mod naive_hexahedron;
+mod sought;

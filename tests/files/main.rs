@@ -2,6 +2,7 @@
 
 mod arbitrary;
 mod extremes;
+mod free;
 mod fuzz_reader;
 mod meaning;
 mod objectives;

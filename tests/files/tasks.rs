@@ -1,6 +1,7 @@
 //! What a problem asks: methods, tables, solutions, given voltages.
 
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
+use proboscis::control::Signal;
 use proboscis::control::problem::{Afterwards, BoundaryState, Task, Voltages};
 use proboscis::dynamics::Integrator;
 use proboscis::files::read_problem;
@@ -264,5 +265,5 @@ fn voltages_of_a_control_problem_may_be_given() {
     let Task::Control(control) = read_problem(&path, &[]).expect("a problem").task else {
         panic!("a control problem")
     };
-    assert_eq!(control.given, [(1, 4000.0)].into());
+    assert_eq!(control.given, [(1, Signal::Constant(4000.0))].into());
 }

@@ -13,6 +13,7 @@ mod paraview;
 mod refusals;
 mod report;
 mod runs;
+mod sought;
 mod starts;
 mod study;
 mod study_conclusion;

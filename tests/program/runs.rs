@@ -10,8 +10,8 @@ use tempfile::TempDir;
 pub(crate) fn workshop() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let problems = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems");
-    fs::create_dir_all(folder.path().join("problems/scenes")).unwrap();
-    for part in ["", "scenes"] {
+    for part in ["", "scenes", "measured"] {
+        fs::create_dir_all(folder.path().join("problems").join(part)).unwrap();
         for entry in fs::read_dir(problems.join(part)).unwrap() {
             let path = entry.unwrap().path();
             if path.is_file() {

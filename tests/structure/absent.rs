@@ -4,6 +4,7 @@ use crate::common::cases::control;
 use crate::common::random::Random;
 use crate::common::systems::{GRAVITY, branched};
 use crate::trace::with_program;
+use proboscis::Signal;
 use proboscis::control::BoundaryConditions;
 use proboscis::control::problem::{BoundaryState, Control, PathConstraint, Rest};
 use proboscis::model::Coordinates;
@@ -100,7 +101,7 @@ fn absent_effects_change_no_bit() {
         };
         for muscle in 0..3 {
             let mut silent = base.clone();
-            silent.given.insert(muscle, 0.0);
+            silent.given.insert(muscle, Signal::Constant(0.0));
             let found = numbers(&system, &silent);
             assert_eq!(found, passive(muscle), "0 V at {muscle} in {coordinates:?}");
             assert_ne!(found, plain);

@@ -7,6 +7,7 @@ use crate::common::systems::{GRAVITY, blocks, branched};
 use crate::common::{at_reference, motion, placed, trunk};
 use crate::welded::cuboid;
 use nalgebra::Vector3;
+use proboscis::Signal;
 use proboscis::control::problem::{AtRest, BoundaryState, Simulation, Voltages};
 use proboscis::control::{BoundaryConditions, resolve_start};
 use proboscis::dynamics::{DiscreteTrajectory, Solving, Start, equilibrium, simulate};
@@ -251,7 +252,7 @@ fn what_nothing_moves_is_not_solved_for() {
     }
     // A control problem whose goal or limits speak of it solves for it; else the voltages beside are given.
     let mut task = control(&both, 3);
-    task.given = (4..10).map(|s| (s, 0.0)).collect();
+    task.given = (4..10).map(|s| (s, Signal::Constant(0.0))).collect();
     task.goal = joints(&[(0, 0.05)]);
     let joints_of = |task: &proboscis::control::problem::Control| {
         let (model, _) = BoundaryConditions::resolve(&both, task, 10.0).unwrap();
@@ -346,6 +347,6 @@ fn entries_of_the_program_are_those_of_its_effects() {
         [named("body inertia"), named("muscle electroelasticity")]
     };
     assert_eq!(plan(&task), [(1, 3, 2), (3, 3 + 2 * 2, 2 + 2 * 2 + 2)]);
-    task.given.insert(0, 500.0);
+    task.given.insert(0, Signal::Constant(500.0));
     assert_eq!(plan(&task), [(1, 3, 2), (3, 3 + 2, 2 + 2 + 1)]);
 }

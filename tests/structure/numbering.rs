@@ -2,7 +2,7 @@
 
 use crate::common::cases::{Case, cases};
 use proboscis::control::problem::{BoundaryState, Control, Duration};
-use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::control::{BoundaryConditions, Signal, Transcription, guess};
 use proboscis::model::{Coordinates, Model, Role, System, Time};
 use proboscis::nlp::Nlp;
 use std::collections::BTreeSet;
@@ -126,7 +126,7 @@ fn columns_are_what_is_not_given_and_rows_what_has_an_equation() {
             potentials += count[0];
             let takes = |s: &usize| system.sources()[*s].takes_voltage;
             let first = (0..system.sources().len()).find(takes).unwrap();
-            control.given.insert(first, 300.0);
+            control.given.insert(first, Signal::Constant(300.0));
             given += check(&system, &control)[1];
         }
     }

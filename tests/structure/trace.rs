@@ -7,7 +7,7 @@ use crate::common::systems::{GRAVITY, branched};
 use crate::common::tracked::tracked;
 use crate::common::trunk;
 use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, PathConstraint};
-use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::control::{BoundaryConditions, Signal, Transcription, guess};
 use proboscis::model::Coordinates;
 use proboscis::model::system::{JointKind, System};
 use proboscis::nlp::Nlp;
@@ -258,7 +258,7 @@ fn a_limit_has_rows_where_something_is_open() {
     assert_eq!(limited(&base, stretch(2)), (inner, 2 * inner));
     // A voltage that is given leaves no row where start and goal give the places.
     base.goal = given(&[0, 1, 2]);
-    base.given.insert(2, 300.0);
+    base.given.insert(2, Signal::Constant(300.0));
     let field = PathConstraint::ElectricField {
         muscle: 2,
         max: 1e5,
@@ -281,13 +281,13 @@ fn a_given_voltage_is_no_unknown() {
     };
     for volts in [0.0, 400.0] {
         let mut control = base.clone();
-        control.given.insert(3, volts);
+        control.given.insert(3, Signal::Constant(volts));
         assert_eq!(counts(&system, &control), without, "{volts} V");
     }
     // Its jumps are no places either.
     let mut control = base.clone();
     control.objective.rate = 1.0;
-    control.given.insert(3, 400.0);
+    control.given.insert(3, Signal::Constant(400.0));
     let hessian = without.hessian + (intervals - 1) * (2 * n - 1);
     assert_eq!(counts(&system, &control), Counts { hessian, ..without });
 }
@@ -318,7 +318,7 @@ fn equations_under_a_given_voltage_are_those_at_this_voltage() {
         })
     };
     let mut given = base.clone();
-    given.given.insert(1, 750.0);
+    given.given.insert(1, Signal::Constant(750.0));
     let ((all, sought, cost), (fewer, prescribed, same_cost)) = (rows(&base), rows(&given));
     assert_eq!(fewer + 3, all);
     assert!(sought.iter().filter(|g| g.abs() > 1e-3).count() > 3);

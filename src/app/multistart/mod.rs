@@ -19,7 +19,7 @@ use crate::app::words::key;
 use crate::control::problem::Task;
 use crate::files::read_problem;
 use crate::workflow::memory;
-use crate::workflow::optimise::resolve;
+use crate::workflow::resolve::resolve;
 use ended::number_optima;
 use files::write;
 use launch::FOLDER;

@@ -76,7 +76,8 @@ impl Transcription<'_> {
             let row = match *column {
                 Column::Instant { k, i } => self.rows[k * stride + i],
                 Column::Interval { k, s } => self.rows[k * stride + coordinates + s],
-                Column::Horizon => continue,
+                // No cost reads a parameter: limits and goals of what follows one are refused.
+                Column::Parameter { .. } | Column::Horizon => continue,
             };
             *sum += row * scale;
         }

@@ -37,7 +37,10 @@ impl Layout {
                 }
                 // No balance at the end, so nothing that a constraint force would balance.
                 (Column::Instant { k, .. }, _) => k == intervals && ends_anyhow,
-                (Column::Interval { .. }, _) => control.given(variable).is_some(),
+                (Column::Interval { .. }, _) => variable
+                    .source
+                    .is_some_and(|source| control.is_given(source)),
+                (Column::Parameter { .. }, _) => false,
                 (Column::Horizon, _) => matches!(control.duration, Duration::Given(_)),
             }
         };

@@ -138,13 +138,18 @@ impl<'m> Transcription<'m> {
             limits,
             limit_rows: limit_at,
         } = Layout::new(model, boundary, control, intervals);
-        let scalars = variables.of(Time::Interval).iter();
-        let row: Vec<f64> = scalars
-            .map(|variable| control.given(variable).unwrap_or(0.0))
-            .collect();
+        let given = |k: usize| {
+            let time = control.middle(k);
+            let scalars = variables.of(Time::Interval).iter();
+            scalars.map(move |variable| control.given(variable, time).unwrap_or(0.0))
+        };
+        let scalars: Vec<f64> = (0..intervals).flat_map(given).collect();
         let voltages = variables.range(Role::Voltage);
-        let kilovolts = row[voltages.clone()].iter().map(|v| v / KILOVOLT);
-        let kilovolts = kilovolts.collect::<Vec<_>>().repeat(intervals);
+        let kilovolts = (0..intervals).flat_map(|k| {
+            let row = &scalars[k * scalar_count..(k + 1) * scalar_count];
+            row[voltages.clone()].iter().map(|v| v / KILOVOLT)
+        });
+        let kilovolts: Vec<f64> = kilovolts.collect();
         let mut instants = vec![motion.instant(); intervals + 1];
         for (instant, z) in instants.iter_mut().zip(&initial.history.z) {
             instant.z[unknown_count..].copy_from_slice(&z[unknown_count..]);
@@ -180,6 +185,7 @@ impl<'m> Transcription<'m> {
                 Role::Coordinate if variable.size == Size::Length => length,
                 Role::Coordinate | Role::Multiplier => 1.0,
                 Role::Voltage | Role::Potential => volts / variable.unit,
+                Role::Parameter => model.parameter(variable).size(),
                 Role::Duration => initial.h,
             }
         };
@@ -206,7 +212,7 @@ impl<'m> Transcription<'m> {
             point: vec![f64::NAN; unknowns.columns.len()],
             instants,
             placed: Placed::Nothing,
-            scalars: row.repeat(intervals),
+            scalars,
             scalars_along: vec![0.0; intervals * scalar_count],
             h: initial.h,
             variable_scales,

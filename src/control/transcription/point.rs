@@ -27,6 +27,7 @@ impl Decoder {
             match *column {
                 Column::Instant { k, i } => z[k][i] = value,
                 Column::Interval { k, s } => scalars[k][s] = value,
+                Column::Parameter { s } => scalars.iter_mut().for_each(|row| row[s] = value),
                 Column::Horizon => h = value,
             }
         }
@@ -52,6 +53,7 @@ impl Transcription<'_> {
         let value = |column: &Column| match *column {
             Column::Instant { k, i } => z[k][i],
             Column::Interval { k, s } => history.scalars[k][s],
+            Column::Parameter { s } => history.scalars[0][s],
             Column::Horizon => h,
         };
         self.unknowns
@@ -132,6 +134,10 @@ impl Transcription<'_> {
             match *column {
                 Column::Instant { k, i } => self.instants[k].z[i] = value,
                 Column::Interval { k, s } => self.scalars[k * scalar_count + s] = value,
+                Column::Parameter { s } => {
+                    let rows = self.scalars.chunks_exact_mut(scalar_count);
+                    rows.for_each(|row| row[s] = value);
+                }
                 Column::Horizon => self.h = value,
             }
         }

@@ -137,7 +137,7 @@ impl Nlp for Transcription<'_> {
             // A step finds potentials together with the motion at its end.
             Column::Interval { k, .. } if has_equation(column) => Stage::Of(2 * k as u32 + 2),
             Column::Interval { k, .. } => Stage::Of(2 * k as u32 + 1),
-            Column::Horizon => Stage::Border,
+            Column::Parameter { .. } | Column::Horizon => Stage::Border,
         };
         Some(self.unknowns.columns.iter().map(stage).collect())
     }
@@ -148,7 +148,7 @@ impl Nlp for Transcription<'_> {
         match column {
             Column::Instant { k, .. } => format!("{name} at instant {k}"),
             Column::Interval { k, .. } => format!("{name} in interval {k}"),
-            Column::Horizon => name.to_string(),
+            Column::Parameter { .. } | Column::Horizon => name.to_string(),
         }
     }
 

@@ -4,7 +4,7 @@ use crate::control::numbering::{Column, Row};
 use crate::control::problem::{Control, Duration, PathConstraint};
 use crate::control::transcription::Transcription;
 use crate::dynamics::DiscreteTrajectory;
-use crate::model::{Coordinates, Role};
+use crate::model::{Coordinates, Role, Time};
 use crate::nlp::{Bounds, Nlp};
 
 impl Transcription<'_> {
@@ -34,11 +34,18 @@ impl Transcription<'_> {
                 .zip(&values)
         };
         let scale = |col: u32| self.variable_scales[col as usize];
+        let is_of_horizon = |col: u32| {
+            self.unknowns.columns[col as usize]
+                .of(variables)
+                .role
+                .time()
+                == Time::Horizon
+        };
         for ((&row, &col), value) in entries() {
             if let (Some(i), None) = (
                 kind(self.unknowns.rows[row as usize]),
                 multiplier(self.unknowns.columns[col as usize]),
-            ) && self.unknowns.horizon() != Some(col as usize)
+            ) && !is_of_horizon(col)
             {
                 largest[i] = largest[i].max((value * scale(col)).abs());
             }
@@ -108,6 +115,10 @@ impl Transcription<'_> {
             let [low, high] = match (column, column.of(&self.model.variables).role) {
                 (Column::Instant { i, .. }, Role::Coordinate) => [lower[i], upper[i]],
                 (_, Role::Voltage) => control.voltage_bounds,
+                (Column::Parameter { .. }, _) => {
+                    let parameter = self.model.parameter(column.of(&self.model.variables));
+                    [parameter.lower, parameter.upper]
+                }
                 (Column::Horizon, _) => match control.duration {
                     Duration::Free { min, max, .. } => {
                         [min, max].map(|t| t / self.intervals as f64)

@@ -5,9 +5,11 @@ use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::control::control;
 use crate::files::problem::coordinates::{coordinates, count};
+use crate::files::problem::free::check_solution;
 use crate::files::problem::simulation::simulation;
 use crate::files::problem::spec::ProblemSpec;
 use crate::files::problem::state::voltages;
+use crate::files::scene::spec::SceneSpec;
 use crate::model::system::System;
 
 /// Most equilibria of a path.
@@ -16,12 +18,20 @@ const MOST_POINTS: usize = 1_000_000;
 /// The task that a problem asks of a system.
 pub(crate) fn build_problem(
     problem: &ProblemSpec,
-    system: &System,
+    (scene, system): (&SceneSpec, &System),
     scope: &Scope<'_>,
 ) -> Result<Task, SceneError> {
     type Build<'a> = Box<dyn FnOnce() -> Result<Task, SceneError> + 'a>;
     let simulate = problem.simulate.as_ref().map(|spec| -> Build<'_> {
-        Box::new(|| simulation(spec, system, &scope.key("simulate")).map(Task::Simulate))
+        Box::new(|| {
+            let scope = scope.key("simulate");
+            let task = simulation(spec, system, &scope)?;
+            if let Some(path) = task.voltages.solution() {
+                let place = scope.key("voltages").key("solution");
+                check_solution(path, scene, system, &place)?;
+            }
+            Ok(Task::Simulate(task))
+        })
     });
     let equilibrium = problem.equilibrium.as_ref().map(|spec| -> Build<'_> {
         Box::new(|| {
@@ -40,7 +50,7 @@ pub(crate) fn build_problem(
     });
     let control = problem.control.as_ref().map(|spec| -> Build<'_> {
         Box::new(|| {
-            let control = control(spec, system, &scope.key("control"))?;
+            let control = control(spec, (scene, system), &scope.key("control"))?;
             Ok(Task::Control(Box::new(control)))
         })
     });

@@ -1,18 +1,25 @@
 //! From a control problem as written to the task.
 
-use crate::control::problem::{BoundaryState, Control, Duration, Objective, Solver};
+use crate::control::Signal;
+use crate::control::problem::{BoundaryState, Control, Duration, Objective, Solver, Voltages};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::coordinates::{coordinates, count};
+use crate::files::problem::free::parameters;
 use crate::files::problem::goal::goal_state;
 use crate::files::problem::guess::guess;
 use crate::files::problem::limits::limit;
+use crate::files::problem::signal::signal;
 use crate::files::problem::spec_control::{
     ControlSolverSpec, ControlSpec, DurationSpec, ObjectiveSpec, OptionSpec, SolverSpec,
 };
+use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::{ELECTRIC_KEYS, driven, start_state};
 use crate::files::problem::track::{at_the_end, track};
+use crate::files::problem::voltages::over_time;
 use crate::files::scene::graph::tree_freedoms;
+use crate::files::scene::spec::SceneSpec;
+use crate::files::units::quantity::Voltage;
 use crate::ipopt::{LinearSolver, OptionValue};
 use crate::model::system::{Fidelity, Muscle, System};
 use std::collections::BTreeMap;
@@ -22,7 +29,7 @@ pub(crate) const MOST_INTERVALS: usize = 1_000_000;
 
 pub(crate) fn control(
     spec: &ControlSpec,
-    system: &System,
+    (written, system): (&SceneSpec, &System),
     scope: &Scope<'_>,
 ) -> Result<Control, SceneError> {
     let duration = duration(&spec.duration, &scope.key("duration"))?;
@@ -44,9 +51,11 @@ pub(crate) fn control(
         }
         None => BoundaryState::Free,
     };
-    let given = given_voltages(spec, system, &scope.key("voltages"))?;
+    let parameters = parameters(&spec.free, written, system, &scope.key("free"))?;
+    let (given, course) = given_voltages(spec, system, &scope.key("voltages"))?;
     for (key, state) in [("start", &start), ("goal", &goal)] {
-        check_rest_voltages(state, system, &given, voltage_bounds, &scope.key(key))?;
+        let is_given = |s: usize| course.is_some() || given.contains_key(&s);
+        check_rest_voltages(state, system, is_given, voltage_bounds, &scope.key(key))?;
     }
     check_final_conditions(&goal, system, &scope.key("goal"))?;
     let mut limits = Vec::new();
@@ -60,6 +69,8 @@ pub(crate) fn control(
         goal,
         voltage_bounds,
         given,
+        course,
+        parameters,
         hold: spec.hold.into(),
         objective,
         limits,
@@ -106,33 +117,46 @@ pub(crate) fn voltage_bounds(
     Ok(bounds)
 }
 
-/// Voltages that are given for all the time; one is left to be sought.
+/// Voltages that are given, source by source or all of them in intervals of time; one is left to be sought, unless a constant of
+/// the scene is sought.
 pub(crate) fn given_voltages(
     spec: &ControlSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<BTreeMap<usize, f64>, SceneError> {
+) -> Result<(BTreeMap<usize, Signal>, Option<Voltages>), SceneError> {
     let sources = system.sources();
     let mut given = BTreeMap::new();
-    for (name, voltage) in &spec.voltages {
-        given.insert(driven(name, &sources, &scope.key(name))?, voltage.value());
+    let mut course = None;
+    match &spec.voltages {
+        VoltagesSpec::Signals(map) => {
+            for (name, spec) in map {
+                let scope = scope.key(name);
+                let source = driven(name, &sources, &scope)?;
+                given.insert(source, signal(spec, &Voltage::kind(), &scope)?);
+            }
+        }
+        other => course = Some(over_time(other, system, scope)?),
     }
-    let is_sought = |s: usize| sources[s].takes_voltage && !given.contains_key(&s);
-    if (0..sources.len()).any(is_sought) {
-        return Ok(given);
+    let is_constant = |signal: &Signal| matches!(signal, Signal::Constant(_));
+    let changes = course.is_some() || !given.values().all(is_constant);
+    if changes && matches!(spec.duration, DurationSpec::Free(_)) {
+        let found = "voltages over time where the duration is free";
+        return Err(scope.wrong(found, "constant voltages, or a given duration"));
     }
-    let found = "all voltages";
-    Err(scope.wrong(
-        found,
-        "at least one voltage that is not given, to be sought",
-    ))
+    let is_sought =
+        |s: usize| sources[s].takes_voltage && course.is_none() && !given.contains_key(&s);
+    if (0..sources.len()).any(is_sought) || !spec.free.is_empty() {
+        return Ok((given, course));
+    }
+    let expected = "at least one voltage that is not given, to be sought, or a constant of the scene under \"free\"";
+    Err(scope.wrong("all voltages", expected))
 }
 
 /// Rest voltages of sources that are sought lie in the bounds.
 pub(crate) fn check_rest_voltages(
     state: &BoundaryState,
     system: &System,
-    given: &BTreeMap<usize, f64>,
+    is_given: impl Fn(usize) -> bool,
     [lower, upper]: [f64; 2],
     scope: &Scope<'_>,
 ) -> Result<(), SceneError> {
@@ -141,7 +165,7 @@ pub(crate) fn check_rest_voltages(
     };
     for (s, (source, &voltage)) in system.sources().iter().zip(voltages).enumerate() {
         let outside = voltage < lower || voltage > upper;
-        if outside && source.takes_voltage && !given.contains_key(&s) {
+        if outside && source.takes_voltage && !is_given(s) {
             let place = scope.key("rest_at_voltages").key(&source.name);
             let found = format!("{voltage} V");
             let expected = format!("a voltage within the bounds {lower} V to {upper} V");

@@ -1,12 +1,14 @@
 //! The problem file: what is written (`spec`, `spec_*`) and how it becomes a [`Task`](crate::control::problem::Task).
 //!
 //! - `build`: the problem; `control`, `simulation`: its two longer tasks.
-//! - `state`, `goal`, `limits`, `guess`, `voltages`, `signal`, `track`, `coordinates`: their parts; `solution_voltages`, `solution_joints`:
+//! - `state`, `goal`, `limits`, `free`, `guess`, `voltages`, `signal`, `track`, `coordinates`: their parts; `solution_voltages`,
+//!   `solution_joints`:
 //!   what is read of an earlier solution.
 
 pub(crate) mod build;
 pub(crate) mod control;
 pub(crate) mod coordinates;
+pub(crate) mod free;
 pub(crate) mod goal;
 pub(crate) mod guess;
 pub(crate) mod limits;
@@ -17,6 +19,7 @@ pub(crate) mod solution_voltages;
 pub mod spec;
 pub mod spec_control;
 pub mod spec_coordinates;
+pub mod spec_free;
 pub mod spec_integrator;
 pub mod spec_limits;
 pub mod spec_signal;

@@ -2,10 +2,11 @@
 
 use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::files::problem::spec_coordinates::CoordinatesSpec;
+use crate::files::problem::spec_free::FreeMap;
 use crate::files::problem::spec_limits::LimitSpec;
 use crate::files::problem::spec_states::{GoalSpec, HoldSpec, StartSpec};
 use crate::files::problem::spec_track::{FinalSpec, TrackSpec};
-use crate::files::problem::spec_voltages::{VoltageMap, VoltagesSpec};
+use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::units::quantity::{Quantity, Time, Voltage};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
@@ -27,10 +28,14 @@ pub struct ControlSpec {
     pub goal: Option<GoalSpec>,
     /// Lower and upper bound of every voltage that is sought, SI unit V.
     pub voltage_bounds: [Quantity<Voltage>; 2],
-    /// Voltages that are given for all the time, by the names of muscles and driven electrodes (`block.electrode`), SI unit V:
-    /// they are no unknowns, and one of 0 leaves no electric term at all.
+    /// Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no unknowns,
+    /// and one of 0 for all the time leaves no electric term at all. Functions of time, a table and those of a solution give all
+    /// voltages, as of a simulation; then a constant of the scene has to be sought.
     #[serde(default)]
-    pub voltages: VoltageMap,
+    pub voltages: VoltagesSpec,
+    /// Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`.
+    #[serde(default)]
+    pub free: FreeMap,
     /// What becomes of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is
     /// `reported` (where not written), or refused where holding it is `required`.
     #[serde(default)]

@@ -2,11 +2,13 @@
 //!
 //! - `build`: the scene; `body`, `material`, `muscle`, `marker`: its parts; `components`: kinds of which each has one file for both.
 //! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `graph`: how joints hang together; `names`: what names mean.
+//! - `constants`: constants by their paths, as an optimisation may seek them.
 //! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
 
 pub(crate) mod body;
 pub(crate) mod build;
 pub mod components;
+pub(crate) mod constants;
 pub(crate) mod electrodes;
 pub(crate) mod expand;
 pub(crate) mod graph;

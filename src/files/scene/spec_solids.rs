@@ -56,6 +56,14 @@ pub struct SolidSpec {
     pub velocity: Option<VelocitySpec>,
 }
 
+impl SolidSpec {
+    /// Names of the materials that it is made of.
+    pub(crate) fn material_names(&self) -> impl Iterator<Item = &String> {
+        let of_regions = self.materials.iter().flat_map(BTreeMap::values);
+        self.material.iter().chain(of_regions)
+    }
+}
+
 /// Which hexahedron: how it treats volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

@@ -107,6 +107,8 @@ measures! {
     Damping: si::mass_rate::Dimension, [0], "a damping", "\"0.5 N s/m\"";
     /// Stiffness of a spring: N/m, N/mm inside.
     Stiffness: si::surface_tension::Dimension, [0], "a stiffness", "\"200 N/m\"";
+    /// Ratio: a plain number.
+    Ratio: si::ratio::Dimension, [0], "a plain number", "3.2";
     /// Force, for messages.
     Force: si::force::Dimension, [0], "a force", "\"1 N\"";
     /// Area, for messages.
@@ -141,6 +143,26 @@ joint_measures! {
     JointRate: AngularVelocity | Velocity;
     /// Damping of a joint coordinate: rotational, or linear of a prismatic joint.
     JointDamping: RotationalDamping | Damping;
+}
+
+/// A constant that an optimisation seeks, of the kind of its place in the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SoughtConstant;
+
+impl PhysicalQuantity for SoughtConstant {
+    const NAME: &'static str = "SoughtConstant";
+
+    fn kinds() -> Vec<Kind> {
+        vec![
+            Stress::kind(),
+            Viscosity::kind(),
+            Length::kind(),
+            Stiffness::kind(),
+            Damping::kind(),
+            RotationalDamping::kind(),
+            Ratio::kind(),
+        ]
+    }
 }
 
 /// What was written: a number in SI units, or a text with a unit.

@@ -2,6 +2,7 @@
 
 pub(super) mod body;
 pub(super) mod muscle;
+mod sought_muscle;
 mod spring;
 mod tendon;
 
@@ -26,7 +27,10 @@ pub struct Components {
 impl Components {
     /// Their terms.
     pub(super) fn build(&self, terms: &mut Terms<'_>) {
-        self.iter().for_each(|component| component.build(terms));
+        let springs = self.springs.iter().enumerate();
+        springs.for_each(|(index, spring)| spring.add(Some(index), terms));
+        let others = self.iter().skip(self.springs.len());
+        others.for_each(|component| component.build(terms));
         for term in [spring::ELASTICITY, spring::DAMPING] {
             terms.without(term, "no spring");
         }

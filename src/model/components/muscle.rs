@@ -3,6 +3,7 @@
 use crate::energy::{DielectricCell, ElasticCell, SectionInertia, ViscousCell};
 use crate::functional::{Element, Mass};
 use crate::kinematics::MaterialVector;
+use crate::model::components::sought_muscle::SoughtMuscle;
 use crate::model::system::{Fidelity, Muscle};
 use crate::model::terms::{Terms, mid, rate};
 
@@ -35,8 +36,9 @@ fn lumped(muscle: &Muscle, source: usize, span: usize, terms: &mut Terms<'_>) {
         return;
     }
     inertia(muscle, span, terms);
-    elasticity(muscle, input, span, terms);
-    viscosity(muscle, span, terms);
+    let sought = SoughtMuscle::new(muscle, source, span, terms);
+    elasticity(muscle, sought.as_ref(), input, span, terms);
+    viscosity(muscle, sought.as_ref(), span, terms);
 }
 
 /// A uniform rod: m/6 (|va|² + va·vb + |vb|²) = m/2 |v_mid|² + m/24 |ṙ|², its weight, and the inertia of its section.
@@ -74,7 +76,13 @@ fn inertia(muscle: &Muscle, span: usize, terms: &mut Terms<'_>) {
     terms.add_kinetic(SECTION, "density and section_inertia of", name, element);
 }
 
-fn elasticity(muscle: &Muscle, input: Option<usize>, span: usize, terms: &mut Terms<'_>) {
+fn elasticity(
+    muscle: &Muscle,
+    sought: Option<&SoughtMuscle<'_>>,
+    input: Option<usize>,
+    span: usize,
+    terms: &mut Terms<'_>,
+) {
     let elastic = ElasticCell {
         length: muscle.length(),
         volume: muscle.volume(),
@@ -96,7 +104,10 @@ fn elasticity(muscle: &Muscle, input: Option<usize>, span: usize, terms: &mut Te
                 scalars: [voltage],
             };
             let why = "electric constants and a voltage of";
-            terms.add(ELECTROELASTICITY, why, name, element);
+            let named = (ELECTROELASTICITY, why);
+            if !sought.is_some_and(|sought| sought.energy(input, named, terms)) {
+                terms.add(ELECTROELASTICITY, why, name, element);
+            }
             terms.without(ELASTICITY, "every lumped muscle takes a voltage");
         }
         (electric, _) => {
@@ -109,7 +120,9 @@ fn elasticity(muscle: &Muscle, input: Option<usize>, span: usize, terms: &mut Te
                 vectors,
                 scalars: [],
             };
-            terms.add(ELASTICITY, why, name, element);
+            if !sought.is_some_and(|sought| sought.energy(None, (ELASTICITY, why), terms)) {
+                terms.add(ELASTICITY, why, name, element);
+            }
             terms.without(
                 ELECTROELASTICITY,
                 "no lumped muscle takes a voltage other than 0",
@@ -118,7 +131,12 @@ fn elasticity(muscle: &Muscle, input: Option<usize>, span: usize, terms: &mut Te
     }
 }
 
-fn viscosity(muscle: &Muscle, span: usize, terms: &mut Terms<'_>) {
+fn viscosity(
+    muscle: &Muscle,
+    sought: Option<&SoughtMuscle<'_>>,
+    span: usize,
+    terms: &mut Terms<'_>,
+) {
     match muscle.material.viscosity {
         _ if !terms.is_of_motion() => {
             terms.without(VISCOSITY, "a state of rest dissipates nothing");
@@ -133,7 +151,10 @@ fn viscosity(muscle: &Muscle, span: usize, terms: &mut Terms<'_>) {
                 vectors: [mid(span), mid(span), rate(span)],
                 scalars: [],
             };
-            terms.add(VISCOSITY, "viscosity of", &muscle.name, element);
+            let named = (VISCOSITY, "viscosity of");
+            if !sought.is_some_and(|sought| sought.viscosity(viscosity, named, terms)) {
+                terms.add(VISCOSITY, "viscosity of", &muscle.name, element);
+            }
         }
     }
 }

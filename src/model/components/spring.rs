@@ -1,9 +1,11 @@
 //! A spring with or without a damper between two points.
 
-use crate::energy::{LinearSpring, SpanDamper};
-use crate::functional::Element;
+use crate::energy::{Affine, LinearSpring, SoughtSpanDamper, SoughtSpring, SpanDamper};
+use crate::functional::{Element, SoughtElement};
 use crate::model::attachment::Attachment;
 use crate::model::component::Component;
+use crate::model::constant::Constant;
+use crate::model::sought::{Arguments, Sought};
 use crate::model::terms::{Terms, mid, rate};
 use nalgebra::Vector3;
 
@@ -38,6 +40,103 @@ impl Spring {
             length: self.rest_length,
         })
     }
+
+    /// Makes the terms; `index` is its place among the springs of the system, constants of which can be sought.
+    pub(super) fn add(&self, index: Option<usize>, terms: &mut Terms<'_>) {
+        let Some(span) = terms.span(&self.from, &self.to) else {
+            for term in [ELASTICITY, DAMPING] {
+                terms.without(term, "no spring that moves");
+            }
+            return;
+        };
+        let sought = index.map(|index| (terms.sought(), index));
+        match self.energy() {
+            Some(energy) => self.add_energy(energy, span, sought.as_ref(), terms),
+            None => terms.without(ELASTICITY, "no spring that moves names a stiffness"),
+        }
+        match self.damping {
+            Some(coefficient) if terms.is_of_motion() => {
+                self.add_damping(coefficient, span, sought.as_ref(), terms);
+            }
+            Some(_) => terms.without(DAMPING, "a state of rest dissipates nothing"),
+            None => terms.without(DAMPING, "no spring that moves names a damping"),
+        }
+    }
+
+    fn add_energy(
+        &self,
+        energy: LinearSpring,
+        span: usize,
+        sought: Option<&(Sought, usize)>,
+        terms: &mut Terms<'_>,
+    ) {
+        let (why, name) = ("stiffness of", &self.name);
+        let mut arguments = Arguments::new(3);
+        let mut constant = |constant: fn(usize) -> Constant, value: f64| {
+            sought_constant(sought, constant, value, &mut arguments)
+        };
+        let sought = SoughtSpring {
+            stiffness: constant(Constant::SpringStiffness, energy.stiffness),
+            length: constant(Constant::SpringLength, energy.length),
+        };
+        if arguments.count() > 0 {
+            let element = sought_element(sought, span, arguments);
+            return terms.add_sought::<_, 5, 1, 1>(ELASTICITY, why, name, element);
+        }
+        let element = Element {
+            energy,
+            vectors: [mid(span)],
+            scalars: [],
+        };
+        terms.add(ELASTICITY, why, name, element);
+    }
+
+    fn add_damping(
+        &self,
+        coefficient: f64,
+        span: usize,
+        sought: Option<&(Sought, usize)>,
+        terms: &mut Terms<'_>,
+    ) {
+        let (why, name) = ("damping of", &self.name);
+        let mut arguments = Arguments::new(9);
+        let constant = Constant::SpringDamping;
+        let sought = SoughtSpanDamper {
+            coefficient: sought_constant(sought, constant, coefficient, &mut arguments),
+        };
+        if arguments.count() > 0 {
+            let element = sought_element(sought, span, arguments);
+            return terms.add_sought::<_, 10, 3, 1>(DAMPING, why, name, element);
+        }
+        let element = Element {
+            energy: SpanDamper { coefficient },
+            vectors: [mid(span), mid(span), rate(span)],
+            scalars: [],
+        };
+        terms.add(DAMPING, why, name, element);
+    }
+}
+
+/// A constant of a spring as a function of the arguments.
+fn sought_constant(
+    sought: Option<&(Sought, usize)>,
+    constant: fn(usize) -> Constant,
+    value: f64,
+    arguments: &mut Arguments,
+) -> Affine {
+    match sought {
+        Some((sought, index)) => sought.constant(constant(*index), value, arguments),
+        None => value.into(),
+    }
+}
+
+fn sought_element<E>(energy: E, span: usize, arguments: Arguments) -> SoughtElement<E, 1> {
+    SoughtElement {
+        energy,
+        span,
+        moves: Vec::new(),
+        scalars: arguments.scalars(),
+    }
 }
 
 impl Component for Spring {
@@ -54,35 +153,7 @@ impl Component for Spring {
     }
 
     fn build(&self, terms: &mut Terms<'_>) {
-        let Some(span) = terms.span(&self.from, &self.to) else {
-            for term in [ELASTICITY, DAMPING] {
-                terms.without(term, "no spring that moves");
-            }
-            return;
-        };
-        match self.energy() {
-            Some(energy) => {
-                let element = Element {
-                    energy,
-                    vectors: [mid(span)],
-                    scalars: [],
-                };
-                terms.add(ELASTICITY, "stiffness of", &self.name, element);
-            }
-            None => terms.without(ELASTICITY, "no spring that moves names a stiffness"),
-        }
-        match self.damping {
-            Some(coefficient) if terms.is_of_motion() => {
-                let element = Element {
-                    energy: SpanDamper { coefficient },
-                    vectors: [mid(span), mid(span), rate(span)],
-                    scalars: [],
-                };
-                terms.add(DAMPING, "damping of", &self.name, element);
-            }
-            Some(_) => terms.without(DAMPING, "a state of rest dissipates nothing"),
-            None => terms.without(DAMPING, "no spring that moves names a damping"),
-        }
+        self.add(None, terms);
     }
 
     fn columns(&self) -> Vec<(&'static str, &'static str)> {

@@ -1,0 +1,52 @@
+//! States of rest under given voltages.
+
+use crate::control::error::BoundaryError;
+use crate::dynamics::{Equilibrium, stable_equilibrium};
+use crate::model::{Analysis, Model, Presolved, Role, with_parameters};
+
+/// The equilibrium under voltages (V, one per muscle), with sought parameters at their guesses.
+pub(super) fn rest_at(
+    model: &Model,
+    voltages: &[f64],
+    place: &'static str,
+) -> Result<Equilibrium, BoundaryError> {
+    let parameters = &model.analysis.parameters;
+    if parameters.is_empty() {
+        return equilibrium(model, voltages, place);
+    }
+    let guesses: Vec<f64> = parameters.iter().map(|p| p.guess).collect();
+    let mut found = rest_with(model, voltages, &guesses, place)?;
+    let at = model.variables.range(Role::Parameter).start;
+    found.scalars.splice(at..at, guesses);
+    Ok(found)
+}
+
+/// The equilibrium with given values of the parameters: loads grow from zero, and parameters are none.
+pub(super) fn rest_with(
+    model: &Model,
+    voltages: &[f64],
+    values: &[f64],
+    place: &'static str,
+) -> Result<Equilibrium, BoundaryError> {
+    let sought = &model.analysis;
+    let system = with_parameters(&model.system, &sought.parameters, values);
+    // What may move is that of the model.
+    let presolved = Presolved::new(&system, sought);
+    let given = Analysis {
+        parameters: Vec::new(),
+        coordinates: Some(model.coordinates),
+        ..sought.clone()
+    };
+    let model = Model::of_presolved(system, given, presolved)?;
+    equilibrium(&model, voltages, place)
+}
+
+fn equilibrium(
+    model: &Model,
+    voltages: &[f64],
+    place: &'static str,
+) -> Result<Equilibrium, BoundaryError> {
+    let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+    let found = stable_equilibrium(model, &zero, &model.scalars(voltages));
+    found.map_err(|source| BoundaryError::NoEquilibrium { place, source })
+}

@@ -1,0 +1,48 @@
+//! Model and boundary of a control problem, also with the parameters put in that were found.
+
+use crate::control::problem::Control;
+use crate::control::{BoundaryConditions, Solution};
+use crate::model::{Model, System, with_parameters};
+use crate::workflow::error::WorkflowError;
+use crate::workflow::holding;
+
+/// Model and boundary of a control problem.
+pub(crate) fn resolve(
+    system: &System,
+    control: &Control,
+) -> Result<(Model, BoundaryConditions), WorkflowError> {
+    let (model, boundary) = BoundaryConditions::resolve(system, control, interval(control))
+        .map_err(|error| WorkflowError::boundary("control", &error))?;
+    holding::check(control, &model, &boundary)?;
+    Ok((model, boundary))
+}
+
+/// Interval length in ms, or its guess.
+pub(crate) fn interval(control: &Control) -> f64 {
+    control.duration.first() / control.intervals as f64
+}
+
+/// Model and boundary of the system with the parameters put in that a motion was found with.
+pub(crate) fn with_found(
+    system: &System,
+    control: &Control,
+    sought: &Model,
+    motion: &Solution,
+) -> Result<(Model, BoundaryConditions), WorkflowError> {
+    let values: Vec<f64> = motion.parameters.iter().map(|found| found.value).collect();
+    let given = Control {
+        parameters: Vec::new(),
+        coordinates: Some(sought.coordinates),
+        ..control.clone()
+    };
+    let system = with_parameters(system, &control.parameters, &values);
+    let (model, boundary) = resolve(&system, &given)?;
+    if model.action.motion.unknowns() != sought.action.motion.unknowns() {
+        return Err(WorkflowError::Problem {
+            place: "control.free".to_owned(),
+            reason: "with the values found other parts of the system move than with the guesses; take other guesses"
+                .to_owned(),
+        });
+    }
+    Ok((model, boundary))
+}

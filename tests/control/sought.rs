@@ -1,0 +1,194 @@
+//! Sought parameters in optimal control: a muscle arm between bounds, and where a parameter is refused.
+
+use crate::common::cases::{control, joints};
+use crate::common::trunk;
+use crate::optimality::{Optimum, solve};
+use proboscis::control::problem::{BoundaryState, Control, Duration, PathConstraint};
+use proboscis::control::{BoundaryConditions, BoundaryError};
+use proboscis::ipopt::Start;
+use proboscis::model::system::System;
+use proboscis::model::{Constant, Follower, Parameter, Role, with_parameters};
+
+/// A heavy body on one joint between two muscles without mass.
+fn pair() -> System {
+    let mut system = trunk(1);
+    let body = &mut system.bodies[0];
+    body.mass *= 15.0;
+    body.inertia = body.inertia.map(|moment| 15.0 * moment);
+    for muscle in &mut system.muscles {
+        muscle.material.density = None;
+    }
+    system
+}
+
+/// The distance of both muscles from the axis, as one parameter.
+fn arm(bounds: [f64; 2], guess: f64) -> Parameter {
+    let end = |muscle: usize, end: usize, factor: f64| Follower {
+        constant: Constant::End(muscle, end, 0),
+        factor,
+        offset: 0.0,
+    };
+    Parameter {
+        name: "arm".into(),
+        constants: vec![
+            end(0, 0, 1.0),
+            end(0, 1, 1.0),
+            end(1, 0, -1.0),
+            end(1, 1, -1.0),
+        ],
+        lower: bounds[0],
+        upper: bounds[1],
+        guess,
+    }
+}
+
+/// Least effort from rest to rest at an angle.
+fn turn(system: &System) -> Control {
+    Control {
+        duration: Duration::Given(100.0),
+        goal: joints(&[(0, 0.2)]),
+        ..control(system, 15)
+    }
+}
+
+/// The effort with a given arm, from the motion that was found: there are other optima, in which the muscles pull in another order.
+fn effort(arm_length: f64, found: &Optimum) -> f64 {
+    let system = with_parameters(&pair(), &[arm([1.0, 99.0], 15.0)], &[arm_length]);
+    let from = Some((&found.history, found.h, None));
+    let found = solve(&system, &turn(&system), from, Start::PRIMAL);
+    assert!(found.solution.status.is_solved());
+    found.solution.objective
+}
+
+#[test]
+fn a_free_arm_lowers_the_effort_and_meets_the_conditions() {
+    let system = pair();
+    let with = |bounds, guess| Control {
+        parameters: vec![arm(bounds, guess)],
+        ..turn(&system)
+    };
+    let found = solve(&system, &with([4.0, 60.0], 15.0), None, Start::Cold);
+    assert!(found.solution.status.is_solved());
+    let scalars = found.model.variables.range(Role::Parameter);
+    let best = found.history.scalars[0][scalars.start];
+    println!(
+        "arm {best}, {:?}, effort {}",
+        found.conditions, found.solution.objective
+    );
+    assert!(best > 4.1 && best < 59.0);
+    assert!(found.multipliers[0] > 1e-6);
+    assert!(
+        found.conditions.iter().all(|c| *c < 1e-7),
+        "{:?}",
+        found.conditions
+    );
+    // The same effort with the arm given, more with any other one: from there on one interval more is at the bound of the voltages,
+    // so that the effort has a kink.
+    let least = found.solution.objective;
+    assert!((effort(best, &found) - least).abs() < 1e-8 * least);
+    assert!(effort(15.0, &found) > 1.001 * least);
+    let [shorter, longer] = [0.98, 1.02].map(|factor| effort(factor * best, &found));
+    assert!(shorter > least && longer > least);
+    // A bound that it would like to pass holds it.
+    let bound = 0.5 * (best + 15.0);
+    let bounds = if best < 15.0 {
+        [bound, 30.0]
+    } else {
+        [4.0, bound]
+    };
+    let held = solve(
+        &system,
+        &with(bounds, 15.0_f64.clamp(bounds[0], bounds[1])),
+        None,
+        Start::Cold,
+    );
+    let at = held.history.scalars[0][scalars.start];
+    assert!((at - bound).abs() < 1e-5 * bound, "{at} {bound}");
+    assert!(held.solution.objective > least && held.conditions.iter().all(|c| *c < 1e-7));
+}
+
+fn refusal(system: &System, control: &Control) -> String {
+    match BoundaryConditions::resolve(system, control, 10.0) {
+        Err(error @ BoundaryError::Parameter { .. }) => error.to_string(),
+        Err(other) => panic!("{other}"),
+        Ok(_) => panic!("not refused"),
+    }
+}
+
+#[test]
+fn parameters_are_refused_where_they_may_not_act() {
+    let system = pair();
+    let with = |parameters: Vec<Parameter>| Control {
+        parameters,
+        ..turn(&system)
+    };
+    let of = |constant: Constant, lower: f64, guess: f64, upper: f64| Parameter {
+        name: "p".into(),
+        constants: vec![constant.into()],
+        lower,
+        upper,
+        guess,
+    };
+    let modulus = || of(Constant::ShearModulus(1), 0.05, 0.1, 0.2);
+    let says = |control: Control, words: &str| {
+        let text = refusal(&system, &control);
+        assert!(text.contains(words), "{text}");
+    };
+    assert!(BoundaryConditions::resolve(&system, &with(vec![modulus()]), 10.0).is_ok());
+    says(
+        with(vec![of(Constant::ShearModulus(1), 0.05, 0.3, 0.2)]),
+        "within the bounds",
+    );
+    says(
+        with(vec![of(Constant::ShearModulus(1), -0.1, 0.1, 0.2)]),
+        "positive",
+    );
+    says(
+        with(vec![of(Constant::SpringLength(0), 1.0, 2.0, 3.0)]),
+        "no spring",
+    );
+    says(
+        with(vec![of(Constant::JointDamping(0), 1.0, 2.0, 3.0)]),
+        "no damping",
+    );
+    let twice = Parameter {
+        name: "q".into(),
+        ..modulus()
+    };
+    says(with(vec![modulus(), twice]), "the same constant");
+    says(with(vec![modulus(), modulus()]), "the same name");
+    // A muscle at zero voltage has no electric energy, which alone reads its layers.
+    let silent = Control {
+        given: [(1, proboscis::Signal::Constant(0.0))].into(),
+        ..with(vec![of(Constant::Layer(1), 0.01, 0.05, 0.1)])
+    };
+    says(silent, "nothing that moves reads it");
+    // Equilibria under voltage depend on the modulus; without voltage they do not.
+    let at_rest = Control {
+        start: BoundaryState::RestAtVoltages(vec![0.0, 900.0]),
+        ..with(vec![modulus()])
+    };
+    says(at_rest, "state of rest at the start depends on it");
+    // Limits that depend on a parameter.
+    let limited = |limit| Control {
+        limits: vec![limit],
+        ..with(vec![arm([4.0, 60.0], 15.0)])
+    };
+    let (muscle, max) = (0, 1.4);
+    says(
+        limited(PathConstraint::Stretch {
+            muscle,
+            min: 0.5,
+            max,
+        }),
+        "limit",
+    );
+    says(
+        limited(PathConstraint::ElectricField { muscle, max }),
+        "limit",
+    );
+    let mut heavy = pair();
+    heavy.muscles[1].material.density = Some(1e-3);
+    let text = refusal(&heavy, &with(vec![arm([4.0, 60.0], 15.0)]));
+    assert!(text.contains("mass of muscle"), "{text}");
+}

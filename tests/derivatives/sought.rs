@@ -1,0 +1,185 @@
+//! Sought parameters: derivatives against differences; and at any values of them the program is that of the system made anew
+//! with these values, which knows nothing of sought parameters.
+
+use crate::action::not_trivial;
+use crate::common::random::Random;
+use crate::common::sought::{parameters, problem, robot};
+use proboscis::control::problem::{Control, Voltages};
+use proboscis::control::{BoundaryConditions, Column, Transcription, guess};
+use proboscis::model::{Coordinates, Model, Role, with_parameters};
+use proboscis::nlp::{Nlp, differences};
+use std::collections::HashMap;
+
+const H: f64 = 10.0;
+
+/// Both coordinates, with and without a free duration.
+fn variants() -> Vec<Control> {
+    let system = robot();
+    let both = [Coordinates::Reduced, Coordinates::Redundant];
+    let of = |coordinates| {
+        [false, true].map(|is_free| Control {
+            coordinates: Some(coordinates),
+            ..problem(&system, is_free, None)
+        })
+    };
+    both.into_iter().flat_map(of).collect()
+}
+
+fn noisy(program: &Transcription<'_>, start: Vec<f64>) -> Vec<f64> {
+    let mut random = Random(17);
+    let noise = |x: f64| x + 0.07 * random.unit();
+    assert!(start.len() == program.unknowns().columns.len());
+    start.into_iter().map(noise).collect()
+}
+
+#[test]
+fn derivatives_are_differences() {
+    let system = robot();
+    for control in variants() {
+        let (model, boundary) = BoundaryConditions::resolve(&system, &control, H).unwrap();
+        let initial = guess(&model, &boundary, &control, H, None);
+        let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
+        let start = program.start(&initial).x;
+        let x = noisy(&program, start);
+        let report = differences::check(&mut program, &x, 5);
+        let what = format!("{:?} {:?}", control.coordinates, control.duration);
+        println!("{what}: {report}");
+        assert!(report.is_consistent(), "{what}: {report}");
+        not_trivial(&what, &mut program, &x);
+    }
+}
+
+/// Rows, and entries of Jacobian and Hessian without parameters, unscaled, by names.
+type Numbers = (HashMap<String, f64>, [HashMap<(String, String), f64>; 2]);
+
+fn numbers(program: &mut Transcription<'_>, model: &Model, x: &[f64]) -> Numbers {
+    let rows = program.constraints().lower.len();
+    let names: Vec<String> = (0..rows).map(|r| program.constraint_name(r)).collect();
+    let columns: Vec<Column> = program.unknowns().columns.clone();
+    let scales: Vec<f64> = (0..rows).map(|r| program.row_scale(r)).collect();
+    let is_parameter = |c: usize| columns[c].of(&model.variables).role == Role::Parameter;
+    let variables: Vec<String> = (0..x.len()).map(|c| program.variable_name(c)).collect();
+    let mut g = vec![0.0; rows];
+    program.constraint(x, &mut g);
+    let values = names.iter().cloned();
+    let g = values
+        .zip(g.iter().zip(&scales).map(|(g, s)| g / s))
+        .collect();
+    let places = program.jacobian_structure();
+    let mut list = vec![0.0; places.rows.len()];
+    program.jacobian(x, &mut list);
+    let mut jacobian = HashMap::new();
+    for ((&r, &c), value) in places.rows.iter().zip(&places.cols).zip(&list) {
+        if !is_parameter(c as usize) {
+            let key = (names[r as usize].clone(), variables[c as usize].clone());
+            *jacobian.entry(key).or_insert(0.0) += value / scales[r as usize];
+        }
+    }
+    // Costates of the unscaled rows are the same in both programs.
+    let mut random = Random(5);
+    let costates: Vec<f64> = scales.iter().map(|s| random.unit() / s).collect();
+    let places = program.hessian_structure();
+    let mut list = vec![0.0; places.rows.len()];
+    program.hessian(x, 0.3, &costates, &mut list);
+    let mut hessian = HashMap::new();
+    for ((&r, &c), value) in places.rows.iter().zip(&places.cols).zip(&list) {
+        if !is_parameter(r as usize) && !is_parameter(c as usize) {
+            let mut key = [variables[r as usize].clone(), variables[c as usize].clone()];
+            key.sort();
+            let [a, b] = key;
+            *hessian.entry((a, b)).or_insert(0.0) += value;
+        }
+    }
+    (g, [jacobian, hessian])
+}
+
+#[test]
+fn a_program_with_parameters_is_that_of_the_system_made_with_their_values() {
+    let system = robot();
+    for control in variants() {
+        let (model, boundary) = BoundaryConditions::resolve(&system, &control, H).unwrap();
+        let initial = guess(&model, &boundary, &control, H, None);
+        let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
+        let start = program.start(&initial).x;
+        let x = noisy(&program, start);
+        let history = program.decode(&x);
+        let parameters = parameters(&system);
+        let values: Vec<f64> = {
+            let range = model.variables.range(Role::Parameter);
+            assert_eq!(range.len(), parameters.len());
+            history.scalars[0][range].to_vec()
+        };
+        for (parameter, value) in parameters.iter().zip(&values) {
+            assert!((value - parameter.guess).abs() > 1e-4 * parameter.size());
+        }
+        let anew = with_parameters(&system, &parameters, &values);
+        let given = Control {
+            parameters: Vec::new(),
+            ..control.clone()
+        };
+        let (other, boundary) = BoundaryConditions::resolve(&anew, &given, H).unwrap();
+        assert_eq!(other.variables.count(Role::Parameter), 0);
+        let mut plain = Transcription::new(&other, &boundary, &given, &initial).unwrap();
+        // The same point: columns of parameters left out, multipliers in the scales of the other program.
+        let mut history = history;
+        let count = other.variables.of(proboscis::model::Time::Interval).len();
+        history
+            .scalars
+            .iter_mut()
+            .for_each(|row| row.truncate(count));
+        let y = plain.encode(&history, history.times[1]);
+        let (g, matrices) = numbers(&mut program, &model, &x);
+        let (expected, expected_matrices) = numbers(&mut plain, &other, &y);
+        let size = expected.values().fold(0.0_f64, |a, b| a.max(b.abs()));
+        assert!(size > 1e-6);
+        for (name, value) in &expected {
+            assert!(
+                (g[name] - value).abs() < 1e-12 * size,
+                "{name}: {} {value}",
+                g[name]
+            );
+        }
+        // Multipliers have other scales in both programs; all other columns agree.
+        for (found, expected) in matrices.iter().zip(&expected_matrices) {
+            let is_scaled_alike = |name: &str| !name.contains("multiplier");
+            let mut seen = 0;
+            let alike = expected
+                .iter()
+                .filter(|((a, b), _)| is_scaled_alike(a) && is_scaled_alike(b));
+            let largest = alike.clone().fold(0.0_f64, |a, (_, b)| a.max(b.abs()));
+            for (key, value) in alike {
+                let other = found.get(key).copied().unwrap_or(0.0);
+                assert!(
+                    (other - value).abs() < 1e-11 * largest,
+                    "{key:?}: {other} {value}"
+                );
+                seen += 1;
+            }
+            assert!(seen > 50 && largest > 0.0);
+        }
+    }
+}
+
+#[test]
+fn a_parameter_is_one_column_and_given_ones_leave_none() {
+    let system = robot();
+    let voltages = Voltages::Constant(vec![900.0, 700.0, 800.0, 0.0]);
+    let sought = problem(&system, false, Some(voltages));
+    let given = Control {
+        parameters: Vec::new(),
+        ..sought.clone()
+    };
+    let columns = |control: &Control| {
+        let (model, boundary) = BoundaryConditions::resolve(&system, control, H).unwrap();
+        let initial = guess(&model, &boundary, control, H, None);
+        let program = Transcription::of_any(&model, &boundary, control, &initial);
+        let columns = program.unknowns().columns.clone();
+        let role = |c: &Column| c.of(&model.variables).role;
+        let count = |which: Role| columns.iter().filter(|c| role(c) == which).count();
+        [count(Role::Parameter), count(Role::Voltage), columns.len()]
+    };
+    let [parameters, voltages, all] = columns(&sought);
+    assert_eq!([parameters, voltages], [sought.parameters.len(), 0]);
+    let [none, voltages, others] = columns(&given);
+    assert_eq!([none, voltages, others + parameters], [0, 0, all]);
+}

@@ -1,0 +1,168 @@
+//! Sought constants as a problem names them, and its mistakes.
+
+use crate::scene::{Case, check, folder, mistake};
+use proboscis::Signal;
+use proboscis::control::problem::{Control, Task};
+use proboscis::files::read_problem;
+use proboscis::model::{Constant, DielectricLaw, Follower};
+
+/// A chain without masses of muscles, and its own names beside.
+const CHAIN: &str = r#"{
+  "name": "chain",
+  "materials": {
+    "soft": { "shear_modulus": "100 kPa", "relative_permittivity": 3, "viscosity": "1000 Pa s", "dielectric": "ideal" },
+    "spare": { "shear_modulus": "100 kPa", "density": 1000 }
+  },
+  "chain": {
+    "segments": 2, "length": "50 mm", "radius": "20 mm", "mass": "30 g", "axis": [0, 1, 0], "first_joint_axis": [0, 0, 1],
+    "muscles": { "material": "soft", "arm": "15 mm", "rest_length": "40 mm", "cross_section": ["10 mm", "8 mm"], "layer_thickness": "50 um" }
+  },
+  "springs": [ { "name": "stay", "from": { "body": "ground", "at": ["30 mm", 0, 0] }, "to": { "body": "segment1", "at": ["30 mm", "40 mm", 0] },
+    "stiffness": "20 N/m" } ]
+}"#;
+
+fn problem(free: &str) -> String {
+    format!(
+        r#"{{ "scene": "scene.json", "control": {{ "duration": "0.2 s", "intervals": 4, "start": {{ "joint_angles": {{}} }},
+        "goal": {{ "joint_angles": {{ "joint1": 0.1 }} }}, "voltage_bounds": [0, "3 kV"], "objective": {{ "effort": 1 }},
+        "free": {free} }} }}"#
+    )
+}
+
+fn read(free: &str) -> Control {
+    let (_folder, path) = folder(CHAIN, &problem(free));
+    match read_problem(&path, &[]).expect("a problem").task {
+        Task::Control(control) => *control,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn follower(constant: Constant, factor: f64, offset: f64) -> Follower {
+    Follower {
+        constant,
+        factor,
+        offset,
+    }
+}
+
+#[test]
+fn constants_are_named_by_their_paths() {
+    let free = r#"{
+        "materials.soft.shear_modulus": { "min": "50 kPa", "max": 2e5, "guess": "120 kPa" },
+        "materials.soft.relative_permittivity": { "min": 2, "max": 4 },
+        "chain.muscles.arm": { "min": "5 mm", "max": "30 mm" },
+        "springs.stay.stiffness": { "min": "1 N/m", "max": "30 N/m" },
+        "muscles[3].layer_thickness": { "min": "10 um", "max": "90 um", "also": { "muscles.muscle1.layer_thickness": 2 } } }"#;
+    let found = read(free).parameters;
+    let by_name = |name: &str| found.iter().find(|p| p.name == name).expect("a parameter");
+    let modulus = by_name("materials.soft.shear_modulus");
+    assert!((modulus.lower - 0.05).abs() < 1e-15 && (modulus.upper - 0.2).abs() < 1e-15);
+    assert!((modulus.guess - 0.12).abs() < 1e-15);
+    let all: Vec<Follower> = (0..4).map(|m| Constant::ShearModulus(m).into()).collect();
+    assert_eq!(modulus.constants, all);
+    let ratio = by_name("materials.soft.relative_permittivity");
+    assert_eq!([ratio.lower, ratio.guess, ratio.upper], [2.0, 3.0, 4.0]);
+    let law = DielectricLaw::Ideal;
+    assert_eq!(ratio.constants[2], Constant::Permittivity(2, law).into());
+    let arm = by_name("chain.muscles.arm");
+    assert_eq!([arm.lower, arm.guess, arm.upper], [5.0, 15.0, 30.0]);
+    // Muscles of the first joint stand off along x, those of the second along z, two and two; both ends of each.
+    let expected = (0..4).flat_map(|m| [0, 1].map(|end| (m, end)));
+    let sides = [1.0, -1.0, 1.0, -1.0];
+    let expected: Vec<Follower> = expected
+        .map(|(m, end)| {
+            follower(
+                Constant::End(m, end, if m < 2 { 0 } else { 2 }),
+                sides[m],
+                0.0,
+            )
+        })
+        .collect();
+    let signs = |list: &[Follower]| -> Vec<(Constant, bool)> {
+        list.iter()
+            .map(|f| (f.constant, f.factor.abs() == 1.0 && f.offset == 0.0))
+            .collect()
+    };
+    assert_eq!(signs(&arm.constants), signs(&expected));
+    for (a, b) in [(0, 2), (4, 6)] {
+        assert_eq!(arm.constants[a].factor, -arm.constants[b].factor);
+    }
+    let stay = by_name("springs.stay.stiffness");
+    assert_eq!(stay.constants, [Constant::SpringStiffness(0).into()]);
+    assert!((stay.guess - 0.02).abs() < 1e-15);
+    let layer = by_name("muscles[3].layer_thickness");
+    let both = [
+        Constant::Layer(3).into(),
+        follower(Constant::Layer(0), 2.0, 0.0),
+    ];
+    assert_eq!(layer.constants, both);
+}
+
+#[test]
+fn what_cannot_be_sought_is_refused() {
+    const FREE: &str = r#"{ "materials.soft.viscosity": { "min": "500 Pa s", "max": "2000 Pa s", "guess": "900 Pa s" } }"#;
+    let base = problem(FREE);
+    let at = "control.free.materials.soft.viscosity";
+    #[rustfmt::skip]
+    let cases: &[Case] = &[
+        ("materials.soft.viscosity", "materials.hard.viscosity", "control.free.materials.hard.viscosity", "\"hard\", which is no material", "the name of a material", "{"),
+        ("materials.soft.viscosity", "materials.soft.density", "control.free.materials.soft.density", "no constant of the scene that can be sought", "materials.NAME.shear_modulus", "{"),
+        ("materials.soft.viscosity", "gravity[0]", "control.free.gravity[0]", "no constant of the scene that can be sought", "springs.NAME.stiffness", "{"),
+        ("materials.soft.viscosity", "", "control.free.", "no constant of the scene that can be sought", "joints.NAME.damping", "{"),
+        ("materials.soft.viscosity", "materials.spare.shear_modulus", "control.free.materials.spare.shear_modulus", "which no muscle is made of", "a material of a muscle", "{"),
+        ("materials.soft.viscosity", "joints.joint1.damping", "control.free.joints.joint1.damping.min", "which is a viscosity", "a rotational damping", "500 Pa s"),
+        ("materials.soft.viscosity", "muscles.nerve.layer_thickness", "control.free.muscles.nerve.layer_thickness", "\"nerve\", which is no muscle", "the name of a muscle", "{"),
+        ("materials.soft.viscosity", "muscles[4].layer_thickness", "control.free.muscles[4].layer_thickness", "which is no muscle", "the name of a muscle", "{"),
+        ("materials.soft.viscosity", "springs.stay.damping", "control.free.springs.stay.damping.min", "which is a viscosity", "a damping", "500 Pa s"),
+        ("\"500 Pa s\"", "\"500 mm\"", "control.free.materials.soft.viscosity.min", "which is a length", "a viscosity", "500 mm"),
+        ("\"500 Pa s\"", "true", "control.free.materials.soft.viscosity.min", "true", "a viscosity", "true"),
+        ("\"500 Pa s\"", "\"-5 Pa s\"", "control.free.materials.soft.viscosity", "positive", "a constant that can be sought", "{"),
+        ("\"500 Pa s\"", "\"3000 Pa s\"", "control.free.materials.soft.viscosity.max", "2000 Pa s", "larger than", "2000 Pa s"),
+        ("\"900 Pa s\"", "\"9000 Pa s\"", "control.free.materials.soft.viscosity.guess", "9000 Pa s", "from \"500 Pa s\" to \"2000 Pa s\"", "9000 Pa s"),
+        ("\"guess\": \"900 Pa s\"", "\"also\": { \"chain.muscles.arm\": 1 }", "control.free.materials.soft.viscosity.also.chain.muscles.arm", "a length", "a viscosity", "1"),
+        ("\"guess\": \"900 Pa s\"", "\"also\": { \"materials.soft.viscosity\": 1 }", "control.free.materials.soft.viscosity", "the same constant", "a constant that can be sought", "{"),
+        ("\"guess\"", "\"gues\"", "control.free.materials.soft.viscosity.gues", "the key \"gues\"", "\"guess\"", "\"gues\""),
+    ];
+    check(cases, &base, |problem| mistake(CHAIN, problem, &[]));
+    // A value of the scene outside the bounds is no guess.
+    let text = base
+        .replace(", \"guess\": \"900 Pa s\"", "")
+        .replace("500 Pa s", "1500 Pa s");
+    let error = mistake(CHAIN, &text, &[]);
+    assert_eq!(error.path(), at);
+    assert!(error.found().contains("outside the bounds"), "{error}");
+    // A mass that depends on the parameter.
+    let heavy = CHAIN.replace("\"dielectric\": \"ideal\"", "\"density\": 1000");
+    let text = problem(r#"{ "chain.muscles.arm": { "min": "5 mm", "max": "30 mm" } }"#);
+    let error = mistake(&heavy, &text, &[]);
+    assert!(error.found().contains("the mass of muscle"), "{error}");
+}
+
+#[test]
+fn voltages_may_all_be_given_where_a_constant_is_sought() {
+    let free = r#"{ "materials.soft.viscosity": { "min": "500 Pa s", "max": "2000 Pa s" } }, "voltages": {
+        "muscle1": { "ramp": { "to": "1 kV", "duration": "0.1 s" } }, "muscle2": 0, "muscle3": 0, "muscle4": "900 V" }"#;
+    let control = read(free);
+    assert_eq!(control.given.len(), 4);
+    assert_eq!(control.given[&0], Signal::ramp(0.0, 1000.0, 100.0));
+    assert_eq!(control.given_voltage(0, 50.0), Some(500.0));
+    let table = r#"{ "materials.soft.viscosity": { "min": "500 Pa s", "max": "2000 Pa s" } }, "voltages": {
+        "time": [0, 0.1, 0.2], "voltages": { "muscle1": ["1 kV", 0] } }"#;
+    let control = read(table);
+    let at = |time| [0, 1].map(|s| control.given_voltage(s, time));
+    assert_eq!(
+        [at(50.0), at(150.0)],
+        [[Some(1000.0), Some(0.0)], [Some(0.0); 2]]
+    );
+    // Otherwise one is left to be sought, and intervals whose length is free have no times.
+    let without = problem("{}").replace(
+        "\"free\": {}",
+        "\"voltages\": { \"time\": [0, 1], \"voltages\": {} }",
+    );
+    let error = mistake(CHAIN, &without, &[]);
+    assert_eq!(error.path(), "control.voltages");
+    assert!(error.expected().contains("\"free\""), "{error}");
+    let text = problem(free).replace("\"0.2 s\"", "{ \"min\": 0.1, \"max\": 1, \"guess\": 0.2 }");
+    let error = mistake(CHAIN, &text, &[]);
+    assert!(error.found().contains("the duration is free"), "{error}");
+}
