@@ -3,11 +3,15 @@
 use crate::common::cases::{control, joints};
 use crate::common::trunk;
 use crate::optimality::{Optimum, solve};
+use proboscis::State;
 use proboscis::control::problem::{BoundaryState, Control, Duration, PathConstraint};
 use proboscis::control::{BoundaryConditions, BoundaryError};
 use proboscis::ipopt::Start;
 use proboscis::model::system::System;
-use proboscis::model::{Constant, Follower, Parameter, Role, with_parameters};
+use proboscis::model::{Constant, Follower, Role, with_parameters};
+use proboscis::prelude::{
+    Body, GROUND, Joint, Material, Muscle, Parameter, X, g, kpa, kv, mm, ms, um,
+};
 
 /// A heavy body on one joint between two muscles without mass.
 fn pair() -> System {
@@ -191,4 +195,33 @@ fn parameters_are_refused_where_they_may_not_act() {
     heavy.muscles[1].material.density = Some(1e-3);
     let text = refusal(&heavy, &with(vec![arm([4.0, 60.0], 15.0)]));
     assert!(text.contains("mass of muscle"), "{text}");
+}
+
+#[test]
+fn the_library_seeks_a_thickness_as_it_is_known() {
+    let silicone = Material::elastomer(kpa(100.0)).relative_permittivity(3.0);
+    let mut system = System::new("slider");
+    let cart = system.add(Body::sphere(mm(10.0)).mass(g(50.0)));
+    let slide = system.add(Joint::prismatic(X).between(GROUND, cart));
+    let muscle = Muscle::of(&silicone)
+        .section(mm(10.0), mm(10.0))
+        .layer(um(50.0));
+    let muscle = system.add(muscle.from(GROUND, -X * mm(40.0)).to(cart, X * mm(0.0)));
+    let goal = State::Joints(vec![(slide, mm(1.0))]);
+    let problem = proboscis::Control::over(ms(100.0), 12)
+        .goal(goal)
+        .voltage_bounds(0.0, kv(9.0))
+        .effort(1.0);
+    let given = problem.clone().solve(&system).unwrap();
+    assert!(given.is_solved() && given.objective > 1e-4 && given.parameters.is_empty());
+    let layer = Parameter::new("layer", um(30.0)..=um(80.0), um(50.0)).is(muscle.layer_thickness());
+    let found = problem.seek(layer).solve(&system).unwrap();
+    assert!(found.is_solved());
+    // Voltage and thickness enter as their ratio alone: the thinnest layers take least voltage, in proportion.
+    let [parameter] = &found.parameters[..] else {
+        panic!("one parameter");
+    };
+    assert!(parameter.is_at_bound && (parameter.value - um(30.0)).abs() < 1e-6 * um(30.0));
+    let ratio = found.objective / given.objective;
+    assert!((ratio - 0.36).abs() < 1e-5, "{ratio}");
 }
