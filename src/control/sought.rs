@@ -77,7 +77,7 @@ pub(super) fn check(
     }
     let ends = [("start", &control.start), ("goal", &control.goal)];
     for ((place, state), z) in ends.into_iter().zip(rest) {
-        if let (BoundaryState::RestAtVoltages(voltages), Some(z)) = (state, z) {
+        if let (BoundaryState::RestAtVoltages(voltages, _), Some(z)) = (state, z) {
             for index in 0..control.parameters.len() {
                 check_rest(model, (place, voltages, z), index)?;
             }

@@ -4,7 +4,7 @@ use crate::common::cases::{control, joints};
 use crate::common::trunk;
 use crate::optimality::{Optimum, solve};
 use proboscis::State;
-use proboscis::control::problem::{BoundaryState, Control, Duration, PathConstraint};
+use proboscis::control::problem::{BoundaryState, Control, Duration, PathConstraint, Rest};
 use proboscis::control::{BoundaryConditions, BoundaryError};
 use proboscis::ipopt::Start;
 use proboscis::model::system::System;
@@ -169,7 +169,7 @@ fn parameters_are_refused_where_they_may_not_act() {
     says(silent, "nothing that moves reads it");
     // Equilibria under voltage depend on the modulus; without voltage they do not.
     let at_rest = Control {
-        start: BoundaryState::RestAtVoltages(vec![0.0, 900.0]),
+        start: BoundaryState::RestAtVoltages(vec![0.0, 900.0], Rest::Everything),
         ..with(vec![modulus()])
     };
     says(at_rest, "state of rest at the start depends on it");
