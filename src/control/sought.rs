@@ -119,9 +119,9 @@ fn check_rest(
         let size = model.length();
         let sizes = model.sizes();
         let count = model.coordinate_count();
-        let moved = z[..count].iter().zip(&found.z).zip(sizes);
+        let mut moved = z[..count].iter().zip(&found.z).zip(sizes);
         let is_same = |((a, b), s): ((&f64, &f64), f64)| (a - b).abs() <= SAME * s.min(size);
-        if !moved.map(is_same).all(|same| same) {
+        if !moved.all(is_same) {
             return Err(refused("depends on it"));
         }
     }

@@ -203,7 +203,8 @@ pub fn check(system: &System, parameters: &[Parameter]) -> Result<(), NotSought>
         if constants.is_empty() {
             return not("it is no constant of a component".to_owned());
         }
-        if !(lower < upper && lower <= guess && guess <= upper) || !guess.is_finite() {
+        let is_within = lower < upper && lower <= guess && guess <= upper;
+        if !is_within || !guess.is_finite() {
             return not(format!(
                 "a guess of {guess} is not within the bounds {lower} and {upper}"
             ));
@@ -224,7 +225,7 @@ pub fn check(system: &System, parameters: &[Parameter]) -> Result<(), NotSought>
                 return not(reason);
             }
             let least = offset + (factor * lower).min(factor * upper);
-            if constant.is_positive() && !(least > 0.0) {
+            if constant.is_positive() && (least <= 0.0 || least.is_nan()) {
                 return not("its bounds have to be positive".to_owned());
             }
             if matches!(constant, Constant::JointDamping(_)) && offset != 0.0 {
