@@ -5,7 +5,7 @@
 //! - `inspect`, `sparsity`, `check`, `templates`: the other commands.
 //! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
 //! - `accuracy_table`, `blocks`, `comparison`, `extent`: what is told of a result.
-//! - `rest_observed`, `rest_refused`, `rest_words`, `words`, `folder`, `progress`, `request`, `error`: what commands share.
+//! - `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `progress`, `request`, `error`: what commands share.
 
 mod accuracy_table;
 mod blocks;
@@ -33,6 +33,7 @@ mod sparsity;
 mod summary;
 mod task;
 mod templates;
+mod tracking_words;
 mod unfinished;
 mod words;
 

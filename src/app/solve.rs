@@ -15,6 +15,7 @@ use crate::app::solve_words::{meaning, redundancy};
 use crate::app::summary::{
     Evaluations, LinearSystems, MEASURED, PerInterval, Program, Seconds, SoughtValue, Summary,
 };
+use crate::app::tracking_words;
 use crate::app::unfinished::Unfinished;
 use crate::app::words::counted;
 use crate::control::problem::{Control, Hold};
@@ -37,7 +38,7 @@ use crate::workflow::motion::{history, solved, trajectory};
 use crate::workflow::optimise::{Iterate, Optimum, SolveLimits};
 use crate::workflow::resimulate::{Cause, Resimulation, under_constant_voltages};
 use crate::workflow::second_start::is_infeasible;
-use crate::workflow::tracking::{self, Tracked, tracked};
+use crate::workflow::tracking::tracked;
 use crate::workflow::violations::Violation;
 
 /// Length of the motion under constant voltages that is drawn beside the optimal one, in durations.
@@ -250,7 +251,9 @@ fn write_files(
     let half = optimum.resimulation.as_ref().and_then(|r| r.half.as_ref());
     let half = half.map(|history| Trajectory::from_history(model, history));
     summary.tracking = tracked(&model.system, control, &motion, half.as_ref());
-    summary.notes.extend(tracking::told(&summary.tracking));
+    summary
+        .notes
+        .extend(tracking_words::told(&summary.tracking));
     summary.write(folder)?;
     let is_solved = summary.message.is_none();
     let compared = is_solved
@@ -306,7 +309,7 @@ fn rows(summary: &Summary) -> Vec<(String, String)> {
                 row(&format!("drift when held for {held} s"), of(drift));
             }
         }
-        for (key, value) in summary.tracking.iter().map(Tracked::row) {
+        for (key, value) in summary.tracking.iter().map(tracking_words::row) {
             row(&key, value);
         }
         for violation in &program.violations {

@@ -5,12 +5,8 @@ use serde::Serialize;
 use crate::control::Signal;
 use crate::control::problem::{Control, CostFunction, During, QuantityCost};
 use crate::dynamics::trajectory::Trajectory;
-use crate::math::significant;
 use crate::model::system::{Joint, System};
 use crate::model::{Quantity, joint_unit};
-
-/// Most joints that notes name one by one.
-const NAMED: usize = 3;
 
 /// A marker or a joint, what it was to follow, and how closely it did.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -184,44 +180,4 @@ impl TrackingError {
             time_of_maximum: times[worst] / 1e3,
         }
     }
-}
-
-impl Tracked {
-    /// Its deviations in words.
-    fn words(&self) -> String {
-        let shown = |value: f64| match self.unit {
-            "m" => format!("{} mm", significant(1e3 * value, 3)),
-            unit => format!("{} {unit}", significant(value, 3)),
-        };
-        let [rms, most] = [self.error.rms, self.error.maximum].map(shown);
-        format!("{rms} rms and at most {most}")
-    }
-
-    /// A row of a table: what follows, and its deviations.
-    pub(crate) fn row(&self) -> (String, String) {
-        let Self { kind, name, .. } = self;
-        let key = format!("deviation of {kind} {name} from its path");
-        (key, self.words())
-    }
-}
-
-/// Lines that tell how closely a motion follows; of many joints the worst.
-pub(crate) fn told(tracked: &[Tracked]) -> Vec<String> {
-    let joints = tracked.iter().filter(|one| one.kind == "joint");
-    let count = joints.clone().count();
-    let worst = joints.max_by(|a, b| a.error.maximum.total_cmp(&b.error.maximum));
-    let line = |one: &Tracked| {
-        let Tracked {
-            kind, name, error, ..
-        } = one;
-        let time = significant(error.time_of_maximum, 3);
-        let words = one.words();
-        format!("{kind} {name} deviates from its path by {words} (at {time} s)")
-    };
-    let is_told = |one: &&Tracked| one.kind == "marker" || count <= NAMED;
-    let mut lines: Vec<String> = tracked.iter().filter(is_told).map(line).collect();
-    if let Some(worst) = worst.filter(|_| count > NAMED) {
-        lines.push(format!("of {count} joints that follow, {}", line(worst)));
-    }
-    lines
 }
