@@ -66,8 +66,12 @@ impl<'a, K: Kernel> Places<'a, K> {
         part: &mut Part,
     ) {
         let vectors = K::vectors(self.element);
-        for side in (0..4).filter(|&side| self.mask.blocks[side]) {
-            self.blocks(c, (rows.clone(), columns.clone()), side, d, part);
+        if K::READINGS == 1 {
+            self.single_blocks(c, (rows.clone(), columns), d, part);
+        } else {
+            for side in (0..4).filter(|&side| self.mask.blocks[side]) {
+                self.blocks(c, (rows.clone(), columns.clone()), side, d, part);
+            }
         }
         for i in 0..vectors * K::READINGS {
             if rows.contains(&i) {
@@ -76,6 +80,40 @@ impl<'a, K: Kernel> Places<'a, K> {
         }
         for s in 0..K::scalars(self.element) {
             self.entries(c, s, d, part);
+        }
+    }
+
+    /// Adds the blocks of all pairs of arguments where each vector is read once: each block is made once for all sides.
+    #[inline(always)]
+    fn single_blocks<D: Derivatives>(
+        &self,
+        c: f64,
+        (rows, columns): (Range<usize>, Range<usize>),
+        d: &D,
+        part: &mut Part,
+    ) {
+        let vectors = K::vectors(self.element);
+        let weights = |i: usize| K::vector(self.element, i).stencil.weights(self.h);
+        for i in (0..vectors).filter(|i| rows.contains(i)) {
+            for j in (0..vectors).filter(|j| columns.contains(j)) {
+                let slot = self.slots.vectors(i, j);
+                let Some(slot) = slot.filter(|_| K::couples(i, j)) else {
+                    continue;
+                };
+                let (wi, wj) = (weights(i), weights(j));
+                let block = d.block(i, j);
+                for side in 0..4 {
+                    let weight = c * wi[side / 2] * wj[side % 2];
+                    if !self.mask.blocks[side] || weight == 0.0 {
+                        continue;
+                    }
+                    if K::ISOTROPIC {
+                        part.blocks.isotropic[slot][side] += weight * block[(0, 0)];
+                    } else {
+                        part.blocks.full[slot][side] += block * weight;
+                    }
+                }
+            }
         }
     }
 
