@@ -66,7 +66,8 @@ impl<'a, K: Kernel> Places<'a, K> {
         part: &mut Part,
     ) {
         let vectors = K::vectors(self.element);
-        if K::READINGS == 1 {
+        let sides = self.mask.blocks.iter().filter(|&&side| side).count();
+        if K::READINGS == 1 && sides > 1 {
             self.single_blocks(c, (rows.clone(), columns), d, part);
         } else {
             for side in (0..4).filter(|&side| self.mask.blocks[side]) {
