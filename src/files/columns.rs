@@ -26,11 +26,7 @@ fn parts(header: &str) -> (&str, Option<&str>) {
 impl Columns {
     /// Reads a file that a problem names: relative to the problem, otherwise to the current folder.
     pub(crate) fn read(path: &str, scope: &Scope<'_>) -> Result<Self, SceneError> {
-        let candidates = [scope.document.beside(path), PathBuf::from(path)];
-        let Some(path) = candidates.into_iter().find(|path| path.is_file()) else {
-            let found = format!("{path:?}, where there is no file");
-            return Err(scope.wrong(found, "the path of a CSV file"));
-        };
+        let path = scope.file_or_result(path, "the path of a CSV file")?;
         let mistake = |cause: &dyn std::fmt::Display| {
             let found = format!("{:?}, which cannot be read ({cause})", path.display());
             scope.wrong(

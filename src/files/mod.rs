@@ -81,11 +81,7 @@ pub fn read_problem(path: &Path, overrides: &[String]) -> Result<Loaded, SceneEr
             (written, system, document.value["scene"].clone(), None)
         }
         SceneSource::Path(path) => {
-            let file = document.beside(path);
-            if !file.is_file() {
-                let found = format!("{path:?}, where there is no file");
-                return Err(scope.key("scene").wrong(found, "the path of a scene file"));
-            }
+            let file = scope.key("scene").file(path, "the path of a scene file")?;
             let mut scene = Document::read(&file)?;
             for change in of_scene.iter().filter_map(Override::in_scene) {
                 change.apply(&mut scene)?;

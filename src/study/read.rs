@@ -138,11 +138,7 @@ fn points(
         Some(path) => (path, own.key("problem")),
         None => (&spec.problem, scope.key("problem")),
     };
-    let file = seen_from_here(&scope.document.beside(written));
-    if !file.is_file() {
-        let found = format!("{written:?}, where there is no file");
-        return Err(at.wrong(found, "the path of a problem file"));
-    }
+    let file = seen_from_here(&at.file(written, "the path of a problem file")?);
     let (labels, sizes) = sizes(refine, place)?;
     let point = |k: usize, (label, size): (String, f64)| {
         let mut changes = Changes::default();

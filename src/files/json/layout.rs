@@ -49,7 +49,7 @@ fn lay_out_value(value: &str, indent: usize, used: usize, text: &mut String) {
 /// Compact JSON with a space after each comma and colon and inside braces.
 fn spaced(value: &str) -> String {
     let mut text = String::new();
-    for (character, quoted) in characters(value) {
+    for (_, character, quoted) in characters(value) {
         match character {
             ',' | ':' if !quoted => text.extend([character, ' ']),
             '{' if !quoted => text.push_str("{ "),
@@ -66,7 +66,7 @@ fn spaced(value: &str) -> String {
 
 /// Key, with its quotation marks, and value of an entry of an object.
 fn entry(item: &str) -> Option<(&str, &str)> {
-    let colon = structure(item).find(|&(_, byte)| byte == b':')?.0;
+    let colon = structure(item).find(|&(_, character)| character == ':')?.0;
     Some((&item[..colon], &item[colon + 1..]))
 }
 
@@ -74,11 +74,11 @@ fn entry(item: &str) -> Option<(&str, &str)> {
 fn split(list: &str) -> Vec<&str> {
     let mut parts = Vec::new();
     let (mut depth, mut start) = (0_usize, 0);
-    for (at, byte) in structure(list) {
-        match byte {
-            b'{' | b'[' => depth += 1,
-            b'}' | b']' => depth = depth.saturating_sub(1),
-            b',' if depth == 0 => {
+    for (at, character) in structure(list) {
+        match character {
+            '{' | '[' => depth += 1,
+            '}' | ']' => depth = depth.saturating_sub(1),
+            ',' if depth == 0 => {
                 parts.push(&list[start..at]);
                 start = at + 1;
             }
@@ -89,25 +89,17 @@ fn split(list: &str) -> Vec<&str> {
     parts
 }
 
-/// Bytes outside of strings, with their places.
-fn structure(text: &str) -> impl Iterator<Item = (usize, u8)> {
-    let (mut quoted, mut escaped) = (false, false);
-    text.bytes().enumerate().filter(move |&(_, byte)| {
-        let inside = quoted;
-        match byte {
-            _ if escaped => escaped = false,
-            b'\\' if quoted => escaped = true,
-            b'"' => quoted = !quoted,
-            _ => {}
-        }
-        !inside && byte != b'"'
-    })
+/// Characters outside of strings, with their places.
+fn structure(text: &str) -> impl Iterator<Item = (usize, char)> {
+    characters(text)
+        .filter(|&(_, character, quoted)| !quoted && character != '"')
+        .map(|(at, character, _)| (at, character))
 }
 
-/// Characters with whether they belong to a string.
-fn characters(text: &str) -> impl Iterator<Item = (char, bool)> {
+/// Characters with their places, and whether a string holds them or ends with them.
+fn characters(text: &str) -> impl Iterator<Item = (usize, char, bool)> {
     let (mut quoted, mut escaped) = (false, false);
-    text.chars().map(move |character| {
+    text.char_indices().map(move |(at, character)| {
         let inside = quoted;
         match character {
             _ if escaped => escaped = false,
@@ -115,6 +107,6 @@ fn characters(text: &str) -> impl Iterator<Item = (char, bool)> {
             '"' => quoted = !quoted,
             _ => {}
         }
-        (character, inside)
+        (at, character, inside)
     })
 }

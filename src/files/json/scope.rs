@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 use std::fmt;
+use std::path::PathBuf;
 
 use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
@@ -55,6 +56,36 @@ impl<'a> Scope<'a> {
             let candidates = names.iter().map(String::as_str);
             self.document
                 .wrong_name(&self.place, name, expected, candidates)
+        })
+    }
+
+    /// The file that a path written here names: beside the document.
+    pub(crate) fn file(&self, path: &str, expected: &str) -> Result<PathBuf, SceneError> {
+        self.first_file(path, [self.document.beside(path)], expected)
+    }
+
+    /// The same, or else in the current folder: results of earlier runs.
+    pub(crate) fn file_or_result(&self, path: &str, expected: &str) -> Result<PathBuf, SceneError> {
+        let places = [self.document.beside(path), PathBuf::from(path)];
+        self.first_file(path, places, expected)
+    }
+
+    fn first_file<const N: usize>(
+        &self,
+        path: &str,
+        places: [PathBuf; N],
+        expected: &str,
+    ) -> Result<PathBuf, SceneError> {
+        let file = places.into_iter().find(|file| file.is_file());
+        file.ok_or_else(|| self.wrong(format!("{path:?}, where there is no file"), expected))
+    }
+
+    /// That times in ms increase, at the first that does not.
+    pub(crate) fn increasing(&self, times: &[f64]) -> Result<(), SceneError> {
+        let falls = times.windows(2).position(|pair| pair[0] >= pair[1]);
+        falls.map_or(Ok(()), |index| {
+            let found = format!("{} s", times[index + 1] / 1e3);
+            Err(self.index(index + 1).wrong(found, "increasing times"))
         })
     }
 

@@ -5,7 +5,7 @@ use crate::control::problem::{Guess, Voltages};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_control::GuessSpec;
-use crate::files::problem::voltages::{existing, over_time};
+use crate::files::problem::voltages::{SOLUTION_PATH, over_time};
 use crate::files::solution::SolutionFile;
 use crate::math::random::Random;
 use crate::model::system::{Source, System};
@@ -27,7 +27,7 @@ pub(crate) fn guess(
     let solution = spec.solution.as_ref().map(|solution| -> Build<'_> {
         let scope = scope.key("solution");
         Box::new(move || {
-            let path = existing(solution, &scope)?;
+            let path = scope.file_or_result(solution, SOLUTION_PATH)?;
             Ok(Guess::Solution(Earlier::new(SolutionFile(path))))
         })
     });

@@ -40,10 +40,7 @@ pub(crate) fn read(path: &Path, system: &System) -> Result<Vec<(usize, Signal)>,
     if times.is_empty() {
         return Err(place.wrong("no instant", "one or more"));
     }
-    if let Some(k) = times.windows(2).position(|pair| pair[0] >= pair[1]) {
-        let found = format!("{} s", solution.time[k + 1]);
-        return Err(place.index(k + 1).wrong(found, "increasing times"));
-    }
+    place.increasing(&times)?;
     let (joints, place) = match (solution.configuration, solution.joints) {
         (Some(configuration), _) => (
             configuration.joints,

@@ -81,10 +81,7 @@ fn rows(
         let found = format!("{} instants", instants.len());
         return Err(place.wrong(found, "2 instants or more"));
     }
-    if let Some(index) = instants.windows(2).position(|pair| pair[0] >= pair[1]) {
-        let found = format!("{} s", instants[index + 1] / 1e3);
-        return Err(place.index(index + 1).wrong(found, "increasing times"));
-    }
+    place.increasing(instants)?;
     let intervals = instants.len() - 1;
     let sources = system.sources();
     let mut rows = vec![vec![0.0; sources.len()]; intervals];

@@ -11,7 +11,7 @@ use crate::files::problem::spec_track::{
     TrackSpec,
 };
 use crate::files::problem::state::{joint_value, joint_with_coordinate, moving_marker};
-use crate::files::problem::voltages::existing;
+use crate::files::problem::voltages::SOLUTION_PATH;
 use crate::files::units::quantity::{Angle, Length};
 use crate::model::system::System;
 use crate::model::{Quantity, joint_unit};
@@ -89,7 +89,7 @@ fn of_joints(
 ) -> Result<Vec<QuantityCost>, SceneError> {
     let place = scope.key("solution");
     let weight = weight(spec.weight, scope)?;
-    let path = existing(&spec.solution, &place)?;
+    let path = place.file_or_result(&spec.solution, SOLUTION_PATH)?;
     let joints = solution_joints::read(&path, system)?;
     if joints.is_empty() {
         let found = "a scene without a revolute or prismatic joint";

@@ -7,7 +7,9 @@ use crate::files::problem::signal::signals;
 use crate::files::problem::solution_voltages::{of_solution, of_table};
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::model::system::System;
-use std::path::PathBuf;
+
+/// What a path to an earlier result should be.
+pub(crate) const SOLUTION_PATH: &str = "the path of a solution.json";
 
 /// Voltages of a simulation.
 pub(crate) fn over_time(
@@ -18,21 +20,11 @@ pub(crate) fn over_time(
     match spec {
         VoltagesSpec::Signals(map) => signals(map, system, scope),
         VoltagesSpec::Solution(solution) => {
-            let path = existing(&solution.solution, &scope.key("solution"))?;
+            let path = scope
+                .key("solution")
+                .file_or_result(&solution.solution, SOLUTION_PATH)?;
             of_solution(&path, system)
         }
         VoltagesSpec::Table(table) => of_table(table, system, scope),
     }
-}
-
-/// A file named in the problem: relative to the problem, otherwise to the current folder.
-pub(crate) fn existing(path: &str, scope: &Scope<'_>) -> Result<PathBuf, SceneError> {
-    let beside = scope.document.beside(path);
-    [beside, PathBuf::from(path)]
-        .into_iter()
-        .find(|path| path.is_file())
-        .ok_or_else(|| {
-            let found = format!("{path:?}, where there is no file");
-            scope.wrong(found, "the path of a solution.json")
-        })
 }

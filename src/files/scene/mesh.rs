@@ -46,11 +46,7 @@ fn from_file(path: &str, spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed, 
         None => DEFAULT_UNIT,
     };
     let scope = scope.key("mesh");
-    let file = scope.document.beside(path);
-    if !file.is_file() {
-        let found = format!("{path:?}, where there is no file");
-        return Err(scope.wrong(found, "the path of a Gmsh file"));
-    }
+    let file = scope.file(path, "the path of a Gmsh file")?;
     let mesh = gmsh::read(&file, unit).map_err(|error| mesh_mistake(&error, &scope))?;
     Ok(Meshed { mesh, planes: None })
 }
