@@ -119,10 +119,6 @@ impl Derivatives for Taut<'_> {
         self.row_span(i).direction * self.tension
     }
 
-    fn row(&self, _s: usize) -> f64 {
-        0.0
-    }
-
     fn block(&self, i: usize, j: usize) -> Matrix {
         let (a, b) = (self.row_span(i), self.span(j));
         let mut block = a.direction * b.direction.transpose() * self.stiffness;
@@ -130,14 +126,6 @@ impl Derivatives for Taut<'_> {
             block += a.curvature() * self.tension;
         }
         block
-    }
-
-    fn column(&self, _i: usize, _s: usize) -> Vector {
-        Vector::zeros()
-    }
-
-    fn entry(&self, _s: usize, _t: usize) -> f64 {
-        0.0
     }
 }
 
@@ -150,10 +138,6 @@ impl Derivatives for Rates<'_> {
         a.direction * (path.stiffness * path.stretch) + a.turn * path.tension
     }
 
-    fn row(&self, _s: usize) -> f64 {
-        0.0
-    }
-
     fn block(&self, i: usize, j: usize) -> Matrix {
         let (path, a, b) = (self.0, self.0.row_span(i), self.0.span(j));
         let turned = a.turn * b.direction.transpose() + a.direction * b.turn.transpose();
@@ -163,14 +147,6 @@ impl Derivatives for Rates<'_> {
             rate += a.curvature_rate() * path.tension;
         }
         rate
-    }
-
-    fn column(&self, _i: usize, _s: usize) -> Vector {
-        Vector::zeros()
-    }
-
-    fn entry(&self, _s: usize, _t: usize) -> f64 {
-        0.0
     }
 }
 

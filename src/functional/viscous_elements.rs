@@ -60,18 +60,6 @@ impl<const NODES: usize> Derivatives for ViscousLocal<NODES> {
             (j, _) => -self.by_velocity[i][j],
         }
     }
-
-    fn row(&self, _s: usize) -> f64 {
-        0.0
-    }
-
-    fn column(&self, _i: usize, _s: usize) -> Vector {
-        Vector::zeros()
-    }
-
-    fn entry(&self, _s: usize, _t: usize) -> f64 {
-        0.0
-    }
 }
 
 /// Of the virtual work of the direction: rows and columns are places and velocities.
@@ -91,18 +79,6 @@ impl<const NODES: usize> Derivatives for ViscousContraction<NODES> {
             ((i, 1), (j, _)) => -self.place_velocity[i][j],
             ((i, _), (j, _)) => -self.place_velocity[j][i].transpose(),
         }
-    }
-
-    fn row(&self, _s: usize) -> f64 {
-        0.0
-    }
-
-    fn column(&self, _i: usize, _s: usize) -> Vector {
-        Vector::zeros()
-    }
-
-    fn entry(&self, _s: usize, _t: usize) -> f64 {
-        0.0
     }
 }
 
