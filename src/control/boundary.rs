@@ -72,7 +72,6 @@ impl BoundaryConditions {
         goal_rows::leave_out_constant(&mut model, &limits, &start.z)?;
         let n = model.coordinate_count();
         let mut given = vec![None; n];
-        let mut charts = Vec::new();
         let mut at_goal = None;
         match &control.goal {
             BoundaryState::RestAtVoltages(voltages, of) => {
@@ -85,7 +84,6 @@ impl BoundaryConditions {
                 for (given, value) in given.iter_mut().zip(&rest.z[..reached]) {
                     *given = Some(*value);
                 }
-                charts = rest.z[model.action.motion.unknowns()..].to_vec();
                 at_goal = Some(rest);
             }
             BoundaryState::JointAngles { angles, .. } if redundant && all_joints => {
@@ -117,7 +115,6 @@ impl BoundaryConditions {
             start,
             goal: TerminalState {
                 coordinates: given,
-                charts,
                 rests: match &control.goal {
                     BoundaryState::Free => Rests::Nothing,
                     BoundaryState::Markers {

@@ -32,10 +32,15 @@ pub enum Rests {
 pub struct TerminalState {
     /// Given coordinates; `None` where the optimisation decides.
     pub coordinates: Vec<Option<f64>>,
-    /// Charts of the final configuration, where its coordinates are given; none otherwise, and where there are none.
-    pub charts: Vec<f64>,
     /// What rests.
     pub rests: Rests,
     /// The equilibrium that it is, where it is one under voltages that are named.
     pub rest: Option<Equilibrium>,
+}
+
+impl TerminalState {
+    /// Charts of the equilibrium that it is, behind so many unknowns; none where it is no such equilibrium.
+    pub fn charts(&self, unknowns: usize) -> &[f64] {
+        self.rest.as_ref().map_or(&[], |rest| &rest.z[unknowns..])
+    }
 }

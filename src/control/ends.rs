@@ -32,7 +32,7 @@ pub(super) fn check(
     let goal = &boundary.goal.coordinates;
     let [at_start, at_goal] = scalars;
     let first = model.action.motion.unknowns();
-    let charts = [&boundary.start.z[first..], &boundary.goal.charts];
+    let charts = [&boundary.start.z[first..], boundary.goal.charts(first)];
     let ends = [
         ("start", &start, charts[0], at_start, &control.start),
         ("goal", goal, charts[1], at_goal, &control.goal),

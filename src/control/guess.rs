@@ -85,18 +85,17 @@ fn interpolate(
     let lift = LIFT * control.voltage_unit(&model.system);
     let n = model.coordinate_count();
     let start = &boundary.start.z;
-    let mut end = start.clone();
-    for (value, given) in end.iter_mut().zip(&boundary.goal.coordinates) {
-        *value = given.unwrap_or(*value);
-    }
-    if let Some(rest) = &boundary.goal.rest {
-        end[..n].copy_from_slice(&rest.z[..n]);
-    }
+    let end = match &boundary.goal.rest {
+        Some(rest) => rest.z.clone(),
+        None => {
+            let mut end = start.clone();
+            for (value, given) in end.iter_mut().zip(&boundary.goal.coordinates) {
+                *value = given.unwrap_or(*value);
+            }
+            end
+        }
+    };
     let motion = &model.action.motion;
-    let charts = end[motion.unknowns()..].iter_mut();
-    charts
-        .zip(&boundary.goal.charts)
-        .for_each(|(value, chart)| *value = *chart);
     let smooth = |s: f64| s * s * (3.0 - 2.0 * s);
     let ends = joints_of(model, start).zip(joints_of(model, &end));
     let z = (0..=intervals).map(|k| {

@@ -117,9 +117,7 @@ fn distances(
                 return Vec::new();
             };
             let mut there = model.action.motion.instant();
-            let (n, charts) = (boundary.goal.coordinates.len(), &boundary.goal.charts);
-            there.z[..n].copy_from_slice(&rest.z[..n]);
-            there.z[model.action.motion.unknowns()..].copy_from_slice(charts);
+            there.z.copy_from_slice(&rest.z);
             model.action.motion.place(&mut there);
             let markers = 0..model.markers.len();
             let places = markers.map(|m| of_marker(m, &there.x[model.markers[m]].into()));

@@ -157,7 +157,7 @@ impl<'m> Transcription<'m> {
         instants[0].z.copy_from_slice(&boundary.start.z);
         let charts = instants[intervals].z[unknown_count..].iter_mut();
         charts
-            .zip(&boundary.goal.charts)
+            .zip(boundary.goal.charts(unknown_count))
             .for_each(|(value, chart)| *value = *chart);
         for (value, goal) in instants[intervals].z.iter_mut().zip(goal) {
             *value = goal.unwrap_or(*value);
