@@ -1,4 +1,4 @@
-# make trunk: the elephant trunk from nothing to pictures.  make test: the laws.  make help: the rest.
+# make trunk: the elephant trunk from nothing to pictures.  make test: the tests.  make help: the rest.
 
 export PATH := $(PATH):$(or $(CARGO_HOME),$(HOME)/.cargo)/bin
 

@@ -5,7 +5,7 @@ use crate::action::not_trivial;
 use crate::common::random::Random;
 use crate::common::sought::{parameters, problem, robot};
 use proboscis::control::problem::{Control, Voltages};
-use proboscis::control::{BoundaryConditions, Column, Transcription, guess};
+use proboscis::control::{BoundaryConditions, Column, InitialGuess, Transcription, guess};
 use proboscis::model::{Coordinates, Model, Role, with_parameters};
 use proboscis::nlp::{Nlp, differences};
 use std::collections::HashMap;
@@ -25,6 +25,20 @@ fn variants() -> Vec<Control> {
     both.into_iter().flat_map(of).collect()
 }
 
+/// Does `check` with the program of each variant, at a point beside its start.
+fn for_each_program(
+    check: impl Fn(&Control, &Model, &InitialGuess, &mut Transcription<'_>, &[f64]),
+) {
+    let system = robot();
+    for control in variants() {
+        let (model, boundary) = BoundaryConditions::resolve(&system, &control, H).unwrap();
+        let initial = guess(&model, &boundary, &control, H, None);
+        let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
+        let x = noisy(&program, program.start(&initial).x);
+        check(&control, &model, &initial, &mut program, &x);
+    }
+}
+
 fn noisy(program: &Transcription<'_>, start: Vec<f64>) -> Vec<f64> {
     let mut random = Random(17);
     let noise = |x: f64| x + 0.07 * random.unit();
@@ -34,19 +48,13 @@ fn noisy(program: &Transcription<'_>, start: Vec<f64>) -> Vec<f64> {
 
 #[test]
 fn derivatives_are_differences() {
-    let system = robot();
-    for control in variants() {
-        let (model, boundary) = BoundaryConditions::resolve(&system, &control, H).unwrap();
-        let initial = guess(&model, &boundary, &control, H, None);
-        let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
-        let start = program.start(&initial).x;
-        let x = noisy(&program, start);
-        let report = differences::check(&mut program, &x, 5);
+    for_each_program(|control, _, _, program, x| {
+        let report = differences::check(program, x, 5);
         let what = format!("{:?} {:?}", control.coordinates, control.duration);
         println!("{what}: {report}");
         assert!(report.is_consistent(), "{what}: {report}");
-        not_trivial(&what, &mut program, &x);
-    }
+        not_trivial(&what, program, x);
+    });
 }
 
 /// Rows, and entries of Jacobian and Hessian without parameters, unscaled, by names.
@@ -96,13 +104,8 @@ fn numbers(program: &mut Transcription<'_>, model: &Model, x: &[f64]) -> Numbers
 #[test]
 fn a_program_with_parameters_is_that_of_the_system_made_with_their_values() {
     let system = robot();
-    for control in variants() {
-        let (model, boundary) = BoundaryConditions::resolve(&system, &control, H).unwrap();
-        let initial = guess(&model, &boundary, &control, H, None);
-        let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
-        let start = program.start(&initial).x;
-        let x = noisy(&program, start);
-        let history = program.decode(&x);
+    for_each_program(|control, model, initial, program, x| {
+        let history = program.decode(x);
         let parameters = parameters(&system);
         let values: Vec<f64> = {
             let range = model.variables.range(Role::Parameter);
@@ -119,7 +122,7 @@ fn a_program_with_parameters_is_that_of_the_system_made_with_their_values() {
         };
         let (other, boundary) = BoundaryConditions::resolve(&anew, &given, H).unwrap();
         assert_eq!(other.variables.count(Role::Parameter), 0);
-        let mut plain = Transcription::new(&other, &boundary, &given, &initial).unwrap();
+        let mut plain = Transcription::new(&other, &boundary, &given, initial).unwrap();
         // The same point: columns of parameters left out, multipliers in the scales of the other program.
         let mut history = history;
         let count = other.variables.of(proboscis::model::Time::Interval).len();
@@ -128,7 +131,7 @@ fn a_program_with_parameters_is_that_of_the_system_made_with_their_values() {
             .iter_mut()
             .for_each(|row| row.truncate(count));
         let y = plain.encode(&history, history.times[1]);
-        let (g, matrices) = numbers(&mut program, &model, &x);
+        let (g, matrices) = numbers(program, model, x);
         let (expected, expected_matrices) = numbers(&mut plain, &other, &y);
         let size = expected.values().fold(0.0_f64, |a, b| a.max(b.abs()));
         assert!(size > 1e-6);
@@ -157,7 +160,7 @@ fn a_program_with_parameters_is_that_of_the_system_made_with_their_values() {
             }
             assert!(seen > 50 && largest > 0.0);
         }
-    }
+    });
 }
 
 #[test]

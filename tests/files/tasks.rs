@@ -6,6 +6,7 @@ use proboscis::control::problem::{Afterwards, BoundaryState, Task, Voltages};
 use proboscis::dynamics::Integrator;
 use proboscis::files::read_problem;
 use std::fs;
+use std::path::Path;
 
 #[test]
 fn the_method_of_a_simulation_is_read_and_checked() {
@@ -82,7 +83,12 @@ fn simulation_and_solution_are_checked() {
 fn with_table(table: &str) -> Result<Voltages, String> {
     let problem = r#"{ "scene": "scene.json", "simulate": { "duration": "1 s", "step": "10 ms", "voltages": TABLE } }"#;
     let (_folder, path) = folder(SCENE, &problem.replace("TABLE", table));
-    match read_problem(&path, &[]) {
+    voltages_of(&path)
+}
+
+/// The voltages of a simulation, or the message why it cannot be read.
+fn voltages_of(simulation: &Path) -> Result<Voltages, String> {
+    match read_problem(simulation, &[]) {
         Ok(loaded) => match loaded.task {
             Task::Simulate(simulation) => Ok(simulation.voltages),
             _ => panic!("a simulation"),
@@ -159,13 +165,7 @@ fn with_csv(text: &[u8], csv: &str) -> Result<Voltages, String> {
     let problem = r#"{ "scene": "scene.json", "simulate": { "duration": "1 s", "step": "10 ms", "voltages": { "muscle1": { "csv": CSV } } } }"#;
     let (folder, path) = folder(SCENE, &problem.replace("CSV", csv));
     fs::write(folder.path().join("voltages.csv"), text).unwrap();
-    match read_problem(&path, &[]) {
-        Ok(loaded) => match loaded.task {
-            Task::Simulate(simulation) => Ok(simulation.voltages),
-            _ => panic!("a simulation"),
-        },
-        Err(error) => Err(error.to_string()),
-    }
+    voltages_of(&path)
 }
 
 #[test]
