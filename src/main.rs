@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
-use proboscis::app::{self, CommandError, CommandInput, CommandOutput, ProgressDisplay};
+use proboscis::app::{self, CommandError, CommandInput, CommandOutput, ProgressDisplay, StartsIn};
 use proboscis::files::printable;
 use proboscis::ipopt::interrupt;
 use proboscis::study::{StudyRequest, study};
@@ -38,6 +38,9 @@ enum Command {
         /// Seed of the random starting points.
         #[arg(long, value_name = "SEED", default_value_t = 1, requires = "starts")]
         seed: u64,
+        /// Solve from each starting point in a process of its own, in place of threads; with MUMPS it is always so.
+        #[arg(long, requires = "starts")]
+        processes: bool,
     },
     /// Simulate a problem forward in time, or do what else its file asks.
     Simulate(InTime),
@@ -278,14 +281,19 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
             max_iterations,
             starts,
             seed,
+            processes,
         } => {
             interrupt::install();
             let request = CommandInput {
                 max_iterations,
                 ..problem.request()
             };
+            let run_in = match processes {
+                true => StartsIn::Processes,
+                false => StartsIn::Threads,
+            };
             match starts {
-                Some(starts) => app::solve_from_starts(&request, starts, seed),
+                Some(starts) => app::solve_from_starts(&request, starts, seed, run_in),
                 None => app::run(&request),
             }
         }

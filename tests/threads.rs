@@ -1,8 +1,9 @@
-//! One thread and two give the same bits.
+//! One thread and several give the same bits, and answer each for itself.
 
 mod common;
 
 use common::cases::{control, open_end, rest_to_rest};
+use common::random_goals::{self, Goals, Kind, Solved, solved};
 use common::solid::{DRIVEN, electrode, held};
 use common::systems::blocks;
 use common::trunk;
@@ -14,7 +15,13 @@ use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
 use proboscis::model::system::{Potential, System};
 use proboscis::nlp::Nlp;
+use proboscis::workflow::at_once::{at_once, cores};
+use serde_json::json;
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Barrier;
+use std::thread;
 
 /// Rows, Jacobian and Hessian of the trunk at a point between guess and noise.
 fn values() -> [Vec<f64>; 3] {
@@ -45,7 +52,7 @@ fn of_program(system: &System, control: &Control, h: f64) -> [Vec<f64>; 3] {
 
 #[test]
 fn one_thread_and_two_give_the_same_bits() {
-    let pair = std::thread::spawn(values).join().unwrap();
+    let pair = thread::spawn(values).join().unwrap();
     // A thread that belongs to a pool already gets no helper.
     let alone = rayon::ThreadPoolBuilder::new()
         .num_threads(1)
@@ -119,4 +126,101 @@ fn a_large_block_has_the_same_bits_on_one_thread_and_two() {
             assert_eq!(a.to_bits(), b.to_bits());
         }
     }
+}
+
+/// Kept problems with random goals: files and changes.
+fn goals() -> Vec<(PathBuf, Vec<String>)> {
+    let kept = |name: &str| format!("{}/problems/{name}.json", env!("CARGO_MANIFEST_DIR"));
+    let mut goals = Goals::new(12);
+    let mut all = Vec::new();
+    for round in 0..4 {
+        for (kind, intervals) in [(Kind::Rest, 10), (Kind::Tip, 14)] {
+            let goal = goals.draw(kind).json;
+            let duration = [0.6, 0.25][round % 2];
+            let changes = vec![
+                format!("control.goal={goal}"),
+                format!("control.intervals={intervals}"),
+                format!("control.duration={duration} s"),
+            ];
+            all.push((random_goals::trunk(), changes));
+        }
+        for name in ["pair", "pair_time"] {
+            let goal = json!({ "rest_at_voltages": { "muscle2": 900 + 271 * round } });
+            let changes = vec![format!("control.goal={goal}")];
+            all.push((kept(name).into(), changes));
+        }
+    }
+    // From 32 intervals on a thread that is alone evaluates both halves at once.
+    let goal = goals.draw(Kind::Rest).json;
+    all.push((random_goals::trunk(), vec![format!("control.goal={goal}")]));
+    all
+}
+
+#[test]
+fn random_goals_in_four_threads_are_solved_to_the_same_bits() {
+    let goals = goals();
+    let solve = |(problem, changes): &(PathBuf, Vec<String>)| solved(problem, changes);
+    let alone: Vec<Solved> = goals.iter().map(solve).collect();
+    let words = alone.iter().filter(|one| one.word == "solved");
+    assert!(words.count() >= 12, "{alone:?}");
+    let driven = alone.iter().filter(|one| one.voltage > 100).count();
+    assert!(driven >= 12, "{driven}");
+    let ways: BTreeSet<usize> = alone.iter().map(|one| one.iterations).collect();
+    assert!(ways.len() >= 5, "{ways:?}");
+    let together = at_once(&goals, 4, solve, |_, _| {});
+    for ((one, other), goal) in alone.iter().zip(&together).zip(&goals) {
+        assert!(other.as_ref() == Ok(one), "{goal:?}");
+    }
+}
+
+#[test]
+fn a_panic_is_the_end_of_one_answer_alone() {
+    let items: Vec<i32> = (0..20).collect();
+    let mut heard = Vec::new();
+    let square = |&i: &i32| match i {
+        3 => panic!("three is no number"),
+        i => i * i,
+    };
+    let told = |index: usize, answered: &Result<i32, String>| {
+        heard.push((index, answered.clone()));
+    };
+    let answers = at_once(&items, 3, square, told);
+    assert_eq!(answers.len(), 20);
+    for (i, answer) in answers.iter().enumerate() {
+        match answer {
+            Ok(square) => assert!(i != 3 && *square == (i * i) as i32),
+            Err(message) => assert!(i == 3 && message.contains("three is no number")),
+        }
+    }
+    heard.sort_by_key(|(index, _)| *index);
+    let heard: Vec<_> = heard.into_iter().map(|(_, answer)| answer).collect();
+    assert_eq!(heard, answers);
+    let none: [i32; 0] = [];
+    assert!(at_once(&none, 3, square, |_, _| {}).is_empty());
+}
+
+#[test]
+fn answers_are_found_at_once_each_on_its_share_of_the_cores() {
+    // Three who wait for each other come together only if they run at once.
+    let meeting = Barrier::new(3);
+    let here = thread::current().id();
+    let answer = |_: &i32| {
+        meeting.wait();
+        (rayon::current_num_threads(), thread::current().id())
+    };
+    let answers = at_once(&[1, 2, 3], 3, answer, |_, _| {
+        assert_eq!(thread::current().id(), here);
+    });
+    let answers: Vec<_> = answers.into_iter().map(Result::unwrap).collect();
+    let share = (cores() / 3).max(1);
+    assert!(answers.iter().all(|(threads, _)| *threads == share));
+    let all = [here]
+        .into_iter()
+        .chain(answers.into_iter().map(|(_, id)| id));
+    assert_eq!(
+        all.map(|id| format!("{id:?}"))
+            .collect::<BTreeSet<_>>()
+            .len(),
+        4
+    );
 }

@@ -1,7 +1,7 @@
 //! What the commands do: files in, files and words out.
 //!
 //! - `solve`, `forward`, `rest`: the three tasks; `task` chooses what a file asks for; `path`, `followed`: paths of equilibria.
-//! - `multistart`: a control problem from several guesses, each in a process of its own.
+//! - `multistart`: a control problem from several guesses, in threads or processes.
 //! - `inspect`, `sparsity`, `check`, `templates`: the other commands.
 //! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
 //! - `accuracy_table`, `blocks`, `comparison`, `extent`: what is told of a result.
@@ -42,7 +42,7 @@ pub use check::check;
 pub use error::CommandError;
 pub(crate) use folder::make_folder;
 pub use inspect::inspect;
-pub use multistart::solve_from_starts;
+pub use multistart::{StartsIn, solve_from_starts};
 pub use progress::ProgressDisplay;
 pub(crate) use progress::progress_bar;
 pub use request::{CommandInput, CommandOutput};

@@ -118,6 +118,13 @@ impl Options {
         }
     }
 
+    /// Whether solves with these options run in several threads at once: those with the linear solver along the horizon.
+    #[must_use]
+    pub fn run_at_once(&self) -> bool {
+        let is_named = self.named_linear_solver().is_some();
+        !is_named && self.linear_solver.resolve() == Some(LinearSolver::Stages)
+    }
+
     /// All options that Ipopt is given, by name; `solver` is its name of the linear solver.
     ///
     /// Ipopt is silent, reads no options file from the working directory, and leaves the scaling to the

@@ -7,10 +7,11 @@
 //! - `effects`, `reasons`, `stopwatch`: what a model consists of and why, what each term takes; `memory`: what is more than the machine has.
 //! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material.
 //! - `tracking`: how closely a motion follows what its objective names.
-//! - `motion`: between what is solved for and a trajectory.
+//! - `motion`: between what is solved for and a trajectory; `at_once`: pieces of work in several threads.
 
 pub mod accuracy;
 pub(crate) mod active;
+pub mod at_once;
 pub(crate) mod cure;
 pub(crate) mod distance;
 pub(crate) mod domain;

@@ -3,12 +3,15 @@
 #![allow(dead_code, reason = "test and bench use a part each")]
 
 use nalgebra::Vector3;
+use proboscis::control::problem::Task;
 use proboscis::dynamics::equilibrium;
 use proboscis::files::read_problem;
 use proboscis::math::random::Random;
 use proboscis::model::{Coordinates, Model};
+use proboscis::workflow::{Iterate, SolveLimits, optimise};
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
 
 /// Upper bound of the voltages in V.
 const MOST: f64 = 3000.0;
@@ -31,6 +34,51 @@ pub(crate) struct Goal {
     pub(crate) angles: Vec<f64>,
     /// Place of the tip in it in mm.
     pub(crate) tip: Vector3<f64>,
+}
+
+/// What is left of a solve: its word, and all numbers of its point and its multipliers; nothing where the goal is refused.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Solved {
+    pub(crate) word: &'static str,
+    /// Variables and all multipliers, bit by bit.
+    pub(crate) bits: Vec<u64>,
+    pub(crate) objective: u64,
+    pub(crate) iterations: usize,
+    /// The largest of the voltages in V.
+    pub(crate) voltage: u64,
+}
+
+/// Solves a kept problem with changes, in memory.
+pub(crate) fn solved(problem: &Path, changes: &[String]) -> Solved {
+    let loaded = read_problem(problem, changes).expect("a kept problem");
+    let Task::Control(control) = loaded.task else {
+        panic!("a problem of control");
+    };
+    let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
+    let allowed = SolveLimits {
+        iterations: Some(100),
+        seconds: None,
+    };
+    let optimum = optimise(&loaded.system, &control, None, allowed, &mut go_on);
+    let Ok(optimum) = optimum else {
+        return Solved::default();
+    };
+    let solution = &optimum.solution;
+    let multipliers = &solution.costates;
+    let all = [
+        &solution.x,
+        &multipliers.constraints,
+        &multipliers.lower,
+        &multipliers.upper,
+    ];
+    let voltages = optimum.motion.voltages.iter().flatten();
+    Solved {
+        word: optimum.word(),
+        bits: all.into_iter().flatten().map(|v| v.to_bits()).collect(),
+        objective: solution.objective.to_bits(),
+        iterations: solution.iterations.len(),
+        voltage: voltages.fold(0.0_f64, |m, v| m.max(*v)) as u64,
+    }
 }
 
 /// Draws goals of a trunk.

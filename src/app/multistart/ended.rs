@@ -1,14 +1,12 @@
 //! How one start ended, and which of them found one optimum.
 
-use super::launch::{Running, folder_of};
+use super::launch::{Start, folder_of};
 use crate::app::error::CommandError;
 use crate::ipopt::interrupt;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{self};
-use std::io::{Read, Seek};
 use std::path::Path;
-use std::process::ExitStatus;
 
 /// Relative difference of the objectives of one optimum.
 pub(super) const SAME_OBJECTIVE: f64 = 1e-6;
@@ -25,6 +23,9 @@ pub(super) struct Ended {
     pub(super) seed: Option<u64>,
     /// The word of its summary; `not_started`, or `failed` where it left none.
     pub(super) status: String,
+    /// Why it left no summary.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) message: Option<String>,
     pub(super) objective: Option<f64>,
     pub(super) iterations: Option<usize>,
     /// Greatest violation of an equation or limit.
@@ -64,18 +65,26 @@ pub(super) struct SolutionRecord {
     pub(super) voltages: BTreeMap<String, Vec<f64>>,
 }
 
+/// What a start says when it has ended.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Said {
+    Solved,
+    /// Its files tell why; where it left none, these words do.
+    Unsolved(String),
+    /// It broke off.
+    Failed(String),
+    /// The input is wrong.
+    Refused(String),
+}
+
 impl Ended {
     /// A start that left no files.
-    pub(super) fn without_files(
-        start: usize,
-        seed: Option<u64>,
-        status: &str,
-        seconds: f64,
-    ) -> Self {
+    pub(super) fn without_files(start: Start, status: &str, seconds: f64) -> Self {
         Self {
-            start,
-            seed,
+            start: start.number,
+            seed: start.seed,
             status: status.to_owned(),
+            message: None,
             objective: None,
             iterations: None,
             infeasibility: None,
@@ -92,30 +101,33 @@ impl Ended {
     /// # Errors
     /// It says that the input is wrong.
     pub(super) fn of(
-        mut done: Running,
-        status: ExitStatus,
+        start: Start,
+        said: Said,
+        seconds: f64,
         folder: &Path,
     ) -> Result<Self, CommandError> {
-        let Running { start, seed, .. } = done;
-        if status.code() == Some(2) {
-            let mut told = String::new();
-            done.told.rewind().ok();
-            done.told.read_to_string(&mut told).ok();
-            let told = told.trim_end();
-            let message = told.strip_prefix("error: ").unwrap_or(told).to_owned();
-            return Err(CommandError::Start { start, message });
-        }
-        let path = folder_of(folder, start);
-        let Some(summary) = parsed::<Summary>(&path.join("summary.json")) else {
-            let seconds = done.began.elapsed().as_secs_f64();
-            let word = if interrupt::requested() {
-                "interrupted"
-            } else {
-                "failed"
-            };
-            return Ok(Self::without_files(start, seed, word, seconds));
+        let failed = |message: String| match interrupt::requested() {
+            true => Self::without_files(start, "interrupted", seconds),
+            false => Self {
+                message: Some(message).filter(|message| !message.is_empty()),
+                ..Self::without_files(start, "failed", seconds)
+            },
         };
-        let is_solved = status.success();
+        let (is_solved, message) = match said {
+            Said::Solved => (true, String::new()),
+            Said::Unsolved(message) => (false, message),
+            Said::Failed(message) => return Ok(failed(message)),
+            Said::Refused(message) => {
+                return Err(CommandError::Start {
+                    start: start.number,
+                    message,
+                });
+            }
+        };
+        let path = folder_of(folder, start.number);
+        let Some(summary) = parsed::<Summary>(&path.join("summary.json")) else {
+            return Ok(failed(message));
+        };
         let solution = match is_solved {
             true => parsed::<SolutionRecord>(&path.join("solution.json")),
             false => None,
@@ -124,17 +136,15 @@ impl Ended {
             solution.voltages.into_values().flatten().collect()
         });
         Ok(Self {
-            start,
-            seed,
             status: summary.status,
             objective: summary.objective,
             iterations: summary.iterations,
             infeasibility: summary.infeasibility,
             seconds: summary.seconds.total,
-            optimum: None,
             is_solved,
             voltages,
             notes: summary.notes,
+            ..Self::without_files(start, "", seconds)
         })
     }
 

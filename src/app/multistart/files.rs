@@ -1,23 +1,24 @@
 //! The files of the best start, and the table of all.
 
+use super::batch::{Batch, StartsIn};
 use super::ended::{Ended, best};
 use super::launch::folder_of;
 use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
-use crate::app::request::{CommandInput, CommandOutput};
-use crate::files::lay_out;
+use crate::app::request::CommandOutput;
+use crate::files::{lay_out, printable};
 use crate::ipopt::interrupt;
 use crate::report::atomic::{self, WriteError};
 use crate::report::table::{aligned, cells_csv};
 use serde::Serialize;
 use std::fs::{self};
 use std::path::Path;
-use std::time::Instant;
 
 /// The section `starts` of `summary.json`.
 #[derive(Debug, Serialize)]
 pub(super) struct Section<'a> {
     pub(super) command: &'a str,
+    pub(super) run_in: StartsIn,
     pub(super) count: usize,
     pub(super) solved: usize,
     pub(super) distinct_optima: usize,
@@ -30,12 +31,16 @@ pub(super) struct Section<'a> {
 
 /// Writes the files of the best start and the table of all, and tells of them.
 pub(super) fn write(
-    request: &CommandInput,
-    folder: &Path,
+    batch: &Batch<'_>,
     ended: &[Ended],
     distinct: usize,
-    began: Instant,
 ) -> Result<CommandOutput, CommandError> {
+    let Batch {
+        request,
+        run_in,
+        folder,
+        ..
+    } = *batch;
     let origin = request.origin(true);
     let csv = cells_csv(&cells(ended), &origin);
     atomic::write(&folder.join("starts.csv"), csv.as_bytes())?;
@@ -43,9 +48,10 @@ pub(super) fn write(
     let first = ended.iter().find(|one| one.optimum == Some(1));
     let best = first.or_else(|| best(ended).map(|i| &ended[i]));
     let solved = ended.iter().filter(|one| one.is_solved).count();
-    let seconds = began.elapsed().as_secs_f64();
+    let seconds = batch.began.elapsed().as_secs_f64();
     let section = Section {
         command: &request.command,
+        run_in,
         count: ended.len(),
         solved,
         distinct_optima: distinct,
@@ -68,6 +74,10 @@ pub(super) fn write(
         _ => format!("not solved: {counts}"),
     };
     let mut notes = best.map_or_else(Vec::new, |best| best.notes.clone());
+    for one in ended {
+        let told = one.message.as_deref().map(printable);
+        notes.extend(told.map(|message| format!("start {} failed: {message}", one.start)));
+    }
     if interrupt::requested() {
         notes.push("interrupted; the files hold the best start that had ended".to_owned());
     }

@@ -1,12 +1,14 @@
-//! A control problem solved from several starting points, each in a process of its own.
+//! A control problem solved from several starting points, in threads or in processes.
 //!
-//! Ipopt with MUMPS takes one solve at a time in a process. Each start is an ordinary `solve` of the same problem with
-//! another guess in a folder of its own, `starts/03`, and can be run again alone.
+//! Each start is an ordinary `solve` of the same problem with another guess in a folder of its own, `starts/03`, and can be run again
+//! alone. Ipopt with MUMPS takes one solve at a time in a process, so that each start has a process of its own then.
 
+mod batch;
 mod ended;
 mod files;
 mod launch;
 mod processes;
+mod threads;
 
 use std::fs::{self};
 use std::path::Path;
@@ -18,15 +20,18 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::words::key;
 use crate::control::problem::Task;
 use crate::files::read_problem;
+use crate::ipopt::Options;
 use crate::workflow::memory;
 use crate::workflow::resolve::resolve;
+use batch::Batch;
+pub use batch::StartsIn;
 use ended::number_optima;
 use files::write;
-use launch::FOLDER;
-use processes::run_all;
+use launch::{FOLDER, Start};
 
 /// Most starting points of one command; the seed of a start is that of the command times this number and its own.
 const MOST: usize = 1000;
+
 /// Solves a control problem from its own guess and from `starts − 1` random ones, as many at once as there are cores.
 ///
 /// The files of the best solution go to the folder itself, beside `starts.csv`.
@@ -37,6 +42,7 @@ pub fn solve_from_starts(
     request: &CommandInput,
     starts: usize,
     seed: u64,
+    wanted: StartsIn,
 ) -> Result<CommandOutput, CommandError> {
     let began = Instant::now();
     if !(1..MOST).contains(&starts) {
@@ -68,12 +74,35 @@ pub fn solve_from_starts(
     make_folder(&folder.join(FOLDER))?;
 
     let seed_of = |start: usize| seed.wrapping_mul(MOST as u64).wrapping_add(start as u64);
-    let plan: Vec<_> = (1..=starts)
-        .map(|start| (start, (start > 1).then(|| seed_of(start))))
+    let plan: Vec<Start> = (1..=starts)
+        .map(|number| Start {
+            number,
+            seed: (number > 1).then(|| seed_of(number)),
+        })
         .collect();
-    let mut ended = run_all(request, &folder, plan, began)?;
+    let options = Options {
+        linear_solver: control.solver.linear_solver,
+        extra: control.solver.ipopt.clone(),
+        ..Options::default()
+    };
+    let run_in = match options.run_at_once() {
+        true => wanted,
+        false => StartsIn::Processes,
+    };
+    let batch = Batch {
+        request,
+        run_in,
+        folder: &folder,
+        plan: &plan,
+        began,
+    };
+    let mut ended = match batch.run_in {
+        StartsIn::Threads => threads::run_all(&batch)?,
+        StartsIn::Processes => processes::run_all(&batch)?,
+    };
+    ended.sort_by_key(|one| one.start);
     let distinct = number_optima(&mut ended);
-    write(request, &folder, &ended, distinct, began)
+    write(&batch, &ended, distinct)
 }
 
 /// Starts of an earlier command.

@@ -1,13 +1,15 @@
-//! As many processes at once as there are cores.
+//! Starts in processes, as many at once as there are cores.
 
-use super::ended::{Ended, best};
+use super::batch::{Batch, NOT_STARTED, tell};
+use super::ended::{Ended, Said};
 use super::launch::{Running, folder_of, launch};
 use crate::app::error::CommandError;
 use crate::app::progress::Progress;
-use crate::app::request::CommandInput;
 use crate::ipopt::interrupt;
 use crate::report::atomic::WriteError;
-use std::path::Path;
+use crate::workflow::at_once::cores;
+use std::io::{Read, Seek};
+use std::process::ExitStatus;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -29,16 +31,10 @@ impl Drop for All {
     }
 }
 
-/// Runs the starts of a plan and tells how each ended, in the order of their numbers.
-pub(super) fn run_all(
-    request: &CommandInput,
-    folder: &Path,
-    plan: Vec<(usize, Option<u64>)>,
-    began: Instant,
-) -> Result<Vec<Ended>, CommandError> {
-    let at_once = thread::available_parallelism().map_or(1, usize::from);
-    let progress = Progress::of_starts(request.progress, plan.len());
-    let mut waiting = plan.into_iter().peekable();
+/// Runs the starts of a plan and tells how each ended.
+pub(super) fn run_all(batch: &Batch<'_>) -> Result<Vec<Ended>, CommandError> {
+    let progress = Progress::of_starts(batch.request.progress, batch.plan.len());
+    let mut waiting = batch.plan.iter().copied().peekable();
     let mut running = All(Vec::new());
     let mut ended: Vec<Ended> = Vec::new();
     let mut stop_at = None;
@@ -46,24 +42,19 @@ pub(super) fn run_all(
         if interrupt::requested() && stop_at.is_none() {
             stop_at = Some(Instant::now() + GRACE);
         }
-        let left = request
-            .max_seconds
-            .map(|limit| limit - began.elapsed().as_secs_f64());
-        let may_start = stop_at.is_none() && left.is_none_or(|left| left > 0.0);
-        while may_start && running.0.len() < at_once {
-            let Some((start, seed)) = waiting.next() else {
+        while running.0.len() < cores() {
+            let Some(start) = waiting.next() else {
                 break;
             };
-            let launched = launch(request, folder, start, seed, left);
+            let Some(command) = batch.command(start) else {
+                ended.push(Ended::without_files(start, NOT_STARTED, 0.0));
+                continue;
+            };
+            let launched = launch(&command, start);
             running.0.push(launched.map_err(|cause| WriteError {
-                path: folder_of(folder, start),
+                path: command.folder(),
                 cause,
             })?);
-        }
-        if !may_start {
-            for (start, seed) in waiting.by_ref() {
-                ended.push(Ended::without_files(start, seed, "not_started", 0.0));
-            }
         }
         if stop_at.is_some_and(|time| Instant::now() > time) {
             for running in &mut running.0 {
@@ -75,14 +66,14 @@ pub(super) fn run_all(
             match running.0[index].child.try_wait() {
                 Ok(None) => index += 1,
                 Ok(Some(status)) => {
-                    let done = running.0.swap_remove(index);
-                    ended.push(Ended::of(done, status, folder)?);
-                    let solved = ended.iter().filter(|one| one.is_solved).count();
-                    let best = best(&ended).and_then(|i| ended[i].objective);
-                    progress.start(ended.len(), solved, best);
+                    let mut done = running.0.swap_remove(index);
+                    let said = said(&mut done, status);
+                    let seconds = done.began.elapsed().as_secs_f64();
+                    ended.push(Ended::of(done.start, said, seconds, batch.folder)?);
+                    tell(&progress, &ended);
                 }
                 Err(cause) => {
-                    let path = folder_of(folder, running.0[index].start);
+                    let path = folder_of(batch.folder, running.0[index].start.number);
                     return Err(WriteError { path, cause }.into());
                 }
             }
@@ -92,6 +83,20 @@ pub(super) fn run_all(
         }
         thread::sleep(PATIENCE);
     }
-    ended.sort_by_key(|one| one.start);
     Ok(ended)
+}
+
+/// What a process said when it ended with a status.
+fn said(done: &mut Running, status: ExitStatus) -> Said {
+    let mut told = String::new();
+    done.told.rewind().ok();
+    done.told.read_to_string(&mut told).ok();
+    let told = told.trim_end();
+    let told = told.strip_prefix("error: ").unwrap_or(told).to_owned();
+    match status.code() {
+        Some(0) => Said::Solved,
+        Some(1) => Said::Unsolved(told),
+        Some(2) => Said::Refused(told),
+        _ => Said::Failed(told),
+    }
 }

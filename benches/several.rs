@@ -1,0 +1,146 @@
+//! Solves of random goals in one thread and in several, on the trunk of `problems/elephant_trunk_effort.json`.
+//!
+//! `cargo bench --bench several -- [GOALS]`: goals in one thread and in two, in turn, and how many more two solve in the same time.
+//! `cargo bench --bench several -- --minutes 10`: goals in four threads against one thread, bit by bit, with the memory of the process.
+
+#[path = "../tests/common/random_goals.rs"]
+mod random_goals;
+
+use proboscis::workflow::at_once::at_once;
+use random_goals::{Goals, Kind, Solved, solved, trunk};
+use std::fs;
+use std::time::{Duration, Instant};
+
+/// Seed of the goals.
+const SEED: u64 = 3;
+/// Goals that are solved in one thread, then in several.
+const BATCH: usize = 8;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| a != "--bench")
+        .collect();
+    let mut goals = Goals::new(SEED);
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        [] => throughput(&mut goals, 64),
+        [count] => throughput(&mut goals, count.parse().expect("a number of goals")),
+        ["--minutes", length] => compare(&mut goals, length.parse().expect("minutes")),
+        _ => panic!("expected a number of goals, or --minutes and their number"),
+    }
+}
+
+/// The changes that make the next goals: on short horizons where they are many.
+fn batch(goals: &mut Goals, intervals: &[usize]) -> Vec<Vec<String>> {
+    let changes = (0..BATCH).map(|i| {
+        let kind = [Kind::Rest, Kind::Tip][i % 2];
+        let goal = goals.draw(kind).json;
+        let intervals = intervals[i % intervals.len()];
+        vec![
+            format!("control.goal={goal}"),
+            format!("control.intervals={intervals}"),
+        ]
+    });
+    changes.collect()
+}
+
+/// What one solve took of its thread.
+struct Taken {
+    solved: Solved,
+    /// Seconds by the clock, less those in which the thread waited for a core.
+    seconds: f64,
+    /// Seconds on a core.
+    busy: f64,
+    thread: std::thread::ThreadId,
+}
+
+fn timed(changes: &Vec<String>) -> Taken {
+    let (began, [busy, waited]) = (Instant::now(), schedule());
+    let solved = solved(&trunk(), changes);
+    let [busy_now, waited_now] = schedule();
+    Taken {
+        solved,
+        seconds: began.elapsed().as_secs_f64() - (waited_now - waited),
+        busy: busy_now - busy,
+        thread: std::thread::current().id(),
+    }
+}
+
+/// Seconds that this thread was on a core, and those that it waited for one.
+fn schedule() -> [f64; 2] {
+    let text = fs::read_to_string("/proc/thread-self/schedstat").expect("Linux");
+    let mut numbers = text
+        .split_whitespace()
+        .map(|n| n.parse::<f64>().expect("a number"));
+    [(); 2].map(|()| numbers.next().expect("two numbers") / 1e9)
+}
+
+/// Random goals in one thread and in two, in turn.
+fn throughput(goals: &mut Goals, count: usize) {
+    let (mut wall, mut free, mut busy) = ([0.0; 2], [0.0; 2], [0.0; 2]);
+    for _ in 0..count.div_ceil(BATCH) {
+        let goals = batch(goals, &[40]);
+        let mut answers = [Vec::new(), Vec::new()];
+        for (i, threads) in [1, 2].into_iter().enumerate() {
+            let began = Instant::now();
+            let taken = at_once(&goals, threads, timed, |_, _| {});
+            wall[i] += began.elapsed().as_secs_f64();
+            let taken: Vec<Taken> = taken
+                .into_iter()
+                .map(|one| one.expect("no panic"))
+                .collect();
+            busy[i] += taken.iter().map(|one| one.busy).sum::<f64>();
+            free[i] += taken.iter().map(|one| one.seconds).sum::<f64>() / threads as f64;
+            let used = taken.iter().filter(|one| one.thread != taken[0].thread);
+            assert_eq!(used.count() > 0, threads > 1, "threads that work");
+            answers[i] = taken.into_iter().map(|one| one.solved).collect();
+        }
+        assert_eq!(answers[0], answers[1]);
+    }
+    println!("| | one thread | two threads | two over one |\n|:--|--:|--:|--:|");
+    let row = |name: &str, [one, two]: [f64; 2]| {
+        println!("| {name} | {one:.2} | {two:.2} | {:.2} |", one / two);
+    };
+    row("seconds by the clock", wall);
+    row("the same without waits for a core", free);
+    row("seconds on cores", busy);
+}
+
+/// Random goals in four threads against one, until the time is over.
+fn compare(goals: &mut Goals, minutes: f64) {
+    let end = Instant::now() + Duration::from_secs_f64(60.0 * minutes);
+    let (mut count, mut different, mut unsolved) = (0, 0, 0);
+    let mut next = Instant::now();
+    while Instant::now() < end {
+        let goals = batch(goals, &[10, 20, 40, 14]);
+        let solve = |changes: &Vec<String>| solved(&trunk(), changes);
+        let alone: Vec<Solved> = goals.iter().map(solve).collect();
+        let together = at_once(&goals, 4, solve, |_, _| {});
+        for (one, other) in alone.iter().zip(&together) {
+            count += 1;
+            different += usize::from(other.as_ref() != Ok(one));
+            unsolved += usize::from(one.word != "solved");
+        }
+        if Instant::now() >= next {
+            next += Duration::from_secs(60);
+            println!(
+                "{count} goals, {different} different, {unsolved} not solved, {}",
+                memory()
+            );
+        }
+    }
+    println!(
+        "{count} goals, {different} different, {unsolved} not solved, {}",
+        memory()
+    );
+}
+
+/// Memory of the process now.
+fn memory() -> String {
+    let text = fs::read_to_string("/proc/self/status").expect("Linux");
+    let line = text.lines().find(|line| line.starts_with("VmRSS"));
+    line.unwrap_or_default()
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
+}

@@ -1,0 +1,73 @@
+//! Pieces of work at once, each on its share of the cores.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::thread::{self, available_parallelism};
+
+use rayon::ThreadPoolBuilder;
+
+/// Bytes of the stack of a thread: those that a main thread has.
+const STACK: usize = 8 << 20;
+
+/// An answer, or the message of the panic that came in its place.
+pub type Answered<A> = Result<A, String>;
+
+/// Cores of this machine.
+pub fn cores() -> usize {
+    available_parallelism().map_or(1, usize::from)
+}
+
+/// The answers to all items, in their order, found in at most `threads` threads.
+///
+/// A thread has its share of the cores for what is parallel within an answer: with as many threads as cores no half of a horizon competes
+/// with another answer. A panic is the end of one answer alone. `told` hears of each answer in this thread, as soon as there is one.
+pub fn at_once<T: Sync, A: Send>(
+    items: &[T],
+    threads: usize,
+    answer: impl Fn(&T) -> A + Sync,
+    mut told: impl FnMut(usize, &Answered<A>),
+) -> Vec<Answered<A>> {
+    let threads = threads.clamp(1, items.len().max(1));
+    let share = (cores() / threads).max(1);
+    let next = AtomicUsize::new(0);
+    let take = || {
+        let index = next.fetch_add(1, Ordering::Relaxed);
+        let item = items.get(index)?;
+        let answered = catch_unwind(AssertUnwindSafe(|| answer(item)));
+        Some((index, answered.map_err(|panic| message(&*panic))))
+    };
+    let mut answers: Vec<Option<Answered<A>>> = items.iter().map(|_| None).collect();
+    let mut keep = |(index, answered): (usize, Answered<A>)| {
+        told(index, &answered);
+        answers[index] = Some(answered);
+    };
+    thread::scope(|scope| {
+        let (sender, receiver) = mpsc::channel();
+        for _ in 0..threads {
+            let sender = sender.clone();
+            let work = move || {
+                let pool = ThreadPoolBuilder::new().num_threads(share);
+                let _pool = pool.use_current_thread().build().ok();
+                std::iter::from_fn(take).for_each(|one| sender.send(one).unwrap_or(()));
+            };
+            let thread = thread::Builder::new().stack_size(STACK);
+            if thread.spawn_scoped(scope, work).is_err() {
+                break;
+            }
+        }
+        drop(sender);
+        receiver.into_iter().for_each(&mut keep);
+    });
+    // Where no thread could be had.
+    std::iter::from_fn(take).for_each(keep);
+    let answers = answers.into_iter();
+    answers.map(|one| one.expect("all are taken")).collect()
+}
+
+fn message(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    format!("a panic: {}", text.unwrap_or("without a message"))
+}
