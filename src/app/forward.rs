@@ -6,6 +6,7 @@ use std::time::Instant;
 use crate::app::blocks::BlockSizes;
 use crate::app::comparison::{self, Comparison};
 use crate::app::error::CommandError;
+use crate::app::exchanged::Exchanged;
 use crate::app::fields;
 use crate::app::folder::make_folder;
 use crate::app::progress::Progress;
@@ -15,7 +16,9 @@ use crate::app::summary::{self, MEASURED, Seconds, Summary};
 use crate::app::unfinished::Unfinished;
 use crate::app::words::counted;
 use crate::control::problem::{Afterwards, Simulation, Voltages};
-use crate::dynamics::{DiscreteTrajectory, local_error, observations, out_of_domain};
+use crate::dynamics::{
+    DiscreteTrajectory, EnergyExchange, local_error, observations, out_of_domain,
+};
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::report::skins::Skins;
@@ -119,7 +122,7 @@ pub(super) fn simulation(
     let simulation = summary::Simulation::new(&history, task, neglected);
     summary.simulation = Some(simulation);
     summary.plan = plan;
-    let observed = observations(&model, &history);
+    let mut observed = observations(&model, &history);
     summary.domain = domain::told(&out_of_domain(&model, &history));
     let origin = request.origin(false);
     let written = fields::write(&folder, &model, &history, &origin)?;
@@ -131,6 +134,9 @@ pub(super) fn simulation(
         ..Seconds::default()
     };
     let motion = trajectory(&model, &kept);
+    let exchange = EnergyExchange::new(&model.system, &motion, task.start.rest_voltages());
+    summary.energies = Exchanged::new(&exchange);
+    observed.columns.extend(exchange.columns());
     let path = task.voltages.solution();
     let earlier = path.and_then(|path| comparison::earlier(&model, path));
     summary.comparison = path
@@ -162,6 +168,7 @@ pub(super) fn simulation(
         ),
         ("time".to_owned(), format!("{:.3} s", summary.seconds.total)),
     ];
+    rows.extend(summary.energies.iter().flat_map(Exchanged::rows));
     rows.extend(summary.accuracy.iter().flat_map(|a| {
         let told = |(name, error): (&&str, &f64)| {
             (format!("estimated error, {name}"), format!("{error:.1e}"))

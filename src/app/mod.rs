@@ -4,7 +4,7 @@
 //! - `multistart`: a control problem from several guesses, in threads or processes.
 //! - `inspect`, `sparsity`, `check`, `templates`: the other commands.
 //! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
-//! - `accuracy_table`, `blocks`, `comparison`, `extent`: what is told of a result.
+//! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`: what is told of a result.
 //! - `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `progress`, `request`, `error`: what commands share.
 
 mod accuracy_table;
@@ -12,6 +12,7 @@ mod blocks;
 mod check;
 mod comparison;
 mod error;
+mod exchanged;
 mod extent;
 mod fields;
 mod folder;

@@ -6,12 +6,13 @@ use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
 use crate::app::error::CommandError;
+use crate::app::exchanged::Exchanged;
 use crate::app::fields;
 use crate::app::folder::make_folder;
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::solution_file;
-use crate::app::solve_words::{meaning, redundancy};
+use crate::app::solve_words::{meaning, redundancy, restarted, stretched, unresolved};
 use crate::app::summary::{
     Evaluations, LinearSystems, MEASURED, PerInterval, Program, Seconds, SoughtValue, Summary,
 };
@@ -20,10 +21,10 @@ use crate::app::unfinished::Unfinished;
 use crate::app::words::counted;
 use crate::control::problem::{Control, Hold};
 use crate::dynamics::trajectory::Trajectory;
-use crate::dynamics::{observations, out_of_domain};
+use crate::dynamics::{EnergyExchange, observations, out_of_domain};
 use crate::ipopt::{Status, interrupt};
 use crate::math::significant;
-use crate::model::{Model, System};
+use crate::model::System;
 use crate::report::atomic::WriteError;
 use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
@@ -241,13 +242,16 @@ fn write_files(
     } = optimum;
     solution_file::write(&folder.join("solution.json"), model, kept)?;
     let history = history(model, kept);
-    let observed = observations(model, &history);
+    let mut observed = observations(model, &history);
     let origin = request.origin(true);
     let written = fields::write(folder, model, &history, &origin)?;
     summary.blocks = BlockSizes::of(model).map(|b| b.after(model, &observed, written));
     summary.domain = domain::told(&out_of_domain(model, &history));
     summary.notes.extend(domain::note(&summary.domain, true));
     let motion = trajectory(model, kept);
+    let exchange = EnergyExchange::new(&model.system, &motion, control.start.rest_voltages());
+    summary.energies = Exchanged::new(&exchange);
+    observed.columns.extend(exchange.columns());
     let half = optimum.resimulation.as_ref().and_then(|r| r.half.as_ref());
     let half = half.map(|history| Trajectory::from_history(model, history));
     summary.tracking = tracked(&model.system, control, &motion, half.as_ref());
@@ -297,6 +301,9 @@ fn rows(summary: &Summary) -> Vec<(String, String)> {
         row("variables", program.variables.to_string());
         row("constraints", program.constraints.to_string());
         row("time", format!("{:.3} s", summary.seconds.total));
+        for (key, value) in summary.energies.iter().flat_map(Exchanged::rows) {
+            row(&key, value);
+        }
         for (name, error) in summary.accuracy.iter().flat_map(|a| &a.estimate) {
             row(&format!("estimated error, {name}"), format!("{error:.1e}"));
         }
@@ -368,27 +375,4 @@ fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> CommandOutp
         ),
         notes,
     }
-}
-
-/// A guess of another length.
-fn stretched([from, to]: [f64; 2]) -> String {
-    format!(
-        "the guess lasts {} s; it was stretched in time to {} s",
-        from / 1e3,
-        to / 1e3
-    )
-}
-
-/// Why an optimum of the discrete equations is none of the system.
-fn unresolved(model: &Model, interval: usize, muscle: usize) -> String {
-    format!(
-        "muscle \"{}\" turns by a right angle or more in interval {interval}: its ends meet on the way, or the intervals are \
-         too long for the motion; take more intervals or another guess",
-        model.system.muscles[muscle].name
-    )
-}
-
-/// What is told of an optimum that the first start did not find.
-fn restarted(first: Status) -> String {
-    format!("found from a second, displaced initial guess; the first ended {first}")
 }

@@ -1,6 +1,7 @@
-//! Words for a solve that found no solution.
+//! Words for how a solve went.
 
 use crate::ipopt::Status;
+use crate::model::Model;
 
 /// A further reason why a solve failed, where there is one.
 pub(super) fn redundancy(redundant: &[String]) -> String {
@@ -31,4 +32,27 @@ pub(super) fn meaning(status: Status) -> &'static str {
         Status::TooFewDegreesOfFreedom => "there are more equations than unknowns",
         _ => "the solver stopped early; the files hold the last iterate",
     }
+}
+
+/// A guess of another length.
+pub(super) fn stretched([from, to]: [f64; 2]) -> String {
+    format!(
+        "the guess lasts {} s; it was stretched in time to {} s",
+        from / 1e3,
+        to / 1e3
+    )
+}
+
+/// Why an optimum of the discrete equations is none of the system.
+pub(super) fn unresolved(model: &Model, interval: usize, muscle: usize) -> String {
+    format!(
+        "muscle \"{}\" turns by a right angle or more in interval {interval}: its ends meet on the way, or the intervals are \
+         too long for the motion; take more intervals or another guess",
+        model.system.muscles[muscle].name
+    )
+}
+
+/// What is told of an optimum that the first start did not find.
+pub(super) fn restarted(first: Status) -> String {
+    format!("found from a second, displaced initial guess; the first ended {first}")
 }

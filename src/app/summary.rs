@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::app::blocks::BlockSizes;
 use crate::app::comparison::Comparison;
+use crate::app::exchanged::Exchanged;
 use crate::app::followed::Followed;
 use crate::app::request::CommandInput;
 use crate::app::rest_words::Rest;
@@ -48,6 +49,9 @@ pub(super) struct Summary {
     /// How closely markers and joints follow what the objective names.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) tracking: Vec<Tracked>,
+    /// Electrical energy and mechanical work of a motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) energies: Option<Exchanged>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) comparison: Option<Comparison>,
     #[serde(flatten)]
@@ -342,6 +346,7 @@ impl Summary {
             simulation: None,
             accuracy: None,
             tracking: Vec::new(),
+            energies: None,
             comparison: None,
             rest: None,
             path: None,

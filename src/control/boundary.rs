@@ -105,12 +105,8 @@ impl BoundaryConditions {
         if let Some(z) = given.iter().copied().collect::<Option<Vec<f64>>>() {
             check_muscles(&model, &z, "goal")?;
         }
-        let voltages = |state: &BoundaryState| match state {
-            BoundaryState::RestAtVoltages(v, _) => Some(v.clone()),
-            BoundaryState::Markers { hold, .. } => hold.clone(),
-            _ => None,
-        };
-        let rest = [voltages(&control.start), voltages(&control.goal)];
+        let rest = [&control.start, &control.goal].map(BoundaryState::rest_voltages);
+        let rest = rest.map(|voltages| voltages.map(<[f64]>::to_vec));
         let boundary = Self {
             start,
             goal: TerminalState {
@@ -133,6 +129,17 @@ impl BoundaryConditions {
         sought::check(&model, control, ends)?;
         ends::check(&model, &boundary, control, scalars)?;
         Ok((model, boundary))
+    }
+}
+
+impl BoundaryState {
+    /// The voltages in V, by source, at which it rests, where they are known.
+    pub fn rest_voltages(&self) -> Option<&[f64]> {
+        match self {
+            Self::RestAtVoltages(voltages, _) => Some(voltages),
+            Self::Markers { hold, .. } => hold.as_deref(),
+            Self::JointAngles { .. } | Self::Free => None,
+        }
     }
 }
 

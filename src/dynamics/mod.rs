@@ -5,6 +5,7 @@
 //! - `domain`: where the first-order dielectric ends.
 //! - `resolution`, `spans`: which steps are refused; `local_error`: what those neglect that are not.
 //! - `simulate`, `history`, `observe`, `kinetic`: step after step, recorded and observed.
+//! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
 //! - `statics`: the rows of rest; `ramp`, `equilibrium`, `continuation`: paths of rest under growing loads; `minimum`: minima
 //!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest`: its softest mode.
 
@@ -14,6 +15,7 @@ mod discrete_trajectory;
 mod domain;
 mod equations;
 mod error;
+mod exchange;
 mod kinetic;
 mod local_error;
 mod midpoint;
@@ -34,6 +36,7 @@ pub use discrete_trajectory::{DiscreteTrajectory, Reading};
 pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
 pub use equations::Equations;
 pub use error::{EquilibriumError, StepError};
+pub use exchange::{EnergyExchange, SourceEnergies};
 pub use local_error::{LocalError, local_error};
 pub use midpoint::{Midpoint, Stepper};
 pub use observe::{Energies, energies, observations};

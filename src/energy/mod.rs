@@ -1,6 +1,7 @@
 //! Energies and virtual works: pure formulas, without index, mesh or time.
 
 mod affine;
+mod capacitance;
 mod constraint;
 mod damper;
 mod gravity;
@@ -14,6 +15,7 @@ mod tendon;
 mod viscosity;
 
 pub use affine::Affine;
+pub use capacitance::Capacitance;
 pub use constraint::{Coincidence, Orthogonality};
 pub use damper::{AngularDamper, CoordinateDamper, LinearDamper};
 pub use gravity::Gravity;

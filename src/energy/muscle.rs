@@ -61,7 +61,7 @@ pub struct DielectricCell {
 impl DielectricCell {
     /// Factor of (V/t)² V₀ as a function of I: value and three derivatives.
     #[inline]
-    fn electric_of_squared_stretch(&self, i: f64) -> [f64; 4] {
+    pub(super) fn electric_of_squared_stretch(&self, i: f64) -> [f64; 4] {
         let k = self.elastic.volume / (self.layer * self.layer);
         let r = 1.0 / i;
         let e = self.permittivity * r;

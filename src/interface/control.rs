@@ -4,7 +4,7 @@ use crate::control::problem::{
     self, CostFunction, Duration, Guess, Hold, Objective, PathConstraint, QuantityCost, Solver,
 };
 use crate::control::{Earlier, EarlierSolution, Signal};
-use crate::dynamics::out_of_domain;
+use crate::dynamics::{EnergyExchange, out_of_domain};
 use crate::interface::error::{Result, require, source};
 use crate::interface::handle::Handle;
 use crate::interface::input::Input;
@@ -215,6 +215,8 @@ impl Control {
             domain::note(&outside, true),
             holding::free_end(&control),
         ];
+        let trajectory = trajectory(model, &found.motion);
+        let start = control.start.rest_voltages();
         Ok(Optimum {
             status: found.word(),
             objective: found.solution.objective,
@@ -222,7 +224,8 @@ impl Control {
             message,
             motion: Motion {
                 system: model.system.clone(),
-                trajectory: trajectory(model, &found.motion),
+                exchange: EnergyExchange::new(&model.system, &trajectory, start),
+                trajectory,
                 warnings: warnings.into_iter().flatten().chain(reasons).collect(),
             },
             is_solved: found.is_solved(),

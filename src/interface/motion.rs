@@ -1,11 +1,12 @@
 //! What a motion shows.
 
+use crate::dynamics::EnergyExchange;
 use crate::dynamics::trajectory::Trajectory;
 use crate::interface::handle::Handle;
 use crate::interface::input::Input;
 use crate::kinematics::Pose;
 use crate::model::System;
-use crate::model::system::{Body, Joint, Marker};
+use crate::model::system::{Body, Joint, Marker, Muscle};
 use nalgebra::Vector3;
 
 /// A motion: N + 1 instants and the N intervals between them.
@@ -13,6 +14,7 @@ use nalgebra::Vector3;
 pub struct Motion {
     pub(super) system: System,
     pub(super) trajectory: Trajectory,
+    pub(super) exchange: EnergyExchange,
     /// What is to be known of it: steps that do not resolve it, muscles outside the domain of their material.
     pub(super) warnings: Vec<String>,
 }
@@ -54,6 +56,21 @@ impl Motion {
         let rows = self.trajectory.voltages.iter();
         let starts = self.trajectory.times.iter();
         starts.zip(rows).map(|(&t, row)| (t, row[source])).collect()
+    }
+
+    /// Electrical energy in mJ from the source of a lumped muscle from the start to each instant; energy that flows back is negative. Nothing of
+    /// a muscle without voltage.
+    pub fn electrical_energy(&self, muscle: Handle<Muscle>) -> &[f64] {
+        let sources = &self.exchange.sources;
+        let source = sources.iter().find(|one| one.source == muscle.index());
+        source.map_or(&[], |source| &source.electrical_energy)
+    }
+
+    /// Work in mJ of the electrical forces of a lumped muscle from the start to each instant. Nothing of a muscle without voltage.
+    pub fn mechanical_work(&self, muscle: Handle<Muscle>) -> &[f64] {
+        let sources = &self.exchange.sources;
+        let source = sources.iter().find(|one| one.source == muscle.index());
+        source.map_or(&[], |source| &source.mechanical_work)
     }
 
     /// What is to be known of it: steps that do not resolve it, muscles outside the domain of their material.

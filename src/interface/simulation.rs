@@ -3,7 +3,7 @@
 use crate::control::Signal;
 use crate::control::problem::{self, Voltages};
 use crate::dynamics::trajectory::Trajectory;
-use crate::dynamics::{Integrator, Newton, Solving, local_error, out_of_domain};
+use crate::dynamics::{EnergyExchange, Integrator, Newton, Solving, local_error, out_of_domain};
 use crate::interface::error::{Error, Result, require, source};
 use crate::interface::input::Input;
 use crate::interface::motion::Motion;
@@ -151,8 +151,10 @@ fn motion(run: &Simulated, task: &problem::Simulation) -> Motion {
         steps::unbalanced(&run.history),
         domain::note(&outside, true),
     ];
+    let system = run.model.system.clone();
     Motion {
-        system: run.model.system.clone(),
+        exchange: EnergyExchange::new(&system, &trajectory, task.start.rest_voltages()),
+        system,
         trajectory,
         warnings: warnings.into_iter().flatten().collect(),
     }

@@ -79,11 +79,11 @@ pub fn charge_svg(mut charges: Vec<Series>, origin: &Origin) -> String {
     .svg(origin)
 }
 
-/// The observed columns that are energies, over time in s; in N mm, which is mJ.
+/// The observed columns that are energies of the system, over time in s; in N mm, which is mJ.
 pub fn energies(trajectory: &Trajectory, observations: &Observations) -> Vec<Series> {
     let columns = observations.columns.iter();
     columns
-        .filter(|column| column.name.contains("energy"))
+        .filter(|column| is_energy(&column.name))
         .enumerate()
         .map(|(i, column)| {
             let instants = trajectory.times.iter().zip(&column.values);
@@ -91,6 +91,12 @@ pub fn energies(trajectory: &Trajectory, observations: &Observations) -> Vec<Ser
             Series::curve(column.name.replace('_', " "), points, style::hue(i))
         })
         .collect()
+}
+
+/// Whether a column is an energy of the system, not of one of many sources.
+fn is_energy(name: &str) -> bool {
+    let is_of_one = ["_electrical_energy", "_mechanical_work"].map(|end| name.ends_with(end));
+    (name.contains("energy") && is_of_one == [false; 2]) || name == "mechanical_work"
 }
 
 /// `energy.svg`: the energies over time in s.

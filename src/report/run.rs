@@ -17,7 +17,7 @@ pub struct Run<'a> {
     pub skins: &'a Skins,
     /// Name of the motion in legends, such as `optimal voltages`.
     pub name: &'a str,
-    /// What was observed at the instants, see [`Trajectory::observe`]; energies are columns whose name contains `energy`, in N mm.
+    /// What was observed at the instants, see [`Trajectory::observe`]; energies are columns in N mm.
     pub observations: &'a Observations,
     /// Another motion of the same system and its name, such as `constant voltages`.
     pub comparison: Option<(&'a str, &'a Trajectory)>,

@@ -95,6 +95,13 @@ fn a_trunk_made_by_a_program_is_steered_as_that_of_a_file() {
     assert!(objective > 0.1 && (found.objective - objective).abs() < 1e-9 * objective);
     let end = *found.motion.position(tip).last().unwrap();
     assert!((end - Y * 300.0).norm() > 50.0);
+    // Charged muscles hold the trunk at the end: their sources gave at least what they store.
+    for &muscle in &muscles {
+        let energy = found.motion.electrical_energy(muscle);
+        let work = found.motion.mechanical_work(muscle);
+        assert_eq!((energy.len(), work.len(), energy[0]), (41, 41, 0.0));
+        assert!(energy[40] > work[40].abs(), "{} {}", energy[40], work[40]);
+    }
     // Its solution is a start from which nothing is left to do.
     let again = problem.starting_from(found.solution).solve(&trunk).unwrap();
     assert!(

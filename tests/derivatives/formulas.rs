@@ -9,9 +9,9 @@ use crate::naive_formulas::Formula;
 use nalgebra::{SMatrix, SVector};
 use num_dual::{Dual64, HyperDual};
 use proboscis::energy::{
-    Angle, AngularDamper, Coincidence, CoordinateDamper, DielectricCell, ElasticCell, Energy,
-    Gravity, LinearDamper, LinearSpring, Orthogonality, OutsideBox, PositionComponent, Projection,
-    SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
+    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, DielectricCell, ElasticCell,
+    Energy, Gravity, LinearDamper, LinearSpring, Orthogonality, OutsideBox, PositionComponent,
+    Projection, SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
 };
 use proboscis::math::{Jet, Vector};
 
@@ -217,6 +217,7 @@ fn jets_are_the_derivatives_of_naive_formulas() {
     law("elastic", &elastic, 0.3, 1.3);
     law("dielectric", &dielectric, 0.3, 1.3);
     law("ideal dielectric", &ideal, 0.3, 1.3);
+    law("capacitance", &Capacitance { cell: dielectric }, 0.3, 1.3);
     law(
         "section",
         &SectionInertia {

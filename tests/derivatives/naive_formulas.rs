@@ -2,9 +2,9 @@
 
 use num_dual::{Dual, DualNum};
 use proboscis::energy::{
-    Angle, AngularDamper, Coincidence, CoordinateDamper, DielectricCell, ElasticCell, Energy,
-    Gravity, LinearDamper, LinearSpring, Orthogonality, OutsideBox, PositionComponent, Projection,
-    SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
+    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, DielectricCell, ElasticCell,
+    Energy, Gravity, LinearDamper, LinearSpring, Orthogonality, OutsideBox, PositionComponent,
+    Projection, SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
 };
 
 /// The naive formula of an energy.
@@ -61,6 +61,16 @@ impl Formula<4> for DielectricCell {
             + (s * field).powi(2) * self.c2
             - (field / s).powi(2) * (0.5 * self.permittivity);
         density * self.elastic.volume
+    }
+}
+
+/// Of layers of the thickness t Λ and the area V₀/(t Λ) each, with the permittivity along the field of docs/theory.md, 2.4.
+impl Formula<3> for Capacitance {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 3]) -> D {
+        let s = stretch(*p, self.cell.elastic.length);
+        let permittivity = -s.powi(2) * (2.0 * self.cell.c2) - 2.0 * self.cell.c1
+            + s.powi(-2) * self.cell.permittivity;
+        permittivity * (self.cell.elastic.volume / self.cell.layer.powi(2))
     }
 }
 

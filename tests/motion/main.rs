@@ -8,6 +8,7 @@ mod component_files;
 mod components;
 mod conserve;
 mod dissipation;
+mod exchange;
 mod free_robots;
 mod integrators;
 mod observe;

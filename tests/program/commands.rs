@@ -140,8 +140,30 @@ fn a_solved_problem_leaves_what_is_promised() {
         let path = folder.path().join("results/pair").join(file);
         assert!(path.metadata().is_ok_and(|m| m.len() > 100), "{file}");
     }
+    energies_are_those_of_the_table(folder.path(), "results/pair");
     let controls = fs::read_to_string(folder.path().join("results/pair/controls.csv")).unwrap();
     assert_eq!(controls.lines().count(), 2 + 20);
+}
+
+/// Sums in `summary.json`, in J, are the last row of `trajectory.csv`, in N mm, and that of both muscles.
+fn energies_are_those_of_the_table(folder: &Path, results: &str) {
+    let summary = summary(folder, results);
+    let csv = fs::read_to_string(folder.join(results).join("trajectory.csv")).unwrap();
+    let mut lines = csv.lines().skip(1);
+    let names: Vec<_> = lines.next().unwrap().split(',').collect();
+    let values: Vec<_> = lines.next_back().unwrap().split(',').collect();
+    let last = |name: &str| {
+        let column = names.iter().position(|other| other == &name);
+        column.map(|c| values[c].parse::<f64>().unwrap())
+    };
+    for quantity in ["electrical_energy", "mechanical_work"] {
+        let total = last(&format!("{quantity} [N mm]")).unwrap();
+        let of = |muscle: &str| last(&format!("{muscle}_{quantity} [N mm]")).unwrap_or(0.0);
+        let told = summary["energies"][quantity].as_f64().unwrap();
+        assert!(told > 1e-6 && (told - total / 1e3).abs() < 1e-12 * told);
+        let sum = of("muscle1") + of("muscle2");
+        assert!((total - sum).abs() < 1e-12 * total, "{total} {sum}");
+    }
 }
 
 #[test]
@@ -155,6 +177,7 @@ fn simulations_and_equilibria_answer() {
         "{out}"
     );
     assert_eq!(summary(path, "results/pair_constant")["steps"], 200);
+    energies_are_those_of_the_table(path, "results/pair_constant");
     let scene = "problems/scenes/pair.json";
     for file in ["problems/pair.json", scene] {
         let arguments = ["equilibrium", file, "--voltages", "muscle2=1.7kV"];

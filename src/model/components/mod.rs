@@ -6,6 +6,7 @@ mod sought_muscle;
 mod spring;
 mod tendon;
 
+pub use muscle::capacitance;
 pub use spring::Spring;
 pub use tendon::Tendon;
 

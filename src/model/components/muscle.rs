@@ -1,10 +1,10 @@
 //! Terms of lumped muscles.
 
-use crate::energy::{DielectricCell, ElasticCell, SectionInertia, ViscousCell};
+use crate::energy::{Capacitance, DielectricCell, ElasticCell, SectionInertia, ViscousCell};
 use crate::functional::{Element, Mass};
 use crate::kinematics::MaterialVector;
 use crate::model::components::sought_muscle::SoughtMuscle;
-use crate::model::system::{Fidelity, Muscle};
+use crate::model::system::{ElectricConstants, Fidelity, Muscle};
 use crate::model::terms::{Terms, mid, rate};
 
 const INERTIA: &str = "muscle inertia";
@@ -76,6 +76,31 @@ fn inertia(muscle: &Muscle, span: usize, terms: &mut Terms<'_>) {
     terms.add_kinetic(SECTION, "density and section_inertia of", name, element);
 }
 
+fn elastic(muscle: &Muscle) -> ElasticCell {
+    ElasticCell {
+        length: muscle.length(),
+        volume: muscle.volume(),
+        shear_modulus: muscle.material.shear_modulus,
+    }
+}
+
+fn dielectric(muscle: &Muscle, electric: ElectricConstants) -> DielectricCell {
+    DielectricCell {
+        elastic: elastic(muscle),
+        c1: electric.c1,
+        c2: electric.c2,
+        permittivity: electric.permittivity,
+        layer: muscle.layer_thickness,
+    }
+}
+
+/// Capacitance of a lumped muscle; none of a muscle of finite elements, or without electric constants.
+pub fn capacitance(muscle: &Muscle) -> Option<Capacitance> {
+    let electric = muscle.material.electric?;
+    let cell = dielectric(muscle, electric);
+    (muscle.fidelity == Fidelity::Lumped).then_some(Capacitance { cell })
+}
+
 fn elasticity(
     muscle: &Muscle,
     sought: Option<&SoughtMuscle<'_>>,
@@ -83,23 +108,11 @@ fn elasticity(
     span: usize,
     terms: &mut Terms<'_>,
 ) {
-    let elastic = ElasticCell {
-        length: muscle.length(),
-        volume: muscle.volume(),
-        shear_modulus: muscle.material.shear_modulus,
-    };
     let (vectors, name) = ([mid(span)], &muscle.name);
     match (muscle.material.electric, input) {
         (Some(electric), Some(voltage)) => {
-            let energy = DielectricCell {
-                elastic,
-                c1: electric.c1,
-                c2: electric.c2,
-                permittivity: electric.permittivity,
-                layer: muscle.layer_thickness,
-            };
             let element = Element {
-                energy,
+                energy: dielectric(muscle, electric),
                 vectors,
                 scalars: [voltage],
             };
@@ -116,7 +129,7 @@ fn elasticity(
                 None => "no electric constants of",
             };
             let element = Element {
-                energy: elastic,
+                energy: elastic(muscle),
                 vectors,
                 scalars: [],
             };

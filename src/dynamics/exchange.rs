@@ -1,0 +1,139 @@
+//! Electrical energy from the sources and mechanical work of their muscles, summed from the start of a motion.
+//!
+//! The voltage `V_k` of interval k acts on a lumped muscle of the capacitance C(x) (docs/theory.md, 3.5). Charge flows at instant k,
+//! where the voltage changes, and while the length changes from `x_k` to `x_{k+1}`:
+//!
+//! ```text
+//! electrical energy  V_k (C_{k+1} V_k − C_k V_{k−1}),     mechanical work  ½ V_k² (C_{k+1} − C_k).
+//! ```
+//!
+//! Both belong to the instants at the ends of an interval. The potentials within finite elements are known in the middle of intervals
+//! only, so nothing is told of sources that drive finite elements.
+
+use crate::dynamics::trajectory::{Column, Trajectory};
+use crate::energy::Capacitance;
+use crate::model::System;
+use crate::model::components::capacitance;
+
+/// What all sources exchange with a motion.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct EnergyExchange {
+    /// The sources of lumped muscles whose voltage is ever other than zero.
+    pub sources: Vec<SourceEnergies>,
+    /// Whether these are all sources whose voltage is ever other than zero.
+    pub is_complete: bool,
+}
+
+/// What one source exchanges with a motion, from the start to each instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SourceEnergies {
+    /// Index of the source, which is that of its muscle.
+    pub source: usize,
+    /// Its name.
+    pub name: String,
+    /// Electrical energy from the source in mJ; negative where more flows back.
+    pub electrical_energy: Vec<f64>,
+    /// Work of the electrical forces in mJ.
+    pub mechanical_work: Vec<f64>,
+}
+
+impl EnergyExchange {
+    /// Of a motion; `before` are the voltages by source that charged the muscles before the start, none where they were not charged.
+    pub fn new(system: &System, motion: &Trajectory, before: Option<&[f64]>) -> Self {
+        let before = |source: usize| before.map_or(0.0, |voltages| voltages[source]);
+        let mut out = Self {
+            sources: Vec::new(),
+            is_complete: true,
+        };
+        for (source, named) in system.sources().into_iter().enumerate() {
+            let mut voltages = motion.voltages.iter().map(|row| row[source]);
+            if before(source) == 0.0 && voltages.all(|voltage| voltage == 0.0) {
+                continue;
+            }
+            let muscle = system.muscles.get(source);
+            match muscle.and_then(capacitance) {
+                Some(of) => {
+                    let lengths = lengths(system, motion, source);
+                    let [electrical_energy, mechanical_work] =
+                        sums(&of, &lengths, motion, source, before(source));
+                    out.sources.push(SourceEnergies {
+                        source,
+                        name: named.name,
+                        electrical_energy,
+                        mechanical_work,
+                    });
+                }
+                None => out.is_complete = false,
+            }
+        }
+        out
+    }
+
+    /// Electrical energy and mechanical work of all sources up to each instant, in mJ; none where there is no source, or where one
+    /// drives finite elements.
+    pub fn totals(&self) -> Option<[Vec<f64>; 2]> {
+        let (first, others) = self.sources.split_first().filter(|_| self.is_complete)?;
+        let mut totals = [
+            first.electrical_energy.clone(),
+            first.mechanical_work.clone(),
+        ];
+        for other in others {
+            let added = [&other.electrical_energy, &other.mechanical_work];
+            for (total, added) in totals.iter_mut().zip(added) {
+                total.iter_mut().zip(added).for_each(|(sum, e)| *sum += e);
+            }
+        }
+        Some(totals)
+    }
+
+    /// Both of all sources, then of each one.
+    pub fn columns(&self) -> Vec<Column> {
+        let mut columns = Vec::new();
+        let mut add = |prefix: &str, [energy, work]: [Vec<f64>; 2]| {
+            for (name, values) in [("electrical_energy", energy), ("mechanical_work", work)] {
+                let name = format!("{prefix}{name}");
+                let unit = "N mm";
+                columns.push(Column { name, unit, values });
+            }
+        };
+        if let Some(totals) = self.totals() {
+            add("", totals);
+        }
+        for source in &self.sources {
+            let both = [&source.electrical_energy, &source.mechanical_work].map(Clone::clone);
+            add(&format!("{}_", source.name), both);
+        }
+        columns
+    }
+}
+
+/// Length of a muscle in mm at each instant.
+fn lengths(system: &System, motion: &Trajectory, muscle: usize) -> Vec<f64> {
+    let muscle = &system.muscles[muscle];
+    let instants = 0..motion.poses.len();
+    let [from, to] = [&muscle.from, &muscle.to];
+    let span = |k: usize| motion.point(k, to, system) - motion.point(k, from, system);
+    instants.map(|k| span(k).norm()).collect()
+}
+
+/// Electrical energy and mechanical work from the start to each instant.
+fn sums(
+    capacitance: &Capacitance,
+    lengths: &[f64],
+    motion: &Trajectory,
+    source: usize,
+    mut before: f64,
+) -> [Vec<f64>; 2] {
+    let mut sums = [vec![0.0], vec![0.0]];
+    let [mut electrical, mut mechanical] = [0.0; 2];
+    for (ends, voltages) in lengths.windows(2).zip(&motion.voltages) {
+        let [c, next] = [ends[0], ends[1]].map(|length| capacitance.at_length(length));
+        let voltage = voltages[source];
+        electrical += voltage * (next * voltage - c * before);
+        mechanical += 0.5 * voltage * voltage * (next - c);
+        before = voltage;
+        sums[0].push(electrical);
+        sums[1].push(mechanical);
+    }
+    sums
+}
