@@ -6,7 +6,7 @@ mod common;
 use common::cases::{all_limits, control, rest_to_rest};
 use common::sought;
 use common::systems::branched;
-use common::tracked::tracked;
+use common::tracked::{energies, tracked};
 use common::trunk;
 use proboscis::control::problem::{Control, Duration, Objective};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
@@ -148,6 +148,7 @@ fn evaluations_allocate_nothing() {
         effort: 1.0,
         rate: 0.1,
         duration: 1.0,
+        energies: energies(&[(0, 1.0), (3, 2.0)], &[(3, 1.0), (4, 1.0)]),
         ..Objective::default()
     };
     let followed = Objective {

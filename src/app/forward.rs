@@ -134,7 +134,8 @@ pub(super) fn simulation(
         ..Seconds::default()
     };
     let motion = trajectory(&model, &kept);
-    let exchange = EnergyExchange::new(&model.system, &motion, task.start.rest_voltages());
+    let ends = [task.start.rest_voltages(), None];
+    let exchange = EnergyExchange::new(&model.system, &motion, ends);
     summary.energies = Exchanged::new(&exchange);
     observed.columns.extend(exchange.columns());
     let path = task.voltages.solution();

@@ -20,7 +20,6 @@ use crate::app::tracking_words;
 use crate::app::unfinished::Unfinished;
 use crate::app::words::counted;
 use crate::control::problem::{Control, Hold};
-use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{EnergyExchange, observations, out_of_domain};
 use crate::ipopt::{Status, interrupt};
 use crate::math::significant;
@@ -39,7 +38,7 @@ use crate::workflow::motion::{history, solved, trajectory};
 use crate::workflow::optimise::{Iterate, Optimum, SolveLimits};
 use crate::workflow::resimulate::{Cause, Resimulation, under_constant_voltages};
 use crate::workflow::second_start::is_infeasible;
-use crate::workflow::tracking::tracked;
+use crate::workflow::tracking::followed;
 use crate::workflow::violations::Violation;
 
 /// Length of the motion under constant voltages that is drawn beside the optimal one, in durations.
@@ -249,12 +248,11 @@ fn write_files(
     summary.domain = domain::told(&out_of_domain(model, &history));
     summary.notes.extend(domain::note(&summary.domain, true));
     let motion = trajectory(model, kept);
-    let exchange = EnergyExchange::new(&model.system, &motion, control.start.rest_voltages());
+    let ends = boundary.rest.each_ref().map(Option::as_deref);
+    let exchange = EnergyExchange::new(&model.system, &motion, ends);
     summary.energies = Exchanged::new(&exchange);
     observed.columns.extend(exchange.columns());
-    let half = optimum.resimulation.as_ref().and_then(|r| r.half.as_ref());
-    let half = half.map(|history| Trajectory::from_history(model, history));
-    summary.tracking = tracked(&model.system, control, &motion, half.as_ref());
+    summary.tracking = followed(optimum, control, &motion);
     summary
         .notes
         .extend(tracking_words::told(&summary.tracking));

@@ -2,6 +2,7 @@
 
 use crate::control::conditions::{BoundaryConditions, Rests, TerminalState};
 use crate::control::ends;
+use crate::control::energy_cost::sources;
 use crate::control::error::BoundaryError;
 use crate::control::goal_rows;
 use crate::control::limits::Limits;
@@ -55,6 +56,8 @@ impl BoundaryConditions {
             curved: curved.map(|(i, _)| quantities.len() + i).collect(),
             quantities: {
                 quantities.extend(paid.iter().map(|cost| cost.quantity));
+                let charged = sources(&control.objective.energies).into_iter();
+                quantities.extend(charged.map(|muscle| Quantity::Capacitance { muscle }));
                 quantities
             },
             ..question

@@ -5,6 +5,7 @@ mod calls;
 mod conditions;
 mod earlier;
 mod ends;
+mod energy_cost;
 mod error;
 mod evened;
 mod goal;

@@ -1,5 +1,6 @@
 //! What is asked of a system: simulate it, find its equilibrium, or steer it. Units g, mm, ms, N, V.
 
+pub use crate::control::energy_cost::{EnergyCost, SourceEnergy};
 pub use crate::control::goal::{Orientation, Place};
 pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
 use crate::control::{Earlier, Signal};

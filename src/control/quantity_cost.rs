@@ -1,19 +1,24 @@
 //! Costs of quantities: what a motion pays for what it does, beside its voltages.
 
+use crate::control::energy_cost::EnergyCost;
 use crate::control::signal::Signal;
 use crate::model::Quantity;
 
-/// Weights of the objective; a weight of zero leaves no trace.
+/// What is minimised: a sum of costs with the voltages V in kV, the interval length h in s and N intervals (docs/theory.md, 10.2). The default
+/// is no cost at all, and a weight of zero leaves no trace.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Objective {
-    /// Of Σ h |V_k|², V in kV, h in s.
+    /// Weight of Σ h |V_k|², not negative.
     pub effort: f64,
-    /// Of Σ_{k=0..N} |V_k − V_{k−1}|²/h with the rest voltages of start and goal at the ends.
+    /// Weight of Σ_{k=0..N} |V_k − V_{k−1}|²/h, not negative; V_{−1} and V_N are the rest voltages of start and goal, and without them the
+    /// first or last summand is left out.
     pub rate: f64,
-    /// Of the final time in s.
+    /// Weight of the final time in s, not negative.
     pub duration: f64,
-    /// Costs of quantities.
+    /// Squared deviations of markers and joints, over the motion or at its end.
     pub quantities: Vec<QuantityCost>,
+    /// Electrical energies from the sources and mechanical works of their muscles in J; several of one source are added.
+    pub energies: Vec<EnergyCost>,
 }
 
 /// A function of a quantity that is minimised.

@@ -40,6 +40,14 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
             let mut constants = parameter.constants.iter();
             parameter.moves(muscle) || constants.any(|c| c.constant == Constant::Layer(muscle))
         }
+        Quantity::Capacitance { muscle } => {
+            let is_read = |constant: Constant| {
+                let is_of_motion =
+                    matches!(constant, Constant::ShearModulus(_) | Constant::Viscosity(_));
+                constant.muscle() == Some(muscle) && !is_of_motion
+            };
+            parameter.moves(muscle) || parameter.constants.iter().any(|c| is_read(c.constant))
+        }
         // Constants of finite elements are not sought.
         Quantity::SquaredField { .. } => false,
         Quantity::Joint { .. }

@@ -7,7 +7,7 @@
 //! electrical energy  V_k (C_{k+1} V_k − C_k V_{k−1}),     mechanical work  ½ V_k² (C_{k+1} − C_k).
 //! ```
 //!
-//! Both belong to the instants at the ends of an interval. The potentials within finite elements are known in the middle of intervals
+//! The last row of a motion whose voltages afterwards are known includes the switch to them. Both belong to the instants at the ends of an interval. The potentials within finite elements are known in the middle of intervals
 //! only, so nothing is told of sources that drive finite elements.
 
 use crate::dynamics::trajectory::{Column, Trajectory};
@@ -38,16 +38,18 @@ pub struct SourceEnergies {
 }
 
 impl EnergyExchange {
-    /// Of a motion; `before` are the voltages by source that charged the muscles before the start, none where they were not charged.
-    pub fn new(system: &System, motion: &Trajectory, before: Option<&[f64]>) -> Self {
-        let before = |source: usize| before.map_or(0.0, |voltages| voltages[source]);
+    /// Of a motion; `ends` are the voltages in V by source that charged the muscles before the start, none where they were not charged, and
+    /// those that are held after the end, where they are known.
+    pub fn new(system: &System, motion: &Trajectory, ends: [Option<&[f64]>; 2]) -> Self {
         let mut out = Self {
             sources: Vec::new(),
             is_complete: true,
         };
         for (source, named) in system.sources().into_iter().enumerate() {
-            let mut voltages = motion.voltages.iter().map(|row| row[source]);
-            if before(source) == 0.0 && voltages.all(|voltage| voltage == 0.0) {
+            let [before, after] = ends.map(|row| row.map(|row| row[source]));
+            let voltages = motion.voltages.iter().map(|row| row[source]);
+            let mut voltages = voltages.chain(before).chain(after);
+            if voltages.all(|voltage| voltage == 0.0) {
                 continue;
             }
             let muscle = system.muscles.get(source);
@@ -55,7 +57,7 @@ impl EnergyExchange {
                 Some(of) => {
                     let lengths = lengths(system, motion, source);
                     let [electrical_energy, mechanical_work] =
-                        sums(&of, &lengths, motion, source, before(source));
+                        sums(&of, &lengths, (motion, source), [before, after]);
                     out.sources.push(SourceEnergies {
                         source,
                         name: named.name,
@@ -120,20 +122,23 @@ fn lengths(system: &System, motion: &Trajectory, muscle: usize) -> Vec<f64> {
 fn sums(
     capacitance: &Capacitance,
     lengths: &[f64],
-    motion: &Trajectory,
-    source: usize,
-    mut before: f64,
+    (motion, source): (&Trajectory, usize),
+    [before, after]: [Option<f64>; 2],
 ) -> [Vec<f64>; 2] {
     let mut sums = [vec![0.0], vec![0.0]];
     let [mut electrical, mut mechanical] = [0.0; 2];
-    for (ends, voltages) in lengths.windows(2).zip(&motion.voltages) {
-        let [c, next] = [ends[0], ends[1]].map(|length| capacitance.at_length(length));
+    let mut last = before.unwrap_or(0.0);
+    let capacitances: Vec<f64> = lengths.iter().map(|&l| capacitance.at_length(l)).collect();
+    for (c, voltages) in capacitances.windows(2).zip(&motion.voltages) {
         let voltage = voltages[source];
-        electrical += voltage * (next * voltage - c * before);
-        mechanical += 0.5 * voltage * voltage * (next - c);
-        before = voltage;
+        electrical += voltage * (c[1] * voltage - c[0] * last);
+        mechanical += 0.5 * voltage * voltage * (c[1] - c[0]);
+        last = voltage;
         sums[0].push(electrical);
         sums[1].push(mechanical);
+    }
+    if let (Some(energy), Some(c), Some(after)) = (sums[0].last_mut(), capacitances.last(), after) {
+        *energy += c * after * (after - last);
     }
     sums
 }

@@ -1,7 +1,8 @@
 //! Optimal control problems.
 
 use crate::control::problem::{
-    self, CostFunction, Duration, Guess, Hold, Objective, PathConstraint, QuantityCost, Solver,
+    self, CostFunction, Duration, EnergyCost, Guess, Hold, Objective, PathConstraint, QuantityCost,
+    Solver,
 };
 use crate::control::{Earlier, EarlierSolution, Signal};
 use crate::dynamics::{EnergyExchange, out_of_domain};
@@ -24,6 +25,7 @@ use crate::workflow::optimise::{Counted, Prepared, SolveLimits, prepare};
 use crate::workflow::resimulate::{Cause, Resimulation};
 use crate::workflow::resolve::resolve;
 use crate::workflow::second_start::is_infeasible;
+use crate::workflow::tracking::followed;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::ops::RangeInclusive;
@@ -36,7 +38,7 @@ pub struct Control {
     start: State,
     goal: State,
     voltage_bounds: [f64; 2],
-    objective: Objective,
+    pub(super) objective: Objective,
     limits: Vec<PathConstraint>,
     voltages: Vec<(Input, Signal)>,
     parameters: Vec<Parameter>,
@@ -216,7 +218,8 @@ impl Control {
             holding::free_end(&control),
         ];
         let trajectory = trajectory(model, &found.motion);
-        let start = control.start.rest_voltages();
+        let ends = found.boundary.rest.each_ref().map(Option::as_deref);
+        let tracking = followed(&found, &control, &trajectory);
         Ok(Optimum {
             status: found.word(),
             objective: found.solution.objective,
@@ -224,12 +227,13 @@ impl Control {
             message,
             motion: Motion {
                 system: model.system.clone(),
-                exchange: EnergyExchange::new(&model.system, &trajectory, start),
+                exchange: EnergyExchange::new(&model.system, &trajectory, ends),
                 trajectory,
                 warnings: warnings.into_iter().flatten().chain(reasons).collect(),
             },
             is_solved: found.is_solved(),
             parameters: found.motion.parameters.clone(),
+            tracking,
             solution: found.motion,
         })
     }
@@ -284,11 +288,13 @@ impl Control {
         let weights = &self.objective;
         let weights = [weights.effort, weights.rate, weights.duration];
         let costs = &self.objective.quantities;
-        let is_any = !costs.is_empty() || weights != [0.0; 3];
+        let energies = &self.objective.energies;
+        let is_any = !costs.is_empty() || !energies.is_empty() || weights != [0.0; 3];
         let holds = weights.iter().all(|w| *w >= 0.0 && w.is_finite()) && is_any;
         let found = || format!("weights {weights:?} of effort, rate and time");
         require(holds, "control", found, "weights of which one is positive")?;
         check_costs(costs, system)?;
+        check_energies(energies, system)?;
         for limit in &self.limits {
             let holds = match *limit {
                 PathConstraint::ElectricField { muscle, max } => {
@@ -363,6 +369,17 @@ fn check_costs(costs: &[QuantityCost], system: &System) -> Result<()> {
         let expected =
             "a positive weight of a marker, or of a joint with one coordinate, along finite values";
         require(exists && is_sound, "cost", found, expected)?;
+    }
+    Ok(())
+}
+
+/// Refuses energies of what is no lumped muscle, and weights that are no positive numbers.
+fn check_energies(costs: &[EnergyCost], system: &System) -> Result<()> {
+    for cost in costs {
+        let is_sound = cost.weight > 0.0 && cost.weight.is_finite();
+        let found = || format!("{cost:?}");
+        let expected = "a positive weight of a lumped muscle with a permittivity";
+        require(cost.exists(system) && is_sound, "cost", found, expected)?;
     }
     Ok(())
 }

@@ -1,14 +1,35 @@
-//! What a control problem minimises beside its voltages: squared deviations of markers and joints.
+//! What a control problem minimises beside its voltages: energies of sources, squared deviations of markers and joints.
 
 use crate::control::Signal;
-use crate::control::problem::{CostFunction, During, QuantityCost};
+use crate::control::problem::{CostFunction, During, EnergyCost, QuantityCost, SourceEnergy};
 use crate::interface::control::Control;
 use crate::interface::handle::Handle;
 use crate::model::Quantity;
-use crate::model::system::{Joint, Marker};
+use crate::model::system::{Joint, Marker, Muscle};
 use nalgebra::Vector3;
 
 impl Control {
+    /// Minimises the electrical energy from the sources of lumped muscles, with a weight per J; energy that flows back is negative, and
+    /// the switch to the voltages that hold the goal is counted where they are known.
+    pub fn electrical_energy(self, muscles: &[Handle<Muscle>], weight: f64) -> Self {
+        self.energy(SourceEnergy::Electrical, muscles, weight)
+    }
+
+    /// Minimises the mechanical work of the electrical forces of lumped muscles, with a weight per J.
+    pub fn mechanical_work(self, muscles: &[Handle<Muscle>], weight: f64) -> Self {
+        self.energy(SourceEnergy::Mechanical, muscles, weight)
+    }
+
+    fn energy(mut self, energy: SourceEnergy, muscles: &[Handle<Muscle>], weight: f64) -> Self {
+        let cost = |muscle: &Handle<Muscle>| EnergyCost {
+            source: muscle.index(),
+            energy,
+            weight,
+        };
+        self.objective.energies.extend(muscles.iter().map(cost));
+        self
+    }
+
     /// A marker follows functions of time in mm, in the directions x, y and z that have one: minimises ∫ |x − r|² dt in mm² s, with a
     /// weight.
     pub fn track(

@@ -58,8 +58,9 @@ impl Motion {
         starts.zip(rows).map(|(&t, row)| (t, row[source])).collect()
     }
 
-    /// Electrical energy in mJ from the source of a lumped muscle from the start to each instant; energy that flows back is negative. Nothing of
-    /// a muscle without voltage.
+    /// Electrical energy in mJ from the source of a lumped muscle from the start to each instant; energy that flows back is negative. At
+    /// the last instant of an optimum it includes the switch to the voltages that hold the goal, where they are known. Nothing of a muscle
+    /// without voltage.
     pub fn electrical_energy(&self, muscle: Handle<Muscle>) -> &[f64] {
         let sources = &self.exchange.sources;
         let source = sources.iter().find(|one| one.source == muscle.index());

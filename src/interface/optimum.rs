@@ -3,6 +3,7 @@
 use crate::control::Solution;
 use crate::interface::motion::Motion;
 use crate::model::FoundParameter;
+use crate::workflow::Tracked;
 
 /// What the solver found: an optimal motion, or its last iterate.
 #[derive(Clone, Debug)]
@@ -17,6 +18,9 @@ pub struct Optimum {
     pub message: Option<String>,
     /// The motion with its voltages.
     pub motion: Motion,
+    /// How closely markers and joints follow what [`Control::track`](crate::interface::Control::track) and
+    /// [`Control::track_joint`](crate::interface::Control::track_joint) name, marker by marker and joint by joint, in m and rad.
+    pub tracking: Vec<Tracked>,
     /// Parameters that were sought.
     pub parameters: Vec<FoundParameter>,
     pub(super) is_solved: bool,

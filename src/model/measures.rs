@@ -11,6 +11,7 @@ use crate::functional::{
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::analysis::Analysis;
+use crate::model::components::capacitance;
 use crate::model::joints::{JointCoordinate as Gauge, JointReading};
 use crate::model::presolved::Presolved;
 use crate::model::quantity::{FieldPlace, Quantity, Region};
@@ -85,6 +86,11 @@ impl Known<'_> {
                     centre: origin,
                     scale: self.condensed.system.muscles[muscle].length(),
                 };
+                instant(shape, energy, [self.span(muscle, vectors)])
+            }
+            Quantity::Capacitance { muscle } => {
+                self.variables.voltage(muscle)?;
+                let energy = capacitance(&self.condensed.system.muscles[muscle])?;
                 instant(shape, energy, [self.span(muscle, vectors)])
             }
             Quantity::MarkerPlace { marker, axis } => {

@@ -56,6 +56,11 @@ pub enum Quantity {
         /// Muscle index.
         muscle: usize,
     },
+    /// Capacitance of a lumped muscle in mC/V at the instants.
+    Capacitance {
+        /// Muscle index.
+        muscle: usize,
+    },
     /// (|e|/E)² of the true field e under the voltages of an interval.
     SquaredField {
         /// Where it is read.
@@ -124,6 +129,7 @@ impl Quantity {
         match *self {
             Self::Joint { joint, .. } => (value, joint_unit(system, joint)),
             Self::SquaredStretch { .. } => (value.sqrt(), ""),
+            Self::Capacitance { .. } => (value, "mF"),
             Self::Direction { .. } => (value, ""),
             Self::SquaredField { limit, .. } => (value.sqrt() * limit / MEGAVOLT_PER_METRE, "V/um"),
             Self::MarkerPlace { .. } | Self::MarkerStep { .. } => (value, "mm"),

@@ -46,5 +46,5 @@ pub use phase::listen_to_phases;
 pub use reasons::{Absent, absent};
 pub use resimulate::{Cause, Resimulation, under_constant_voltages};
 pub use steps::counted;
-pub use tracking::{Tracked, TrackedPath, TrackingError, tracked};
+pub use tracking::{Tracked, TrackedPath, TrackingError, followed, tracked};
 pub use violations::{Violation, violations};

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::control::problem::{Control, Duration};
+use crate::control::problem::{Control, Duration, SourceEnergy};
 use crate::model::system::JointKind;
 use crate::model::{BodyLocation, Model};
 
@@ -106,11 +106,20 @@ fn absent_of_control(model: &Model, control: &Control, add: &mut impl FnMut(Stri
         ("cost of rates", control.objective.rate),
         ("cost of duration", control.objective.duration),
     ];
-    for (name, _) in weights.iter().filter(|(_, weight)| *weight == 0.0) {
-        add(
-            (*name).to_owned(),
-            "the objective names no weight".to_owned(),
-        );
+    let energy = |energy: SourceEnergy| {
+        let costs = control.objective.energies.iter();
+        let own = costs.filter(|cost| cost.energy == energy);
+        own.map(|cost| cost.weight).sum()
+    };
+    let weights = weights.into_iter().chain([
+        (
+            "cost of electrical energy",
+            energy(SourceEnergy::Electrical),
+        ),
+        ("cost of mechanical work", energy(SourceEnergy::Mechanical)),
+    ]);
+    for (name, _) in weights.filter(|(_, weight)| *weight == 0.0) {
+        add(name.to_owned(), "the objective names no weight".to_owned());
     }
     if control.limits.is_empty() {
         add("limits".to_owned(), "the problem names none".to_owned());

@@ -7,6 +7,7 @@ use crate::control::problem::{Control, CostFunction, During, QuantityCost};
 use crate::dynamics::trajectory::Trajectory;
 use crate::model::system::{Joint, System};
 use crate::model::{Quantity, joint_unit};
+use crate::workflow::optimise::Optimum;
 
 /// A marker or a joint, what it was to follow, and how closely it did.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -55,6 +56,15 @@ pub struct TrackedPath {
     pub reference: Vec<f64>,
     /// Their difference, of angles without full turns.
     difference: Vec<f64>,
+}
+
+/// All that an optimum follows, with its motion as a trajectory.
+pub fn followed(optimum: &Optimum, control: &Control, motion: &Trajectory) -> Vec<Tracked> {
+    let model = &optimum.model;
+    let tested = optimum.resimulation.as_ref();
+    let half = tested.and_then(|tested| tested.half.as_ref());
+    let half = half.map(|history| Trajectory::from_history(model, history));
+    tracked(&model.system, control, motion, half.as_ref())
 }
 
 /// All that a motion of a control problem follows; `simulated` is the motion under its voltages with half the step.

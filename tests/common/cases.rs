@@ -1,7 +1,7 @@
 //! A list of control problems that together call for every effect, joint, limit, goal and objective.
 
 use super::systems::{GRAVITY, ball, blocks, branched, satellite, tied};
-use super::tracked::tracked;
+use super::tracked::{energies, tracked};
 use super::trunk;
 use nalgebra::Vector3;
 use proboscis::control::problem::{
@@ -298,6 +298,21 @@ pub fn cases() -> Vec<Case> {
         }),
         case("branched tree that follows, free time", branched(), &|c| {
             c.objective = tracked(&[0, 1], &[(0, true), (1, false), (2, true)]);
+            c.duration = free;
+        }),
+        case("branched tree, energies, all limits", branched(), &|c| {
+            c.objective = Objective {
+                energies: energies(&[(0, 2e3), (1, 3e3)], &[(1, 1e3), (2, 4e3)]),
+                ..tracked(&[0], &[(0, true)])
+            };
+            c.limits = all_limits();
+        }),
+        case("two segments, energies, free time", trunk(2), &|c| {
+            c.objective = Objective {
+                energies: energies(&[(0, 1e3), (3, 2e3)], &[(0, 2e3)]),
+                ..every_objective()
+            };
+            c.goal = BoundaryState::RestAtVoltages(hold(2), Rest::Everything);
             c.duration = free;
         }),
         case("blocks that follow, free time", blocks(), &|c| {

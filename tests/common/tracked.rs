@@ -1,7 +1,9 @@
-//! Costs that call for every signal, on markers and joints.
+//! Costs that call for every signal, on markers and joints, and of energies of sources.
 
 use proboscis::control::Signal;
-use proboscis::control::problem::{CostFunction, During, Objective, QuantityCost};
+use proboscis::control::problem::{
+    CostFunction, During, EnergyCost, Objective, QuantityCost, SourceEnergy,
+};
 use proboscis::model::Quantity;
 
 /// Signals of each kind about a mean, changing within some ms.
@@ -58,4 +60,19 @@ pub fn tracked(markers: &[usize], joints: &[(usize, bool)]) -> Objective {
         quantities,
         ..Objective::default()
     }
+}
+
+/// Electrical energies, then mechanical works, by source and weight.
+pub fn energies(electrical: &[(usize, f64)], mechanical: &[(usize, f64)]) -> Vec<EnergyCost> {
+    let costs = |energy: SourceEnergy, list: &[(usize, f64)]| {
+        let cost = |&(source, weight): &(usize, f64)| EnergyCost {
+            source,
+            energy,
+            weight,
+        };
+        list.iter().map(cost).collect::<Vec<_>>()
+    };
+    let mut all = costs(SourceEnergy::Electrical, electrical);
+    all.extend(costs(SourceEnergy::Mechanical, mechanical));
+    all
 }

@@ -1,6 +1,7 @@
 //! Sought parameters in optimal control: a muscle arm between bounds, and where a parameter is refused.
 
 use crate::common::cases::{control, joints};
+use crate::common::tracked::energies;
 use crate::common::trunk;
 use crate::optimality::{Optimum, solve};
 use proboscis::State;
@@ -191,6 +192,21 @@ fn parameters_are_refused_where_they_may_not_act() {
         limited(PathConstraint::ElectricField { muscle, max }),
         "limit",
     );
+    // Energies of a muscle whose capacitance depends on one; not on its modulus, nor that of another muscle.
+    let paid = |source: usize, parameter: Parameter| {
+        let mut control = with(vec![parameter]);
+        control.objective.energies = energies(&[(source, 1.0)], &[]);
+        control
+    };
+    let layer = || of(Constant::Layer(1), 0.01, 0.05, 0.1);
+    says(paid(1, layer()), "of the objective depends on it");
+    says(
+        paid(0, arm([4.0, 60.0], 15.0)),
+        "of the objective depends on it",
+    );
+    for control in [paid(1, modulus()), paid(0, layer())] {
+        assert!(BoundaryConditions::resolve(&system, &control, 10.0).is_ok());
+    }
     let mut heavy = pair();
     heavy.muscles[1].material.density = Some(1e-3);
     let text = refusal(&heavy, &with(vec![arm([4.0, 60.0], 15.0)]));

@@ -70,7 +70,7 @@ fn deviation(system: &System, model: &Model, z: &[f64], cost: &QuantityCost, t: 
 }
 
 /// A program at a random point, and its model.
-fn at_random<R>(
+pub(crate) fn at_random<R>(
     control: &Control,
     read: impl FnOnce(&Model, &mut Transcription<'_>, Vec<f64>) -> R,
 ) -> R {
@@ -146,44 +146,62 @@ fn the_sum_is_the_trapezoidal_rule() {
     }
 }
 
+/// The Hessian of the objective alone is that of differences of its gradient.
+pub(crate) fn compare_hessian(program: &mut Transcription<'_>, x: &[f64]) {
+    let n = x.len();
+    let none = vec![0.0; program.constraints().lower.len()];
+    let structure = program.hessian_structure();
+    let mut values = vec![0.0; structure.rows.len()];
+    // Constraints come first at this point, so that instants are placed by others too.
+    program.constraint(x, &mut none.clone());
+    program.hessian(x, 1.0, &none, &mut values);
+    let mut hessian = vec![0.0; n * n];
+    for ((&i, &j), value) in structure.rows.iter().zip(&structure.cols).zip(values) {
+        hessian[i as usize * n + j as usize] += value;
+    }
+    let largest = hessian.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+    assert!(largest > 0.1, "{largest}");
+    let (mut above, mut below) = (vec![0.0; n], vec![0.0; n]);
+    let step = 1e-5;
+    for j in 0..n {
+        let moved = |by: f64| {
+            let mut x = x.to_vec();
+            x[j] += by;
+            x
+        };
+        program.gradient(&moved(step), &mut above);
+        program.gradient(&moved(-step), &mut below);
+        for i in j..n {
+            let expected = (above[i] - below[i]) / (2.0 * step);
+            let found = hessian[i * n + j];
+            let names = || [i, j].map(|i| program.variable_name(i));
+            assert!(
+                (found - expected).abs() < 1e-7 * largest,
+                "{:?}: {found} {expected}",
+                names()
+            );
+        }
+    }
+    // The gradient is that of differences of the objective.
+    let mut gradient = vec![0.0; n];
+    program.gradient(x, &mut gradient);
+    let largest = gradient.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+    for (j, found) in gradient.into_iter().enumerate() {
+        let mut at = |by: f64| {
+            let mut x = x.to_vec();
+            x[j] += by;
+            program.objective(&x)
+        };
+        let expected = (at(step) - at(-step)) / (2.0 * step);
+        let error = (found - expected).abs();
+        assert!(error < 1e-7 * largest, "{j}: {found} {expected}");
+    }
+}
+
 #[test]
 fn the_hessian_of_the_objective_alone_is_that_of_its_differences() {
     for control in problems() {
-        at_random(&control, |_, program, x| {
-            let n = x.len();
-            let none = vec![0.0; program.constraints().lower.len()];
-            let structure = program.hessian_structure();
-            let mut values = vec![0.0; structure.rows.len()];
-            // Constraints come first at this point, so that instants are placed by others too.
-            program.constraint(&x, &mut none.clone());
-            program.hessian(&x, 1.0, &none, &mut values);
-            let mut hessian = vec![0.0; n * n];
-            for ((&i, &j), value) in structure.rows.iter().zip(&structure.cols).zip(values) {
-                hessian[i as usize * n + j as usize] += value;
-            }
-            let largest = hessian.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
-            assert!(largest > 0.1, "{largest}");
-            let (mut above, mut below) = (vec![0.0; n], vec![0.0; n]);
-            let step = 1e-5;
-            for j in 0..n {
-                let moved = |by: f64| {
-                    let mut x = x.clone();
-                    x[j] += by;
-                    x
-                };
-                program.gradient(&moved(step), &mut above);
-                program.gradient(&moved(-step), &mut below);
-                for i in j..n {
-                    let expected = (above[i] - below[i]) / (2.0 * step);
-                    let found = hessian[i * n + j];
-                    let names = [i, j].map(|i| program.variable_name(i));
-                    assert!(
-                        (found - expected).abs() < 1e-7 * largest,
-                        "{names:?}: {found} {expected}"
-                    );
-                }
-            }
-        });
+        at_random(&control, |_, program, x| compare_hessian(program, &x));
     }
 }
 

@@ -7,6 +7,7 @@ mod action;
 mod arithmetic;
 mod costs;
 mod differences;
+mod energies;
 mod formulas;
 mod hexahedron;
 mod hexahedron_states;

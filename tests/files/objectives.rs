@@ -1,9 +1,10 @@
 //! What an objective names, and its mistakes.
 
-use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
+use crate::scene::{Case, PROBLEM, SCENE, check, elastic_scene, folder, mistake};
 use proboscis::control::Signal;
 use proboscis::control::problem::{
-    BoundaryState, Control, CostFunction, During, Orientation, Place, QuantityCost, Rest, Task,
+    BoundaryState, Control, CostFunction, During, EnergyCost, Orientation, Place, QuantityCost,
+    Rest, SourceEnergy, Task,
 };
 use proboscis::files::read_problem;
 use proboscis::model::Quantity;
@@ -99,6 +100,73 @@ fn what_cannot_be_followed_is_refused() {
         ("\"track\": [ {", "\"effort\": 1, \"track\": [ 3, {", "control.objective.track[0]", "3", "", "3"),
     ];
     check(cases, &problem, |problem| mistake(SCENE, problem, &[]));
+}
+
+#[test]
+fn energies_are_of_all_sources_or_of_named_ones() {
+    let cost = |energy, weight| EnergyCost {
+        source: 0,
+        energy,
+        weight,
+    };
+    let named = r#"{ "weight": 3, "sources": ["muscle1"] }"#;
+    let both = format!(r#"{{ "electrical_energy": 2.5, "mechanical_work": {named} }}"#);
+    let expected = [
+        cost(SourceEnergy::Electrical, 2.5),
+        cost(SourceEnergy::Mechanical, 3.0),
+    ];
+    // The second muscle takes no voltage.
+    assert_eq!(read(&both).objective.energies, expected);
+    let one = format!(r#"{{ "effort": 1, "electrical_energy": {named}, "mechanical_work": 0 }}"#);
+    let expected = [cost(SourceEnergy::Electrical, 3.0)];
+    assert_eq!(read(&one).objective.energies, expected);
+    assert!(read(r#"{ "effort": 1 }"#).objective.energies.is_empty());
+}
+
+#[test]
+fn energies_that_make_no_sense_are_refused() {
+    const BOTH: &str = r#"{ "electrical_energy": 1.5, "mechanical_work": { "weight": 7, "sources": ["muscle1"] } }"#;
+    let problem = with(BOTH);
+    #[rustfmt::skip]
+    let cases: &[Case] = &[
+        ("1.5", "-1.5", "control.objective.electrical_energy", "-1.5", "a weight that is not negative", "-1.5"),
+        ("1.5", "\"much\"", "control.objective.electrical_energy", "\"much\"", "a number", "\"much\""),
+        ("1.5", "true", "control.objective.electrical_energy", "true", "a weight, or an object with \"weight\"", "true"),
+        ("\"weight\": 7", "\"weight\": -7", "control.objective.mechanical_work.weight", "-7", "a weight that is not negative", "-7"),
+        ("\"weight\": 7, ", "", "control.objective.mechanical_work", "no key \"weight\"", "the key \"weight\"", "{ \"sources\": [\"muscle1\"] }"),
+        ("[\"muscle1\"]", "[]", "control.objective.mechanical_work.sources", "no source", "one source or more", "[]"),
+        ("[\"muscle1\"]", "[\"muscl1\"]", "control.objective.mechanical_work.sources[0]", "\"muscl1\"", "the name of a muscle", "\"muscl1\""),
+        ("[\"muscle1\"]", "[\"muscle2\"]", "control.objective.mechanical_work.sources[0]", "no electric term", "relative_permittivity", "\"muscle2\""),
+        ("[\"muscle1\"]", "[\"muscle1\", \"muscle1\"]", "control.objective.mechanical_work.sources[1]", "\"muscle1\" again", "each source once", "\"muscle1\""),
+    ];
+    check(cases, &problem, |problem| mistake(SCENE, problem, &[]));
+    // One weight of zero is none.
+    let error = mistake(SCENE, &with(r#"{ "electrical_energy": 0 }"#), &[]);
+    assert_eq!(
+        (error.path(), error.found()),
+        ("control.objective", "no weight")
+    );
+}
+
+#[test]
+fn energies_of_finite_elements_are_refused() {
+    let scene = elastic_scene();
+    for (objective, place) in [
+        (r#"{ "electrical_energy": 1 }"#, "electrical_energy"),
+        (
+            r#"{ "mechanical_work": { "weight": 1, "sources": ["muscle1"] } }"#,
+            "mechanical_work.sources[0]",
+        ),
+    ] {
+        let error = mistake(&scene, &with(objective), &[]);
+        assert_eq!(error.path(), format!("control.objective.{place}"));
+        assert!(
+            error
+                .found()
+                .contains("\"muscle1\", which drives finite elements")
+        );
+        assert!(error.expected().contains("lumped muscles"));
+    }
 }
 
 #[test]

@@ -135,7 +135,7 @@ fn mistakes_in_a_scene_name_place_found_and_expected() {
 }
 
 /// The scene with one muscle of finite elements.
-fn elastic_scene() -> String {
+pub(crate) fn elastic_scene() -> String {
     SCENE
         .replacen(
             "\"viscosity\"",
@@ -207,7 +207,6 @@ fn mistakes_in_a_problem_name_place_found_and_expected() {
         ("{ \"rest_at_voltages\": { \"muscle1\": \"1.7 kV\" } }", "{ \"markers\": { \"tip\": [0, \"90 mm\", 0] } }", "control.goal.markers", "3 final conditions", "2 degrees of freedom", "tip"),
         ("{ \"rest_at_voltages\": { \"muscle1\": \"1.7 kV\" } }", "{ \"joint_angles\": { \"joint2\": \"0.3 rad\" } }", "control.goal.joint_angles.joint2", "which is an angle", "a length", "0.3 rad"),
         ("{ \"rest_at_voltages\": { \"muscle1\": \"1.7 kV\" } }", "{}", "control.goal", "none of them", "exactly one of", "{}"),
-        ("{ \"effort\": 1.0 }", "{ \"electrical_energy\": 1.0 }", "control.objective.electrical_energy", "not available in this version", "\"effort\"", "\"electrical_energy\""),
         ("{ \"effort\": 1.0 }", "{ \"tracking\": 1.0 }", "control.objective.tracking", "the key \"tracking\"", "\"track\"", "\"tracking\""),
         ("{ \"effort\": 1.0 }", "{ \"efort\": 1.0 }", "control.objective.efort", "the key \"efort\"", "\"effort\"", "\"efort\""),
         ("\"intervals\": 20,", "\"intervals\": 20, \"voltages\": { \"muscle2\": 0 },", "control.voltages.muscle2", "no electric term", "relative_permittivity", "0"),

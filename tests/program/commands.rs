@@ -149,9 +149,8 @@ fn a_solved_problem_leaves_what_is_promised() {
 fn energies_are_those_of_the_table(folder: &Path, results: &str) {
     let summary = summary(folder, results);
     let csv = fs::read_to_string(folder.join(results).join("trajectory.csv")).unwrap();
-    let mut lines = csv.lines().skip(1);
-    let names: Vec<_> = lines.next().unwrap().split(',').collect();
-    let values: Vec<_> = lines.next_back().unwrap().split(',').collect();
+    let names: Vec<_> = csv.lines().nth(1).unwrap().split(',').collect();
+    let values: Vec<_> = csv.lines().next_back().unwrap().split(',').collect();
     let last = |name: &str| {
         let column = names.iter().position(|other| other == &name);
         column.map(|c| values[c].parse::<f64>().unwrap())

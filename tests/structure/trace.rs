@@ -4,7 +4,7 @@
 use crate::common::cases::{control, rest_to_rest};
 use crate::common::random::Random;
 use crate::common::systems::{GRAVITY, branched};
-use crate::common::tracked::tracked;
+use crate::common::tracked::{energies, tracked};
 use crate::common::trunk;
 use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, PathConstraint};
 use proboscis::control::{BoundaryConditions, Signal, Transcription, guess};
@@ -193,6 +193,19 @@ fn effects_cost_what_they_add() {
             ..c.objective.clone()
         }),
         rate
+    );
+    // The electrical energy: the same for the voltages of its sources. Coordinates and voltages meet in the energy of muscles.
+    let electrical = Counts {
+        hessian: plain.hessian + inner * 2,
+        ..plain
+    };
+    assert_eq!(
+        change(&|_, c| c.objective.energies = energies(&[(1, 1.0), (4, 1.0)], &[])),
+        electrical
+    );
+    assert_eq!(
+        change(&|_, c| c.objective.energies = energies(&[], &[(1, 1.0), (4, 1.0)])),
+        plain
     );
     // What is followed couples coordinates of one instant, all of which inertia couples: no row, column or place is added.
     assert_eq!(

@@ -106,7 +106,7 @@ impl Transcription<'_> {
     }
 
     /// Places all instants at the present point as far as it is needed, the copy where stretches meet too.
-    fn place(&mut self, needed: Placed) {
+    pub(super) fn place(&mut self, needed: Placed) {
         let motion = &self.model.action.motion;
         if let Some(middle) = self.middle {
             self.halo.z.copy_from_slice(&self.instants[middle].z);

@@ -10,6 +10,8 @@
 
 mod cost_rows;
 mod costs;
+mod energies;
+mod energy_rows;
 pub(super) mod layout;
 mod limit_rows;
 mod placed;
@@ -33,6 +35,7 @@ use crate::functional::{Horizon, Part};
 use crate::model::{Model, Role, Size, Time};
 use crate::nlp::{Bounds, Entries, Nlp};
 use cost_rows::{CostRow, cost_rows, costs_size};
+use energy_rows::{EnergyRow, Jump, energies_size, energy_rows};
 use layout::Layout;
 use limit_rows::LimitRow;
 pub(super) use limit_rows::Site;
@@ -62,6 +65,8 @@ pub struct Transcription<'m> {
     cost: Cost,
     /// Costs of quantities.
     costs: Vec<CostRow>,
+    /// Costs of energies.
+    energies: Vec<EnergyRow>,
     objective_scale: f64,
     /// Unit of voltages in kV.
     kilovolt: f64,
@@ -96,6 +101,8 @@ pub struct Transcription<'m> {
     jacobian_entries: Entries,
     hessian: Vec<Gather>,
     hessian_entries: Entries,
+    /// The last entries of the Hessian: voltages of neighbouring intervals.
+    jumps: Vec<Jump>,
     /// Each voltage of an interval: its place among the scalars, and the slot of its second derivative with itself.
     voltages: Vec<(usize, usize)>,
     gradient: Vec<f64>,
@@ -174,7 +181,7 @@ impl<'m> Transcription<'m> {
             boundary.rest[1].as_ref().map(kilo),
         ];
         let cost = Cost::new(&control.objective, voltages.len(), intervals, ends);
-        let paid = &control.objective.quantities;
+        let (paid, energies) = (&control.objective.quantities, &control.objective.energies);
         let duration = intervals as f64 * initial.h * MILLISECOND;
         let layout = model.action.layout();
         let length = model.length();
@@ -202,9 +209,10 @@ impl<'m> Transcription<'m> {
                 &control.objective,
                 volts / KILOVOLT,
                 duration,
-                costs_size(model, paid, duration),
+                costs_size(model, paid, duration) + energies_size(model, energies, volts),
             ),
             costs: cost_rows(model, paid, boundary.limits.list.len(), intervals),
+            energies: energy_rows(model, energies, &boundary.rest, intervals),
             kilovolt: volts / KILOVOLT,
             cost,
             momentum: boundary.start.momentum.clone(),
@@ -229,6 +237,7 @@ impl<'m> Transcription<'m> {
             jacobian_entries: Entries::default(),
             hessian: Vec::new(),
             hessian_entries: Entries::default(),
+            jumps: Vec::new(),
             gradient: vec![0.0; kilovolts.len()],
             voltages: voltages
                 .map(|s| {

@@ -36,7 +36,7 @@ impl Nlp for Transcription<'_> {
     fn objective(&mut self, x: &[f64]) -> f64 {
         self.load(x);
         let of_voltages = self.cost.value(&self.kilovolts, self.h * MILLISECOND);
-        of_voltages + self.costs()
+        of_voltages + self.costs() + self.energies()
     }
 
     fn objective_scale(&self) -> f64 {
@@ -50,8 +50,9 @@ impl Nlp for Transcription<'_> {
                 .gradient(&self.kilovolts, self.h * MILLISECOND, &mut self.gradient);
         by_horizon *= MILLISECOND;
         grad.fill(0.0);
-        if !self.costs.is_empty() {
+        if !self.costs.is_empty() || !self.energies.is_empty() {
             by_horizon += self.cost_gradients(|s| s.outer.slope, |s| s.by_h);
+            self.energy_gradients();
             self.gather_cost_gradient(grad);
         }
         let scales = &self.variable_scales;
@@ -118,12 +119,16 @@ impl Nlp for Transcription<'_> {
         self.sigma = sigma;
         self.sweep(Order::Third);
         self.objective_curvature(sigma);
+        self.energy_curvature(sigma);
         let tau = self.h * MILLISECOND;
         let (own, coupling) = values.split_at_mut(self.hessian.len());
         for (value, kept) in own.iter_mut().zip(&self.hessian) {
             *value = kept.scale * self.values[kept.place];
         }
-        coupling.fill(sigma * self.cost.coupling(tau) * self.kilovolt * self.kilovolt);
+        let of_rate = sigma * self.cost.coupling(tau) * self.kilovolt * self.kilovolt;
+        for (value, &jump) in coupling.iter_mut().zip(&self.jumps) {
+            *value = of_rate + self.energy_coupling(jump, sigma);
+        }
     }
 
     /// None with constraint forces: an instant is sparse then, and an order of minimum degree is twice as fast.

@@ -5,6 +5,7 @@
 //! are the same for any number of threads.
 
 use crate::control::transcription::cost_rows::{CostRow, fill_costs};
+use crate::control::transcription::energy_rows::{EnergyRow, fill_energies};
 use crate::control::transcription::limit_rows::{LimitRow, Site, fill_limits};
 use crate::control::transcription::placed::Placed;
 use crate::coordinates::{Configuration, Interval, Reduced, Scratch};
@@ -21,6 +22,7 @@ pub(super) struct Shared<'a> {
     pub(super) action: &'a Reduced,
     pub(super) limits: &'a [LimitRow],
     pub(super) costs: &'a [CostRow],
+    pub(super) energies: &'a [EnergyRow],
     /// Factor of the costs.
     pub(super) sigma: f64,
     /// Costates of the limits.
@@ -212,6 +214,9 @@ pub(super) fn instant_of(
         };
         let of = (action, &sample);
         fill_costs(outer, shared.costs, (site, k), shared.sigma, of);
+        let count = action.layout().interval_scalars;
+        let at = (k, shared.sigma);
+        fill_energies(outer, shared.energies, at, shared.scalars, count);
     }
     action.evaluate_instant(order, instant, outer, scratch);
     action.pull_back_instant(order, instant, j, scratch, values);

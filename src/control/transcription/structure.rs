@@ -1,6 +1,7 @@
 //! Which entries of the periodic values the Jacobian and the Hessian keep.
 
 use crate::control::numbering::Row;
+use crate::control::transcription::energy_rows::Jump;
 use crate::control::transcription::limit_rows::SCALAR;
 use crate::control::transcription::{Gather, Transcription};
 use crate::model::Role;
@@ -152,13 +153,21 @@ impl Transcription<'_> {
             let scale = self.variable_scales[row] * self.variable_scales[col];
             self.hessian.push(Gather { place, scale });
         }
-        if self.cost.couples_intervals() {
-            for k in 1..self.intervals {
-                for &(s, _) in &self.voltages {
-                    if let (Some(row), Some(col)) = (u.scalar(k, s), u.scalar(k - 1, s)) {
-                        entries.rows.push(row as u32);
-                        entries.cols.push(col as u32);
-                    }
+        let is_coupling = |s: usize| {
+            let rows = self.energies.iter();
+            rows.clone()
+                .position(|row| row.scalar == s && row.couples_intervals())
+        };
+        for k in 1..self.intervals {
+            for &(s, _) in &self.voltages {
+                let energy = is_coupling(s);
+                if !self.cost.couples_intervals() && energy.is_none() {
+                    continue;
+                }
+                if let (Some(row), Some(col)) = (u.scalar(k, s), u.scalar(k - 1, s)) {
+                    entries.rows.push(row as u32);
+                    entries.cols.push(col as u32);
+                    self.jumps.push(Jump { k, energy });
                 }
             }
         }

@@ -24,6 +24,7 @@ impl<'m> Transcription<'m> {
             action,
             limits: &self.limits,
             costs: &self.costs,
+            energies: &self.energies,
             sigma: self.sigma,
             costates,
             scalars: &self.scalars,

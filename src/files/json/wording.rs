@@ -11,12 +11,6 @@ pub(crate) struct Wording {
     pub(crate) at_key: bool,
 }
 
-/// Keys of the file format that this version does not read, and what it says about them.
-const UNAVAILABLE: [(&str, &str); 1] = [(
-    "electrical_energy",
-    "this objective is not available in this version",
-)];
-
 /// Takes a message of serde apart; `key` is the last key of its place.
 pub(crate) fn wording(key: Option<&str>, message: &str) -> Wording {
     let message = message.trim_end();
@@ -59,15 +53,10 @@ pub(crate) fn wording(key: Option<&str>, message: &str) -> Wording {
 }
 
 fn unknown_key(key: &str, expected: &str) -> Wording {
-    let unavailable = UNAVAILABLE.iter().find(|&&(name, _)| name == key);
-    let note = unavailable.map_or_else(String::new, |(_, note)| format!(" ({note})"));
     Wording {
-        found: format!("the key {key:?}{note}"),
+        found: format!("the key {key:?}"),
         expected: one_of(expected),
-        nearest: match unavailable {
-            Some(_) => None,
-            None => nearest(key, quoted(expected)),
-        },
+        nearest: nearest(key, quoted(expected)),
         at_key: true,
     }
 }

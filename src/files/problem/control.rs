@@ -1,10 +1,13 @@
 //! From a control problem as written to the task.
 
 use crate::control::Signal;
-use crate::control::problem::{BoundaryState, Control, Duration, Objective, Solver, Voltages};
+use crate::control::problem::{
+    BoundaryState, Control, Duration, Objective, Solver, SourceEnergy, Voltages,
+};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::coordinates::{coordinates, count};
+use crate::files::problem::energies::energies;
 use crate::files::problem::free::parameters;
 use crate::files::problem::goal::goal_state;
 use crate::files::problem::guess::guess;
@@ -226,8 +229,24 @@ pub(crate) fn objective(
     for (index, spec) in spec.at_the_end.iter().enumerate() {
         quantities.extend(at_the_end(spec, system, &scope.key("final").index(index))?);
     }
-    if quantities.is_empty() && weights.iter().all(|(_, weight)| *weight == 0.0) {
-        let expected = "a positive weight of \"effort\", \"rate\" or \"duration\", or something to \"track\" or a \"final\" place";
+    let mut of_sources = Vec::new();
+    for (key, energy, weight) in [
+        (
+            "electrical_energy",
+            SourceEnergy::Electrical,
+            &spec.electrical_energy,
+        ),
+        (
+            "mechanical_work",
+            SourceEnergy::Mechanical,
+            &spec.mechanical_work,
+        ),
+    ] {
+        of_sources.extend(energies(weight, energy, system, &scope.key(key))?);
+    }
+    let is_any = !quantities.is_empty() || !of_sources.is_empty();
+    if !is_any && weights.iter().all(|(_, weight)| *weight == 0.0) {
+        let expected = "a positive weight of \"effort\", \"rate\", \"duration\", \"electrical_energy\" or \"mechanical_work\", or something to \"track\" or a \"final\" place";
         return Err(scope.wrong("no weight", expected));
     }
     Ok(Objective {
@@ -235,6 +254,7 @@ pub(crate) fn objective(
         rate: spec.rate,
         duration: spec.duration,
         quantities,
+        energies: of_sources,
     })
 }
 

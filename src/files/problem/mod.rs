@@ -1,13 +1,14 @@
 //! The problem file: what is written (`spec`, `spec_*`) and how it becomes a [`Task`](crate::control::problem::Task).
 //!
 //! - `build`: the problem; `control`, `simulation`: its two longer tasks.
-//! - `state`, `goal`, `limits`, `free`, `guess`, `voltages`, `signal`, `track`, `coordinates`: their parts; `solution_voltages`,
+//! - `state`, `goal`, `limits`, `free`, `guess`, `voltages`, `signal`, `track`, `energies`, `coordinates`: their parts; `solution_voltages`,
 //!   `solution_joints`:
 //!   what is read of an earlier solution.
 
 pub(crate) mod build;
 pub(crate) mod control;
 pub(crate) mod coordinates;
+pub(crate) mod energies;
 pub(crate) mod free;
 pub(crate) mod goal;
 pub(crate) mod guess;
@@ -19,6 +20,7 @@ pub(crate) mod solution_voltages;
 pub mod spec;
 pub mod spec_control;
 pub mod spec_coordinates;
+pub mod spec_energies;
 pub mod spec_free;
 pub mod spec_integrator;
 pub mod spec_limits;

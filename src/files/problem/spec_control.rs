@@ -2,6 +2,7 @@
 
 use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::files::problem::spec_coordinates::CoordinatesSpec;
+use crate::files::problem::spec_energies::EnergySpec;
 use crate::files::problem::spec_free::FreeMap;
 use crate::files::problem::spec_limits::LimitSpec;
 use crate::files::problem::spec_states::{GoalSpec, HoldSpec, StartSpec};
@@ -81,6 +82,12 @@ pub struct ObjectiveSpec {
     /// Weight of the final time in s.
     #[serde(default)]
     pub duration: f64,
+    /// Weight per J of the electrical energy from the sources of lumped muscles, of all sources or of named ones; what flows back is negative.
+    #[serde(default)]
+    pub electrical_energy: EnergySpec,
+    /// Weight per J of the mechanical work of the electrical forces of lumped muscles, of all sources or of named ones.
+    #[serde(default)]
+    pub mechanical_work: EnergySpec,
     /// What markers and joints follow in time.
     #[serde(default)]
     pub track: Vec<TrackSpec>,
