@@ -15,6 +15,8 @@ mod nlp;
 mod own_component;
 #[path = "../../examples/spring.rs"]
 mod spring;
+#[path = "../../examples/tracking.rs"]
+mod tracking;
 #[path = "../../examples/trunk.rs"]
 mod trunk;
 
@@ -24,6 +26,7 @@ fn examples_run() {
     fe_block::main().unwrap();
     nlp::main().unwrap();
     own_component::main().unwrap();
+    tracking::main().unwrap();
     trunk::main().unwrap();
 }
 
@@ -148,6 +151,25 @@ fn a_tip_follows_a_path_of_a_program_as_that_of_a_file() {
             .count()
             == 1
     );
+    // The deviations are those of the eight, in mm.
+    let far = |(t, tip): (&f64, &nalgebra::Vector3<f64>)| {
+        let turn = std::f64::consts::PI * t / 1e3;
+        (tip.x - 40.0 * turn.sin()).hypot(tip.z - 20.0 * (2.0 * turn).sin())
+    };
+    let places = found.motion.position(tip);
+    let most = found
+        .motion
+        .times()
+        .iter()
+        .zip(&places)
+        .map(far)
+        .fold(0.0, f64::max);
+    let [one] = &found.tracking[..] else {
+        panic!("{:?}", found.tracking);
+    };
+    assert_eq!((one.kind, one.name.as_str()), ("marker", "tip"));
+    assert!(most > 1e-3 && (1e3 * one.error.maximum - most).abs() < 1e-9);
+    assert!(one.simulated.is_some());
     // Ends near a place, without a path.
     let near = Y * 290.0 + X * 40.0;
     let problem = Control::over(s(0.4), 20)
@@ -159,6 +181,12 @@ fn a_tip_follows_a_path_of_a_program_as_that_of_a_file() {
     let end = *found.motion.position(tip).last().unwrap();
     assert!(found.is_solved() && (end - near).norm() < 2.0, "{end}");
     let weightless = problem.end_near(tip, near, -1.0).solve(&trunk);
+    let backwards = Control::over(s(0.4), 20).electrical_energy(&muscles, -1.0);
+    let refused = backwards.solve(&trunk).unwrap_err().to_string();
+    assert!(
+        refused.contains("a positive weight of a lumped muscle"),
+        "{refused}"
+    );
     assert!(
         weightless
             .unwrap_err()
