@@ -37,7 +37,7 @@ blocks: build
 	@for problem in $(MOTIONS); do $(PROBOSCIS) simulate problems/$$problem.json || exit; done
 
 gallery: build
-	@for problem in elephant_trunk elephant_trunk_effort elephant_trunk_figure_eight bending_actuator pull_in fe_bending_control; do $(PROBOSCIS) solve problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
+	@for problem in elephant_trunk elephant_trunk_effort elephant_trunk_figure_eight bending_actuator pull_in fe_bending_control fe_trunk_control; do $(PROBOSCIS) solve problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
 	@for problem in elephant_trunk_constant fe_trunk; do $(PROBOSCIS) simulate problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
 
 build: install-deps

@@ -107,7 +107,9 @@ fn factorisation(model: &Model) -> &'static str {
         Symmetry::Symmetric => {
             "tangent of a step: symmetric, LDLᵀ, as every coordinate is a node's and every force has a potential\n"
         }
-        Symmetry::Unsymmetric => "tangent of a step: not symmetric, LU\n",
+        Symmetry::Unsymmetric => {
+            "tangent of a step: not symmetric, LU; LDLᵀ of its symmetric part where the modified Newton method corrects the rest\n"
+        }
     }
 }
 

@@ -234,7 +234,7 @@ pub(super) struct Simulation {
     /// Steps that had to be halved.
     pub(super) halved_steps: usize,
     /// Who factorised the tangents.
-    pub(super) linear_solver: &'static str,
+    pub(super) linear_solver: String,
     /// Factorisations of the tangent.
     pub(super) factorisations: usize,
     /// Seconds in rows and tangents.
@@ -288,7 +288,7 @@ impl Simulation {
             tolerance: task.tolerance,
             newton_iterations: report.iterations,
             halved_steps: report.halved,
-            linear_solver: history.solver,
+            linear_solver: history.solver.clone(),
             factorisations: report.factorisations,
             assembly_seconds: report.assembly,
             factorisation_seconds: report.factorisation,

@@ -20,7 +20,7 @@ pub struct DiscreteTrajectory {
     /// Work in mJ of forces without a potential in each interval, where instants alone do not tell it.
     pub works: Vec<f64>,
     /// The method that factorised the tangents of the steps.
-    pub solver: &'static str,
+    pub solver: String,
     /// What it cost.
     pub report: StepperReport,
 }

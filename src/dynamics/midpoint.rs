@@ -11,12 +11,13 @@
 use crate::coordinates::{Configuration as Place, Interval, Scratch};
 use crate::dynamics::equations::Equations;
 use crate::dynamics::resolution::{Balance, typical_energy};
-use crate::dynamics::solving::Solving;
+use crate::dynamics::solving::{Newton, Solving};
 use crate::dynamics::stepper::Steps;
 use crate::dynamics::tangent::EntryList;
 use crate::functional::{BlockMask, Order};
 use crate::math::Vector;
 use crate::model::Model;
+use crate::sparse::{DENSE, Symmetry};
 
 /// Steps of the midpoint rule.
 pub type Stepper<'m> = Steps<Midpoint<'m>>;
@@ -89,7 +90,14 @@ impl<'m> Stepper<'m> {
             scalars: vec![0.0; layout.interval_scalars],
             saved: [motion.multipliers, algebraic.len()].map(|count| vec![0.0; count]),
         };
-        let tangent = entries.tangent(sizes.len(), model.step_symmetry(), solving.backend);
+        let symmetry = model.step_symmetry();
+        let is_corrected = solving.newton == Newton::Modified && motion.multipliers == 0;
+        let tangent = match (symmetry, solving.backend) {
+            (Symmetry::Unsymmetric, None) if is_corrected && sizes.len() > DENSE => {
+                entries.symmetric_part(sizes.len())
+            }
+            _ => entries.tangent(sizes.len(), symmetry, solving.backend),
+        };
         Self::by(equations, tangent, sizes, solving.newton)
     }
 

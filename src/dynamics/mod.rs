@@ -31,6 +31,7 @@ mod step_report;
 mod stepper;
 mod tangent;
 pub mod trajectory;
+mod updates;
 
 pub use discrete_trajectory::{DiscreteTrajectory, Reading};
 pub use domain::{OutOfDomain, largest_stretch, out_of_domain};

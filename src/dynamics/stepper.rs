@@ -1,6 +1,5 @@
 //! One step forward: Newton on the equations of a method, and halves of the step where it fails.
 
-use crate::dynamics::anderson::Anderson;
 use crate::dynamics::controlled::{Controlled, factor};
 use crate::dynamics::equations::Equations;
 use crate::dynamics::error::StepError;
@@ -9,6 +8,7 @@ use crate::dynamics::solving::Newton;
 use crate::dynamics::spans;
 use crate::dynamics::step_report::StepperReport;
 use crate::dynamics::tangent::Tangent;
+use crate::dynamics::updates::Updates;
 use crate::functional::Order;
 use crate::ipopt::interrupt;
 use std::time::Instant;
@@ -31,16 +31,12 @@ const REUSED: usize = 40;
 #[derive(Debug)]
 pub struct Steps<E> {
     equations: E,
-    tangent: Tangent,
-    newton: Newton,
-    anderson: Anderson,
+    updates: Updates,
     /// Step of the tangent that is factorised.
     factored: Option<f64>,
     /// Whether the last attempt began with the tangent of a step before.
     stale: bool,
     residual: Vec<f64>,
-    /// Size of each unknown; infinite where it says nothing about convergence.
-    scales: Vec<f64>,
     /// Local error that is allowed per ms; none of steps of given length.
     allowed: Option<f64>,
     /// Local error of the last attempt as a part of what is allowed.
@@ -55,13 +51,10 @@ impl<E: Equations> Steps<E> {
     pub(super) fn by(equations: E, tangent: Tangent, scales: Vec<f64>, newton: Newton) -> Self {
         Self {
             equations,
-            tangent,
-            newton,
-            anderson: Anderson::default(),
             factored: None,
             stale: false,
             residual: vec![0.0; scales.len()],
-            scales,
+            updates: Updates::new(tangent, scales, newton),
             allowed: None,
             used: 0.0,
             balance: None,
@@ -80,8 +73,8 @@ impl<E: Equations> Steps<E> {
     }
 
     /// The method that factorises.
-    pub fn solver(&self) -> &'static str {
-        self.tangent.name()
+    pub fn solver(&self) -> String {
+        self.updates.name()
     }
 
     /// Time in ms.
@@ -133,6 +126,7 @@ impl<E: Equations> Steps<E> {
                 Err(stopped @ StepError::Stopped { .. }) => return Err(stopped),
                 // What an old tangent could not do, a new one may.
                 Err(_) if std::mem::take(&mut self.stale) => self.factored = None,
+                Err(_) if self.updates.make_exact() => self.factored = None,
                 Err(error) if halvings == HALVINGS => return Err(error),
                 Err(_) => {
                     halvings += 1;
@@ -166,7 +160,7 @@ impl<E: Equations> Steps<E> {
                 Err(stopped @ StepError::Stopped { .. }) => return Err(stopped),
                 Err(error) => error,
             };
-            if std::mem::take(&mut self.stale) {
+            if std::mem::take(&mut self.stale) || self.updates.make_exact() {
                 self.factored = None;
                 if self.used <= 1.0 {
                     continue;
@@ -196,11 +190,12 @@ impl<E: Equations> Steps<E> {
         self.equations.guess(h);
         let mut residuals = Vec::with_capacity(ITERATIONS);
         // A tangent of another step length is another matrix.
-        let mut reused = self.newton == Newton::Modified && self.factored == Some(h);
+        let newton = self.updates.newton();
+        let mut reused = newton == Newton::Modified && self.factored == Some(h);
         self.stale = reused;
         let mut last = f64::INFINITY;
-        self.anderson.start();
-        let limit = match self.newton {
+        self.updates.start();
+        let limit = match newton {
             Newton::Full => ITERATIONS,
             Newton::Modified => REUSED,
         };
@@ -221,20 +216,20 @@ impl<E: Equations> Steps<E> {
                 break;
             }
             if !reused {
-                self.anderson.start();
+                self.updates.start();
                 self.go_on(h)?;
                 self.factor(h)?;
                 self.go_on(h)?;
             }
-            let size = self.advance();
+            let size = self.advance(h, !reused)?;
             // Newton's updates shrink quadratically, those of a reused tangent by a factor.
             // What a tangent of an earlier step does is not known before its second update.
             let rate = match last.is_finite() {
                 true => size / last,
-                false if reused => SLOW,
+                false if reused || self.updates.are_approximate() => SLOW,
                 false => 0.0,
             };
-            let is_close = match self.newton {
+            let is_close = match newton {
                 Newton::Full => size < UPDATE,
                 Newton::Modified => size * (rate / (1.0 - rate)).max(size) < LEFT,
             };
@@ -245,7 +240,7 @@ impl<E: Equations> Steps<E> {
                 residuals.push(f64::NAN);
                 break;
             }
-            reused = self.newton == Newton::Modified && (rate < SLOW || last == f64::INFINITY);
+            reused = newton == Newton::Modified && (rate < SLOW || last == f64::INFINITY);
             last = size;
         }
         self.equations.restore();
@@ -354,7 +349,7 @@ impl<E: Equations> Steps<E> {
     /// Factorises the tangent evaluated last.
     fn factor(&mut self, h: f64) -> Result<(), StepError> {
         let began = Instant::now();
-        let done = self.tangent.factor(self.equations.values());
+        let done = self.updates.factor(self.equations.values());
         self.report.factorisation += began.elapsed().as_secs_f64();
         self.report.factorisations += 1;
         self.factored = done.is_ok().then_some(h);
@@ -371,21 +366,25 @@ impl<E: Equations> Steps<E> {
     }
 
     /// Solves for an update and makes it; returns its size relative to the scales.
-    fn advance(&mut self) -> f64 {
-        let began = Instant::now();
-        match self.newton {
-            Newton::Full => self.tangent.solve(&mut self.residual),
-            Newton::Modified => self.tangent.solve_roughly(&mut self.residual),
+    fn advance(&mut self, h: f64, is_fresh: bool) -> Result<f64, StepError> {
+        let mut size = self.solve();
+        if is_fresh && self.updates.leave_out_much(&self.residual, size) {
+            self.equations
+                .evaluate(Order::Hessian, h, &mut self.residual);
+            self.updates.make_exact();
+            self.factor(h)?;
+            size = self.solve();
         }
-        self.report.solution += began.elapsed().as_secs_f64();
-        let mut size: f64 = 0.0;
-        for (update, scale) in self.residual.iter().zip(&self.scales) {
-            size = size.max((update / scale).abs());
-        }
-        if self.newton == Newton::Modified {
-            self.anderson.improve(&mut self.residual);
-        }
+        self.updates.accelerate(&mut self.residual);
         self.equations.update(&self.residual);
+        Ok(size)
+    }
+
+    /// Solves for an update; returns its size relative to the scales.
+    fn solve(&mut self) -> f64 {
+        let began = Instant::now();
+        let size = self.updates.solve(&mut self.residual);
+        self.report.solution += began.elapsed().as_secs_f64();
         size
     }
 }

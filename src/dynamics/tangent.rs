@@ -14,6 +14,8 @@ pub(super) struct Tangent {
     entries: Vec<(usize, usize)>,
     matrix: Vec<f64>,
     solver: Direct,
+    /// Whether the symmetric part ½(A + Aᵀ) is factorised in place of the matrix A.
+    is_approximate: bool,
 }
 
 /// Lists entries before the factorisation is prepared.
@@ -75,6 +77,20 @@ impl EntryList {
             solver: Direct::with(size, &self.entries, symmetry, backend),
             gather: self.gather,
             entries: self.entries,
+            is_approximate: false,
+        }
+    }
+
+    /// Prepares the factorisation of the symmetric part of a matrix without symmetry, for an iteration that corrects the rest.
+    pub(super) fn symmetric_part(self, size: usize) -> Tangent {
+        let entries = self.entries.iter();
+        let lower: Vec<_> = entries.map(|&(i, j)| (i.max(j), i.min(j))).collect();
+        Tangent {
+            matrix: vec![0.0; lower.len()],
+            solver: Direct::with(size, &lower, Symmetry::Symmetric, None),
+            gather: self.gather,
+            entries: self.entries,
+            is_approximate: true,
         }
     }
 
@@ -91,8 +107,12 @@ impl EntryList {
 
 impl Tangent {
     /// The method that factorises.
-    pub(super) fn name(&self) -> &'static str {
-        self.solver.method()
+    pub(super) fn name(&self) -> String {
+        let method = self.solver.method();
+        match self.is_approximate {
+            true => format!("{method} of the symmetric part"),
+            false => method.to_owned(),
+        }
     }
 
     /// Factorises the matrix of these values.
@@ -101,7 +121,41 @@ impl Tangent {
         for &(place, entry) in &self.gather {
             self.matrix[entry] += values[place];
         }
+        if self.is_approximate {
+            for (value, (row, col)) in self.matrix.iter_mut().zip(&self.entries) {
+                *value *= if row == col { 1.0 } else { 0.5 };
+            }
+        }
         self.solver.factor(&self.matrix)
+    }
+
+    /// Whether the factors are those of the symmetric part of a matrix without symmetry.
+    pub(super) fn is_approximate(&self) -> bool {
+        self.is_approximate
+    }
+
+    /// S⁻¹ (A − S) u where the symmetric part S of the matrix A is factorised: an update u leaves so much.
+    pub(super) fn left_out(&mut self, update: &[f64]) -> Option<Vec<f64>> {
+        self.is_approximate.then_some(())?;
+        let mut rest = vec![0.0; update.len()];
+        for (&(row, col), value) in self.entries.iter().zip(&self.matrix) {
+            if row != col {
+                // The matrix holds halves beside the diagonal.
+                rest[row] += value * update[col];
+                rest[col] -= value * update[row];
+            }
+        }
+        self.solver.solve_roughly(&mut rest);
+        Some(rest)
+    }
+
+    /// From now on factorises the whole matrix; whether it did not before.
+    pub(super) fn make_exact(&mut self) -> bool {
+        if !std::mem::take(&mut self.is_approximate) {
+            return false;
+        }
+        self.solver = Direct::new(self.solver.size(), &self.entries);
+        true
     }
 
     /// Number of negative pivots of the last factorisation, where it tells.

@@ -13,7 +13,7 @@ use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Singular, Symmetry};
 
 /// Up to this size a dense factorisation is faster.
-const DENSE: usize = 48;
+pub const DENSE: usize = 48;
 /// Above this size MUMPS is faster than LU of faer, with OpenBLAS, as `benches/factorisation.rs` measures.
 const LARGE: usize = 15_000;
 /// A known solution, with each unknown measured by its column, has to come back better than this.
@@ -114,6 +114,11 @@ impl Direct {
             factored: false,
             pattern,
         }
+    }
+
+    /// Number of rows.
+    pub fn size(&self) -> usize {
+        self.pattern.size
     }
 
     /// The method, as a table names it.

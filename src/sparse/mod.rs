@@ -10,6 +10,6 @@ pub(crate) mod mumps;
 mod pattern;
 mod symmetry;
 
-pub use direct::{Backend, Direct};
+pub use direct::{Backend, DENSE, Direct};
 pub use factorisation::{Factorisation, Singular};
 pub use symmetry::Symmetry;

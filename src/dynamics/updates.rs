@@ -1,0 +1,93 @@
+//! Updates of a Newton iteration: the factors of its tangent, kept or made anew, and what they leave out.
+
+use crate::dynamics::anderson::Anderson;
+use crate::dynamics::solving::Newton;
+use crate::dynamics::tangent::Tangent;
+use crate::sparse::Singular;
+
+/// Part of an update that the factors of a symmetric part may leave out; beyond it the whole tangent is factorised.
+const LEFT_OUT: f64 = 0.3;
+
+/// Solves for updates.
+#[derive(Debug)]
+pub(super) struct Updates {
+    tangent: Tangent,
+    newton: Newton,
+    anderson: Anderson,
+    /// Size of each unknown; infinite where it says nothing about convergence.
+    scales: Vec<f64>,
+}
+
+impl Updates {
+    /// With a tangent and a scale for each unknown.
+    pub(super) fn new(tangent: Tangent, scales: Vec<f64>, newton: Newton) -> Self {
+        Self {
+            tangent,
+            newton,
+            anderson: Anderson::default(),
+            scales,
+        }
+    }
+
+    /// When the tangent is factorised.
+    pub(super) fn newton(&self) -> Newton {
+        self.newton
+    }
+
+    /// The method that factorises.
+    pub(super) fn name(&self) -> String {
+        self.tangent.name()
+    }
+
+    /// Forgets earlier updates.
+    pub(super) fn start(&mut self) {
+        self.anderson.start();
+    }
+
+    /// Factorises the tangent of these values; the whole of it where its symmetric part is singular.
+    pub(super) fn factor(&mut self, values: &[f64]) -> Result<(), Singular> {
+        let done = self.tangent.factor(values);
+        match done.is_err() && self.tangent.make_exact() {
+            true => self.tangent.factor(values),
+            false => done,
+        }
+    }
+
+    /// Whether the factors are those of a symmetric part.
+    pub(super) fn are_approximate(&self) -> bool {
+        self.tangent.is_approximate()
+    }
+
+    /// From now on the whole tangent is factorised; whether it was not before.
+    pub(super) fn make_exact(&mut self) -> bool {
+        self.tangent.make_exact()
+    }
+
+    /// Turns a residual into an update; returns its size relative to the scales.
+    pub(super) fn solve(&mut self, residual: &mut [f64]) -> f64 {
+        match self.newton {
+            Newton::Full => self.tangent.solve(residual),
+            Newton::Modified => self.tangent.solve_roughly(residual),
+        }
+        self.size(residual)
+    }
+
+    /// Whether the factors leave out so much of an update of this size that the iteration would be slow.
+    pub(super) fn leave_out_much(&mut self, update: &[f64], size: f64) -> bool {
+        let left_out = self.tangent.left_out(update);
+        left_out.is_some_and(|rest| self.size(&rest) > LEFT_OUT * size)
+    }
+
+    /// Combines an update with earlier ones, where the tangent is kept.
+    pub(super) fn accelerate(&mut self, update: &mut [f64]) {
+        if self.newton == Newton::Modified {
+            self.anderson.improve(update);
+        }
+    }
+
+    /// The largest part of an update relative to the scales.
+    fn size(&self, update: &[f64]) -> f64 {
+        let parts = update.iter().zip(&self.scales);
+        parts.fold(0.0, |size, (part, scale)| size.max((part / scale).abs()))
+    }
+}
