@@ -148,6 +148,7 @@ fn layouts(variables: &Bounds, constraints: &Bounds, stages: &[Stage]) -> [Vec<U
             .filter(|&i| with_fixed || !is_equal(variables, i))
             .map(|i| match stages[i] {
                 Stage::Of(stage) => Unknown::Variable(stage),
+                Stage::Multiplier(stage) => Unknown::Multiplier(stage),
                 Stage::Border => Unknown::Border,
             })
             .collect();

@@ -1,197 +1,395 @@
-//! Which unknowns may be condensed: states that equations determine stage by stage.
+//! What is eliminated before all else: groups of equations with the unknowns that they determine.
 //!
-//! Where a stage has as many equations as variables, and these equations reach no later stage, they determine its states from earlier
-//! ones and from the rest: inputs, multipliers of further equations, a free duration. With states s, multipliers y of their equations and the rest w
+//! With states s, their equations (or whatever stands in their place) y and the rest w a system is
 //!
 //! ```text
 //! ⎡ H  Aᵀ Kᵀ ⎤
-//! ⎢ A  0  Gᵀ ⎥      A block lower triangular along the horizon.
+//! ⎢ A  0  Gᵀ ⎥      A block lower triangular in the order of the groups.
 //! ⎣ K  G  M  ⎦
 //! ```
+//!
+//! A group has as many states as equations, or more; those that are left over stay. They and the rest are the **reduced** unknowns.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use super::graph::Graph;
+use super::groups::{self, Group};
 use super::order::Unknown;
+use super::plan::Plan;
 
 /// Multiplications by condensing must be fewer than this part of those along the horizon.
 const WORTH: f64 = 0.5;
+/// Least part of the unknowns that equations determine.
+const SHARE: f64 = 0.2;
+const NONE: u32 = u32::MAX;
 
 /// An entry of one of the blocks.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
-    /// Its number among the entries.
-    pub(super) entry: u32,
+    /// Its number among the values; before these are known, among the entries.
+    pub(super) value: u32,
     pub(super) row: u32,
     pub(super) column: u32,
+    /// Where the response of the column begins among the columns of the block.
+    pub(super) place: u32,
 }
 
-/// States, their equations and the rest, each numbered by itself; a state and its equation have one number.
+/// One group. States and equations are counted through all groups, reduced unknowns by themselves.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Block {
+    pub(super) states: Range<usize>,
+    pub(super) equations: Range<usize>,
+    /// Reduced unknowns to which its states respond: by way of earlier groups, directly, and the states that are left over.
+    pub(super) reach: Vec<u32>,
+    /// How many of them by way of earlier groups.
+    pub(super) inherited: usize,
+    /// Reduced unknowns of the columns of H S + Kᵀ.
+    pub(super) weighted: Vec<u32>,
+    /// Entries of A: of its own states, and of earlier ones.
+    pub(super) own: Vec<Item>,
+    pub(super) below: Vec<Item>,
+    /// Entries of Gᵀ, column one of the rest.
+    pub(super) inputs: Vec<Item>,
+    /// Entries of H, each once: row a state of the group, column one of its own or of an earlier one.
+    pub(super) curvature: Vec<Item>,
+    /// Entries of Kᵀ, column one of the rest.
+    pub(super) coupling: Vec<Item>,
+    /// Entries on the diagonal of its equations, where the states of the group bear that.
+    pub(super) diagonal: Vec<Item>,
+}
+
+impl Block {
+    /// States that are left over.
+    pub(super) fn free(&self) -> usize {
+        self.states.len() - self.equations.len()
+    }
+
+    fn multiplications(&self) -> f64 {
+        let (n, e) = (self.states.len() as f64, self.equations.len() as f64);
+        let (reach, weighted) = (self.reach.len() as f64, self.weighted.len() as f64);
+        let items = (2 * self.curvature.len() + self.below.len()) as f64;
+        e * e * (n / 2.0 - e / 6.0 + reach) + n * reach * weighted + items * reach
+    }
+}
+
+/// States, their equations and the rest, each numbered by itself.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Condensation {
     /// Unknown of each state.
     pub(super) states: Vec<u32>,
     /// Unknown of each of their equations.
     pub(super) equations: Vec<u32>,
-    /// Unknown of each of the rest.
+    /// Unknown of each of the rest: the first reduced unknowns.
     pub(super) rest: Vec<u32>,
-    /// States of each stage.
-    pub(super) stages: Vec<Range<usize>>,
-    /// How many of the rest, the first ones, reach the states of each stage.
-    pub(super) reach: Vec<usize>,
-    /// Entries of A within its diagonal blocks, and below them, by the stage of the row.
-    pub(super) diagonal: Vec<Vec<Item>>,
-    pub(super) below: Vec<Vec<Item>>,
-    /// Entries of −G, row an equation.
-    pub(super) inputs: Vec<Vec<Item>>,
-    /// Entries of H, each once.
-    pub(super) curvature: Vec<Item>,
-    /// Entries of K, row one of the rest.
-    pub(super) coupling: Vec<Item>,
-    /// Entries of M, each once, row not before the column.
+    pub(super) blocks: Vec<Block>,
+    /// Entries of M, each once.
     pub(super) corner: Vec<Item>,
     /// Entries that must be zero.
     pub(super) zeros: Vec<u32>,
+    /// Value to which each entry is added, those of a block and kind side by side and row by row; 0 belongs to no place.
+    pub(super) values: Vec<u32>,
+    /// How many values there are.
+    pub(super) count: usize,
+    /// Entries that must be zero where the diagonal of equations is not.
+    pub(super) exclusive: Vec<u32>,
+    /// The reduced system. Its entries are, block by block, one for each pair of `reach` and `weighted`, then M; where equations have a
+    /// diagonal, also one for each pair of `weighted` of their blocks.
+    pub(super) plans: Vec<Plan>,
+    /// Its entries from pairs that stand on the diagonal, which count twice.
+    pub(super) twice: Vec<u32>,
 }
 
-/// What an unknown is, with its number among its kind.
+/// What an unknown is, with the number of its block, and its number among its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
-    State(u32),
-    Equation(u32),
+    State(usize, u32),
+    Equation(usize, u32),
     Rest(u32),
 }
 
 impl Condensation {
     /// What may be condensed of a pattern that takes so many multiplications along the horizon, if that is worth it.
     pub(super) fn new(
+        graph: &Graph,
         unknowns: &[Unknown],
-        rows: &[u32],
-        cols: &[u32],
+        (rows, cols): (&[u32], &[u32]),
         multiplications: f64,
     ) -> Option<Self> {
-        let mut condensation = Self::default();
-        let kinds = condensation.classify(unknowns, rows, cols);
-        condensation.sort(&kinds, rows, cols);
-        let worth = condensation.multiplications() < WORTH * multiplications;
-        // Without inputs, as where start and goal leave nothing to choose, there is nothing to condense to.
-        let has_both = !condensation.states.is_empty() && !condensation.rest.is_empty();
-        (worth && has_both).then_some(condensation)
+        let most = WORTH * multiplications;
+        let candidates = [groups::constraints, groups::squares].into_iter();
+        let of_groups = |choose: fn(&Graph, &[Unknown]) -> Vec<Group>| {
+            Self::of_groups(&choose(graph, unknowns), unknowns, (rows, cols), most)
+        };
+        let all = candidates.filter_map(of_groups);
+        let cheapest = all.min_by(|(a, _), (b, _)| a.total_cmp(b));
+        cheapest.map(|(_, condensation)| condensation)
     }
 
-    fn classify(&mut self, unknowns: &[Unknown], rows: &[u32], cols: &[u32]) -> Vec<Kind> {
-        let last = last_stages(unknowns, rows, cols);
-        let stages = unknowns.iter().filter_map(|unknown| match unknown {
-            Unknown::Variable(stage) => Some(*stage as usize + 1),
-            _ => None,
-        });
-        let count = stages.max().unwrap_or(0);
-        let (mut variables, mut equations) = (vec![Vec::new(); count], vec![Vec::new(); count]);
-        for (i, unknown) in unknowns.iter().enumerate() {
-            match (unknown, last[i]) {
-                (Unknown::Variable(stage), _) => variables[*stage as usize].push(i as u32),
-                (Unknown::Equality, Some(stage)) => equations[stage as usize].push(i as u32),
-                _ => {}
-            }
+    /// With its multiplications, if these are fewer than `most`.
+    fn of_groups(
+        groups: &[Group],
+        unknowns: &[Unknown],
+        (rows, cols): (&[u32], &[u32]),
+        most: f64,
+    ) -> Option<(f64, Self)> {
+        let determined: usize = groups.iter().map(|group| group.equations.len()).sum();
+        if determined == 0 || (determined as f64) < SHARE * unknowns.len() as f64 {
+            return None;
         }
-        let mut kinds = vec![Kind::Rest(0); unknowns.len()];
-        for (variables, equations) in variables.iter().zip(&equations) {
-            if variables.is_empty() || equations.len() < variables.len() {
-                continue;
+        let mut out = Self::default();
+        let kinds = out.number(groups, unknowns.len());
+        if !out.sort(&kinds, rows, cols) {
+            return None;
+        }
+        let mut kinds: Vec<Unknown> = out.rest.iter().map(|&i| unknowns[i as usize]).collect();
+        let of_blocks = out.reach(unknowns, &mut kinds, most)?;
+        // Without inputs, as where start and goal leave nothing to choose, there is nothing to condense to.
+        if kinds.is_empty() {
+            return None;
+        }
+        out.merge(rows.len());
+        out.reduce(&kinds);
+        let all = of_blocks + out.plans[0].multiplications();
+        (all < most).then_some((all, out))
+    }
+
+    fn number(&mut self, groups: &[Group], count: usize) -> Vec<Kind> {
+        let mut kinds = vec![Kind::Rest(NONE); count];
+        for (block, group) in groups.iter().enumerate() {
+            let (states, equations) = (self.states.len(), self.equations.len());
+            for &state in &group.states {
+                kinds[state as usize] = Kind::State(block, self.states.len() as u32);
+                self.states.push(state);
             }
-            let begin = self.states.len();
-            for (&variable, &equation) in variables.iter().zip(equations) {
-                let number = self.states.len() as u32;
-                kinds[variable as usize] = Kind::State(number);
-                kinds[equation as usize] = Kind::Equation(number);
-                self.states.push(variable);
+            for &equation in &group.equations {
+                kinds[equation as usize] = Kind::Equation(block, self.equations.len() as u32);
                 self.equations.push(equation);
             }
-            self.stages.push(begin..self.states.len());
+            self.blocks.push(Block {
+                states: states..self.states.len(),
+                equations: equations..self.equations.len(),
+                ..Block::default()
+            });
         }
-        self.number_rest(unknowns, &mut kinds);
+        for (i, kind) in kinds.iter_mut().enumerate() {
+            if let Kind::Rest(number) = kind {
+                *number = self.rest.len() as u32;
+                self.rest.push(i as u32);
+            }
+        }
         kinds
     }
 
-    /// The border first, then variables by stage, then all others.
-    fn number_rest(&mut self, unknowns: &[Unknown], kinds: &mut [Kind]) {
-        let rest = (0..unknowns.len() as u32).filter(|&i| kinds[i as usize] == Kind::Rest(0));
-        self.rest.extend(rest);
-        self.rest.sort_by_key(|&i| match unknowns[i as usize] {
-            Unknown::Border => (0, 0),
-            Unknown::Variable(stage) => (1, stage),
-            _ => (2, 0),
-        });
-        for (number, &i) in self.rest.iter().enumerate() {
-            kinds[i as usize] = Kind::Rest(number as u32);
-        }
-    }
-
-    fn sort(&mut self, kinds: &[Kind], rows: &[u32], cols: &[u32]) {
-        let stages = self.stages.len();
-        self.diagonal = vec![Vec::new(); stages];
-        self.below = vec![Vec::new(); stages];
-        self.inputs = vec![Vec::new(); stages];
-        self.reach = vec![0; stages];
-        let mut stage_of = vec![0; self.states.len()];
-        for (stage, range) in self.stages.iter().enumerate() {
-            stage_of[range.clone()].fill(stage);
-        }
+    /// Gives each entry to a block, and says whether no equation holds a state of a later group.
+    fn sort(&mut self, kinds: &[Kind], rows: &[u32], cols: &[u32]) -> bool {
+        let mut is_triangular = true;
         for (entry, (&row, &col)) in rows.iter().zip(cols).enumerate() {
             let (a, b) = (kinds[row as usize], kinds[col as usize]);
             let item = |row, column| Item {
-                entry: entry as u32,
+                value: entry as u32,
                 row,
                 column,
+                place: NONE,
             };
             match (a.min(b), a.max(b)) {
-                (Kind::State(a), Kind::State(b)) => self.curvature.push(item(a, b)),
-                (Kind::State(state), Kind::Equation(equation)) => {
-                    let stage = stage_of[equation as usize];
-                    let block = match stage_of[state as usize] == stage {
-                        true => &mut self.diagonal,
-                        false => &mut self.below,
+                (Kind::State(_, a), Kind::State(block, b)) => {
+                    self.blocks[block].curvature.push(item(b, a));
+                }
+                (Kind::State(of, state), Kind::Equation(block, equation)) => {
+                    is_triangular &= of <= block;
+                    let list = match of == block {
+                        true => &mut self.blocks[block].own,
+                        false => &mut self.blocks[block].below,
                     };
-                    block[stage].push(item(equation, state));
+                    list.push(item(equation, state));
                 }
-                (Kind::State(state), Kind::Rest(rest)) => self.coupling.push(item(rest, state)),
-                (Kind::Equation(equation), Kind::Rest(rest)) => {
-                    let stage = stage_of[equation as usize];
-                    self.inputs[stage].push(item(equation, rest));
-                    self.reach[stage] = self.reach[stage].max(rest as usize + 1);
+                (Kind::State(block, state), Kind::Rest(rest)) => {
+                    self.blocks[block].coupling.push(item(state, rest));
                 }
-                (Kind::Rest(a), Kind::Rest(b)) => self.corner.push(item(a.max(b), a.min(b))),
+                (Kind::Equation(block, equation), Kind::Rest(rest)) => {
+                    self.blocks[block].inputs.push(item(equation, rest));
+                }
+                (Kind::Rest(a), Kind::Rest(b)) => self.corner.push(item(a, b)),
+                (Kind::Equation(block, a), Kind::Equation(_, b)) if a == b => {
+                    self.blocks[block].diagonal.push(item(a, a));
+                }
                 _ => self.zeros.push(entry as u32),
             }
         }
-        for stage in 1..stages {
-            self.reach[stage] = self.reach[stage].max(self.reach[stage - 1]);
+        self.sort_diagonals();
+        is_triangular
+    }
+
+    /// Leaves a diagonal to the equations of blocks whose states no later block knows, and that are coupled among themselves by nothing but a
+    /// diagonal, which is zero then.
+    fn sort_diagonals(&mut self) {
+        let block_of = self.block_of();
+        let mut bears: Vec<bool> = self.blocks.iter().map(|b| !b.diagonal.is_empty()).collect();
+        for (k, block) in self.blocks.iter().enumerate() {
+            let earlier = block.below.iter().chain(&block.curvature);
+            for item in earlier {
+                let other = block_of[item.column as usize];
+                bears[other] &= other == k && item.row == item.column;
+            }
+        }
+        for (k, block) in self.blocks.iter_mut().enumerate() {
+            if bears[k] {
+                let own = block
+                    .curvature
+                    .iter()
+                    .filter(|item| item.row == item.column);
+                self.exclusive.extend(own.map(|item| item.value));
+            } else {
+                let entries = block.diagonal.drain(..).map(|item| item.value);
+                self.zeros.extend(entries);
+            }
         }
     }
 
-    fn multiplications(&self) -> f64 {
-        let m = self.rest.len() as f64;
-        let of_stage = |(range, &reach): (&Range<usize>, &usize)| {
-            let (n, reach) = (range.len() as f64, reach as f64);
-            n * n * (n / 3.0 + reach) + n * m * reach
+    /// Block of each state.
+    fn block_of(&self) -> Vec<usize> {
+        let blocks = self.blocks.iter().enumerate();
+        let of_block = blocks.flat_map(|(k, block)| block.states.clone().map(move |_| k));
+        of_block.collect()
+    }
+
+    /// Finds what the states of each block respond to, and appends the states left over to the reduced unknowns; the multiplications of all
+    /// blocks, if they are no more than `most`.
+    fn reach(&mut self, unknowns: &[Unknown], kinds: &mut Vec<Unknown>, most: f64) -> Option<f64> {
+        let block_of = self.block_of();
+        let mut multiplications = 0.0;
+        for k in 0..self.blocks.len() {
+            let (before, block) = self.blocks.split_at_mut(k);
+            let block = &mut block[0];
+            block.reach.clear();
+            place_states(&mut block.reach, &mut block.below, before, &block_of);
+            block.inherited = block.reach.len();
+            place_rest(&mut block.reach, &mut block.inputs);
+            for _ in 0..block.free() {
+                block.reach.push(kinds.len() as u32);
+                kinds.push(unknowns[self.states[block.states.start] as usize]);
+            }
+            let done = &self.blocks[..=k];
+            let (mut weighted, mut items) = (Vec::new(), done[k].curvature.clone());
+            place_states(&mut weighted, &mut items, done, &block_of);
+            let block = &mut self.blocks[k];
+            place_rest(&mut weighted, &mut block.coupling);
+            (block.weighted, block.curvature) = (weighted, items);
+            multiplications += block.multiplications();
+            if multiplications > most {
+                return None;
+            }
+        }
+        Some(multiplications)
+    }
+
+    /// Gives the entries at one place one value.
+    fn merge(&mut self, entries: usize) {
+        self.values = vec![0; entries];
+        self.count = 1;
+        for block in &mut self.blocks {
+            let lists = [
+                &mut block.own,
+                &mut block.below,
+                &mut block.inputs,
+                &mut block.curvature,
+                &mut block.coupling,
+                &mut block.diagonal,
+            ];
+            for list in lists {
+                merge(list, &mut self.values, &mut self.count);
+            }
+        }
+        merge(&mut self.corner, &mut self.values, &mut self.count);
+    }
+
+    /// The plans of the reduced system of these unknowns.
+    fn reduce(&mut self, kinds: &[Unknown]) {
+        // Row, column, and whether a pair on the diagonal stands for two.
+        let mut pairs = Vec::new();
+        for block in &self.blocks {
+            for &row in &block.reach {
+                pairs.extend(block.weighted.iter().map(|&column| (row, column, true)));
+            }
+        }
+        let of_corner = self.corner.iter();
+        pairs.extend(of_corner.map(|item| (item.row, item.column, false)));
+        let plain = pairs.len();
+        for block in self.blocks.iter().filter(|b| !b.diagonal.is_empty()) {
+            for (i, &row) in block.weighted.iter().enumerate() {
+                let columns = block.weighted[..=i].iter().enumerate();
+                pairs.extend(columns.map(|(j, &column)| (row, column, i != j)));
+            }
+        }
+        let rows: Vec<u32> = pairs.iter().map(|pair| pair.0).collect();
+        let cols: Vec<u32> = pairs.iter().map(|pair| pair.1).collect();
+        let twice = pairs.iter().enumerate();
+        let twice = twice.filter(|(_, pair)| pair.0 == pair.1 && pair.2);
+        self.twice = twice.map(|(at, _)| at as u32).collect();
+        let lengths = match pairs.len() > plain {
+            true => vec![plain, pairs.len()],
+            false => vec![plain],
         };
-        let stages: f64 = self.stages.iter().zip(&self.reach).map(of_stage).sum();
-        let entries = self.curvature.len() + self.below.iter().map(Vec::len).sum::<usize>();
-        stages + 2.0 * m * entries as f64 + m * m * m / 6.0
+        let plan =
+            |length| Plan::of_fronts(kinds.len(), &rows[..length], &cols[..length], Some(kinds)).1;
+        self.plans = lengths.into_iter().map(plan).collect();
     }
 }
 
-/// Last stage of the variables in each row.
-fn last_stages(unknowns: &[Unknown], rows: &[u32], cols: &[u32]) -> Vec<Option<u32>> {
-    let mut last = vec![None; unknowns.len()];
-    let mut see = |row: u32, col: u32| {
-        if let Unknown::Variable(stage) = unknowns[col as usize] {
-            let last = &mut last[row as usize];
-            *last = (*last).max(Some(stage));
-        }
-    };
-    for (&row, &col) in rows.iter().zip(cols) {
-        see(row, col);
-        see(col, row);
+/// Sorts items by rows, joins those at one place and numbers what is left; `values` notes the number of each entry.
+fn merge(items: &mut Vec<Item>, values: &mut [u32], count: &mut usize) {
+    items.sort_unstable_by_key(|item| (item.row, item.column, item.value));
+    let mut before = (NONE, NONE);
+    items.retain_mut(|item| {
+        let is_new = before != (item.row, item.column);
+        before = (item.row, item.column);
+        *count += usize::from(is_new);
+        let number = (*count - 1) as u32;
+        values[item.value as usize] = number;
+        item.value = number;
+        is_new
+    });
+}
+
+/// Places of the responses of states of `blocks` in a list of columns, which grows where they are not in it side by side.
+fn place_states(columns: &mut Vec<u32>, items: &mut [Item], blocks: &[Block], block_of: &[usize]) {
+    let met: BTreeSet<usize> = items
+        .iter()
+        .map(|item| block_of[item.column as usize])
+        .collect();
+    let mut met: Vec<usize> = met.into_iter().collect();
+    // Lists that hold others first.
+    met.sort_by_key(|&k| std::cmp::Reverse(blocks[k].reach.len()));
+    let places: BTreeMap<usize, u32> = met
+        .into_iter()
+        .map(|k| (k, place(columns, &blocks[k].reach)))
+        .collect();
+    for item in items {
+        item.place = places[&block_of[item.column as usize]];
     }
-    last
+}
+
+/// The same of the rest, which responds to itself.
+fn place_rest(columns: &mut Vec<u32>, items: &mut [Item]) {
+    let met: BTreeSet<u32> = items.iter().map(|item| item.column).collect();
+    let places: BTreeMap<u32, u32> = met
+        .into_iter()
+        .map(|rest| (rest, place(columns, &[rest])))
+        .collect();
+    for item in items {
+        item.place = places[&item.column];
+    }
+}
+
+fn place(columns: &mut Vec<u32>, list: &[u32]) -> u32 {
+    if list.is_empty() {
+        return 0;
+    }
+    let found = columns.windows(list.len()).position(|part| part == list);
+    let place = found.unwrap_or_else(|| {
+        columns.extend(list);
+        columns.len() - list.len()
+    });
+    place as u32
 }

@@ -1,27 +1,28 @@
-//! Factors of a condensed system: states by inputs, then the rest by itself.
+//! Factors of a condensed system: states by reduced unknowns, then these by themselves.
 //!
-//! The equations give `s = s₀ + S w` with `S = −A⁻¹ Gᵀ`, stage by stage. What is left of the rest is
+//! The equations give `s = s₀ + S w`, group by group: `S = −A_D⁻¹ [Gᵀ A_F]` of the states that they determine, and one for those that
+//! are left over. What is left of the reduced unknowns is
 //!
 //! ```text
 //! R = M + K S + Sᵀ Kᵀ + Sᵀ H S,
 //! ```
 //!
-//! and by Haynsworth's law the inertia is that of R with one negative and one positive eigenvalue for each state.
+//! and by Haynsworth's law the inertia is that of R with one negative and one positive eigenvalue for each equation. Where equations have a
+//! diagonal E and states no curvature of their own, `s = s₀ + S w − A_D⁻¹ E y` and `y = A_D⁻ᵀ (r_s − W w)`: R has `Wᵀ A_D⁻¹ E A_D⁻ᵀ W` in addition, with W
+//! the rows of `H S + Kᵀ` of the states determined.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Arch;
 
 use super::block_lu::BlockLu;
-use super::condense::{Condensation, Item};
+use super::condense::{Block, Condensation};
 use super::inertia::Inertia;
-use super::lanes::subtract;
-use super::numeric::Factors;
+use super::numeric::{Factors, Outcome};
 use super::pivot::Rules;
-use super::plan::Plan;
-use super::solve::solve;
+use super::products::{Curvature, Product};
 
-/// Greatest response of a state against the greatest one in the stage of an input. Beyond, what is left of R are errors of rounding;
+/// Greatest response of a state against the greatest direct one. Beyond, what is left of R are errors of rounding;
 /// free motions of a thousand stages stay below.
 const GROWTH: f64 = 1e6;
 /// How pivots of R are chosen.
@@ -33,313 +34,273 @@ const RULES: Rules = Rules {
 /// Factors of the last matrix, with the memory to make them.
 #[derive(Debug)]
 pub(super) struct Condensed {
-    parts: Condensation,
-    blocks: BlockLu,
-    /// S and H S + Kᵀ by rows, one row for each state.
-    sensitivities: Vec<f64>,
-    weighted: Vec<f64>,
-    /// Right-hand sides of one stage by columns.
+    pub(super) parts: Condensation,
+    pub(super) blocks: BlockLu,
+    /// S by rows, one for each state, and where each begins.
+    pub(super) responses: Vec<f64>,
+    pub(super) starts: Vec<usize>,
+    /// Gᵀ, and H S + Kᵀ, of one block by rows; and right-hand sides of one block by columns.
+    rows: Vec<f64>,
     columns: Vec<f64>,
-    /// R by rows, and its lower triangle as entries.
-    reduced: Vec<f64>,
-    plan: Plan,
+    /// Sums of the entries at each place; the first one is of none.
+    pub(super) values: Vec<f64>,
     entries: Vec<f64>,
-    factors: Factors,
-    work: Vec<f64>,
-    /// States, gradients by states, and the rest.
-    states: Vec<f64>,
-    gradient: Vec<f64>,
-    rest: Vec<f64>,
+    /// Whether equations of the last matrix had a diagonal.
+    pub(super) has_diagonal: bool,
+    /// `Xᵀ E X` of one block.
+    square: Vec<f64>,
+    pub(super) factors: Factors,
+    pub(super) work: Vec<f64>,
+    /// States, gradients by states, multipliers of the equations, and reduced unknowns.
+    pub(super) states: Vec<f64>,
+    pub(super) gradient: Vec<f64>,
+    pub(super) multipliers: Vec<f64>,
+    pub(super) first_multipliers: Vec<f64>,
+    pub(super) reduced: Vec<f64>,
 }
 
 impl Condensed {
     pub(super) fn new(parts: Condensation) -> Self {
-        let (n, m) = (parts.states.len(), parts.rest.len());
-        let (mut rows, mut cols) = (Vec::new(), Vec::new());
-        for row in 0..m as u32 {
-            rows.extend((0..=row).map(|_| row));
-            cols.extend(0..=row);
+        let mut starts = vec![0];
+        for block in &parts.blocks {
+            for _ in block.states.clone() {
+                starts.push(starts[starts.len() - 1] + block.reach.len());
+            }
         }
-        let largest = parts.stages.iter().map(ExactSizeIterator::len).max();
+        let shapes = parts.blocks.iter();
+        let shapes = shapes.map(|block| (block.equations.len(), block.states.len()));
+        let most = |size: fn(&Block) -> usize| parts.blocks.iter().map(size).max().unwrap_or(0);
+        let most_rows = most(|b| b.states.len() * b.reach.len().max(b.weighted.len()));
+        let most_columns = most(|b| b.equations.len() * b.reach.len().max(b.weighted.len()));
+        let plans = parts.plans.iter();
+        let entries = plans.map(|plan| plan.pattern().0.len()).max().unwrap_or(0);
         Self {
-            blocks: BlockLu::new(&parts.stages, m),
-            sensitivities: vec![0.0; n * m],
-            weighted: vec![0.0; n * m],
-            columns: vec![0.0; largest.unwrap_or(0) * m.max(1)],
-            reduced: vec![0.0; m * m],
-            entries: Vec::with_capacity(rows.len()),
-            plan: Plan::new(m, &rows, &cols, None),
+            blocks: BlockLu::new(shapes),
+            responses: vec![0.0; starts[starts.len() - 1]],
+            starts,
+            rows: vec![0.0; most_rows],
+            columns: vec![0.0; most_columns],
+            values: vec![0.0; parts.count],
+            entries: vec![0.0; entries],
+            has_diagonal: false,
+            square: vec![0.0; most(|b| b.weighted.len() * b.weighted.len())],
             factors: Factors::default(),
             work: Vec::new(),
-            states: vec![0.0; n],
-            gradient: vec![0.0; n],
-            rest: vec![0.0; m],
+            states: vec![0.0; parts.states.len()],
+            gradient: vec![0.0; parts.states.len()],
+            multipliers: vec![0.0; parts.equations.len()],
+            first_multipliers: vec![0.0; parts.equations.len()],
+            reduced: vec![0.0; parts.plans[0].order()],
             parts,
         }
     }
 
-    /// Factors the matrix with these entries; `None` where the equations hold more than they may, or responses grow along the horizon.
-    pub(super) fn factor(&mut self, entries: &[f64]) -> Option<Inertia> {
+    /// Factors the matrix with these entries; `None` where the equations hold more than they may, depend on each other, or responses
+    /// grow along the horizon.
+    pub(super) fn factor(&mut self, entries: &[f64]) -> Option<Outcome> {
         let mut zeros = self.parts.zeros.iter();
         if zeros.any(|&entry| entries[entry as usize] != 0.0) {
             return None;
         }
-        self.factor_blocks(entries);
-        self.find_sensitivities(entries);
+        self.values.fill(0.0);
+        for (&value, entry) in self.parts.values.iter().zip(entries) {
+            self.values[value as usize] += entry;
+        }
+        let mut diagonals = self.parts.blocks.iter().flat_map(|b| &b.diagonal);
+        self.has_diagonal = diagonals.any(|item| self.values[item.value as usize] != 0.0);
+        let mut exclusive = self.parts.exclusive.iter();
+        let is_excluded = exclusive.any(|&entry| entries[entry as usize] != 0.0);
+        if self.has_diagonal && is_excluded || !self.factor_blocks() {
+            return None;
+        }
+        for k in 0..self.parts.blocks.len() {
+            self.respond(k);
+        }
         if self.is_growing() {
             return None;
         }
-        self.reduce(entries);
-        let m = self.parts.rest.len();
-        self.entries.clear();
-        for row in 0..m {
-            self.entries
-                .extend_from_slice(&self.reduced[row * m..][..=row]);
+        self.reduce();
+        let plan = &self.parts.plans[usize::from(self.has_diagonal)];
+        let entries = &self.entries[..plan.pattern().0.len()];
+        if !entries.iter().all(|entry| entry.is_finite()) {
+            return None;
         }
-        let is_finite = self.entries.iter().all(|entry| entry.is_finite());
-        let outcome = is_finite.then(|| {
-            self.factors
-                .factor(&self.plan, &self.entries, RULES, usize::MAX)
-        })??;
-        Some(Inertia {
-            negative: outcome.inertia.negative + self.parts.states.len(),
-            zero: outcome.inertia.zero,
+        let outcome = self.factors.factor(plan, entries, RULES, usize::MAX)?;
+        let inertia = Inertia {
+            negative: outcome.inertia.negative + self.parts.equations.len(),
+            ..outcome.inertia
+        };
+        Some(Outcome { inertia, ..outcome })
+    }
+
+    fn factor_blocks(&mut self) -> bool {
+        self.blocks.clear();
+        let blocks = self.parts.blocks.iter().enumerate();
+        blocks.into_iter().all(|(k, block)| {
+            for item in &block.own {
+                let equation = item.row as usize - block.equations.start;
+                let state = item.column as usize - block.states.start;
+                let value = self.values[item.value as usize];
+                self.blocks.add(k, equation, state, value);
+            }
+            self.blocks.factor(k)
         })
     }
 
-    fn factor_blocks(&mut self, entries: &[f64]) {
-        self.blocks.clear();
-        for (k, items) in self.parts.diagonal.iter().enumerate() {
-            for item in items {
-                let value = entries[item.entry as usize];
-                self.blocks
-                    .add(k, item.row as usize, item.column as usize, value);
-            }
-            self.blocks.factor(k);
+    /// S of one block.
+    fn respond(&mut self, k: usize) {
+        let block = &self.parts.blocks[k];
+        let (e, width) = (block.equations.len(), block.reach.len());
+        if width == 0 {
+            return;
         }
-    }
-
-    fn find_sensitivities(&mut self, entries: &[f64]) {
-        let (parts, m) = (&self.parts, self.parts.rest.len());
-        for (k, range) in parts.stages.iter().enumerate() {
-            let (n, reach) = (range.len(), parts.reach[k]);
-            let (done, own) = self.sensitivities.split_at_mut(range.start * m);
-            let own = &mut own[..n * m];
-            own.fill(0.0);
-            for item in &parts.inputs[k] {
-                let row = item.row as usize - range.start;
-                own[row * m + item.column as usize] -= entries[item.entry as usize];
-            }
-            Arch::new().dispatch(Product {
-                items: &parts.below[k],
-                entries,
-                from: done,
-                to: own,
-                first: range.start,
-                width: m,
-                count: reach,
-            });
-            let columns = &mut self.columns[..n * reach];
-            for (i, row) in own.chunks_exact(m).enumerate() {
-                for (j, value) in row[..reach].iter().enumerate() {
-                    columns[i + j * n] = *value;
-                }
-            }
-            if reach > 0 {
-                self.blocks.solve(k, columns, false);
-            }
-            for (i, row) in own.chunks_exact_mut(m).enumerate() {
-                for (j, value) in row[..reach].iter_mut().enumerate() {
-                    *value = columns[i + j * n];
-                }
-            }
-        }
-    }
-
-    /// Whether later responses to inputs are out of proportion to immediate ones, or no numbers.
-    fn is_growing(&self) -> bool {
-        let (mut immediate, mut greatest, mut before): (f64, f64, usize) = (0.0, 0.0, 0);
-        let m = self.parts.rest.len().max(1);
-        for (range, &reach) in self.parts.stages.iter().zip(&self.parts.reach) {
-            for row in self.sensitivities[range.start * m..range.end * m].chunks_exact(m) {
-                let most = |list: &[f64]| list.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
-                immediate = immediate.max(most(&row[before..reach]));
-                greatest = greatest.max(most(&row[..reach]));
-            }
-            before = reach;
-        }
-        greatest > GROWTH * immediate || !greatest.is_finite()
-    }
-
-    fn reduce(&mut self, entries: &[f64]) {
-        let (parts, m) = (&self.parts, self.parts.rest.len());
-        let product = |items, to: &mut [f64], from: &[f64]| {
-            Arch::new().dispatch(Product {
-                items,
-                entries,
-                from,
-                to,
-                first: 0,
-                width: m,
-                count: m,
-            });
-        };
-        // −H S, and −K S as part of −R.
-        self.weighted.fill(0.0);
-        product(&parts.curvature, &mut self.weighted, &self.sensitivities);
-        Arch::new().dispatch(Transposed {
-            items: &parts.curvature,
-            entries,
-            from: &self.sensitivities,
-            to: &mut self.weighted,
-            width: m,
+        let (direct, rows) = (width - block.free(), &mut self.rows[..e * width]);
+        rows.fill(0.0);
+        Arch::new().dispatch(Product {
+            items: &block.below,
+            values: &self.values,
+            from: &self.responses,
+            starts: &self.starts,
+            to: rows,
+            first: block.equations.start,
+            width,
         });
-        self.reduced.fill(0.0);
-        product(&parts.coupling, &mut self.reduced, &self.sensitivities);
-        for item in &parts.coupling {
-            let at = item.column as usize * m + item.row as usize;
-            self.weighted[at] -= entries[item.entry as usize];
+        for item in &block.inputs {
+            let row = item.row as usize - block.equations.start;
+            rows[row * width + item.place as usize] -= self.values[item.value as usize];
         }
-        let mut reduced = MatMut::from_row_major_slice_mut(&mut self.reduced, m, m);
-        for (range, &reach) in parts.stages.iter().zip(&parts.reach) {
-            let rows = range.start * m..range.end * m;
-            let (n, own) = (range.len(), &self.sensitivities[rows.clone()]);
-            let own = MatRef::from_row_major_slice(own, n, m).subcols(0, reach);
-            let weighted = MatRef::from_row_major_slice(&self.weighted[rows], n, m);
-            let target = reduced.as_mut().subrows_mut(0, reach);
-            matmul(target, Accum::Add, own.transpose(), weighted, 1.0, Par::Seq);
-        }
-        self.reduced.iter_mut().for_each(|entry| *entry = -*entry);
-        for item in &parts.corner {
-            let (row, column) = (item.row as usize, item.column as usize);
-            self.reduced[row * m + column] += entries[item.entry as usize];
-        }
-    }
-
-    /// Replaces a right-hand side by the solution.
-    pub(super) fn solve(&mut self, entries: &[f64], x: &mut [f64]) {
-        let Self {
-            parts,
-            blocks,
-            states,
-            gradient,
-            rest,
-            ..
-        } = self;
-        let value = |item: &Item| entries[item.entry as usize];
-        // s₀.
-        for (k, range) in parts.stages.iter().enumerate() {
-            for i in range.clone() {
-                states[i] = x[parts.equations[i] as usize];
-            }
-            for item in &parts.below[k] {
-                states[item.row as usize] -= value(item) * states[item.column as usize];
-            }
-            blocks.solve(k, &mut states[range.clone()], false);
-        }
-        // r_w − K s₀ + Sᵀ (r_s − H s₀).
-        gather(x, &parts.rest, rest);
-        for item in &parts.coupling {
-            rest[item.row as usize] -= value(item) * states[item.column as usize];
-        }
-        gather(x, &parts.states, gradient);
-        subtract_symmetric(&parts.curvature, entries, states, gradient);
-        let m = rest.len();
-        for (row, gradient) in self.sensitivities.chunks_exact(m.max(1)).zip(&*gradient) {
-            for (rest, sensitivity) in rest.iter_mut().zip(row) {
-                *rest += sensitivity * gradient;
+        let columns = &mut self.columns[..e * width];
+        for (i, row) in rows.chunks_exact(width).enumerate() {
+            for (j, value) in row[..direct].iter().enumerate() {
+                columns[i + j * e] = *value;
             }
         }
-        solve(&self.factors, rest, &mut self.work);
-        for (row, state) in self.sensitivities.chunks_exact(m.max(1)).zip(&mut *states) {
-            *state += row.iter().zip(&*rest).map(|(s, w)| s * w).sum::<f64>();
-        }
-        // Aᵀ y = r_s − H s − Kᵀ w.
-        gather(x, &parts.states, gradient);
-        subtract_symmetric(&parts.curvature, entries, states, gradient);
-        for item in &parts.coupling {
-            gradient[item.column as usize] -= value(item) * rest[item.row as usize];
-        }
-        for (k, range) in parts.stages.iter().enumerate().rev() {
-            blocks.solve(k, &mut gradient[range.clone()], true);
-            for item in &parts.below[k] {
-                gradient[item.column as usize] -= value(item) * gradient[item.row as usize];
+        let (determined, free) = columns.split_at_mut(e * direct);
+        self.blocks.solve(k, determined);
+        self.blocks.free(k, free);
+        free.iter_mut().for_each(|value| *value = -*value);
+        for (i, &state) in self.blocks.order(k).iter().enumerate() {
+            let start = self.starts[block.states.start + state];
+            let row = &mut self.responses[start..start + width];
+            row.fill(0.0);
+            if i < e {
+                for (j, value) in row.iter_mut().enumerate() {
+                    *value = columns[i + j * e];
+                }
+            } else {
+                row[direct + i - e] = 1.0;
             }
         }
-        scatter(states, &parts.states, x);
-        scatter(gradient, &parts.equations, x);
-        scatter(rest, &parts.rest, x);
     }
-}
 
-fn gather(x: &[f64], unknowns: &[u32], to: &mut [f64]) {
-    for (value, &i) in to.iter_mut().zip(unknowns) {
-        *value = x[i as usize];
+    /// Whether responses by way of earlier blocks are out of proportion to direct ones, or no numbers.
+    fn is_growing(&self) -> bool {
+        let (mut direct, mut greatest): (f64, f64) = (0.0, 0.0);
+        for block in self.parts.blocks.iter().filter(|b| !b.reach.is_empty()) {
+            let rows = self.starts[block.states.start]..self.starts[block.states.end];
+            for row in self.responses[rows].chunks_exact(block.reach.len()) {
+                let most = |list: &[f64]| list.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
+                direct = direct.max(most(&row[block.inherited..]));
+                greatest = greatest.max(most(row));
+            }
+        }
+        greatest > GROWTH * direct || !greatest.is_finite()
     }
-}
 
-fn scatter(from: &[f64], unknowns: &[u32], x: &mut [f64]) {
-    for (value, &i) in from.iter().zip(unknowns) {
-        x[i as usize] = *value;
-    }
-}
-
-/// `y ← y − H x`, each entry of H listed once.
-fn subtract_symmetric(items: &[Item], entries: &[f64], x: &[f64], y: &mut [f64]) {
-    for item in items {
-        let (row, column) = (item.row as usize, item.column as usize);
-        let value = entries[item.entry as usize];
-        y[row] -= value * x[column];
-        if row != column {
-            y[column] -= value * x[row];
+    /// R: each block adds `Sᵀ W` and its transpose, with W = ½ H S of its own states, H S of earlier ones, and Kᵀ.
+    fn reduce(&mut self) {
+        let plain = self.parts.plans[0].pattern().0.len();
+        let (mut end, mut end_of_diagonals) = (0, plain);
+        for k in 0..self.parts.blocks.len() {
+            self.weigh(k);
+            end = self.add_responses(k, end);
+            if self.has_diagonal {
+                end_of_diagonals = self.add_diagonal(k, end_of_diagonals);
+            }
+        }
+        for (to, item) in self.entries[end..plain].iter_mut().zip(&self.parts.corner) {
+            *to = self.values[item.value as usize];
+        }
+        for &at in &self.parts.twice {
+            self.entries[at as usize] *= 2.0;
         }
     }
-}
 
-/// `to ← to − B from` for a sparse B: rows of `width` numbers, of which `count` matter; rows of `to` begin with `first`.
-struct Product<'a> {
-    items: &'a [Item],
-    entries: &'a [f64],
-    from: &'a [f64],
-    to: &'a mut [f64],
-    first: usize,
-    width: usize,
-    count: usize,
-}
-
-impl WithSimd for Product<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, unit: S) {
-        for item in self.items {
-            let value = self.entries[item.entry as usize];
-            let to = (item.row as usize - self.first) * self.width;
-            let from = &self.from[item.column as usize * self.width..][..self.count];
-            subtract(unit, &mut self.to[to..to + self.count], from, value);
+    /// W of one block, in `rows`.
+    fn weigh(&mut self, k: usize) {
+        let block = &self.parts.blocks[k];
+        let width = block.weighted.len();
+        let rows = &mut self.rows[..block.states.len() * width];
+        rows.fill(0.0);
+        Arch::new().dispatch(Curvature {
+            block,
+            values: &self.values,
+            from: &self.responses,
+            starts: &self.starts,
+            to: rows,
+        });
+        for item in &block.coupling {
+            let row = item.row as usize - block.states.start;
+            rows[row * width + item.place as usize] += self.values[item.value as usize];
         }
     }
-}
 
-/// `to ← to − Bᵀ from` for the entries of a sparse B that are not on its diagonal.
-struct Transposed<'a> {
-    items: &'a [Item],
-    entries: &'a [f64],
-    from: &'a [f64],
-    to: &'a mut [f64],
-    width: usize,
-}
-
-impl WithSimd for Transposed<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, unit: S) {
-        for item in self.items.iter().filter(|item| item.row != item.column) {
-            let value = self.entries[item.entry as usize];
-            let from = &self.from[item.row as usize * self.width..][..self.width];
-            let to = &mut self.to[item.column as usize * self.width..][..self.width];
-            subtract(unit, to, from, value);
+    /// `Sᵀ W` of one block, the entries from `begin` on; where they end.
+    fn add_responses(&mut self, k: usize, begin: usize) -> usize {
+        let block = &self.parts.blocks[k];
+        let (n, reach, width) = (block.states.len(), block.reach.len(), block.weighted.len());
+        let end = begin + reach * width;
+        let own = self.starts[block.states.start]..self.starts[block.states.end];
+        if begin < end {
+            matmul(
+                MatMut::from_row_major_slice_mut(&mut self.entries[begin..end], reach, width),
+                Accum::Replace,
+                MatRef::from_row_major_slice(&self.responses[own], n, reach).transpose(),
+                MatRef::from_row_major_slice(&self.rows[..n * width], n, width),
+                1.0,
+                Par::Seq,
+            );
         }
+        end
+    }
+
+    /// `Xᵀ E X` of one block whose equations have the diagonal E, with `X = A_D⁻ᵀ W_D`; where its entries end.
+    fn add_diagonal(&mut self, k: usize, begin: usize) -> usize {
+        let block = &self.parts.blocks[k];
+        let (e, width) = (block.equations.len(), block.weighted.len());
+        if block.diagonal.is_empty() || width == 0 {
+            return begin;
+        }
+        let (rows, columns) = (&mut self.rows, &mut self.columns[..e * width]);
+        for (i, &state) in self.blocks.order(k)[..e].iter().enumerate() {
+            for (j, value) in rows[state * width..][..width].iter().enumerate() {
+                columns[i + j * e] = *value;
+            }
+        }
+        self.blocks.solve_transposed(k, columns);
+        let scaled = &mut rows[..e * width];
+        scaled.fill(0.0);
+        for item in &block.diagonal {
+            let value = self.values[item.value as usize];
+            let first = item.row as usize - block.equations.start;
+            for i in (first..e * width).step_by(e) {
+                scaled[i] = value * columns[i];
+            }
+        }
+        let square = &mut self.square[..width * width];
+        matmul(
+            MatMut::from_row_major_slice_mut(square, width, width),
+            Accum::Replace,
+            MatRef::from_column_major_slice(columns, e, width).transpose(),
+            MatRef::from_column_major_slice(scaled, e, width),
+            1.0,
+            Par::Seq,
+        );
+        let mut end = begin;
+        for (i, row) in square.chunks_exact(width).enumerate() {
+            self.entries[end..=end + i].copy_from_slice(&row[..=i]);
+            end += i + 1;
+        }
+        end
     }
 }

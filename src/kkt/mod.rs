@@ -16,7 +16,7 @@
 //! | `graph`, `order`, `tree`, `plan` | once for a pattern: order of elimination, fronts, where each entry goes |
 //! | `pivot`, `dense`, `update`, `eliminate` | one dense front |
 //! | `numeric`, `solve`, `scales` | factors, solutions, equilibration |
-//! | `condense`, `condensed`, `block_lu` | many states and few inputs: states by inputs, then the inputs by themselves |
+//! | `groups`, `condense`, `condensed`, `products`, `block_lu`, `substitute` | unknowns that equations determine, eliminated before all others |
 //! | `solver` | when to scale, how strictly to pivot, whether the factors are good |
 //!
 //! After the first matrix nothing is allocated, unless more pivots are delayed than ever before.
@@ -27,15 +27,18 @@ mod condensed;
 mod dense;
 mod eliminate;
 mod graph;
+mod groups;
 mod inertia;
 mod lanes;
 mod numeric;
 mod order;
 mod pivot;
 mod plan;
+mod products;
 mod scales;
 mod solve;
 mod solver;
+mod substitute;
 mod tree;
 mod update;
 

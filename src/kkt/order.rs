@@ -24,6 +24,8 @@ const REACH: u32 = 2;
 pub enum Unknown {
     /// A variable of a stage.
     Variable(u32),
+    /// A variable of a stage that is the multiplier of a constraint.
+    Multiplier(u32),
     /// A variable that couples all stages, such as a free duration.
     Border,
     /// The slack variable of an inequality.
@@ -32,6 +34,16 @@ pub enum Unknown {
     Equality,
     /// The multiplier of an inequality.
     Inequality,
+}
+
+impl Unknown {
+    /// The stage of a variable that has one.
+    pub(super) const fn stage(self) -> Option<u32> {
+        match self {
+            Self::Variable(stage) | Self::Multiplier(stage) => Some(stage),
+            _ => None,
+        }
+    }
 }
 
 /// An order of elimination.
@@ -43,17 +55,22 @@ pub(super) struct Elimination {
     pub(super) alone: Vec<bool>,
 }
 
+/// The order along the horizon where stages are known. Constraints make a stage sparse, so that minimum degree is better there.
+pub(super) fn of(graph: &Graph, unknowns: Option<&[Unknown]>) -> Elimination {
+    let has_constraints =
+        |list: &&[Unknown]| list.iter().any(|one| matches!(one, Unknown::Multiplier(_)));
+    match unknowns.filter(|list| !has_constraints(list)) {
+        Some(unknowns) => by_stages(graph, unknowns),
+        None => by_degree(graph),
+    }
+}
+
 /// The order along the horizon.
-pub(super) fn by_stages(graph: &Graph, unknowns: &[Unknown]) -> Elimination {
+fn by_stages(graph: &Graph, unknowns: &[Unknown]) -> Elimination {
     let n = graph.order();
     let range = |row: usize| {
-        let stages = graph
-            .neighbours(row)
-            .iter()
-            .filter_map(|&i| match unknowns[i as usize] {
-                Unknown::Variable(stage) => Some(stage),
-                _ => None,
-            });
+        let others = graph.neighbours(row).iter();
+        let stages = others.filter_map(|&i| unknowns[i as usize].stage());
         stages.fold((u32::MAX, 0), |(low, high), s| (low.min(s), high.max(s)))
     };
     let slack_row = |slack: usize| {
@@ -64,7 +81,7 @@ pub(super) fn by_stages(graph: &Graph, unknowns: &[Unknown]) -> Elimination {
     let alone = leaves(graph, unknowns);
     let key = |i: usize| match unknowns[i] {
         Unknown::Variable(_) if alone[i] => Key::new(1, 0, 0, i),
-        Unknown::Variable(stage) => Key::new(2, stage, 0, i),
+        Unknown::Variable(stage) | Unknown::Multiplier(stage) => Key::new(2, stage, 0, i),
         Unknown::Border => Key::new(3, 0, 0, i),
         Unknown::Slack => {
             let row = slack_row(i);
@@ -134,7 +151,7 @@ fn leaves(graph: &Graph, unknowns: &[Unknown]) -> Vec<bool> {
 }
 
 /// Approximate minimum degree.
-pub(super) fn by_degree(graph: &Graph) -> Elimination {
+fn by_degree(graph: &Graph) -> Elimination {
     let n = graph.order();
     let (starts, neighbours) = graph.lists();
     let mut order = vec![0u32; n];

@@ -60,19 +60,30 @@ impl Plan {
     #[must_use]
     pub fn new(order: usize, rows: &[u32], cols: &[u32], unknowns: Option<&[Unknown]>) -> Self {
         assert_eq!(rows.len(), cols.len(), "as many rows as columns");
+        if let Some(unknowns) = unknowns {
+            assert_eq!(unknowns.len(), order, "a word on each unknown");
+        }
         let is_inside = |list: &[u32]| list.iter().all(|&i| (i as usize) < order);
         assert!(
             is_inside(rows) && is_inside(cols),
             "a matrix of order {order}"
         );
+        let (graph, mut plan) = Self::of_fronts(order, rows, cols, unknowns);
+        plan.condensation = unknowns.and_then(|unknowns| {
+            Condensation::new(&graph, unknowns, (rows, cols), plan.multiplications())
+        });
+        plan
+    }
+
+    /// A plan that condenses nothing, with the graph of its pattern.
+    pub(super) fn of_fronts(
+        order: usize,
+        rows: &[u32],
+        cols: &[u32],
+        unknowns: Option<&[Unknown]>,
+    ) -> (Graph, Self) {
         let graph = Graph::new(order, rows, cols);
-        let elimination = match unknowns {
-            Some(unknowns) => {
-                assert_eq!(unknowns.len(), order, "a word on each unknown");
-                order::by_stages(&graph, unknowns)
-            }
-            None => order::by_degree(&graph),
-        };
+        let elimination = order::of(&graph, unknowns);
         let nodes = tree::nodes(&graph, &elimination);
         let mut plan = Self {
             order,
@@ -86,9 +97,7 @@ impl Plan {
             condensation: None,
         };
         plan.lay_out(&nodes);
-        plan.condensation = unknowns
-            .and_then(|unknowns| Condensation::new(unknowns, rows, cols, plan.multiplications()));
-        plan
+        (graph, plan)
     }
 
     /// Number of unknowns.

@@ -222,9 +222,9 @@ impl Solver {
 
     /// The matrix condensed, if its equations hold no more than states and inputs.
     fn condensed(&mut self) -> Option<Outcome> {
-        let inertia = self.condensed.as_mut()?.factor(&self.entries)?;
+        let outcome = self.condensed.as_mut()?.factor(&self.entries)?;
         self.statistics.condensed += 1;
-        Some(Outcome { inertia, delays: 0 })
+        Some(outcome)
     }
 
     /// The matrix as it is, if there are few delays.
@@ -276,7 +276,7 @@ impl Solver {
 
     fn substitute(&mut self, x: &mut [f64]) {
         if let (Care::Condensed, Some(condensed)) = (self.care, &mut self.condensed) {
-            return condensed.solve(&self.entries, x);
+            return condensed.solve(x);
         }
         let is_scaled = self.care != Care::Plain;
         if is_scaled {

@@ -41,6 +41,8 @@ pub struct Entries {
 pub enum Stage {
     /// In a stage; equations couple neighbouring ones.
     Of(u32),
+    /// In a stage, as the multiplier of a constraint: it enters its equations linearly.
+    Multiplier(u32),
     /// In none: it couples all of them.
     Border,
 }

@@ -85,6 +85,8 @@ fn iterations_and_optima_are_those_of_mumps() {
             report.statistics.backward_error < 1e-3,
             "{name}: {report:?}"
         );
+        let is_condensed = report.statistics.condensed == report.statistics.factorisations;
+        assert_eq!(is_condensed, name == "redundant", "{name}: {report:?}");
         assert_eq!(stages.status, mumps.status, "{name}");
         if stages.status.is_solved() {
             solved += 1;

@@ -4,6 +4,7 @@
 mod common;
 
 mod checker;
+mod constrained;
 mod faults;
 mod horizon;
 mod ipopt;

@@ -131,16 +131,17 @@ impl Nlp for Transcription<'_> {
         }
     }
 
-    /// None with constraint forces: an instant is sparse then, and an order of minimum degree is twice as fast.
     fn stages(&self) -> Option<Vec<Stage>> {
-        if self.model.coordinate_count() < self.model.action.motion.unknowns() {
-            return None;
-        }
-        let has_equation = |column: &Column| column.of(&self.model.variables).role.has_equation();
+        let role = |column: &Column| column.of(&self.model.variables).role;
         let stage = |column: &Column| match *column {
+            // A step finds multipliers and potentials together with the motion at its end.
+            Column::Instant { k, .. } if role(column) == Role::Multiplier => {
+                Stage::Multiplier(2 * k as u32 + 2)
+            }
             Column::Instant { k, .. } => Stage::Of(2 * k as u32),
-            // A step finds potentials together with the motion at its end.
-            Column::Interval { k, .. } if has_equation(column) => Stage::Of(2 * k as u32 + 2),
+            Column::Interval { k, .. } if role(column).has_equation() => {
+                Stage::Of(2 * k as u32 + 2)
+            }
             Column::Interval { k, .. } => Stage::Of(2 * k as u32 + 1),
             Column::Parameter { .. } | Column::Horizon => Stage::Border,
         };

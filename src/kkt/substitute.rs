@@ -1,0 +1,219 @@
+//! Solution with the factors of a condensed system.
+
+use pulp::{Arch, Simd, WithSimd};
+
+use super::condense::Item;
+use super::condensed::Condensed;
+use super::lanes::{dot, subtract};
+use super::solve::solve;
+
+impl Condensed {
+    /// Replaces a right-hand side by the solution.
+    pub(super) fn solve(&mut self, x: &mut [f64]) {
+        let arch = Arch::new();
+        arch.dispatch(Forward(self, x));
+        solve(&self.factors, &mut self.reduced, &mut self.work);
+        arch.dispatch(Backward(self, x));
+    }
+}
+
+/// From the right-hand side to that of the reduced system.
+struct Forward<'a>(&'a mut Condensed, &'a [f64]);
+
+impl WithSimd for Forward<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, unit: S) {
+        let Self(system, x) = self;
+        system.determine(unit, x);
+        system.gradient(x);
+        if system.has_diagonal {
+            system.first_multipliers.fill(0.0);
+            system.correct(unit);
+            system.gradient(x);
+        }
+        system.respond_transposed(unit, x);
+    }
+}
+
+/// From the reduced unknowns to all.
+struct Backward<'a>(&'a mut Condensed, &'a mut [f64]);
+
+impl WithSimd for Backward<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, unit: S) {
+        let Self(system, x) = self;
+        system.respond_to_reduced(unit);
+        system.gradient(x);
+        system.couple();
+        if system.has_diagonal {
+            system.correct(unit);
+            system.gradient(x);
+            system.couple();
+        }
+        system.multiply(unit);
+        scatter(&system.states, &system.parts.states, x);
+        scatter(&system.multipliers, &system.parts.equations, x);
+        scatter(&system.reduced, &system.parts.rest, x);
+    }
+}
+
+/// Steps of a solution. All of them are inlined where the vector unit is known.
+impl Condensed {
+    /// s₀: what the equations determine where all reduced unknowns are zero.
+    #[inline(always)]
+    fn determine<S: Simd>(&mut self, unit: S, x: &[f64]) {
+        self.states.fill(0.0);
+        for (k, block) in self.parts.blocks.iter().enumerate() {
+            let right = &mut self.multipliers[block.equations.clone()];
+            gather(x, &self.parts.equations[block.equations.clone()], right);
+            for item in &block.below {
+                let row = item.row as usize - block.equations.start;
+                right[row] -= value(&self.values, item) * self.states[item.column as usize];
+            }
+            self.blocks.solve_one(unit, k, right);
+            for (value, &state) in right.iter().zip(self.blocks.order(k)) {
+                self.states[block.states.start + state] = *value;
+            }
+        }
+    }
+
+    /// r_s − H s.
+    #[inline(always)]
+    fn gradient(&mut self, x: &[f64]) {
+        let (values, states, to) = (&self.values, &self.states, &mut self.gradient);
+        gather(x, &self.parts.states, to);
+        for block in &self.parts.blocks {
+            for row in block.curvature.chunk_by(|a, b| a.row == b.row) {
+                let own = row[0].row as usize;
+                let mut sum = 0.0;
+                for item in row {
+                    let (value, column) = (value(values, item), item.column as usize);
+                    sum += value * states[column];
+                    to[column] -= value * states[own];
+                }
+                // What stands on the diagonal comes last, and was subtracted as a column.
+                let last = &row[row.len() - 1];
+                if last.column == last.row {
+                    sum -= value(values, last) * states[own];
+                }
+                to[own] -= sum;
+            }
+        }
+    }
+
+    /// r_s − H s − Kᵀ w.
+    #[inline(always)]
+    fn couple(&mut self) {
+        for item in self.parts.blocks.iter().flat_map(|b| &b.coupling) {
+            let reduced = self.reduced[item.column as usize];
+            self.gradient[item.row as usize] -= value(&self.values, item) * reduced;
+        }
+    }
+
+    /// Where equations have a diagonal E they determine `s − A_D⁻¹ E y`: corrects states for multipliers that follow from the gradient at hand,
+    /// and that were others before.
+    #[inline(always)]
+    fn correct<S: Simd>(&mut self, unit: S) {
+        for (k, block) in self.parts.blocks.iter().enumerate() {
+            if block.diagonal.is_empty() {
+                continue;
+            }
+            let equations = block.equations.clone();
+            let order = &self.blocks.order(k)[..equations.len()];
+            let change = &mut self.multipliers[equations.clone()];
+            for (change, &state) in change.iter_mut().zip(order) {
+                *change = self.gradient[block.states.start + state];
+            }
+            self.blocks.solve_one_transposed(unit, k, change);
+            let before = &mut self.first_multipliers[equations.clone()];
+            let mut next = 0;
+            for item in &block.diagonal {
+                let row = item.row as usize - equations.start;
+                change[next..row].fill(0.0);
+                let now = std::mem::replace(&mut before[row], change[row]);
+                change[row] = value(&self.values, item) * (before[row] - now);
+                next = row + 1;
+            }
+            change[next..].fill(0.0);
+            self.blocks.solve_one(unit, k, change);
+            for (change, &state) in change.iter().zip(order) {
+                self.states[block.states.start + state] -= change;
+            }
+        }
+    }
+
+    /// r_w − K s₀ + Sᵀ (r_s − H s₀).
+    #[inline(always)]
+    fn respond_transposed<S: Simd>(&mut self, unit: S, x: &[f64]) {
+        let rest = self.parts.rest.len();
+        gather(x, &self.parts.rest, &mut self.reduced[..rest]);
+        self.reduced[rest..].fill(0.0);
+        for item in self.parts.blocks.iter().flat_map(|b| &b.coupling) {
+            let state = self.states[item.row as usize];
+            self.reduced[item.column as usize] -= value(&self.values, item) * state;
+        }
+        for block in self.parts.blocks.iter().filter(|b| !b.reach.is_empty()) {
+            self.work.clear();
+            self.work.resize(block.reach.len(), 0.0);
+            let rows = self.starts[block.states.start]..self.starts[block.states.end];
+            let rows = self.responses[rows].chunks_exact(block.reach.len());
+            for (row, gradient) in rows.zip(&self.gradient[block.states.clone()]) {
+                subtract(unit, &mut self.work, row, -gradient);
+            }
+            for (&i, sum) in block.reach.iter().zip(&self.work) {
+                self.reduced[i as usize] += sum;
+            }
+        }
+    }
+
+    /// s₀ + S w.
+    #[inline(always)]
+    fn respond_to_reduced<S: Simd>(&mut self, unit: S) {
+        for block in self.parts.blocks.iter().filter(|b| !b.reach.is_empty()) {
+            self.work.clear();
+            let reduced = block.reach.iter().map(|&i| self.reduced[i as usize]);
+            self.work.extend(reduced);
+            let rows = self.starts[block.states.start]..self.starts[block.states.end];
+            let rows = self.responses[rows].chunks_exact(block.reach.len());
+            for (row, state) in rows.zip(&mut self.states[block.states.clone()]) {
+                *state += dot(unit, row, &self.work);
+            }
+        }
+    }
+
+    /// y of `A_Dᵀ y = r_s − H s − Kᵀ w`.
+    #[inline(always)]
+    fn multiply<S: Simd>(&mut self, unit: S) {
+        for (k, block) in self.parts.blocks.iter().enumerate().rev() {
+            let multipliers = &mut self.multipliers[block.equations.clone()];
+            for (multiplier, &state) in multipliers.iter_mut().zip(self.blocks.order(k)) {
+                *multiplier = self.gradient[block.states.start + state];
+            }
+            self.blocks.solve_one_transposed(unit, k, multipliers);
+            for item in &block.below {
+                let row = item.row as usize - block.equations.start;
+                self.gradient[item.column as usize] -= value(&self.values, item) * multipliers[row];
+            }
+        }
+    }
+}
+
+fn value(values: &[f64], item: &Item) -> f64 {
+    values[item.value as usize]
+}
+
+fn gather(x: &[f64], unknowns: &[u32], to: &mut [f64]) {
+    for (value, &i) in to.iter_mut().zip(unknowns) {
+        *value = x[i as usize];
+    }
+}
+
+fn scatter(from: &[f64], unknowns: &[u32], x: &mut [f64]) {
+    for (value, &i) in from.iter().zip(unknowns) {
+        x[i as usize] = *value;
+    }
+}
