@@ -60,10 +60,10 @@ fn sources_pay_for_work_stored_energy_and_charging() {
             let stored = |k: usize, v: f64| 0.5 * c[k] * v * v;
             let (mut work, mut loss, mut last) = (0.0, 0.0, before[m]);
             let mut most = 0.0_f64;
-            for k in 0..40 {
+            for (k, &here) in c[..40].iter().enumerate() {
                 let v = voltages(5.0 * k as f64 + 2.5)[m];
                 // A resistor between a source of constant voltage and a capacitor takes this, whatever it is.
-                loss += 0.5 * c[k] * (v - last) * (v - last);
+                loss += 0.5 * here * (v - last) * (v - last);
                 work += stored(k + 1, v) - stored(k, v);
                 let kept = stored(k + 1, v) - stored(0, before[m]);
                 let expected = work + kept + loss;
