@@ -1,14 +1,21 @@
-//! Solves of random goals in one thread and in several, on the trunk of `problems/elephant_trunk_effort.json`.
+//! Several solves of the trunk of `problems/elephant_trunk_effort.json`: at once in threads, and one after the other of a kept program.
 //!
 //! `cargo bench --bench several -- [GOALS]`: goals in one thread and in two, in turn, and how many more two solve in the same time.
+//! `cargo bench --bench several -- --again`: a goal that moves, by a solver that keeps its program.
 //! `cargo bench --bench several -- --minutes 10`: goals in four threads against one thread, bit by bit, with the memory of the process.
 
 #[path = "../tests/common/random_goals.rs"]
 mod random_goals;
 
+use proboscis::control::problem::{BoundaryState, Control, Task};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::files::read_problem;
+use proboscis::ipopt::{Options, Solver, Start};
 use proboscis::workflow::at_once::at_once;
 use random_goals::{Goals, Kind, Solved, solved, trunk};
 use std::fs;
+use std::ops::ControlFlow;
+use std::thread::{ThreadId, current};
 use std::time::{Duration, Instant};
 
 /// Seed of the goals.
@@ -23,10 +30,14 @@ fn main() {
         .collect();
     let mut goals = Goals::new(SEED);
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        [] => throughput(&mut goals, 64),
+        [] => {
+            throughput(&mut goals, 64);
+            again();
+        }
         [count] => throughput(&mut goals, count.parse().expect("a number of goals")),
+        ["--again"] => again(),
         ["--minutes", length] => compare(&mut goals, length.parse().expect("minutes")),
-        _ => panic!("expected a number of goals, or --minutes and their number"),
+        _ => panic!("expected a number of goals, --again, or --minutes and their number"),
     }
 }
 
@@ -51,7 +62,7 @@ struct Taken {
     seconds: f64,
     /// Seconds on a core.
     busy: f64,
-    thread: std::thread::ThreadId,
+    thread: ThreadId,
 }
 
 fn timed(changes: &Vec<String>) -> Taken {
@@ -62,7 +73,7 @@ fn timed(changes: &Vec<String>) -> Taken {
         solved,
         seconds: began.elapsed().as_secs_f64() - (waited_now - waited),
         busy: busy_now - busy,
-        thread: std::thread::current().id(),
+        thread: current().id(),
     }
 }
 
@@ -143,4 +154,84 @@ fn memory() -> String {
         .split_whitespace()
         .collect::<Vec<_>>()
         .join(" ")
+}
+
+/// The goal of the trunk goes to and fro, a step each time, on 20 and 40 intervals; milliseconds by the clock.
+fn again() {
+    println!(
+        "| intervals | goal moves by | iterations at first | again: iterations | whole, ms | an iteration, ms |\n|--:|--:|--:|--:|--:|--:|"
+    );
+    for intervals in [20, 40] {
+        for step in [0.005, 0.02, 0.05] {
+            let [first, again, whole, each] = follow(intervals, step);
+            println!(
+                "| {intervals} | {:.1} % | {first:.0} | {again:.0} | {whole:.1} | {each:.2} |",
+                100.0 * step
+            );
+        }
+    }
+}
+
+/// Iterations of the first solve, most iterations of a later one, and the medians of its time and that of an iteration.
+fn follow(intervals: usize, step: f64) -> [f64; 4] {
+    let changes = [format!("control.intervals={intervals}")];
+    let loaded = read_problem(&trunk(), &changes).expect("a kept problem");
+    let (system, Task::Control(control)) = (loaded.system, loaded.task) else {
+        panic!("a problem of control");
+    };
+    let h = control.duration.first() / intervals as f64;
+    let resolve = |factor: f64| {
+        let BoundaryState::RestAtVoltages(voltages, of) = &control.goal else {
+            panic!("a goal of rest");
+        };
+        let voltages = voltages.iter().map(|v| factor * v).collect();
+        let goal = BoundaryState::RestAtVoltages(voltages, *of);
+        let control = Control {
+            goal,
+            ..control.clone()
+        };
+        BoundaryConditions::resolve(&system, &control, h).expect("an equilibrium")
+    };
+    let (model, here) = resolve(1.0);
+    let ends: Vec<_> = (1..=4)
+        .map(|i| resolve(1.0 - step * f64::from(i)).1)
+        .collect();
+    let initial = guess(&model, &here, &control, h, None);
+    let program = Transcription::new(&model, &here, &control, &initial).expect("a program");
+    let point = program.start(&initial);
+    let mut go_on = |_: &_, _: &[f64]| ControlFlow::Continue(());
+    let options = Options {
+        tolerance: control.solver.tolerance,
+        ..Options::default()
+    };
+    let mut solver = Solver::new(program, options.clone());
+    let first = solver.solve(&point, &mut go_on).expect("options of Ipopt");
+    assert!(first.status.is_solved());
+    let first = first.iterations.len() - 1;
+    solver.set_options(Options {
+        start: Start::PrimalDual,
+        ..options
+    });
+    let (mut most, mut whole, mut each) = (0, Vec::new(), Vec::new());
+    let back = ends.iter().rev().skip(1).chain([&here]);
+    let round: Vec<_> = ends.iter().chain(back).collect();
+    for i in 0..40 * round.len() {
+        let began = Instant::now();
+        solver
+            .program_mut()
+            .move_ends(round[i % round.len()])
+            .expect("the same program");
+        let found = solver.solve_again(&mut go_on).expect("options of Ipopt");
+        let seconds = began.elapsed().as_secs_f64();
+        assert!(found.status.is_solved());
+        let iterations = found.iterations.len() - 1;
+        most = most.max(iterations);
+        whole.push(1e3 * seconds);
+        each.push(1e3 * seconds / iterations as f64);
+    }
+    let median = |mut list: Vec<f64>| {
+        list.sort_by(f64::total_cmp);
+        list[list.len() / 2]
+    };
+    [first as f64, most as f64, median(whole), median(each)]
 }

@@ -25,7 +25,7 @@ pub(crate) fn main() -> Result<()> {
         .voltage_bounds(0.0, kv(3.0))
         .effort(1.0);
     problem.with_program(&arm, |program: &mut dyn Nlp, x| {
-        let (variables, rows) = (program.variables(), program.constraints());
+        let (variables, rows) = (program.variables().clone(), program.constraints().clone());
         let structure = program.jacobian_structure();
         let mut g = vec![0.0; rows.lower.len()];
         let mut values = vec![0.0; structure.rows.len()];

@@ -1,20 +1,22 @@
-//! Evaluating a program allocates nothing after the first time.
+//! Evaluating a program, and solving it again, allocates nothing after the first time.
 #![expect(unsafe_code, reason = "a global allocator that counts")]
 
 mod common;
 
-use common::cases::{all_limits, control, rest_to_rest};
+use common::cases::{all_limits, control, hold, rest_to_rest};
 use common::sought;
 use common::systems::branched;
 use common::tracked::{energies, tracked};
 use common::trunk;
-use proboscis::control::problem::{Control, Duration, Objective};
+use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, Rest};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::ipopt::{self, Options, Start};
 use proboscis::kkt::{Plan, Solver, Unknown};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
 use proboscis::nlp::Nlp;
 use std::alloc::{GlobalAlloc, Layout, System as Heap};
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Counts what it is asked for.
@@ -184,11 +186,58 @@ fn allocations_of_factors((unknowns, rows, cols): Pattern) -> (usize, usize) {
     (fewest, solver.statistics().condensed)
 }
 
+/// Solving a trunk again after its goal and start have moved there and back: fewest allocations of a solve, Ipopt's own not counted.
+fn allocations_of_solves() -> usize {
+    let h = 10.0;
+    let control = |factor: f64| {
+        let hold: Vec<f64> = hold(3).iter().map(|v| factor * v).collect();
+        let rest = |voltages| BoundaryState::RestAtVoltages(voltages, Rest::Everything);
+        Control {
+            start: rest(hold.iter().map(|v| 0.1 * v).collect()),
+            goal: rest(hold),
+            objective: Objective {
+                effort: 1.0,
+                rate: 0.1,
+                ..Objective::default()
+            },
+            ..rest_to_rest(3, 20, 20.0 * h)
+        }
+    };
+    let resolve = |factor: f64| BoundaryConditions::resolve(&trunk(3), &control(factor), h);
+    let (model, here) = resolve(1.0).unwrap();
+    let (_, there) = resolve(0.98).unwrap();
+    let initial = guess(&model, &here, &control(1.0), h, None);
+    let program = Transcription::new(&model, &here, &control(1.0), &initial).unwrap();
+    let point = program.start(&initial);
+    let mut go_on = |_: &_, _: &[f64]| ControlFlow::Continue(());
+    let mut solver = ipopt::Solver::new(program, Options::default());
+    let found = solver.solve(&point, &mut go_on).unwrap();
+    assert!(found.status.is_solved());
+    solver.set_options(Options {
+        start: Start::PrimalDual,
+        ..Options::default()
+    });
+    let mut fewest = usize::MAX;
+    for round in 0..6 {
+        let ends = [&there, &here][round % 2];
+        let before = ASKED.load(Ordering::Relaxed);
+        solver.program_mut().move_ends(ends).unwrap();
+        let found = solver.solve_again(&mut go_on).unwrap();
+        let asked = ASKED.load(Ordering::Relaxed) - before;
+        assert!(found.status.is_solved() && found.iterations.len() > 2);
+        if round > 1 {
+            fewest = fewest.min(asked);
+        }
+    }
+    fewest
+}
+
 /// The only test of its binary: the count belongs to the process.
 #[test]
 fn evaluations_allocate_nothing() {
     assert_eq!(allocations_of_factors(horizon()), (0, 0), "factors");
     assert_eq!(allocations_of_factors(constrained()), (0, 20), "condensed");
+    assert_eq!(allocations_of_solves(), 0, "solves of a kept program");
     let before = ASKED.load(Ordering::Relaxed);
     drop(std::hint::black_box(vec![0_u8; 100]));
     assert!(

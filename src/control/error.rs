@@ -62,6 +62,12 @@ pub enum BoundaryError {
         /// The limit, the value and the bound.
         reason: String,
     },
+    /// Start and goal cannot be moved in a program that stands.
+    #[error("start and goal need another program: {reason}")]
+    OtherProgram {
+        /// What is other.
+        reason: String,
+    },
     /// More equations than unknowns.
     #[error(
         "the problem is overdetermined: {equations} equations (of them {goals} of the goal) for {unknowns} unknowns; \

@@ -48,6 +48,11 @@ impl Cost {
         }
     }
 
+    /// The rest voltages before and after in kV.
+    pub(super) fn ends_mut(&mut self) -> &mut [Option<Vec<f64>>; 2] {
+        &mut self.ends
+    }
+
     /// Whether neighbouring intervals couple.
     pub fn couples_intervals(&self) -> bool {
         self.weights.rate != 0.0 && self.intervals > 1

@@ -12,8 +12,9 @@
 //! whose positive root is the new distance. The parameter is the mean complementarity r (x − bound) of the point as it came, within
 //! a range.
 
+use crate::ipopt::evaluation::Structures;
 use crate::ipopt::solution::Multipliers;
-use crate::nlp::{Bounds, Entries, Nlp};
+use crate::nlp::{Bounds, Nlp};
 
 /// Range of the barrier parameter.
 ///
@@ -25,17 +26,11 @@ const FLAT: f64 = 1e-8;
 /// Least distance from a bound.
 const LEAST: f64 = 1e-14;
 
-/// Structures of a program.
-pub(super) struct Structures<'a> {
-    pub(super) jacobian: &'a Entries,
-    pub(super) hessian: &'a Entries,
-}
-
 /// Moves the bounded variables and the multipliers of their bounds to the barrier's path; multipliers are of the scaled objective.
 /// Where a derivative does not exist nothing is moved.
 pub(super) fn centre(
     nlp: &mut dyn Nlp,
-    structures: &Structures<'_>,
+    structures: &Structures,
     x: &mut [f64],
     costates: &mut Multipliers,
 ) {
@@ -45,7 +40,7 @@ pub(super) fn centre(
         return;
     }
     let bounds = nlp.variables();
-    let mu = complementarity(&bounds, x, &slope).clamp(RANGE[0], RANGE[1]);
+    let mu = complementarity(bounds, x, &slope).clamp(RANGE[0], RANGE[1]);
     let Bounds { lower, upper } = bounds;
     for i in 0..x.len() {
         let (low, high) = (lower[i], upper[i]);
@@ -99,7 +94,7 @@ fn distance(gap: f64, r: f64, c: f64, mu: f64) -> f64 {
 /// First and second derivatives of f + Σ yᵢ gᵢ by each variable, f scaled.
 fn slopes(
     nlp: &mut dyn Nlp,
-    structures: &Structures<'_>,
+    structures: &Structures,
     x: &[f64],
     y: &[f64],
 ) -> (Vec<f64>, Vec<f64>) {

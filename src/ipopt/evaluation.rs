@@ -21,22 +21,37 @@ const RESERVED_ITERATIONS: usize = 4096;
 /// asked last, seen when an iteration is told, is the iterate (in the restoration phase that one's own). This
 /// matters for Ipopt before 3.14, which has no call for it.
 pub(super) struct Evaluator<'a> {
-    nlp: &'a mut dyn Nlp,
-    observer: &'a mut dyn FnMut(&Iteration, &[f64]) -> ControlFlow<()>,
-    jacobian: Entries,
-    hessian: Entries,
+    asked: Asked<'a>,
     /// Factor of f in all that Ipopt sees.
     scale: f64,
     began: Instant,
     _watch: Watch,
-    derivatives_at: Vec<f64>,
-    record: Record,
+    record: &'a mut Record,
+}
+
+/// What Ipopt asks about, and who hears of it.
+pub(super) struct Asked<'a> {
+    pub(super) nlp: &'a mut dyn Nlp,
+    pub(super) observer: &'a mut dyn FnMut(&Iteration, &[f64]) -> ControlFlow<()>,
+    pub(super) structures: &'a Structures,
+    /// What is subtracted from g.
+    pub(super) right: &'a [f64],
+}
+
+/// Structures of a program.
+#[derive(Debug)]
+pub(super) struct Structures {
+    pub(super) jacobian: Entries,
+    pub(super) hessian: Entries,
 }
 
 /// What is left of a solve besides the answer of Ipopt.
+#[derive(Debug, Default)]
 pub(super) struct Record {
     /// One record per iteration.
     pub(super) iterations: Vec<Iteration>,
+    /// Where derivatives were asked last.
+    derivatives_at: Vec<f64>,
     /// The latest iterate told; before the first one, the starting point.
     pub(super) latest: Vec<f64>,
     /// Why the solve was stopped from outside, if it was.
@@ -49,33 +64,37 @@ pub(super) struct Record {
     pub(super) failed: usize,
 }
 
+impl Record {
+    /// Nothing is known yet but the start.
+    fn begin(&mut self, start: &[f64]) {
+        self.iterations.clear();
+        self.iterations.reserve(RESERVED_ITERATIONS);
+        for place in [&mut self.derivatives_at, &mut self.latest] {
+            place.clear();
+            place.extend_from_slice(start);
+        }
+        self.stopped = None;
+        self.seconds = Seconds::default();
+        self.evaluations = Evaluations::default();
+        self.failed = 0;
+    }
+}
+
 impl<'a> Evaluator<'a> {
-    /// Answers for `nlp`, whose structures are given, in a solve that begins now at `start`.
+    /// Answers in a solve that begins now at `start`.
     pub(super) fn new(
-        nlp: &'a mut dyn Nlp,
-        observer: &'a mut dyn FnMut(&Iteration, &[f64]) -> ControlFlow<()>,
-        jacobian: Entries,
-        hessian: Entries,
+        asked: Asked<'a>,
+        record: &'a mut Record,
         start: &[f64],
         max_seconds: Option<f64>,
     ) -> Self {
+        record.begin(start);
         Self {
-            scale: nlp.objective_scale(),
-            nlp,
-            observer,
-            jacobian,
-            hessian,
+            scale: asked.nlp.objective_scale(),
+            asked,
             began: Instant::now(),
             _watch: interrupt::watch(max_seconds),
-            derivatives_at: start.to_vec(),
-            record: Record {
-                iterations: Vec::with_capacity(RESERVED_ITERATIONS),
-                latest: start.to_vec(),
-                stopped: None,
-                seconds: Seconds::default(),
-                evaluations: Evaluations::default(),
-                failed: 0,
-            },
+            record,
         }
     }
 
@@ -86,7 +105,7 @@ impl<'a> Evaluator<'a> {
         }
         self.record.evaluations.objective += 1;
         let f = timed(&mut self.record.seconds.objective, || {
-            self.scale * self.nlp.objective(x)
+            self.scale * self.asked.nlp.objective(x)
         });
         self.accepts(&[f]).then_some(f)
     }
@@ -96,23 +115,25 @@ impl<'a> Evaluator<'a> {
         if self.is_stopped() {
             return false;
         }
-        self.derivatives_at.copy_from_slice(x);
+        self.record.derivatives_at.copy_from_slice(x);
         self.record.evaluations.gradient += 1;
         timed(&mut self.record.seconds.gradient, || {
-            self.nlp.gradient(x, grad);
+            self.asked.nlp.gradient(x, grad);
             grad.iter_mut().for_each(|g| *g *= self.scale);
         });
         self.accepts(grad)
     }
 
-    /// g(x).
+    /// g(x) less the right-hand sides.
     pub(super) fn constraints(&mut self, x: &[f64], g: &mut [f64]) -> bool {
         if self.is_stopped() {
             return false;
         }
         self.record.evaluations.constraints += 1;
         timed(&mut self.record.seconds.constraints, || {
-            self.nlp.constraint(x, g);
+            self.asked.nlp.constraint(x, g);
+            let pairs = g.iter_mut().zip(self.asked.right);
+            pairs.for_each(|(g, right)| *g -= right);
         });
         self.accepts(g)
     }
@@ -122,10 +143,10 @@ impl<'a> Evaluator<'a> {
         if self.is_stopped() {
             return false;
         }
-        self.derivatives_at.copy_from_slice(x);
+        self.record.derivatives_at.copy_from_slice(x);
         self.record.evaluations.jacobian += 1;
         timed(&mut self.record.seconds.jacobian, || {
-            self.nlp.jacobian(x, values);
+            self.asked.nlp.jacobian(x, values);
         });
         self.accepts(values)
     }
@@ -143,19 +164,21 @@ impl<'a> Evaluator<'a> {
         }
         self.record.evaluations.hessian += 1;
         timed(&mut self.record.seconds.hessian, || {
-            self.nlp.hessian(x, sigma * self.scale, costates, values);
+            self.asked
+                .nlp
+                .hessian(x, sigma * self.scale, costates, values);
         });
         self.accepts(values)
     }
 
     /// Places of ∇g.
     pub(super) const fn jacobian_structure(&self) -> &Entries {
-        &self.jacobian
+        &self.asked.structures.jacobian
     }
 
     /// Places of the Hessian.
     pub(super) const fn hessian_structure(&self) -> &Entries {
-        &self.hessian
+        &self.asked.structures.hessian
     }
 
     /// Takes note of an accepted iterate and says whether to go on.
@@ -166,9 +189,11 @@ impl<'a> Evaluator<'a> {
             ..*iteration
         };
         self.record.iterations.push(*iteration);
-        self.record.latest.copy_from_slice(&self.derivatives_at);
+        self.record
+            .latest
+            .copy_from_slice(&self.record.derivatives_at);
         let verdict = timed(&mut self.record.seconds.observer, || {
-            (self.observer)(iteration, &self.derivatives_at)
+            (self.asked.observer)(iteration, &self.record.derivatives_at)
         });
         if verdict.is_break() {
             self.record.stopped = Some(Status::Interrupted);
@@ -180,7 +205,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Ends the solve.
-    pub(super) fn into_record(mut self) -> Record {
+    pub(super) fn end(self) {
         let seconds = &mut self.record.seconds;
         seconds.total = self.began.elapsed().as_secs_f64();
         let outside = seconds.objective
@@ -190,7 +215,6 @@ impl<'a> Evaluator<'a> {
             + seconds.hessian
             + seconds.observer;
         seconds.solver = (seconds.total - outside).max(0.0);
-        self.record
     }
 
     /// Whether it is time to stop, which is then remembered.

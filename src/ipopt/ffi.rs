@@ -38,7 +38,7 @@ mod bindings {
     include!(concat!(env!("OUT_DIR"), "/ipopt.rs"));
 }
 
-/// A problem known to Ipopt; while one exists that uses MUMPS, no other thread has such a one or calls MUMPS.
+/// A problem known to Ipopt, for any number of solves; while one exists that uses MUMPS, no other thread has such a one or calls MUMPS.
 pub(super) struct Problem {
     handle: NonNull<bindings::IpoptProblemInfo>,
     variables: usize,
@@ -130,7 +130,7 @@ impl Problem {
     ///
     /// A panic in the evaluator ends the solve and goes on from here.
     pub(super) fn solve(
-        self,
+        &mut self,
         evaluator: &mut Evaluator<'_>,
         x: &mut [f64],
         costates: &mut Multipliers,
@@ -169,9 +169,7 @@ impl Problem {
                 (&raw mut session).cast(),
             )
         };
-        let panic = session.panic.take();
-        drop(self);
-        match panic {
+        match session.panic {
             Some(panic) => resume_unwind(panic),
             None => code,
         }

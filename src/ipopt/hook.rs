@@ -164,12 +164,8 @@ unsafe extern "C" fn analyse(
     // SAFETY: Ipopt passes the order, the number of entries, their rows and columns, and `INFO` places for the answer.
     unsafe {
         let (order, entries) = (count(n), count(entries));
-        let from_zero = |start| {
-            let counted = read::<c_int>(start, entries).iter();
-            counted.map(|i| (i - 1).cast_unsigned()).collect::<Vec<_>>()
-        };
-        let (rows, cols) = (from_zero(rows), from_zero(cols));
-        let done = with_current(|session| session.analyse(order, &rows, &cols));
+        let (rows, cols) = (read(rows, entries), read(cols, entries));
+        let done = with_current(|session| session.analyse(order, rows, cols));
         let first = done.map_or(FAILED, |()| 0);
         let unused = UNUSED.unsigned_abs() as usize;
         answer(info, first, &[(9, unused), (10, unused)]);

@@ -110,19 +110,19 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The linear solver by a name of Ipopt, if `extra` names one.
-    pub(super) fn named_linear_solver(&self) -> Option<&str> {
-        match self.extra.get("linear_solver") {
-            Some(OptionValue::Text(name)) => Some(name),
-            _ => None,
+    /// The name of the linear solver in Ipopt, and whether it is the one along the horizon; `None` if this Ipopt does not take it.
+    pub(super) fn linear_solver(&self) -> Option<(&str, bool)> {
+        if let Some(OptionValue::Text(name)) = self.extra.get("linear_solver") {
+            return Some((name, false));
         }
+        let solver = self.linear_solver.resolve()?;
+        Some((solver.name(), solver == LinearSolver::Stages))
     }
 
     /// Whether solves with these options run in several threads at once: those with the linear solver along the horizon.
     #[must_use]
     pub fn run_at_once(&self) -> bool {
-        let is_named = self.named_linear_solver().is_some();
-        !is_named && self.linear_solver.resolve() == Some(LinearSolver::Stages)
+        self.linear_solver().is_some_and(|(_, is_along)| is_along)
     }
 
     /// All options that Ipopt is given, by name; `solver` is its name of the linear solver.

@@ -1,10 +1,11 @@
-//! The linear systems of one solve: from the questions of Ipopt to [`kkt`](crate::kkt).
+//! The linear systems of the solves of a program: from the questions of Ipopt to [`kkt`](crate::kkt).
 //!
 //! Ipopt holds no pointer to it. A solve works in one thread and in no other, so that its session stands in a variable of the thread; a
 //! solve within a callback has a session of its own.
 
 use std::any::Any;
 use std::cell::RefCell;
+use std::ffi::c_int;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
@@ -14,7 +15,7 @@ use crate::nlp::{Bounds, Stage};
 
 thread_local! {
     static CURRENT: RefCell<Option<Session>> = const { RefCell::new(None) };
-    /// The solver of the last solve, for one of the same pattern.
+    /// The solver of a session that has ended, for one of the same pattern.
     static KEPT: RefCell<Option<Kept>> = const { RefCell::new(None) };
 }
 
@@ -24,7 +25,7 @@ struct Kept {
     unknowns: Option<Vec<Unknown>>,
 }
 
-/// The linear systems of one solve.
+/// The linear systems of the solves of a program.
 pub(super) struct Session {
     /// The unknowns as Ipopt lists them: without fixed variables, and with them.
     layouts: [Vec<Unknown>; 2],
@@ -50,8 +51,8 @@ impl Session {
         }
     }
 
-    /// Does `solve` with this session as that of the thread, and returns what it found and what the session did.
-    pub(super) fn during<T>(self, solve: impl FnOnce() -> T) -> (T, StagesReport) {
+    /// Does `solve` with this session as that of the thread, and returns what it found, what the session did, and the session.
+    pub(super) fn during<T>(mut self, solve: impl FnOnce() -> T) -> (T, StagesReport, Self) {
         /// Puts the session of an outer solve back, also where the inner one panics.
         struct Outer(Option<Session>);
         impl Drop for Outer {
@@ -59,41 +60,49 @@ impl Session {
                 CURRENT.set(self.0.take());
             }
         }
+        self.tolerance = 0.0;
+        self.report = StagesReport::default();
         let outer = Outer(CURRENT.replace(Some(self)));
         let found = solve();
-        let session = CURRENT.take().expect("the session of this solve");
+        let mut session = CURRENT.take().expect("the session of this solve");
         drop(outer);
-        if let Some(panic) = session.panic {
+        if let Some(panic) = session.panic.take() {
+            session.current = None;
             std::panic::resume_unwind(panic);
         }
         let mut report = session.report;
-        if let Some(kept) = session.current {
+        if let Some(kept) = &session.current {
             report.statistics = *kept.solver.statistics();
-            KEPT.set(Some(kept));
         }
-        (found, report)
+        (found, report, session)
     }
 
-    /// A solver for systems of `order` unknowns with these entries.
-    pub(super) fn analyse(&mut self, order: usize, rows: &[u32], cols: &[u32]) {
+    /// A solver for systems of `order` unknowns with these entries, counted from one.
+    pub(super) fn analyse(&mut self, order: usize, rows: &[c_int], cols: &[c_int]) {
         let began = Instant::now();
-        let layout = self.layouts.iter().find(|layout| layout.len() == order);
-        let unknowns = layout.cloned();
+        let unknowns = self.layouts.iter().find(|layout| layout.len() == order);
         let fits = |kept: &Kept| {
             let plan = kept.solver.plan();
-            kept.unknowns == unknowns && plan.order() == order && plan.pattern() == (rows, cols)
+            let (known_rows, known_cols) = plan.pattern();
+            kept.unknowns.as_ref() == unknowns
+                && plan.order() == order
+                && from_zero(rows).eq(known_rows.iter().copied())
+                && from_zero(cols).eq(known_cols.iter().copied())
         };
-        self.current = Some(match KEPT.take().filter(fits) {
+        let kept = self.current.take().filter(fits);
+        let kept = kept.or_else(|| KEPT.take().filter(fits));
+        self.current = Some(match kept {
             Some(mut kept) => {
                 kept.solver.restart();
                 kept
             }
             None => {
                 self.report.analyses += 1;
-                let plan = Plan::new(order, rows, cols, unknowns.as_deref());
+                let (rows, cols): (Vec<_>, Vec<_>) = from_zero(rows).zip(from_zero(cols)).unzip();
+                let plan = Plan::new(order, &rows, &cols, unknowns.map(Vec::as_slice));
                 Kept {
                     solver: Solver::new(plan),
-                    unknowns,
+                    unknowns: unknowns.cloned(),
                 }
             }
         });
@@ -123,6 +132,20 @@ impl Session {
         }
         self.report.solution += began.elapsed().as_secs_f64();
     }
+}
+
+impl Drop for Session {
+    /// The plan is left to the next session of this thread.
+    fn drop(&mut self) {
+        if let Some(kept) = self.current.take() {
+            KEPT.try_with(|place| place.replace(Some(kept))).ok();
+        }
+    }
+}
+
+/// Indices that are counted from one.
+fn from_zero(indices: &[c_int]) -> impl Iterator<Item = u32> {
+    indices.iter().map(|i| (i - 1).cast_unsigned())
 }
 
 /// Does `work` with the session of this thread. `None` if there is none, or it failed: a panic goes on when the solve has returned.

@@ -18,6 +18,19 @@ pub struct Multipliers {
 }
 
 impl Multipliers {
+    /// Makes them zeros of a program of n variables and m constraints.
+    pub(super) fn reset(&mut self, n: usize, m: usize) {
+        let lengths = [
+            (&mut self.constraints, m),
+            (&mut self.lower, n),
+            (&mut self.upper, n),
+        ];
+        for (values, length) in lengths {
+            values.clear();
+            values.resize(length, 0.0);
+        }
+    }
+
     /// Multiplies all by a factor; what is not finite becomes zero.
     pub(super) fn scale(&mut self, factor: f64) {
         for values in [&mut self.constraints, &mut self.lower, &mut self.upper] {
@@ -158,6 +171,24 @@ pub struct SolverResult {
 }
 
 impl SolverResult {
+    /// Nothing is known yet of a program of n variables and m constraints.
+    pub(super) fn of_zeros(n: usize, m: usize) -> Self {
+        let mut costates = Multipliers::default();
+        costates.reset(n, m);
+        Self {
+            status: Status::Internal,
+            x: vec![0.0; n],
+            objective: 0.0,
+            constraints: vec![0.0; m],
+            costates,
+            iterations: Vec::new(),
+            seconds: Seconds::default(),
+            linear: LinearReport::default(),
+            evaluations: Evaluations::default(),
+            failed_evaluations: 0,
+        }
+    }
+
     /// The point to start a related problem from.
     #[must_use]
     pub fn to_point(&self) -> StartingPoint {

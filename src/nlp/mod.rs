@@ -49,13 +49,13 @@ pub enum Stage {
 
 /// Minimise f(x) subject to g_L ≤ g(x) ≤ g_U and x_L ≤ x ≤ x_U.
 ///
-/// Structures never change during the life of the object. A quantity that does not exist at `x`
+/// Structures never change during the life of the object; bounds may change between solves. A quantity that does not exist at `x`
 /// (an inverted element, a muscle of no length) is written as NaN; solvers then step back.
 pub trait Nlp {
     /// Bounds of the variables.
-    fn variables(&self) -> Bounds;
+    fn variables(&self) -> &Bounds;
     /// Bounds of the constraints; an equality has equal bounds.
-    fn constraints(&self) -> Bounds;
+    fn constraints(&self) -> &Bounds;
     /// Places of the constraint Jacobian ∇g.
     fn jacobian_structure(&self) -> Entries;
     /// Places of the Lagrangian Hessian, lower triangle.
@@ -85,5 +85,59 @@ pub trait Nlp {
     /// What constraint `i` is, for messages.
     fn constraint_name(&self, i: usize) -> String {
         format!("g[{i}]")
+    }
+}
+
+impl<N: Nlp + ?Sized> Nlp for &mut N {
+    fn variables(&self) -> &Bounds {
+        (**self).variables()
+    }
+
+    fn constraints(&self) -> &Bounds {
+        (**self).constraints()
+    }
+
+    fn jacobian_structure(&self) -> Entries {
+        (**self).jacobian_structure()
+    }
+
+    fn hessian_structure(&self) -> Entries {
+        (**self).hessian_structure()
+    }
+
+    fn objective(&mut self, x: &[f64]) -> f64 {
+        (**self).objective(x)
+    }
+
+    fn gradient(&mut self, x: &[f64], grad: &mut [f64]) {
+        (**self).gradient(x, grad);
+    }
+
+    fn constraint(&mut self, x: &[f64], g: &mut [f64]) {
+        (**self).constraint(x, g);
+    }
+
+    fn jacobian(&mut self, x: &[f64], values: &mut [f64]) {
+        (**self).jacobian(x, values);
+    }
+
+    fn hessian(&mut self, x: &[f64], sigma: f64, costates: &[f64], values: &mut [f64]) {
+        (**self).hessian(x, sigma, costates, values);
+    }
+
+    fn objective_scale(&self) -> f64 {
+        (**self).objective_scale()
+    }
+
+    fn stages(&self) -> Option<Vec<Stage>> {
+        (**self).stages()
+    }
+
+    fn variable_name(&self, i: usize) -> String {
+        (**self).variable_name(i)
+    }
+
+    fn constraint_name(&self, i: usize) -> String {
+        (**self).constraint_name(i)
     }
 }

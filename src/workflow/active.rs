@@ -34,7 +34,7 @@ pub fn active(
     control: &Control,
 ) -> Vec<Active> {
     let mut seen = ActiveLimits::default();
-    let bounds = program.variables();
+    let bounds = program.variables().clone();
     for (i, &column) in program.unknowns().columns.iter().enumerate() {
         let [low, high] = [bounds.lower[i], bounds.upper[i]];
         let side = reached(x[i], low, high);
@@ -96,7 +96,7 @@ pub fn active(
             _ => {}
         }
     }
-    let bounds = program.constraints();
+    let bounds = program.constraints().clone();
     let mut values = vec![0.0; bounds.lower.len()];
     program.constraint(x, &mut values);
     for (r, row) in program.unknowns().rows.iter().enumerate() {

@@ -83,7 +83,9 @@ impl WorkflowError {
             BoundaryError::Parameter { name, reason } => {
                 ("free", format!("parameter \"{name}\": {reason}"))
             }
-            BoundaryError::Overdetermined { .. } => ("goal", error.to_string()),
+            BoundaryError::Overdetermined { .. } | BoundaryError::OtherProgram { .. } => {
+                ("goal", error.to_string())
+            }
         };
         Self::Problem {
             place: format!("{task}.{key}"),

@@ -8,7 +8,9 @@ use std::time::Instant;
 use crate::control::problem::{Control, Duration, Guess};
 use crate::control::{BoundaryConditions, InitialGuess, Solution, Transcription, guess};
 use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
-use crate::ipopt::{self, Iteration, OptionValue, Options, SolverResult, Start, Status, interrupt};
+use crate::ipopt::{
+    Iteration, OptionValue, Options, Solver, SolverResult, Start, StartingPoint, Status, interrupt,
+};
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
 use crate::workflow::active::{Active, active};
@@ -161,7 +163,7 @@ pub fn optimise(
     let (model, boundary) = resolve(system, control)?;
     phase("building the program");
     let Prepared {
-        mut program,
+        program,
         point,
         start,
         stretched,
@@ -177,53 +179,54 @@ pub fn optimise(
     };
     phase("ordering and first factorisation");
     tracing::info!(?start, variables = point.x.len(), "solve");
-    let mut solve =
-        |program: &mut Transcription<'_>, point: &ipopt::StartingPoint, options: &Options| {
-            let decoder = program.decoder();
-            let mut observer = |report: &Iteration, x: &[f64]| {
-                let motion = || solved(&model, &decoder.decode(x), None);
-                observer(&Iterate {
-                    report,
-                    model: &model,
-                    motion: &motion,
-                })
-            };
-            ipopt::solve(program, point, options, &mut observer)
-                .map_err(|error| WorkflowError::ipopt(&error))
+    let mut solver = Solver::new(program, options.clone());
+    let mut solve = |solver: &mut Solver<Transcription<'_>>, point: &StartingPoint| {
+        let decoder = solver.program().decoder();
+        let mut observer = |report: &Iteration, x: &[f64]| {
+            let motion = || solved(&model, &decoder.decode(x), None);
+            observer(&Iterate {
+                report,
+                model: &model,
+                motion: &motion,
+            })
         };
-    let mut solution = solve(&mut program, &point, &options)?;
+        let found = solver.solve(point, &mut observer);
+        found.cloned().map_err(|error| WorkflowError::ipopt(&error))
+    };
+    let left = |limit: f64| (limit - began.elapsed().as_secs_f64()).max(0.0);
+    let mut solution = solve(&mut solver, &point)?;
     let mut restarted = None;
     if is_infeasible(solution.status) && matches!(start, Start::Cold | Start::Simulated) {
         phase("a second, displaced initial guess");
         let displaced = displaced(control, &boundary, model.sources.len());
         let initial = guess(&model, &boundary, &displaced, interval(control), None);
-        let left = |limit: f64| (limit - began.elapsed().as_secs_f64()).max(0.0);
-        let options = Options {
+        solver.set_options(Options {
             max_iterations: options.max_iterations.min(ITERATIONS),
             max_seconds: allowed.seconds.map(left),
             ..options.clone()
-        };
-        let point = program.start(&initial);
-        let second = solve(&mut program, &point, &options)?;
+        });
+        let point = solver.program().start(&initial);
+        let second = solve(&mut solver, &point)?;
         restarted = second.status.is_solved().then_some(solution.status);
         solution = one_of_both(solution, second);
     }
     for _ in 0..CHARTS {
-        let far = recentred(&model, &program.decode(&solution.x));
+        let far = recentred(&model, &solver.program().decode(&solution.x));
         let Some(initial) = far.filter(|_| interrupt::stop().is_none()) else {
             break;
         };
         phase("solving again, from the state that the first solution reached");
-        program = Transcription::of_any(&model, &boundary, control, &initial);
-        let left = |limit: f64| (limit - began.elapsed().as_secs_f64()).max(0.0);
+        let program = Transcription::of_any(&model, &boundary, control, &initial);
         let options = Options {
             max_seconds: allowed.seconds.map(left),
             start: Start::PRIMAL,
             ..options.clone()
         };
         let point = program.start(&initial);
-        solution = solve(&mut program, &point, &options)?;
+        solver = Solver::new(program, options);
+        solution = solve(&mut solver, &point)?;
     }
+    let mut program = solver.into_program();
     drop(watch);
     let history = program.decode(&solution.x);
     let motion = Solution {
@@ -308,7 +311,7 @@ fn recentred(model: &Model, history: &DiscreteTrajectory) -> Option<InitialGuess
 /// The program of a control problem with the point to start from and what that point is worth.
 pub(crate) struct Prepared<'m> {
     pub(crate) program: Transcription<'m>,
-    pub(crate) point: ipopt::StartingPoint,
+    pub(crate) point: StartingPoint,
     pub(crate) start: Start,
     /// Durations in ms of the earlier solution and of the start, where they differ.
     pub(crate) stretched: Option<[f64; 2]>,

@@ -28,7 +28,7 @@ pub fn violations(
     tolerance: f64,
     count: usize,
 ) -> Vec<Violation> {
-    let bounds = program.constraints();
+    let bounds = program.constraints().clone();
     let mut g = vec![0.0; bounds.lower.len()];
     program.constraint(x, &mut g);
     let excess = |row: usize| bounds.excess(row, g[row]);

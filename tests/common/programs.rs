@@ -27,11 +27,11 @@ fn entries(places: &[(u32, u32)]) -> Entries {
 }
 
 impl Nlp for Program {
-    fn variables(&self) -> Bounds {
-        self.variables.clone()
+    fn variables(&self) -> &Bounds {
+        &self.variables
     }
-    fn constraints(&self) -> Bounds {
-        self.constraints.clone()
+    fn constraints(&self) -> &Bounds {
+        &self.constraints
     }
     fn jacobian_structure(&self) -> Entries {
         entries(&self.jacobian_places)

@@ -98,7 +98,7 @@ fn karush_kuhn_tucker(
     for ((&row, &col), value) in entries.rows.iter().zip(&entries.cols).zip(&values) {
         gradient[col as usize] += y.constraints[row as usize] * value;
     }
-    let bounds = program.variables();
+    let bounds = program.variables().clone();
     let mut worst = [0.0_f64; 4];
     for i in 0..x.len() {
         let stationarity = gradient[i] - y.lower[i] + y.upper[i];

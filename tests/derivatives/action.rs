@@ -181,11 +181,11 @@ fn spoil(values: &mut [f64]) {
 }
 
 impl Nlp for Mistaken<'_, '_> {
-    fn variables(&self) -> Bounds {
+    fn variables(&self) -> &Bounds {
         self.program.variables()
     }
 
-    fn constraints(&self) -> Bounds {
+    fn constraints(&self) -> &Bounds {
         self.program.constraints()
     }
 

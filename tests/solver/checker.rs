@@ -24,11 +24,11 @@ struct Program<'m> {
 }
 
 impl Nlp for Program<'_> {
-    fn variables(&self) -> Bounds {
+    fn variables(&self) -> &Bounds {
         self.of.variables()
     }
 
-    fn constraints(&self) -> Bounds {
+    fn constraints(&self) -> &Bounds {
         self.of.constraints()
     }
 

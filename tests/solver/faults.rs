@@ -97,11 +97,11 @@ struct Faulty<'a, N> {
 }
 
 impl<N: Nlp> Nlp for Faulty<'_, N> {
-    fn variables(&self) -> Bounds {
+    fn variables(&self) -> &Bounds {
         self.program.variables()
     }
 
-    fn constraints(&self) -> Bounds {
+    fn constraints(&self) -> &Bounds {
         self.program.constraints()
     }
 

@@ -14,6 +14,7 @@ mod energies;
 mod energy_rows;
 pub(super) mod layout;
 mod limit_rows;
+mod moved;
 mod placed;
 mod point;
 mod program;
@@ -24,7 +25,7 @@ mod sweep;
 mod units;
 
 use crate::control::BoundaryError;
-use crate::control::conditions::BoundaryConditions;
+use crate::control::conditions::{BoundaryConditions, Rests};
 use crate::control::guess::InitialGuess;
 use crate::control::limits::{BoundedQuantity, When};
 use crate::control::numbering::{Column, Numbering, Row};
@@ -71,7 +72,11 @@ pub struct Transcription<'m> {
     /// Unit of voltages in kV.
     kilovolt: f64,
     momentum: Vec<f64>,
+    /// What comes to rest at the end.
+    rests: Rests,
+    /// Bounds of the variables, and of the scaled rows.
     bounds: Bounds,
+    row_bounds: Bounds,
     // The point.
     point: Vec<f64>,
     instants: Vec<Configuration>,
@@ -216,7 +221,9 @@ impl<'m> Transcription<'m> {
             kilovolt: volts / KILOVOLT,
             cost,
             momentum: boundary.start.momentum.clone(),
+            rests: boundary.goal.rests,
             bounds: Bounds::default(),
+            row_bounds: Bounds::default(),
             point: vec![f64::NAN; unknowns.columns.len()],
             instants,
             placed: Placed::Nothing,
@@ -252,6 +259,7 @@ impl<'m> Transcription<'m> {
         out.lay_hessian();
         out.set_scales(&initial.history, initial.h);
         out.set_bounds(control);
+        out.set_row_bounds();
         out
     }
 

@@ -8,21 +8,12 @@ use crate::model::Role;
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
 
 impl Nlp for Transcription<'_> {
-    fn variables(&self) -> Bounds {
-        self.bounds.clone()
+    fn variables(&self) -> &Bounds {
+        &self.bounds
     }
 
-    fn constraints(&self) -> Bounds {
-        let bound = |row: &Row| match *row {
-            Row::Instant { .. } | Row::Interval { .. } => (0.0, 0.0),
-            Row::Limit { limit, .. } => {
-                let limit = &self.limits[limit];
-                let bounded = &limit.bounded;
-                (bounded.lower * limit.scale, bounded.upper * limit.scale)
-            }
-        };
-        let (lower, upper) = self.unknowns.rows.iter().map(bound).unzip();
-        Bounds { lower, upper }
+    fn constraints(&self) -> &Bounds {
+        &self.row_bounds
     }
 
     fn jacobian_structure(&self) -> Entries {

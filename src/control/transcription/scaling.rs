@@ -138,4 +138,19 @@ impl Transcription<'_> {
             .unzip();
         self.bounds = Bounds { lower, upper };
     }
+
+    /// Bounds of the rows: zero of equations of motion, those of limits and goals in their scale.
+    pub(super) fn set_row_bounds(&mut self) {
+        let Bounds { lower, upper } = &mut self.row_bounds;
+        let count = self.unknowns.rows.len();
+        lower.resize(count, 0.0);
+        upper.resize(count, 0.0);
+        for (i, row) in self.unknowns.rows.iter().enumerate() {
+            if let Row::Limit { limit, .. } = *row {
+                let limit = &self.limits[limit];
+                lower[i] = limit.bounded.lower * limit.scale;
+                upper[i] = limit.bounded.upper * limit.scale;
+            }
+        }
+    }
 }

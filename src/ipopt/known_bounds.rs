@@ -1,0 +1,66 @@
+//! The bounds that Ipopt is told.
+//!
+//! An equation g = b is told as g − b = 0, so that b may move while Ipopt keeps what it knows. Ipopt subtracts b itself where it is told,
+//! with the same bits.
+
+use crate::nlp::Bounds;
+
+/// Bounds as Ipopt knows them.
+#[derive(Debug, Default)]
+pub(super) struct KnownBounds {
+    pub(super) variables: Bounds,
+    /// Of the constraints less their right-hand sides.
+    pub(super) constraints: Bounds,
+    /// b of an equation, 0 of an inequality.
+    pub(super) right: Vec<f64>,
+}
+
+impl KnownBounds {
+    /// Takes the bounds of a program, and says whether Ipopt has to be told others than before.
+    pub(super) fn take(&mut self, variables: &Bounds, constraints: &Bounds) -> bool {
+        let Bounds { lower, upper } = constraints;
+        let is_equation = |low: f64, high: f64| low == high && low.is_finite();
+        let rights = lower
+            .iter()
+            .zip(upper)
+            .map(|(&low, &high)| match is_equation(low, high) {
+                true => low,
+                false => 0.0,
+            });
+        self.right.clear();
+        self.right.extend(rights);
+        let known = &mut self.constraints;
+        let is_known = |known: &[f64], bounds: &[f64]| {
+            let told = bounds
+                .iter()
+                .zip(&self.right)
+                .map(|(bound, right)| bound - right);
+            known.len() == bounds.len() && known.iter().copied().eq(told)
+        };
+        let are_known = self.variables == *variables
+            && is_known(&known.lower, lower)
+            && is_known(&known.upper, upper);
+        if !are_known {
+            self.variables.clone_from(variables);
+            for (known, bounds) in [(&mut known.lower, lower), (&mut known.upper, upper)] {
+                known.clear();
+                known.extend(
+                    bounds
+                        .iter()
+                        .zip(&self.right)
+                        .map(|(bound, right)| bound - right),
+                );
+            }
+        }
+        !are_known
+    }
+
+    /// Whether there are as many equations as variables that are free.
+    pub(super) fn is_square(&self) -> bool {
+        let equal = |bounds: &Bounds| {
+            let pairs = bounds.lower.iter().zip(&bounds.upper);
+            pairs.filter(|(lower, upper)| lower == upper).count()
+        };
+        self.variables.lower.len() - equal(&self.variables) == equal(&self.constraints)
+    }
+}

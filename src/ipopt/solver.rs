@@ -1,0 +1,309 @@
+//! Solves of one program, one after the other.
+
+use std::fmt;
+use std::mem;
+use std::ops::ControlFlow;
+
+use crate::ipopt::centre::centre;
+use crate::ipopt::error::IpoptError;
+use crate::ipopt::evaluation::{Asked, Evaluator, Record, Structures};
+use crate::ipopt::ffi::Problem;
+use crate::ipopt::interrupt;
+use crate::ipopt::known_bounds::KnownBounds;
+use crate::ipopt::options::{self, Options, Start};
+use crate::ipopt::session::Session;
+use crate::ipopt::solution::{Iteration, SolverResult, StartingPoint};
+use crate::ipopt::status::Status;
+use crate::nlp::{Bounds, Entries, Nlp};
+
+/// A program that is solved again and again.
+///
+/// Kept are the plan of the linear systems, the problem that Ipopt knows, the last result, and room for all numbers. Where the same program is
+/// solved from another point, or with other right-hand sides of its equations, nothing is built and nothing allocated but by Ipopt; a
+/// [`Start::Centred`] allocates too. Where other bounds or options change, Ipopt begins with a new problem. With MUMPS, which a process has
+/// once, a problem lasts for one solve.
+pub struct Solver<N> {
+    program: N,
+    options: Options,
+    structures: Structures,
+    bounds: KnownBounds,
+    problem: Option<Problem>,
+    session: Option<Session>,
+    record: Record,
+    /// g at the latest iterate.
+    latest: Vec<f64>,
+    result: SolverResult,
+}
+
+impl<N: Nlp> Solver<N> {
+    /// For a program, under options.
+    ///
+    /// # Panics
+    ///
+    /// If the lengths of bounds and structures contradict each other.
+    pub fn new(program: N, options: Options) -> Self {
+        let structures = Structures {
+            jacobian: program.jacobian_structure(),
+            hessian: program.hessian_structure(),
+        };
+        let Structures { jacobian, hessian } = &structures;
+        let (n, m) = (
+            program.variables().lower.len(),
+            program.constraints().lower.len(),
+        );
+        check_structure(jacobian, m, n, "Jacobian");
+        check_structure(hessian, n, n, "Hessian");
+        let mut places = hessian.rows.iter().zip(&hessian.cols);
+        assert!(
+            places.all(|(row, col)| row >= col),
+            "lower triangle of the Hessian"
+        );
+        Self {
+            program,
+            options,
+            structures,
+            bounds: KnownBounds::default(),
+            problem: None,
+            session: None,
+            record: Record::default(),
+            latest: vec![0.0; m],
+            result: SolverResult::of_zeros(n, m),
+        }
+    }
+
+    /// The program.
+    pub const fn program(&self) -> &N {
+        &self.program
+    }
+
+    /// The program, whose bounds and values may be changed between solves.
+    pub const fn program_mut(&mut self) -> &mut N {
+        &mut self.program
+    }
+
+    /// Other options for the solves from now on.
+    pub fn set_options(&mut self, options: Options) {
+        let lasting = |options: &Options| Options {
+            max_seconds: None,
+            ..options.clone()
+        };
+        if lasting(&self.options) != lasting(&options) {
+            self.problem = None;
+        }
+        self.options = options;
+    }
+
+    /// The program.
+    pub fn into_program(self) -> N {
+        self.program
+    }
+
+    /// The result of the last solve.
+    pub fn into_result(self) -> SolverResult {
+        self.result
+    }
+
+    /// Solves the program from `start`.
+    ///
+    /// `observer` hears of every iterate and its x, and may ask to stop; so may Ctrl-C, see [`interrupt`]. A panic of program or observer
+    /// goes on when Ipopt has returned.
+    ///
+    /// # Errors
+    ///
+    /// If Ipopt rejects an option or the problem as such. A solve that fails is no error but a [`Status`].
+    ///
+    /// # Panics
+    ///
+    /// If the lengths of the starting point are not those of the program, or if a start with multipliers is asked for without any.
+    pub fn solve(
+        &mut self,
+        start: &StartingPoint,
+        observer: &mut dyn FnMut(&Iteration, &[f64]) -> ControlFlow<()>,
+    ) -> Result<&SolverResult, IpoptError> {
+        let n = self.program.variables().lower.len();
+        assert_eq!(
+            start.x.len(),
+            n,
+            "one value per variable in the starting point"
+        );
+        self.result.x.clone_from(&start.x);
+        let costates = &mut self.result.costates;
+        match self.options.start {
+            Start::Cold | Start::Simulated | Start::Primal { .. } => {}
+            Start::PrimalDual | Start::Centred => {
+                let known = start.costates.as_ref();
+                costates.clone_from(known.expect("a start with multipliers has them"));
+            }
+        }
+        self.solve_again(observer)
+    }
+
+    /// Solves the program from the point where the last solve has ended, with its multipliers where the options ask for them.
+    ///
+    /// # Errors
+    ///
+    /// As of [`solve`](Self::solve).
+    pub fn solve_again(
+        &mut self,
+        observer: &mut dyn FnMut(&Iteration, &[f64]) -> ControlFlow<()>,
+    ) -> Result<&SolverResult, IpoptError> {
+        let mut problem = self.known_problem()?;
+        let scale = self.program.objective_scale();
+        assert!(scale > 0.0, "a positive scale of the objective");
+        let (n, m) = (self.bounds.variables.lower.len(), self.bounds.right.len());
+        let mut x = mem::take(&mut self.result.x);
+        let mut costates = mem::take(&mut self.result.costates);
+        match self.options.start.is_dual() {
+            true => costates.scale(scale),
+            false => costates.reset(n, m),
+        }
+        if self.options.start == Start::Centred {
+            centre(&mut self.program, &self.structures, &mut x, &mut costates);
+        }
+
+        self.record.iterations = mem::take(&mut self.result.iterations);
+        let asked = Asked {
+            nlp: &mut self.program,
+            observer,
+            structures: &self.structures,
+            right: &self.bounds.right,
+        };
+        let mut evaluator = Evaluator::new(asked, &mut self.record, &x, self.options.max_seconds);
+        let mut solve = || problem.solve(&mut evaluator, &mut x, &mut costates);
+        let (code, stages) = match self.session.take() {
+            Some(session) => {
+                let (code, report, session) = session.during(solve);
+                self.session = Some(session);
+                (code, Some(report))
+            }
+            None => (solve(), None),
+        };
+        evaluator.end();
+        // MUMPS is there for others until the next solve.
+        self.problem = self.session.is_some().then_some(problem);
+        let _unwatched = interrupt::unwatched();
+        costates.scale(scale.recip());
+        let (record, result) = (&mut self.record, &mut self.result);
+        (result.x, result.costates) = (x, costates);
+        result.iterations = mem::take(&mut record.iterations);
+        result.seconds = record.seconds;
+        result.evaluations = record.evaluations;
+        result.failed_evaluations = record.failed;
+        result.linear.stages = stages;
+        result.status = match Status::from_code(code) {
+            // Ipopt minimises nothing where equations leave no freedom, or seem to.
+            Status::Solved if self.bounds.is_square() => Status::FeasiblePoint,
+            status if status.is_solved() => status,
+            status => record.stopped.unwrap_or(status),
+        };
+        self.end();
+        Ok(&self.result)
+    }
+
+    /// The problem that Ipopt knows, or a new one where it has to know other bounds or options.
+    fn known_problem(&mut self) -> Result<Problem, IpoptError> {
+        let program = &self.program;
+        if self.bounds.take(program.variables(), program.constraints()) {
+            (self.problem, self.session) = (None, None);
+        }
+        if let Some(problem) = self.problem.take() {
+            return Ok(problem);
+        }
+        let (name, is_along) = self.options.linear_solver().ok_or(IpoptError::NoStages)?;
+        let KnownBounds {
+            variables,
+            constraints,
+            ..
+        } = &self.bounds;
+        let n = variables.lower.len();
+        self.session = is_along.then(|| {
+            self.session.take().unwrap_or_else(|| {
+                let stages = program.stages();
+                let staged = stages.as_ref().map_or(n, Vec::len);
+                assert_eq!(staged, n, "a stage for each variable");
+                Session::new(variables, constraints, stages.as_deref())
+            })
+        });
+        self.result.linear.solver = if is_along { "stages" } else { name }.to_owned();
+        let Structures { jacobian, hessian } = &self.structures;
+        let (first, second) = (jacobian.rows.len(), hessian.rows.len());
+        let mut problem = Problem::new(variables, constraints, first, second, !is_along).ok_or(
+            IpoptError::ProblemNotCreated {
+                variables: n,
+                constraints: self.bounds.right.len(),
+                entries: first,
+            },
+        )?;
+        for (name, value) in self.options.settings(name) {
+            if !problem.set(&name, &value) {
+                let nearest = options::nearest(&name).map(str::to_owned);
+                return Err(IpoptError::OptionRejected {
+                    name,
+                    value,
+                    nearest,
+                });
+            }
+        }
+        Ok(problem)
+    }
+
+    /// Puts the latest iterate in the place of the point where Ipopt gave up, if it violates less.
+    fn end(&mut self) {
+        let (program, result) = (&mut self.program, &mut self.result);
+        let (objective, violation) = measure(program, &result.x, &mut result.constraints);
+        result.objective = objective;
+        if result.status.is_solved() && violation == f64::INFINITY {
+            result.status = Status::InvalidNumber;
+        }
+        if result.status.is_solved() {
+            return;
+        }
+        // Iterates may leave the bounds by 1e-8 (`bound_relax_factor`); the point that Ipopt returns does not.
+        let latest = &mut self.record.latest;
+        let Bounds { lower, upper } = program.variables();
+        for ((x, lower), upper) in latest.iter_mut().zip(lower).zip(upper) {
+            *x = x.max(*lower).min(*upper);
+        }
+        let (objective, of_latest) = measure(program, latest, &mut self.latest);
+        if of_latest < violation {
+            result.objective = objective;
+            mem::swap(&mut result.x, latest);
+            mem::swap(&mut result.constraints, &mut self.latest);
+        }
+    }
+}
+
+impl<N> fmt::Debug for Solver<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut out = f.debug_struct("Solver");
+        out.field("result", &self.result).finish_non_exhaustive()
+    }
+}
+
+/// f, and the greatest violation of a bound or constraint at `x`, whose g is written; infinite where f or g does not exist.
+fn measure(program: &mut impl Nlp, x: &[f64], g: &mut [f64]) -> (f64, f64) {
+    let objective = program.objective(x);
+    program.constraint(x, g);
+    let violation = match objective.is_finite() {
+        true => {
+            let of_rows = program.constraints().violation(g);
+            program.variables().violation(x).max(of_rows)
+        }
+        false => f64::INFINITY,
+    };
+    (objective, violation)
+}
+
+fn check_structure(entries: &Entries, rows: usize, cols: usize, matrix: &str) {
+    let below =
+        |indices: &[u32], count: usize| indices.iter().all(|&index| (index as usize) < count);
+    assert_eq!(
+        entries.rows.len(),
+        entries.cols.len(),
+        "as many rows as columns in the structure of the {matrix}"
+    );
+    assert!(
+        below(&entries.rows, rows) && below(&entries.cols, cols),
+        "{matrix} of {rows} rows and {cols} columns"
+    );
+}
