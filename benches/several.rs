@@ -108,7 +108,7 @@ fn throughput(goals: &mut Goals, count: usize) {
         }
         assert_eq!(answers[0], answers[1]);
     }
-    println!("| | one thread | two threads | two over one |\n|:--|--:|--:|--:|");
+    println!("| | one thread | two threads | one over two |\n|:--|--:|--:|--:|");
     let row = |name: &str, [one, two]: [f64; 2]| {
         println!("| {name} | {one:.2} | {two:.2} | {:.2} |", one / two);
     };

@@ -153,7 +153,7 @@ fn a_moved_program_is_the_one_that_is_built_there() {
                     .iter()
                     .filter(|v| v.is_finite())
                     .fold(0.0, |m: f64, v| m.max(v.abs()));
-                assert!(largest > 0.0 || two.iter().all(|v| *v == 0.0));
+                assert!(largest > 0.0 || two.iter().all(|v| *v == 0.0 || v.is_infinite()));
                 for (a, b) in one.iter().zip(&two) {
                     assert!(a == b || (a - b).abs() < 1e-9 * largest, "{name}: {a} {b}");
                 }
@@ -275,6 +275,6 @@ fn ends_of_another_program_are_refused() {
         h,
         &system,
         &reached([Some(5.0), Some(5.0), None]),
-        "is bounded too",
+        "more or fewer goals and limits",
     );
 }

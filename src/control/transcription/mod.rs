@@ -61,6 +61,8 @@ pub struct Transcription<'m> {
     horizon: Horizon,
     unknowns: Numbering,
     limits: Vec<LimitRow>,
+    /// Goals and limits, those that nothing can change included.
+    bounded: usize,
     /// First row, instant or interval, of each stretch of limit rows.
     limit_rows: Vec<(usize, usize)>,
     cost: Cost,
@@ -209,6 +211,7 @@ impl<'m> Transcription<'m> {
             intervals,
             horizon,
             limits,
+            bounded: boundary.limits.list.len(),
             limit_rows: limit_at,
             objective_scale: objective_scale(
                 &control.objective,

@@ -67,6 +67,9 @@ impl Transcription<'_> {
         if goal.rests != self.rests {
             return other("something else comes to rest".to_owned());
         }
+        if boundary.limits.list.len() != self.bounded {
+            return other("there are more or fewer goals and limits".to_owned());
+        }
         let is_equation = |one: &BoundedQuantity| one.lower == one.upper;
         let mut others = measured(self.model, boundary);
         for LimitRow { bounded, .. } in &self.limits {
@@ -78,10 +81,7 @@ impl Transcription<'_> {
                 return other(format!("{} is no goal or limit any more", bounded.name));
             }
         }
-        match others.next() {
-            Some(one) => other(format!("{} is bounded too", one.name)),
-            None => Ok(()),
-        }
+        Ok(())
     }
 }
 
