@@ -5,108 +5,139 @@ const WIDTH: usize = 110;
 
 /// Lays out compact JSON text, as serde_json writes it.
 pub(crate) fn lay_out(compact: &str) -> String {
-    let mut text = String::new();
-    lay_out_value(compact, 0, 0, &mut text);
+    let mut text = String::with_capacity(compact.len() + compact.len() / 4);
+    Compact::new(compact).lay_out(0, 0, 0, &mut text);
     text.push('\n');
     text
 }
 
-/// Writes one value that starts `used` columns into a line, its parts indented one step further.
-fn lay_out_value(value: &str, indent: usize, used: usize, text: &mut String) {
-    let is_list = value.starts_with(['{', '[']) && value.len() > 2;
-    // A character takes at most four bytes: a long list is not read in vain.
-    let may_fit = !is_list || indent > 0 && value.len() <= 4 * WIDTH;
-    if may_fit {
-        let line = spaced(value);
-        if !is_list || used + line.chars().count() <= WIDTH {
-            text.push_str(&line);
-            return;
+/// Compact JSON, whose lists are known by their ends.
+struct Compact<'a> {
+    text: &'a str,
+    /// The place behind the list that opens at a byte; zero elsewhere.
+    ends: Vec<usize>,
+}
+
+impl<'a> Compact<'a> {
+    /// Finds the ends of all lists.
+    fn new(text: &'a str) -> Self {
+        let bytes = text.as_bytes();
+        let mut ends = vec![0; bytes.len()];
+        let (mut open, mut at) = (Vec::new(), 0);
+        while at < bytes.len() {
+            match bytes[at] {
+                b'"' => at = behind_string(bytes, at) - 1,
+                b'{' | b'[' => open.push(at),
+                b'}' | b']' => {
+                    if let Some(start) = open.pop() {
+                        ends[start] = at + 1;
+                    }
+                }
+                _ => {}
+            }
+            at += 1;
+        }
+        Self { text, ends }
+    }
+
+    /// The place behind the value that starts at a byte.
+    fn end(&self, at: usize) -> usize {
+        let bytes = self.text.as_bytes();
+        match bytes[at] {
+            b'"' => behind_string(bytes, at),
+            b'{' | b'[' => self.ends[at],
+            _ => {
+                let rest = bytes[at..].iter();
+                let length = rest.take_while(|byte| !matches!(byte, b',' | b'}' | b']'));
+                at + length.count()
+            }
         }
     }
-    let (open, close) = (&value[..1], &value[value.len() - 1..]);
-    let inner = " ".repeat(2 * (indent + 1));
-    text.push_str(open);
-    for (index, item) in split(&value[1..value.len() - 1]).into_iter().enumerate() {
-        text.push_str(if index == 0 { "\n" } else { ",\n" });
-        text.push_str(&inner);
-        let mut column = inner.len();
-        let mut rest = item;
-        if open == "{"
-            && let Some((key, entry)) = entry(item)
-        {
-            text.push_str(key);
-            text.push_str(": ");
-            column += key.chars().count() + 2;
-            rest = entry;
+
+    /// Writes the value at a byte, which starts `used` columns into a line, its parts indented one step further; returns the place
+    /// behind it.
+    fn lay_out(&self, at: usize, indent: usize, used: usize, text: &mut String) -> usize {
+        let bytes = self.text.as_bytes();
+        let end = self.end(at);
+        let value = &self.text[at..end];
+        if !value.starts_with(['{', '[']) || value.len() == 2 {
+            text.push_str(value);
+            return end;
         }
-        lay_out_value(rest, indent + 1, column, text);
+        // A character takes at most four bytes: a long list is not read in vain.
+        if indent > 0 && value.len() <= 4 * WIDTH {
+            let before = text.len();
+            space(value, text);
+            if used + text[before..].chars().count() <= WIDTH {
+                return end;
+            }
+            text.truncate(before);
+        }
+        let indented = |text: &mut String, steps: usize| {
+            text.push('\n');
+            text.extend(std::iter::repeat_n("  ", steps));
+        };
+        text.push_str(&value[..1]);
+        let mut place = at + 1;
+        loop {
+            indented(text, indent + 1);
+            let mut column = 2 * (indent + 1);
+            if bytes[at] == b'{' {
+                let key = &self.text[place..behind_string(bytes, place)];
+                text.push_str(key);
+                text.push_str(": ");
+                column += key.chars().count() + 2;
+                place += key.len() + 1;
+            }
+            place = self.lay_out(place, indent + 1, column, text);
+            if bytes[place] != b',' {
+                break;
+            }
+            text.push(',');
+            place += 1;
+        }
+        indented(text, indent);
+        text.push_str(&value[value.len() - 1..]);
+        end
     }
-    text.push('\n');
-    text.push_str(&" ".repeat(2 * indent));
-    text.push_str(close);
+}
+
+/// The place behind the string that opens at a byte.
+fn behind_string(bytes: &[u8], at: usize) -> usize {
+    let mut place = at + 1;
+    while bytes[place] != b'"' {
+        place += if bytes[place] == b'\\' { 2 } else { 1 };
+    }
+    place + 1
 }
 
 /// Compact JSON with a space after each comma and colon and inside braces.
-fn spaced(value: &str) -> String {
-    let mut text = String::new();
-    for (_, character, quoted) in characters(value) {
-        match character {
-            ',' | ':' if !quoted => text.extend([character, ' ']),
-            '{' if !quoted => text.push_str("{ "),
-            '}' if !quoted && text.ends_with("{ ") => {
-                text.pop();
-                text.push(character);
+fn space(value: &str, text: &mut String) {
+    let bytes = value.as_bytes();
+    // What is copied as it is, up to the present place.
+    let (mut from, mut at) = (0, 0);
+    while at < bytes.len() {
+        let behind = match bytes[at] {
+            b'"' => {
+                at = behind_string(bytes, at);
+                continue;
             }
-            '}' if !quoted => text.push_str(" }"),
-            _ => text.push(character),
+            b',' | b':' => " ",
+            b'{' if bytes[at + 1] != b'}' => " ",
+            b'}' if bytes[at - 1] != b'{' => {
+                text.push_str(&value[from..at]);
+                text.push(' ');
+                from = at;
+                ""
+            }
+            _ => "",
+        };
+        at += 1;
+        if !behind.is_empty() {
+            text.push_str(&value[from..at]);
+            text.push_str(behind);
+            from = at;
         }
     }
-    text
-}
-
-/// Key, with its quotation marks, and value of an entry of an object.
-fn entry(item: &str) -> Option<(&str, &str)> {
-    let colon = structure(item).find(|&(_, character)| character == ':')?.0;
-    Some((&item[..colon], &item[colon + 1..]))
-}
-
-/// The parts of a compact list, split at the commas outside of strings and brackets.
-fn split(list: &str) -> Vec<&str> {
-    let mut parts = Vec::new();
-    let (mut depth, mut start) = (0_usize, 0);
-    for (at, character) in structure(list) {
-        match character {
-            '{' | '[' => depth += 1,
-            '}' | ']' => depth = depth.saturating_sub(1),
-            ',' if depth == 0 => {
-                parts.push(&list[start..at]);
-                start = at + 1;
-            }
-            _ => {}
-        }
-    }
-    parts.push(&list[start..]);
-    parts
-}
-
-/// Characters outside of strings, with their places.
-fn structure(text: &str) -> impl Iterator<Item = (usize, char)> {
-    characters(text)
-        .filter(|&(_, character, quoted)| !quoted && character != '"')
-        .map(|(at, character, _)| (at, character))
-}
-
-/// Characters with their places, and whether a string holds them or ends with them.
-fn characters(text: &str) -> impl Iterator<Item = (usize, char, bool)> {
-    let (mut quoted, mut escaped) = (false, false);
-    text.char_indices().map(move |(at, character)| {
-        let inside = quoted;
-        match character {
-            _ if escaped => escaped = false,
-            '\\' if quoted => escaped = true,
-            '"' => quoted = !quoted,
-            _ => {}
-        }
-        (at, character, inside)
-    })
+    text.push_str(&value[from..]);
 }
