@@ -2,6 +2,7 @@
 
 use crate::common::cases::{Case, control, direction, hold, joints, partly, rest_to_rest};
 use crate::common::systems::branched;
+use crate::common::tracked::energies;
 use crate::common::trunk;
 use proboscis::control::problem::{BoundaryState, Control, Objective, Rest};
 use proboscis::control::{BoundaryConditions, BoundaryError, Transcription, guess};
@@ -77,6 +78,14 @@ fn pairs() -> Vec<(Case, Control)> {
             reached(7.0, 9.0),
         ),
     ];
+    let charged = |control: &Control| Control {
+        objective: Objective {
+            energies: energies(&[(1, 1.0)], &[(2, 0.5)]),
+            ..Objective::default()
+        },
+        ..control.clone()
+    };
+    all.push((case("energies", trunk(3), charged(&plain)), charged(&moved)));
     let system = branched();
     let towards = Control {
         goal: partly(&[], &[(1, direction())]),

@@ -27,7 +27,8 @@ pub(super) struct EnergyRow {
     pub(super) measure: usize,
     /// Vectors that it reads.
     pub(super) vectors: Vec<usize>,
-    /// Scalar of the voltage.
+    /// Its number, and the scalar of its voltage.
+    source: usize,
     pub(super) scalar: usize,
     /// Slot of the second derivative by the voltage.
     pub(super) square: usize,
@@ -83,20 +84,25 @@ pub(super) fn energy_rows(
             measure,
             mixed: mixed(model, &vectors, scalar, layout),
             vectors,
+            source,
             scalar,
             square: layout
                 .scalars
                 .find(scalar, scalar)
                 .expect("a voltage has a curvature of its own"),
             weights: [SourceEnergy::Electrical, SourceEnergy::Mechanical].map(weight),
-            ends: rest
-                .each_ref()
-                .map(|row| row.as_ref().map_or(0.0, |row| row[source])),
+            ends: ends(rest, source),
             intervals,
         })
     };
     let measured = &model.measured[first..];
     sources.iter().zip(measured).filter_map(row).collect()
+}
+
+/// Voltages of a source before the start and after the end; 0 where they are not known.
+fn ends(rest: &[Option<Vec<f64>>; 2], source: usize) -> [f64; 2] {
+    let voltages = rest.each_ref().map(Option::as_ref);
+    voltages.map(|row| row.map_or(0.0, |row| row[source]))
 }
 
 /// The coordinates that vectors depend on, with the slots of their couplings with a voltage: those of the energy of the muscle.
@@ -129,6 +135,11 @@ pub(super) fn energies_size(model: &Model, costs: &[EnergyCost], volts: f64) -> 
 }
 
 impl EnergyRow {
+    /// Takes other voltages at rest before and after.
+    pub(super) fn move_ends(&mut self, rest: &[Option<Vec<f64>>; 2]) {
+        self.ends = ends(rest, self.source);
+    }
+
     /// Whether voltages of neighbouring intervals meet: in the electrical energy.
     pub(super) fn couples_intervals(&self) -> bool {
         self.weights[0] != 0.0

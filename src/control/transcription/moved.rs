@@ -46,6 +46,9 @@ impl Transcription<'_> {
                 (kept, new) => *kept = new.map(Iterator::collect),
             }
         }
+        for energy in &mut self.energies {
+            energy.move_ends(rest);
+        }
         self.point.fill(f64::NAN);
         self.placed = Placed::Nothing;
         Ok(())
