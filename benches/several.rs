@@ -34,8 +34,8 @@ fn main() {
             throughput(&mut goals, 64);
             again();
         }
-        [count] => throughput(&mut goals, count.parse().expect("a number of goals")),
         ["--again"] => again(),
+        [count] => throughput(&mut goals, count.parse().expect("a number of goals")),
         ["--minutes", length] => compare(&mut goals, length.parse().expect("minutes")),
         _ => panic!("expected a number of goals, --again, or --minutes and their number"),
     }
@@ -65,7 +65,7 @@ struct Taken {
     thread: ThreadId,
 }
 
-fn timed(changes: &Vec<String>) -> Taken {
+fn timed(changes: &[String]) -> Taken {
     let (began, [busy, waited]) = (Instant::now(), schedule());
     let solved = solved(&trunk(), changes);
     let [busy_now, waited_now] = schedule();
@@ -94,7 +94,7 @@ fn throughput(goals: &mut Goals, count: usize) {
         let mut answers = [Vec::new(), Vec::new()];
         for (i, threads) in [1, 2].into_iter().enumerate() {
             let began = Instant::now();
-            let taken = at_once(&goals, threads, timed, |_, _| {});
+            let taken = at_once(&goals, threads, |changes| timed(changes), |_, _| {});
             wall[i] += began.elapsed().as_secs_f64();
             let taken: Vec<Taken> = taken
                 .into_iter()
@@ -188,7 +188,7 @@ fn follow(intervals: usize, step: f64) -> [f64; 4] {
         let goal = BoundaryState::RestAtVoltages(voltages, *of);
         let control = Control {
             goal,
-            ..control.clone()
+            ..(*control).clone()
         };
         BoundaryConditions::resolve(&system, &control, h).expect("an equilibrium")
     };

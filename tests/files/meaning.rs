@@ -182,3 +182,40 @@ fn mistakes_of_a_chain_point_at_the_chain() {
         read_scene(&folder.path().join("scene.json")).expect_err("a mistake")
     });
 }
+
+#[test]
+fn a_list_stands_on_one_line_where_it_fits() {
+    let problems = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/scenes");
+    let (mut broken, mut whole) = (0, 0);
+    for entry in fs::read_dir(problems).expect("a folder") {
+        let path = entry.expect("a file").path();
+        if path.extension().is_none_or(|end| end != "json") {
+            continue;
+        }
+        let text = expand(&path).expect("an expansion");
+        let lines: Vec<&str> = text.lines().collect();
+        let indent = |line: &str| line.len() - line.trim_start().len();
+        whole += lines
+            .iter()
+            .filter(|line| line.contains("[ ") || line.contains("{ "))
+            .count();
+        for (i, line) in lines.iter().enumerate().skip(1) {
+            let Some(open) = line.chars().last().filter(|c| "[{".contains(*c)) else {
+                continue;
+            };
+            let rest = lines[i + 1..].iter();
+            let items: Vec<&str> = rest
+                .take_while(|inner| indent(inner) > indent(line))
+                .map(|inner| inner.trim())
+                .collect();
+            let close = lines[i + 1 + items.len()].trim().trim_end_matches(',');
+            let space = if open == '{' { " " } else { "" };
+            let joined = format!("{line}{space}{}{space}{close}", items.join(" "));
+            assert!(joined.chars().count() > 110, "{joined}");
+            broken += 1;
+        }
+        let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        assert!(value["bodies"].is_array() || value["solids"].is_array());
+    }
+    assert!(broken > 20 && whole > 20, "{broken} {whole}");
+}
