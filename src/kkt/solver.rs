@@ -4,8 +4,8 @@
 //!   the matrix is equilibrated and factored again, and these scales are kept for a while. Expensive ones are equilibrated always.
 //! * After each factorisation a system is solved and its backward error looked at. Where that is great, signs of eigenvalues may be
 //!   wrong, and the matrix is factored again under a stricter rule.
-//! * Where many states follow from few inputs the system is condensed; one that has a diagonal in its equations, or grows along the horizon, is
-//!   factored as it is.
+//! * Where equations determine unknowns cheaply the system is condensed; one whose equations depend on each other or have a diagonal that they do
+//!   not bear, or that grows along the horizon, is factored as it is.
 //! * Zero pivots are counted in an equilibrated matrix under the strictest rule.
 
 use super::condensed::Condensed;
@@ -71,7 +71,7 @@ impl Care {
 
 /// Why a factorisation is repeated.
 enum Doubt {
-    /// Equations with a diagonal, which are not condensed.
+    /// What is not condensed: equations with a diagonal, dependent ones, growth along the horizon.
     Structure,
     /// Many delays or a great backward error.
     Growth,
@@ -220,7 +220,7 @@ impl Solver {
         Ok(outcome)
     }
 
-    /// The matrix condensed, if its equations hold no more than states and inputs.
+    /// The matrix condensed, if its equations allow it.
     fn condensed(&mut self) -> Option<Outcome> {
         let outcome = self.condensed.as_mut()?.factor(&self.entries)?;
         self.statistics.condensed += 1;
