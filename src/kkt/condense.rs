@@ -13,10 +13,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use super::fronts::Fronts;
 use super::graph::Graph;
 use super::groups::{self, Group};
 use super::order::Unknown;
-use super::plan::Plan;
 
 /// Multiplications by condensing must be fewer than this part of those along the horizon.
 const WORTH: f64 = 0.5;
@@ -95,7 +95,7 @@ pub(super) struct Condensation {
     pub(super) exclusive: Vec<u32>,
     /// The reduced system. Its entries are, block by block, one for each pair of `reach` and `weighted`, then M; where equations have a
     /// diagonal, also one for each pair of `weighted` of their blocks.
-    pub(super) plans: Vec<Plan>,
+    pub(super) plans: Vec<Fronts>,
     /// Its entries from pairs that stand on the diagonal, which count twice.
     pub(super) twice: Vec<u32>,
 }
@@ -332,7 +332,7 @@ impl Condensation {
             false => vec![plain],
         };
         let plan =
-            |length| Plan::of_fronts(kinds.len(), &rows[..length], &cols[..length], Some(kinds)).1;
+            |length| Fronts::new(kinds.len(), &rows[..length], &cols[..length], Some(kinds)).1;
         self.plans = lengths.into_iter().map(plan).collect();
     }
 }

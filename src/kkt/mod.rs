@@ -13,7 +13,7 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `graph`, `order`, `tree`, `plan` | once for a pattern: order of elimination, fronts, where each entry goes |
+//! | `graph`, `order`, `tree`, `fronts`, `plan` | once for a pattern: order of elimination, fronts, where each entry goes |
 //! | `pivot`, `dense`, `update`, `eliminate` | one dense front |
 //! | `numeric`, `solve`, `scales` | factors, solutions, equilibration |
 //! | `groups`, `condense`, `condensed`, `products`, `block_lu`, `substitute` | unknowns that equations determine, eliminated before all others |
@@ -26,6 +26,7 @@ mod condense;
 mod condensed;
 mod dense;
 mod eliminate;
+mod fronts;
 mod graph;
 mod groups;
 mod inertia;

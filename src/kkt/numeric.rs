@@ -4,10 +4,10 @@ use pulp::Arch;
 
 use super::dense::Dense;
 use super::eliminate::{Count, Eliminate, Workspace};
+use super::fronts::{Front, Fronts};
 use super::inertia::Inertia;
 use super::lanes::padded;
 use super::pivot::Rules;
-use super::plan::{Front, Plan};
 
 /// Rows of a leaf of one column that is eliminated without a front.
 const SHORT: usize = 32;
@@ -70,7 +70,7 @@ impl Factors {
     /// Factors the matrix with these entries. `None` if more columns than `most_delays` are delayed; there are no factors then.
     pub(super) fn factor(
         &mut self,
-        plan: &Plan,
+        plan: &Fronts,
         entries: &[f64],
         rules: Rules,
         most_delays: usize,
@@ -83,7 +83,7 @@ impl Factors {
         self.largest = 0;
         let mut outcome = Outcome::default();
         let arch = Arch::new();
-        for front in &plan.fronts {
+        for front in &plan.list {
             let is_leaf = front.children.is_empty() && front.columns == 1;
             let is_short = front.unknowns.len() <= SHORT && !front.is_root;
             let count = match is_leaf && is_short {
@@ -104,7 +104,13 @@ impl Factors {
     }
 
     /// A front of one column and no children, without making it; `None` if its diagonal is no pivot.
-    fn leaf(&mut self, plan: &Plan, front: &Front, entries: &[f64], rules: Rules) -> Option<Count> {
+    fn leaf(
+        &mut self,
+        plan: &Fronts,
+        front: &Front,
+        entries: &[f64],
+        rules: Rules,
+    ) -> Option<Count> {
         let rows = front.unknowns.len();
         let mut column = [0.0; SHORT];
         for entry in &plan.entries[front.entries.clone()] {
@@ -149,7 +155,7 @@ impl Factors {
     fn front(
         &mut self,
         arch: Arch,
-        plan: &Plan,
+        plan: &Fronts,
         front: &Front,
         entries: &[f64],
         rules: Rules,
@@ -204,7 +210,7 @@ impl Factors {
     /// Sums the entries that begin in a front and the remainders of its children; columns delayed to it come first.
     fn assemble(
         &mut self,
-        plan: &Plan,
+        plan: &Fronts,
         front: &Front,
         entries: &[f64],
         delayed: usize,
@@ -234,7 +240,7 @@ impl Factors {
                 .extend((first..first + block.delayed).map(|place| place as u32));
             self.unknowns
                 .extend_from_within(names..names + block.delayed);
-            let below = &plan.places[plan.fronts[child as usize].places.clone()];
+            let below = &plan.places[plan.list[child as usize].places.clone()];
             self.places
                 .extend(below.iter().map(|place| place + delayed as u32));
             let remainder = &self.stack[block.remainder..][..block.left() * block.left()];

@@ -1,52 +1,14 @@
-//! The symbolic part of a factorisation: fronts, and where each entry of the matrix goes.
-
-use std::ops::Range;
+//! What is done once for all matrices of one pattern.
 
 use super::condense::Condensation;
-use super::graph::Graph;
-use super::order::{self, Unknown};
-use super::tree::{self, Node};
-
-/// One front, without the rows that are delayed to it.
-#[derive(Clone, Debug)]
-pub(super) struct Front {
-    /// Its unknowns among all: those eliminated here, then those that they reach.
-    pub(super) unknowns: Range<usize>,
-    /// How many are eliminated here.
-    pub(super) columns: usize,
-    /// Fronts that this one sums, a range of all children.
-    pub(super) children: Range<usize>,
-    /// Entries of the matrix that begin here.
-    pub(super) entries: Range<usize>,
-    /// Places of the rows below in the front of the parent, a range of all places.
-    pub(super) places: Range<usize>,
-    /// Whether no front sums this one.
-    pub(super) is_root: bool,
-}
-
-/// An entry of the matrix in a front.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Entry {
-    /// Its number among the entries.
-    pub(super) entry: u32,
-    /// Its row in the front.
-    pub(super) row: u32,
-    /// Its column in the front, not after the row.
-    pub(super) column: u32,
-}
+use super::fronts::Fronts;
+use super::order::Unknown;
 
 /// Order of elimination, fronts and maps for all matrices of one pattern.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    order: usize,
-    rows: Vec<u32>,
-    cols: Vec<u32>,
-    pub(super) fronts: Vec<Front>,
-    pub(super) unknowns: Vec<u32>,
-    pub(super) children: Vec<u32>,
-    pub(super) entries: Vec<Entry>,
-    pub(super) places: Vec<u32>,
-    /// States that are condensed, where that is worth it.
+    pub(super) fronts: Fronts,
+    /// What is eliminated before all else, where that is worth it.
     pub(super) condensation: Option<Condensation>,
 }
 
@@ -68,130 +30,32 @@ impl Plan {
             is_inside(rows) && is_inside(cols),
             "a matrix of order {order}"
         );
-        let (graph, mut plan) = Self::of_fronts(order, rows, cols, unknowns);
-        plan.condensation = unknowns.and_then(|unknowns| {
-            Condensation::new(&graph, unknowns, (rows, cols), plan.multiplications())
+        let (graph, fronts) = Fronts::new(order, rows, cols, unknowns);
+        let multiplications = fronts.multiplications();
+        let condensation = unknowns.and_then(|unknowns| {
+            Condensation::new(&graph, unknowns, (rows, cols), multiplications)
         });
-        plan
-    }
-
-    /// A plan that condenses nothing, with the graph of its pattern.
-    pub(super) fn of_fronts(
-        order: usize,
-        rows: &[u32],
-        cols: &[u32],
-        unknowns: Option<&[Unknown]>,
-    ) -> (Graph, Self) {
-        let graph = Graph::new(order, rows, cols);
-        let elimination = order::of(&graph, unknowns);
-        let nodes = tree::nodes(&graph, &elimination);
-        let mut plan = Self {
-            order,
-            rows: rows.to_vec(),
-            cols: cols.to_vec(),
-            fronts: Vec::with_capacity(nodes.len()),
-            unknowns: Vec::new(),
-            children: Vec::new(),
-            entries: Vec::with_capacity(rows.len()),
-            places: Vec::new(),
-            condensation: None,
-        };
-        plan.lay_out(&nodes);
-        (graph, plan)
+        Self {
+            fronts,
+            condensation,
+        }
     }
 
     /// Number of unknowns.
     #[must_use]
     pub const fn order(&self) -> usize {
-        self.order
+        self.fronts.order()
     }
 
     /// Rows and columns of the entries.
     #[must_use]
     pub fn pattern(&self) -> (&[u32], &[u32]) {
-        (&self.rows, &self.cols)
+        self.fronts.pattern()
     }
 
     /// Multiplications of a factorisation along the horizon without delays.
     #[must_use]
     pub fn multiplications(&self) -> f64 {
-        let of_front = |front: &Front| {
-            let (k, m) = (front.columns as f64, front.unknowns.len() as f64);
-            k * (m * (m - k) + k * k / 3.0) / 2.0
-        };
-        self.fronts.iter().map(of_front).sum()
-    }
-
-    fn lay_out(&mut self, nodes: &[Node]) {
-        // Front that eliminates each unknown, and the place there.
-        let mut home = vec![(0, 0); self.order];
-        for (k, node) in nodes.iter().enumerate() {
-            for (place, &unknown) in node.unknowns[..node.columns].iter().enumerate() {
-                home[unknown as usize] = (k as u32, place as u32);
-            }
-        }
-        let begins = self.sort_entries(&home, nodes.len());
-        let mut local = vec![0; self.order];
-        for (k, node) in nodes.iter().enumerate() {
-            for (place, &unknown) in node.unknowns.iter().enumerate() {
-                local[unknown as usize] = place as u32;
-            }
-            let entries = begins[k]..begins[k + 1];
-            for entry in &mut self.entries[entries.clone()] {
-                let (row, col) = (entry.row as usize, entry.column as usize);
-                let (a, b) = (local[row], local[col]);
-                (entry.row, entry.column) = (a.max(b), a.min(b));
-            }
-            let children = self.children.len();
-            self.children.extend(&node.children);
-            for &child in &node.children {
-                let begin = self.places.len();
-                let below = self.fronts[child as usize].unknowns.clone();
-                let below = below.start + nodes[child as usize].columns..below.end;
-                let of_parent = self.unknowns[below].iter().map(|&i| local[i as usize]);
-                self.places.extend(of_parent);
-                self.fronts[child as usize].places = begin..self.places.len();
-                self.fronts[child as usize].is_root = false;
-            }
-            let begin = self.unknowns.len();
-            self.unknowns.extend(&node.unknowns);
-            self.fronts.push(Front {
-                unknowns: begin..self.unknowns.len(),
-                columns: node.columns,
-                children: children..self.children.len(),
-                entries,
-                places: 0..0,
-                is_root: true,
-            });
-        }
-    }
-
-    /// Sorts the entries by front and returns where those of each begin; their places are still those in the matrix.
-    fn sort_entries(&mut self, home: &[(u32, u32)], fronts: usize) -> Vec<usize> {
-        let front_of = |row: u32, col: u32| home[row as usize].min(home[col as usize]).0 as usize;
-        let mut begins = vec![0; fronts + 1];
-        for (&row, &col) in self.rows.iter().zip(&self.cols) {
-            begins[front_of(row, col) + 1] += 1;
-        }
-        for k in 0..fronts {
-            begins[k + 1] += begins[k];
-        }
-        let mut next = begins.clone();
-        let nothing = Entry {
-            entry: 0,
-            row: 0,
-            column: 0,
-        };
-        self.entries.resize(self.rows.len(), nothing);
-        for (entry, (&row, &column)) in self.rows.iter().zip(&self.cols).enumerate() {
-            let place = &mut next[front_of(row, column)];
-            self.entries[*place] = Entry {
-                entry: entry as u32,
-                row,
-                column,
-            };
-            *place += 1;
-        }
-        begins
+        self.fronts.multiplications()
     }
 }

@@ -163,7 +163,7 @@ impl Solver {
     pub fn factor(&mut self, entries: &[f64]) -> Inertia {
         assert_eq!(
             entries.len(),
-            self.plan.entries.len(),
+            self.plan.pattern().0.len(),
             "the entries of the pattern"
         );
         self.statistics.factorisations += 1;
@@ -231,7 +231,8 @@ impl Solver {
     fn plain(&mut self) -> Option<Outcome> {
         let few = self.plan.order() / MANY;
         let rules = rules(self.care);
-        self.factors.factor(&self.plan, &self.entries, rules, few)
+        self.factors
+            .factor(&self.plan.fronts, &self.entries, rules, few)
     }
 
     /// The matrix with its scales: those of an earlier one as long as they do.
@@ -256,7 +257,7 @@ impl Solver {
             .scale(self.plan.pattern(), &self.entries, &mut self.scaled);
         let rules = rules(self.care);
         self.factors
-            .factor(&self.plan, &self.scaled, rules, most_delays)
+            .factor(&self.plan.fronts, &self.scaled, rules, most_delays)
     }
 
     /// Replaces a right-hand side by the solution; by NaN if the matrix was not finite.
@@ -321,7 +322,7 @@ impl Solver {
 
 /// With which care a solver begins.
 fn begin(plan: &Plan) -> Care {
-    let cost = plan.multiplications() / plan.entries.len().max(1) as f64;
+    let cost = plan.multiplications() / plan.pattern().0.len().max(1) as f64;
     match cost > EXPENSIVE {
         _ if plan.condensation.is_some() => Care::Condensed,
         true => Care::Scaled,
