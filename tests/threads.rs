@@ -15,6 +15,7 @@ use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
 use proboscis::model::system::{Potential, System};
 use proboscis::nlp::Nlp;
+use proboscis::sparse::{Backend, Direct, Symmetry};
 use proboscis::workflow::at_once::{at_once, cores};
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -223,4 +224,40 @@ fn answers_are_found_at_once_each_on_its_share_of_the_cores() {
             .len(),
         4
     );
+}
+
+/// The solution with a large symmetric matrix, of a grid of 28 × 28 × 28 points with its neighbours.
+fn of_large_matrix() -> Vec<f64> {
+    const N: usize = 28;
+    let at = |i: usize, j: usize, k: usize| (i * N + j) * N + k;
+    let (mut entries, mut values) = (Vec::new(), Vec::new());
+    let mut add = |row: usize, col: usize, value: f64| {
+        entries.push((row.max(col), row.min(col)));
+        values.push(value);
+    };
+    for (i, j, k) in (0..N * N * N).map(|p| (p / (N * N), p / N % N, p % N)) {
+        let here = at(i, j, k);
+        add(here, here, 6.5 + (here as f64).sin());
+        for (i, j, k) in [(i + 1, j, k), (i, j + 1, k), (i, j, k + 1)] {
+            if i < N && j < N && k < N {
+                add(at(i, j, k), here, -1.0);
+            }
+        }
+    }
+    let faer = Some(Backend::Faer);
+    let mut solver = Direct::with(N * N * N, &entries, Symmetry::Symmetric, faer);
+    solver.factor(&values).unwrap();
+    assert_eq!(solver.method(), "faer LDLᵀ");
+    let mut x: Vec<f64> = (0..N * N * N).map(|i| (i as f64).cos()).collect();
+    solver.solve(&mut x);
+    x
+}
+
+#[test]
+fn the_order_of_a_large_matrix_and_its_solution_are_the_same_every_time() {
+    let first = of_large_matrix();
+    assert!(first.iter().any(|value| value.abs() > 0.1));
+    for _ in 0..4 {
+        assert_eq!(first, of_large_matrix());
+    }
 }

@@ -5,6 +5,7 @@ use std::fmt;
 use parking_lot::{ReentrantMutex, ReentrantMutexGuard};
 
 use crate::sparse::mumps::blas::use_one_blas_thread;
+use crate::sparse::mumps::scotch::use_one_ordering_thread;
 
 static LOCK: ReentrantMutex<()> = ReentrantMutex::new(());
 
@@ -26,5 +27,6 @@ impl fmt::Debug for Exclusive {
 pub(crate) fn exclusive() -> Exclusive {
     let guard = LOCK.lock();
     use_one_blas_thread();
+    use_one_ordering_thread();
     Exclusive { _guard: guard }
 }

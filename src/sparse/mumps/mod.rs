@@ -6,6 +6,7 @@
 mod blas;
 mod ffi;
 mod lock;
+mod scotch;
 
 use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Singular, Symmetry};
