@@ -1,20 +1,11 @@
-"""The optimal control problem of the elephant trunk, written for CasADi, beside proboscis.
+"""The elephant trunk written for CasADi, beside proboscis: what one interval adds to the equations of motion.
 
-Reads the scene as `proboscis expand` prints it and the problem file, and writes the same nonlinear program: midpoint rule on
-the vectors x = F(theta) of bodies and spans, DMOCC in joint angles, the same objective, boundary conditions, bounds and guess.
-It is solved by the Ipopt with MUMPS that CasADi brings, with exact derivatives. Nothing but the two files is shared with
-proboscis: forward kinematics, energies and rows are written out here, and the objectives have to agree.
-
-Variants: `sx` writes the whole program as one expression of scalars and leaves the derivatives to CasADi; `map` differentiates
-one interval, maps that over all of them and puts the blocks into Jacobian and Hessian; `map_jit` compiles the interval.
-
-    python casadi_trunk.py scene.json problem.json --intervals 40 --variant map
+Reads the scene as `proboscis expand` prints it. Midpoint rule on the vectors x = F(theta) of bodies and spans, DMOCC in joint
+angles. Nothing but the files is shared with proboscis: forward kinematics, energies and rows are written out here.
 """
 
-import argparse
-import json
-import sys
-import time
+import subprocess
+from pathlib import Path
 
 import casadi as ca
 import numpy as np
@@ -25,11 +16,7 @@ UNITS = {
     "Pa": 1e-6, "kPa": 1e-3, "MPa": 1.0, "V": 1.0, "kV": 1e3, "Pa s": 1e-3, "kg/m^3": 1e-6, "g/cm^3": 1e-3,
 }
 VACUUM_PERMITTIVITY = 8.854187817e-12
-# Volts by which the guess lies above the voltages at rest.
-LIFT = 100.0
 KILOVOLT = 1e3
-SECOND = 1e3
-VARIANTS = ("sx", "map", "map_jit")
 
 
 def quantity(value):
@@ -181,217 +168,33 @@ def rest(trunk, state):
     return np.array([quantity(given.get(muscle["name"], 0.0)) for muscle in trunk.muscles])
 
 
-def placed(blocks, rows, cols, shape, upper=False):
-    """Sparsity of a matrix made of equal blocks, and the matrix that takes the blocks' nonzeros to its own.
-
-    `rows` and `cols` hold one list of indices a block, negative where a row or column is given and dropped.
-    """
-    of_rows, of_cols = (np.array(x) for x in blocks.get_triplet())
-    at = [(r[of_rows], c[of_cols]) for r, c in zip(rows, cols)]
-    r, c = (np.concatenate(x) for x in zip(*at))
-    kept = (r >= 0) & (c >= 0)
-    if upper:
-        kept &= r <= c
-    places, which = np.unique(c[kept] * shape[0] + r[kept], return_inverse=True)
-    pattern = ca.Sparsity.triplet(*shape, (places % shape[0]).tolist(), (places // shape[0]).tolist())
-    source = np.flatnonzero(kept)
-    sums = ca.Sparsity.triplet(len(places), len(r), which.tolist(), source.tolist())
-    return pattern, ca.DM(sums, 1.0)
+INTERVAL = ("rows", "rows_jacobian", "rows_hessian")
 
 
-class Program:
-    """Variables instant by instant, voltages in kV between the angles; rows of all instants."""
-
-    def __init__(self, trunk, control, intervals):
-        for key in ("limits",):
-            refuse(key in control, f"control.{key}")
-        refuse(control["objective"].keys() != {"effort"}, "an objective other than effort")
-        refuse(control.get("guess", "interpolate") != "interpolate", "another guess")
-        self.n, self.m, self.intervals = len(trunk.joints), len(trunk.muscles), intervals
-        self.h = quantity(control["duration"]) / intervals
-        self.weight = control["objective"]["effort"] * self.h / SECOND
-        hold = rest(trunk, control["goal"])
-        self.start = trunk.equilibrium(rest(trunk, control["start"]))
-        self.goal = trunk.equilibrium(hold)
-        n, m = self.n, self.m
-        held = (hold + LIFT) / KILOVOLT
-        guess, low, high = [held], [], []
-        for k in range(1, intervals):
-            s = k / intervals
-            guess += [self.start + s * s * (3 - 2 * s) * (self.goal - self.start), held]
-        self.guess = np.concatenate(guess)
-        bounds = [quantity(value) / KILOVOLT for value in control["voltage_bounds"]]
-        free, volts = np.full(n, np.inf), np.ones(m)
-        self.low = np.concatenate([bounds[0] * volts] + (intervals - 1) * [-free, bounds[0] * volts])
-        self.high = np.concatenate([bounds[1] * volts] + (intervals - 1) * [free, bounds[1] * volts])
-
-    def angles(self, k):
-        """Indices of the variables of instant k; −1 where they are given."""
-        if k in (0, self.intervals):
-            return np.full(self.n, -1)
-        return self.m + (k - 1) * (self.n + self.m) + np.arange(self.n)
-
-    def volts(self, k):
-        return k * (self.n + self.m) + np.arange(self.m)
-
-    def parts(self, x):
-        """Angles of both ends and voltages of every interval as columns."""
-        n, m, count = self.n, self.m, self.intervals
-        inner = ca.reshape(x[m:], n + m, count - 1)
-        ends = ca.horzcat(self.start, inner[:n, :], self.goal)
-        return ends[:, :-1], ends[:, 1:], ca.horzcat(x[:m], inner[n:, :])
-
-    def objective(self, x):
-        volts = ca.vec(self.parts(x)[2])
-        return self.weight * ca.dot(volts, volts)
-
-    def rows(self, early, late):
-        zero = ca.DM.zeros(self.n, 1)
-        return ca.vec(ca.horzcat(early, zero) + ca.horzcat(zero, late))
-
-
-def interval_functions(trunk, options):
-    """Rows of an interval, their Jacobian, and the Hessian along costates, of both ends and voltages in kV."""
+def interval_functions(trunk):
+    """Rows of an interval, their Jacobian, and Hessian and gradient along costates, of both ends and voltages in kV."""
     n, m = len(trunk.joints), len(trunk.muscles)
     a, b, v, h = ca.SX.sym("a", n), ca.SX.sym("b", n), ca.SX.sym("v", m), ca.SX.sym("h")
     la, lb = ca.SX.sym("la", n), ca.SX.sym("lb", n)
     early, late = ca.cse(list(trunk.interval()(a, b, v * KILOVOLT, h)))
     z, rows = ca.vertcat(a, b, v), ca.vertcat(early, late)
-    hessian, _ = ca.hessian(ca.dot(ca.vertcat(la, lb), rows), z)
-    jacobian, hessian = ca.cse([ca.jacobian(rows, z), hessian])
+    hessian, gradient = ca.hessian(ca.dot(ca.vertcat(la, lb), rows), z)
+    jacobian, hessian, gradient = ca.cse([ca.jacobian(rows, z), hessian, ca.densify(gradient)])
     given = [a, b, v, h]
-    return (
-        ca.Function("rows", given, [early, late], options),
-        ca.Function("rows_jacobian", given, [early, late, jacobian], options),
-        ca.Function("rows_hessian", given + [la, lb], [hessian], options),
-    )
+    outputs = [early, late], [early, late, jacobian], [hessian, gradient]
+    inputs = given, given, given + [la, lb]
+    return tuple(ca.Function(*each) for each in zip(INTERVAL, inputs, outputs))
 
 
-def by_blocks(program, functions, scale):
-    """Objective, rows and their derivatives, each from the map of one interval's."""
-    count, n, m = program.intervals, program.n, program.m
-    size, row_count = len(program.guess), n * (count + 1)
-    rows, jacobian, hessian = functions
-    x, s = ca.MX.sym("x", size), ca.DM(scale)
-    parts = program.parts(x)
-    early, late = rows.map(count)(*parts, program.h)
-    f, g = program.objective(x), program.rows(early, late) * s
-    of_rows = [np.arange(k * n, (k + 2) * n) for k in range(count)]
-    of_z = [np.concatenate([program.angles(k), program.angles(k + 1), program.volts(k)]) for k in range(count)]
-
-    early, late, blocks = jacobian.map(count)(*parts, program.h)
-    pattern, sums = placed(jacobian.sparsity_out(2), of_rows, of_z, (row_count, size))
-    values = ca.mtimes(sums, blocks.nz[:]) * ca.DM(scale[np.array(pattern.row())])
-    p = ca.MX.sym("p", 0)
-    again = program.rows(early, late) * s
-    jac_g = ca.Function("nlp_jac_g", [x, p], [again, ca.MX(pattern, values)], ["x", "p"], ["g", "jac_g_x"])
-
-    sigma, costates = ca.MX.sym("sigma"), ca.MX.sym("costates", row_count)
-    along = ca.reshape(costates * s, n, count + 1)
-    blocks = hessian.map(count)(*parts, program.h, along[:, :-1], along[:, 1:])
-    pattern, sums = placed(hessian.sparsity_out(0), of_z, of_z, (size, size), upper=True)
-    values = ca.mtimes(sums, blocks.nz[:])
-    is_voltage = np.zeros(size)
-    is_voltage[np.concatenate([program.volts(k) for k in range(count)])] = 2 * program.weight
-    of_voltages = ca.diag(ca.DM(is_voltage))
-    matrix = ca.MX(pattern, values) + sigma * ca.sparsify(of_voltages)
-    hess = ca.Function(
-        "nlp_hess_l", [x, p, sigma, costates], [matrix], ["x", "p", "lam_f", "lam_g"], ["hess_gamma_x_x"]
-    )
-    return {"x": x, "f": f, "g": g}, {"jac_g": jac_g, "hess_lag": hess}
+def compile_interval(trunk, library):
+    """Hands the functions of one interval to the C compiler; they hold for any number of intervals."""
+    library = Path(library)
+    generator = ca.CodeGenerator(library.stem + ".c")
+    for function in interval_functions(trunk):
+        generator.add(function)
+    generator.generate(f"{library.parent}/")
+    subprocess.run(["gcc", "-O1", "-fPIC", "-shared", library.with_suffix(".c"), "-o", library], check=True)
 
 
-def as_one(program, rows, scale):
-    """Objective and rows as expressions of scalars."""
-    x = ca.SX.sym("x", len(program.guess))
-    parts = zip(*(ca.horzsplit(part) for part in program.parts(x)))
-    early, late = zip(*(rows(a, b, v, program.h) for a, b, v in parts))
-    g = program.rows(ca.horzcat(*early), ca.horzcat(*late))
-    return {"x": x, "f": program.objective(x), "g": g * scale}, {}
-
-
-def row_scales(program, jacobian):
-    """One over the largest derivative at the guess by joint, as proboscis scales its rows."""
-    count, n = program.intervals, program.n
-    x = ca.DM(program.guess)
-    largest = np.zeros(n)
-    for k, (a, b, v) in enumerate(zip(*(ca.horzsplit(part) for part in program.parts(x)))):
-        block = np.abs(np.array(jacobian(a, b, v, program.h)[2]))
-        for end, columns in ((k, slice(0, n)), (k + 1, slice(n, 2 * n))):
-            if end in (0, count):
-                block[:, columns] = 0
-        largest = np.maximum(largest, np.maximum(block[:n], block[n:]).max(axis=1))
-    return np.tile(1 / largest, count + 1)
-
-
-def build(trunk, control, intervals, variant, tolerance):
-    """The solver and its arguments."""
-    program = Program(trunk, control, intervals)
-    jit = {"jit": True, "compiler": "shell", "jit_options": {"flags": ["-O1"], "compiler": "gcc"}}
-    functions = interval_functions(trunk, jit if variant == "map_jit" else {})
-    scale = row_scales(program, functions[1])
-    if variant == "sx":
-        expressions, derivatives = as_one(program, functions[0], scale)
-    else:
-        expressions, derivatives = by_blocks(program, functions, scale)
-    options = derivatives | {
-        "print_time": False,
-        "ipopt": {
-            "print_level": 0,
-            "sb": "yes",
-            "linear_solver": "mumps",
-            "tol": tolerance,
-            "max_iter": control["solver"]["max_iterations"],
-            "nlp_scaling_method": "none",
-            # Without it the two report objectives on either side of the relaxed bounds.
-            "bound_relax_factor": 0.0,
-            "mumps_pivot_order": 0,
-        },
-    }
-    solver = ca.nlpsol("solver", "ipopt", expressions, options)
-    arguments = {"x0": program.guess, "lbx": program.low, "ubx": program.high, "lbg": 0, "ubg": 0}
-    return solver, arguments
-
-
-CALLBACKS = {"objective": "f", "gradient": "grad_f", "constraints": "g", "jacobian": "jac_g", "hessian": "hess_l"}
-
-
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("scene")
-    parser.add_argument("problem")
-    parser.add_argument("--intervals", type=int, required=True)
-    parser.add_argument("--variant", choices=VARIANTS, default="map")
-    parser.add_argument("--tolerance", type=float, default=1e-8)
-    arguments = parser.parse_args()
-    began = time.perf_counter()
-    with open(arguments.scene) as scene, open(arguments.problem) as problem:
-        trunk, control = Trunk(json.load(scene)), json.load(problem)["control"]
-    solver, given = build(trunk, control, arguments.intervals, arguments.variant, arguments.tolerance)
-    ready = time.perf_counter()
-    solution = solver(**given)
-    done = time.perf_counter()
-    stats = solver.stats()
-    called = lambda key: stats.get(f"n_call_nlp_{key}", 0)
-    spent = lambda key: stats.get(f"t_wall_nlp_{key}", 0.0)
-    json.dump(
-        {
-            "objective": float(solution["f"]),
-            "status": stats["return_status"],
-            "iterations": stats["iter_count"],
-            "setup": ready - began,
-            "solve": done - ready,
-            "calls": {name: called(key) for name, key in CALLBACKS.items()},
-            "microseconds": {
-                name: 1e6 * spent(key) / called(key) for name, key in CALLBACKS.items() if called(key)
-            },
-            "violation": float(np.abs(np.array(solution["g"])).max()),
-            "version": ca.__version__,
-        },
-        sys.stdout,
-    )
-    return 0 if stats["success"] else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+def compiled_interval(library):
+    return tuple(ca.external(name, str(library)) for name in INTERVAL)
