@@ -1,8 +1,10 @@
-//! The number of threads of SCOTCH.
+//! SCOTCH, which MUMPS asks for an order of elimination, so that it gives the same one every time.
 
-#![expect(unsafe_code, reason = "environment of SCOTCH, a C library")]
+#![expect(unsafe_code, reason = "C interface and environment of SCOTCH")]
 
 use std::env;
+use std::ffi::c_void;
+use std::mem;
 use std::sync::Once;
 
 /// What SCOTCH asks the environment for.
@@ -21,4 +23,16 @@ pub(super) fn use_one_ordering_thread() {
             unsafe { env::set_var(THREADS, "1") };
         }
     });
+}
+
+/// Lets the random numbers of SCOTCH, if it is loaded, begin anew: an order does not depend on those before it.
+pub(super) fn restart_random_numbers() {
+    // SAFETY: the name ends in NUL; `dlsym` looks it up among the libraries already loaded and returns null if there is none.
+    let symbol = unsafe { libc::dlsym(libc::RTLD_DEFAULT, c"SCOTCH_randomReset".as_ptr()) };
+    if !symbol.is_null() {
+        // SAFETY: SCOTCH declares `void SCOTCH_randomReset(void)`, and the lock keeps other calls of this crate out.
+        let reset = unsafe { mem::transmute::<*mut c_void, unsafe extern "C" fn()>(symbol) };
+        // SAFETY: as above.
+        unsafe { reset() };
+    }
 }
