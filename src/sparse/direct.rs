@@ -266,7 +266,8 @@ impl Direct {
             if !self.largest.iter().flatten().any(far) {
                 break;
             }
-            self.scale([|peak| peak.sqrt().recip(); 2]);
+            // Powers of two round nothing.
+            self.scale([|peak| (0.5 * peak.log2()).round().exp2().recip(); 2]);
         }
     }
 
