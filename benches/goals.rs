@@ -10,6 +10,7 @@ use proboscis::report::axes::{Axis, Extent};
 use proboscis::report::lines::{LinePlot, Series};
 use proboscis::report::origin::Origin;
 use proboscis::report::style;
+use proboscis::workflow::at_once::{at_once, cores};
 use random_goals::{Goal, Goals, Kind, trunk};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -17,9 +18,6 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 
 /// Seed of the goals.
 const SEED: u64 = 1;
@@ -131,25 +129,11 @@ fn main() {
 
 /// Answers about each item, on all cores, in their order.
 fn in_parallel<T: Sync, A: Send>(items: &[T], answer: impl Fn(&T) -> A + Sync) -> Vec<A> {
-    let next = AtomicUsize::new(0);
-    let answers = Mutex::new(Vec::new());
-    let cores = thread::available_parallelism().map_or(1, usize::from);
-    thread::scope(|scope| {
-        for _ in 0..cores {
-            scope.spawn(|| {
-                while let Some(item) = {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    items.get(index).map(|item| (index, item))
-                } {
-                    let one = answer(item.1);
-                    answers.lock().expect("no panic").push((item.0, one));
-                }
-            });
-        }
-    });
-    let mut answers = answers.into_inner().expect("no panic");
-    answers.sort_by_key(|&(index, _)| index);
-    answers.into_iter().map(|(_, answer)| answer).collect()
+    let answers = at_once(items, cores(), answer, |_, _| ());
+    answers
+        .into_iter()
+        .map(|one| one.expect("no panic"))
+        .collect()
 }
 
 /// Solves the trunk problem for a goal in a process.

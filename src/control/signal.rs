@@ -121,6 +121,11 @@ impl Signal {
         [value, rate, 0.0]
     }
 
+    /// Whether it is written as one value for all the time.
+    pub fn is_constant(&self) -> bool {
+        matches!(self, Self::Constant(_))
+    }
+
     /// Whether it is zero all the time.
     pub fn is_zero(&self) -> bool {
         match self {

@@ -336,9 +336,8 @@ impl Control {
 
     /// The voltages that are given, by source.
     fn given(&self, system: &System) -> Result<BTreeMap<usize, Signal>> {
-        let is_constant = |signal: &Signal| matches!(signal, Signal::Constant(_));
         let holds = matches!(self.duration, Duration::Given(_))
-            || self.voltages.iter().all(|(_, signal)| is_constant(signal));
+            || self.voltages.iter().all(|(_, signal)| signal.is_constant());
         let found = || "voltages over time where the duration is free".to_owned();
         require(
             holds,

@@ -1,7 +1,7 @@
 //! What a motion shows.
 
-use crate::dynamics::EnergyExchange;
 use crate::dynamics::trajectory::Trajectory;
+use crate::dynamics::{EnergyExchange, SourceEnergies};
 use crate::interface::handle::Handle;
 use crate::interface::input::Input;
 use crate::kinematics::Pose;
@@ -62,16 +62,19 @@ impl Motion {
     /// the last instant of an optimum it includes the switch to the voltages that hold the goal, where they are known. Nothing of a muscle
     /// without voltage.
     pub fn electrical_energy(&self, muscle: Handle<Muscle>) -> &[f64] {
-        let sources = &self.exchange.sources;
-        let source = sources.iter().find(|one| one.source == muscle.index());
-        source.map_or(&[], |source| &source.electrical_energy)
+        self.exchanged(muscle)
+            .map_or(&[], |source| &source.electrical_energy)
     }
 
     /// Work in mJ of the electrical forces of a lumped muscle from the start to each instant. Nothing of a muscle without voltage.
     pub fn mechanical_work(&self, muscle: Handle<Muscle>) -> &[f64] {
-        let sources = &self.exchange.sources;
-        let source = sources.iter().find(|one| one.source == muscle.index());
-        source.map_or(&[], |source| &source.mechanical_work)
+        self.exchanged(muscle)
+            .map_or(&[], |source| &source.mechanical_work)
+    }
+
+    fn exchanged(&self, muscle: Handle<Muscle>) -> Option<&SourceEnergies> {
+        let mut sources = self.exchange.sources.iter();
+        sources.find(|one| one.source == muscle.index())
     }
 
     /// What is to be known of it: steps that do not resolve it, muscles outside the domain of their material.

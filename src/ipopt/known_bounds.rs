@@ -30,26 +30,14 @@ impl KnownBounds {
         self.right.clear();
         self.right.extend(rights);
         let known = &mut self.constraints;
-        let is_known = |known: &[f64], bounds: &[f64]| {
-            let told = bounds
-                .iter()
-                .zip(&self.right)
-                .map(|(bound, right)| bound - right);
-            known.len() == bounds.len() && known.iter().copied().eq(told)
-        };
         let are_known = self.variables == *variables
-            && is_known(&known.lower, lower)
-            && is_known(&known.upper, upper);
+            && known.lower.iter().copied().eq(told(lower, &self.right))
+            && known.upper.iter().copied().eq(told(upper, &self.right));
         if !are_known {
             self.variables.clone_from(variables);
             for (known, bounds) in [(&mut known.lower, lower), (&mut known.upper, upper)] {
                 known.clear();
-                known.extend(
-                    bounds
-                        .iter()
-                        .zip(&self.right)
-                        .map(|(bound, right)| bound - right),
-                );
+                known.extend(told(bounds, &self.right));
             }
         }
         !are_known
@@ -63,4 +51,9 @@ impl KnownBounds {
         };
         self.variables.lower.len() - equal(&self.variables) == equal(&self.constraints)
     }
+}
+
+/// Bounds less the right-hand sides.
+fn told<'a>(bounds: &'a [f64], right: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    bounds.iter().zip(right).map(|(bound, right)| bound - right)
 }

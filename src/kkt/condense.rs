@@ -11,6 +11,7 @@
 //! A group has as many states as equations, or more; those that are left over stay. They and the rest are the **reduced** unknowns.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::mem;
 use std::ops::Range;
 
 use super::fronts::Fronts;
@@ -270,9 +271,8 @@ impl Condensation {
                 block.reach.push(kinds.len() as u32);
                 kinds.push(unknowns[self.states[block.states.start] as usize]);
             }
-            let done = &self.blocks[..=k];
-            let (mut weighted, mut items) = (Vec::new(), done[k].curvature.clone());
-            place_states(&mut weighted, &mut items, done, &block_of);
+            let (mut weighted, mut items) = (Vec::new(), mem::take(&mut block.curvature));
+            place_states(&mut weighted, &mut items, &self.blocks[..=k], &block_of);
             let block = &mut self.blocks[k];
             place_rest(&mut weighted, &mut block.coupling);
             (block.weighted, block.curvature) = (weighted, items);

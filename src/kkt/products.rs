@@ -23,9 +23,8 @@ impl WithSimd for Product<'_> {
     fn with_simd<S: Simd>(self, unit: S) {
         for item in self.items {
             let value = self.values[item.value as usize];
-            let from = &self.from[self.starts[item.column as usize]..];
-            let from =
-                &from[..self.starts[item.column as usize + 1] - self.starts[item.column as usize]];
+            let column = item.column as usize;
+            let from = &self.from[self.starts[column]..self.starts[column + 1]];
             let to = (item.row as usize - self.first) * self.width + item.place as usize;
             subtract(unit, &mut self.to[to..to + from.len()], from, value);
         }

@@ -15,6 +15,7 @@ use crate::study::outcome::FINER;
 use crate::study::read::{Method, Study, StudyPoint};
 use crate::study::request::StudyRequest;
 use crate::study::schedule::{Done, Results};
+use crate::workflow::at_once::cores;
 
 /// The file.
 #[derive(Debug, Serialize)]
@@ -293,7 +294,7 @@ pub(super) fn machine() -> Machine {
         .find_map(|line| line.strip_prefix("model name")?.split_once(':'));
     Machine {
         processor: name.map(|(_, name)| name.trim().to_owned()),
-        cores: std::thread::available_parallelism().map_or(1, usize::from),
+        cores: cores(),
         system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
     }
 }

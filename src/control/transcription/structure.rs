@@ -153,17 +153,16 @@ impl Transcription<'_> {
             let scale = self.variable_scales[row] * self.variable_scales[col];
             self.hessian.push(Gather { place, scale });
         }
-        let is_coupling = |s: usize| {
-            let rows = self.energies.iter();
-            rows.clone()
-                .position(|row| row.scalar == s && row.couples_intervals())
-        };
+        // Voltages that meet those of the interval before, with the energies that couple them.
+        let coupling = self.voltages.iter().filter_map(|&(s, _)| {
+            let mut rows = self.energies.iter();
+            let energy = rows.position(|row| row.scalar == s && row.couples_intervals());
+            let is_any = self.cost.couples_intervals() || energy.is_some();
+            is_any.then_some((s, energy))
+        });
+        let coupling: Vec<_> = coupling.collect();
         for k in 1..self.intervals {
-            for &(s, _) in &self.voltages {
-                let energy = is_coupling(s);
-                if !self.cost.couples_intervals() && energy.is_none() {
-                    continue;
-                }
+            for &(s, energy) in &coupling {
                 if let (Some(row), Some(col)) = (u.scalar(k, s), u.scalar(k - 1, s)) {
                     entries.rows.push(row as u32);
                     entries.cols.push(col as u32);

@@ -117,27 +117,22 @@ fn space(value: &str, text: &mut String) {
     // What is copied as it is, up to the present place.
     let (mut from, mut at) = (0, 0);
     while at < bytes.len() {
-        let behind = match bytes[at] {
+        let gap = match bytes[at] {
             b'"' => {
                 at = behind_string(bytes, at);
                 continue;
             }
-            b',' | b':' => " ",
-            b'{' if bytes[at + 1] != b'}' => " ",
-            b'}' if bytes[at - 1] != b'{' => {
-                text.push_str(&value[from..at]);
-                text.push(' ');
-                from = at;
-                ""
-            }
-            _ => "",
+            b',' | b':' => Some(at + 1),
+            b'{' if bytes[at + 1] != b'}' => Some(at + 1),
+            b'}' if bytes[at - 1] != b'{' => Some(at),
+            _ => None,
         };
-        at += 1;
-        if !behind.is_empty() {
-            text.push_str(&value[from..at]);
-            text.push_str(behind);
-            from = at;
+        if let Some(gap) = gap {
+            text.push_str(&value[from..gap]);
+            text.push(' ');
+            from = gap;
         }
+        at += 1;
     }
     text.push_str(&value[from..]);
 }

@@ -102,6 +102,14 @@ impl<'a> Scope<'a> {
         Err(self.wrong(quantity.to_string(), expected))
     }
 
+    /// A weight that is zero or more; zero leaves no trace.
+    pub(crate) fn weight(&self, weight: f64) -> Result<f64, SceneError> {
+        match weight < 0.0 {
+            true => Err(self.wrong(weight.to_string(), "a weight that is not negative")),
+            false => Ok(weight),
+        }
+    }
+
     /// A quantity that is zero or more; zero leaves no trace.
     pub(crate) fn absent_or_positive<M: PhysicalQuantity>(
         &self,

@@ -140,8 +140,7 @@ pub(crate) fn given_voltages(
         }
         other => course = Some(over_time(other, system, scope)?),
     }
-    let is_constant = |signal: &Signal| matches!(signal, Signal::Constant(_));
-    let changes = course.is_some() || !given.values().all(is_constant);
+    let changes = course.is_some() || !given.values().all(Signal::is_constant);
     if changes && matches!(spec.duration, DurationSpec::Free(_)) {
         let found = "voltages over time where the duration is free";
         return Err(scope.wrong(found, "constant voltages, or a given duration"));
@@ -217,10 +216,7 @@ pub(crate) fn objective(
         ("duration", spec.duration),
     ];
     for (key, weight) in weights {
-        if weight < 0.0 {
-            let expected = "a weight that is not negative";
-            return Err(scope.key(key).wrong(weight.to_string(), expected));
-        }
+        scope.key(key).weight(weight)?;
     }
     let mut quantities = Vec::new();
     for (index, spec) in spec.track.iter().enumerate() {

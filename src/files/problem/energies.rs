@@ -33,13 +33,13 @@ pub(crate) fn energies(
     };
     match spec {
         EnergySpec::All(weight) => {
-            let weight = checked(*weight, scope)?;
+            let weight = scope.weight(*weight)?;
             let takes = |s: &usize| sources[*s].takes_voltage && weight > 0.0;
             let all = (0..sources.len()).filter(takes);
             all.map(|source| cost(source, weight, scope)).collect()
         }
         EnergySpec::Named(spec) => {
-            let weight = checked(spec.weight, &scope.key("weight"))?;
+            let weight = scope.key("weight").weight(spec.weight)?;
             let list = scope.key("sources");
             if spec.sources.is_empty() {
                 return Err(list.wrong("no source", "one source or more"));
@@ -56,12 +56,5 @@ pub(crate) fn energies(
             costs.retain(|cost| cost.weight > 0.0);
             Ok(costs)
         }
-    }
-}
-
-fn checked(weight: f64, scope: &Scope<'_>) -> Result<f64, SceneError> {
-    match weight < 0.0 {
-        true => Err(scope.wrong(weight.to_string(), "a weight that is not negative")),
-        false => Ok(weight),
     }
 }

@@ -42,12 +42,11 @@ pub(crate) fn constant(path: &str, written: &SceneSpec, system: &System) -> Foun
         expected: OFFERED.to_owned(),
     };
     let place = JsonPath::parse(path).ok_or_else(unknown)?;
-    let steps: Vec<&Step> = place.0.iter().collect();
     let key = |step: &Step| match step {
         Step::Key(key) => key.clone(),
         Step::Index(index) => format!("[{index}]"),
     };
-    let keys: Vec<String> = steps.iter().map(|step| key(step)).collect();
+    let keys: Vec<String> = place.0.iter().map(key).collect();
     let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
     match keys.as_slice() {
         ["materials", name, key] => {
@@ -82,12 +81,9 @@ pub(crate) fn constant(path: &str, written: &SceneSpec, system: &System) -> Foun
 
 /// A component by its name, or by its index in brackets.
 fn find<'a>(name: &str, mut names: impl ExactSizeIterator<Item = &'a str>) -> Option<usize> {
-    let index = name
-        .strip_prefix('[')
-        .and_then(|rest| rest.strip_suffix(']'));
-    match index {
-        Some(index) => index.parse().ok().filter(|&index| index < names.len()),
-        None => names.position(|other| other == name),
+    match name.starts_with('[') && name.ends_with(']') {
+        true => index(name, names.len()),
+        false => names.position(|other| other == name),
     }
 }
 

@@ -4,8 +4,7 @@ use std::fmt;
 
 use parking_lot::{ReentrantMutex, ReentrantMutexGuard};
 
-use crate::sparse::mumps::blas::use_one_blas_thread;
-use crate::sparse::mumps::scotch::use_one_ordering_thread;
+use crate::sparse::mumps::libraries::use_one_thread;
 
 static LOCK: ReentrantMutex<()> = ReentrantMutex::new(());
 
@@ -26,7 +25,6 @@ impl fmt::Debug for Exclusive {
 /// must not wait for another thread that does.
 pub(crate) fn exclusive() -> Exclusive {
     let guard = LOCK.lock();
-    use_one_blas_thread();
-    use_one_ordering_thread();
+    use_one_thread();
     Exclusive { _guard: guard }
 }

@@ -3,10 +3,9 @@
 //! MUMPS keeps state for the whole process, and Ipopt calls it too: two threads in it at once end in a segmentation fault.
 //! So [`exclusive()`] is held during each call here and during a whole solve of Ipopt.
 
-mod blas;
 mod ffi;
+mod libraries;
 mod lock;
-mod scotch;
 
 use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Singular, Symmetry};
@@ -57,7 +56,7 @@ impl Mumps {
         instance.threshold(3, -TINY);
         let code = {
             let _lock = exclusive();
-            scotch::restart_random_numbers();
+            libraries::restart_random_numbers();
             instance.run(Job::Analyse, &mut [])
         };
         assert!(code >= 0, "{}", failure(&instance, "analysis"));
