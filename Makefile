@@ -12,13 +12,14 @@ MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight
 
 FUZZ_SECONDS := 600
 
-.PHONY: help trunk blocks gallery build test fuzz check bench studies install-deps try-fresh clean
+.PHONY: help trunk blocks gallery build test test-python fuzz check bench studies install-deps try-fresh clean
 
 help:
 	@echo 'make trunk         solve the elephant trunk, let it swing under constant voltages, and say where the pictures are'
 	@echo 'make blocks        run the problems of finite elements, but the block of 16384'
 	@echo 'make gallery       rewrite the results that the README shows, $(GALLERY)'
 	@echo 'make test          run the tests'
+	@echo 'make test-python   build and test the Python package, in an environment of its own (Python 3.10 or later with venv)'
 	@echo 'make fuzz          look for files that the reader does not survive, for FUZZ_SECONDS=$(FUZZ_SECONDS)'
 	@echo 'make check         formatting, lints, documentation'
 	@echo 'make bench         measure; rewrite the tables of benches/README.md'
@@ -46,6 +47,9 @@ build: install-deps
 
 test: install-deps
 	@$(CARGO) test --locked
+
+test-python: install-deps
+	@python/test
 
 # All properties at once, so that each has the whole time.
 fuzz: install-deps

@@ -76,6 +76,15 @@ impl CommandError {
         }
     }
 
+    /// Path of the wrong entry, such as `scene.muscles[1].from.body`; empty where the problem as a whole is wrong, or something else.
+    pub fn place(&self) -> &str {
+        match self {
+            Self::Scene(mistake) => mistake.path(),
+            Self::Problem { place, .. } | Self::NoEquilibrium { place, .. } => place,
+            _ => "",
+        }
+    }
+
     /// The lines of the file around the mistake, marked, where there is such a place.
     pub fn excerpt(&self) -> Option<String> {
         match self {

@@ -9,7 +9,7 @@ use crate::app::error::CommandError;
 use crate::app::exchanged::Exchanged;
 use crate::app::fields;
 use crate::app::folder::make_folder;
-use crate::app::progress::Progress;
+use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::solution_file;
 use crate::app::summary::{self, MEASURED, Seconds, Summary};
@@ -37,6 +37,7 @@ pub(super) fn simulation(
     system: &System,
     task: &Simulation,
     began: Instant,
+    observer: &mut dyn FnMut(Reached<'_>),
 ) -> Result<CommandOutput, CommandError> {
     let (steps, _) = grid(task);
     if task.tolerance.is_some() && request.wanted.is_some() {
@@ -63,9 +64,10 @@ pub(super) fn simulation(
         accuracy,
     ) = {
         let progress = Progress::of_steps(request.progress, steps);
-        let mut observer = |steps: usize, model: &Model, history: &DiscreteTrajectory| {
+        let mut observe = |steps: usize, model: &Model, history: &DiscreteTrajectory| {
             let step = history.intervals();
             progress.step(steps, step);
+            observer(Reached::Step(step, history.times[step]));
             // A folder that cannot be made is told before a long run, not after it.
             if step == 1 && unwritable.is_none() {
                 unwritable = make_folder(&folder).err();
@@ -80,14 +82,14 @@ pub(super) fn simulation(
         match request.wanted {
             None => {
                 let run = integrate(system, task, |model, history| {
-                    observer(steps, model, history)
+                    observe(steps, model, history)
                 })
                 .map_err(CommandError::of(&request.input))?;
                 (run, None)
             }
             Some(wanted) => {
                 let left = request.max_seconds.map(|s| s - read);
-                let found = integrate_to(system, task, wanted, left, &mut observer)
+                let found = integrate_to(system, task, wanted, left, &mut observe)
                     .map_err(CommandError::of(&request.input))?;
                 (found.run, Some(found.accuracy))
             }

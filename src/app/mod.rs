@@ -2,7 +2,7 @@
 //!
 //! - `solve`, `forward`, `rest`: the three tasks; `task` chooses what a file asks for; `path`, `followed`: paths of equilibria.
 //! - `multistart`: a control problem from several guesses, in threads or processes.
-//! - `inspect`, `sparsity`, `check`, `templates`: the other commands.
+//! - `inspect`, `sparsity`, `check`, `templates`: the other commands; `program`: what is asked from other languages in place of files.
 //! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
 //! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`: what is told of a result.
 //! - `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `progress`, `request`, `error`: what commands share.
@@ -21,6 +21,7 @@ mod forward;
 mod inspect;
 mod multistart;
 mod path;
+mod program;
 mod progress;
 mod request;
 mod rest;
@@ -44,9 +45,10 @@ pub use error::CommandError;
 pub(crate) use folder::make_folder;
 pub use inspect::inspect;
 pub use multistart::{StartsIn, solve_from_starts};
-pub use progress::ProgressDisplay;
+pub use program::{check_text, with_program};
 pub(crate) use progress::progress_bar;
+pub use progress::{ProgressDisplay, Reached};
 pub use request::{CommandInput, CommandOutput};
 pub use rest::equilibrium_of_file;
-pub use task::run;
+pub use task::{run, run_observed};
 pub use templates::{expand, new_trunk, schema, study_schema};

@@ -18,6 +18,15 @@ pub enum ProgressDisplay {
     Never,
 }
 
+/// Where a run has come to.
+#[derive(Clone, Copy, Debug)]
+pub enum Reached<'a> {
+    /// A solve on so many intervals accepted an iterate.
+    Iteration(usize, &'a Iteration),
+    /// A simulation has done so many steps, up to this time in ms.
+    Step(usize, f64),
+}
+
 thread_local! {
     /// The line of the run of this thread.
     static LINE: RefCell<Option<ProgressBar>> = const { RefCell::new(None) };

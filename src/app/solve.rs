@@ -9,7 +9,7 @@ use crate::app::error::CommandError;
 use crate::app::exchanged::Exchanged;
 use crate::app::fields;
 use crate::app::folder::make_folder;
-use crate::app::progress::Progress;
+use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::solution_file;
 use crate::app::solve_words::{meaning, redundancy, restarted, stretched, unresolved};
@@ -49,6 +49,7 @@ pub(super) fn control(
     system: &System,
     control: &Control,
     began: Instant,
+    observer: &mut dyn FnMut(Reached<'_>),
 ) -> Result<CommandOutput, CommandError> {
     let folder = request.folder();
     let mut unwritable = None;
@@ -73,6 +74,7 @@ pub(super) fn control(
             &mut |intervals, iterate| {
                 let Iterate { report, model, .. } = *iterate;
                 progress.iteration(intervals, report);
+                observer(Reached::Iteration(intervals, report));
                 // A folder that cannot be made is told before a long solve, not after it.
                 if report.iteration == 0 && unwritable.is_none() {
                     unwritable = make_folder(&folder).err();

@@ -1,15 +1,16 @@
 //! What a problem file asks for, done.
 
+use std::path::Path;
 use std::time::Instant;
 
 use crate::app::error::CommandError;
 use crate::app::forward;
-use crate::app::progress::Progress;
+use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::rest;
 use crate::app::solve;
 use crate::control::problem::Task;
-use crate::files::read_problem;
+use crate::files::{Loaded, read_problem, read_problem_text};
 use crate::workflow::accuracy::AccuracyTarget;
 use crate::workflow::memory;
 use crate::workflow::phase::phase;
@@ -19,19 +20,48 @@ use crate::workflow::phase::phase;
 /// # Errors
 /// The input is wrong, and nothing was written; or the results cannot be written.
 pub fn run(request: &CommandInput) -> Result<CommandOutput, CommandError> {
+    run_observed(request, None, &mut |_| {})
+}
+
+/// The same; a `text` stands for that of the problem file, which then only names it and the folder that paths are relative to. `observer`
+/// hears of every iteration of a solve and every step of a simulation; who wants to end it makes a
+/// [request](crate::ipopt::interrupt::StopRequest).
+///
+/// # Errors
+/// As of [`run`].
+pub fn run_observed(
+    request: &CommandInput,
+    text: Option<&str>,
+    observer: &mut dyn FnMut(Reached<'_>),
+) -> Result<CommandOutput, CommandError> {
     let began = Instant::now();
     let _progress = Progress::of_phases(request.progress);
     phase("reading");
-    let loaded = read_problem(&request.input, &request.set)?;
-    memory::of_elements(&loaded.system).map_err(CommandError::of(&request.input))?;
+    let loaded = read(&request.input, text, &request.set)?;
     refuse_unused(request, &loaded.task)?;
     match loaded.task {
-        Task::Control(control) => solve::control(request, &loaded.system, &control, began),
+        Task::Control(control) => {
+            solve::control(request, &loaded.system, &control, began, observer)
+        }
         Task::Simulate(simulation) => {
-            forward::simulation(request, &loaded.system, &simulation, began)
+            forward::simulation(request, &loaded.system, &simulation, began, observer)
         }
         Task::Equilibrium(task) => rest::at(request, &loaded.system, &task, began),
     }
+}
+
+/// Reads a problem and whether the machine has room for it.
+pub(super) fn read(
+    input: &Path,
+    text: Option<&str>,
+    set: &[String],
+) -> Result<Loaded, CommandError> {
+    let loaded = match text {
+        Some(text) => read_problem_text(input, text, set),
+        None => read_problem(input, set),
+    }?;
+    memory::of_elements(&loaded.system).map_err(CommandError::of(input))?;
+    Ok(loaded)
 }
 
 /// Refuses options that the task has no use for.

@@ -55,6 +55,25 @@ pub struct Loaded {
 /// # Errors
 /// A file cannot be read, is no JSON, or says what does not make sense; the error has its place.
 pub fn read_problem(path: &Path, overrides: &[String]) -> Result<Loaded, SceneError> {
+    problem_of(|| Document::read(path), overrides)
+}
+
+/// Reads a problem from its text, as if it stood in the file `path`, which need not exist: paths in it are relative to that file.
+///
+/// # Errors
+/// As of [`read_problem`].
+pub fn read_problem_text(
+    path: &Path,
+    text: &str,
+    overrides: &[String],
+) -> Result<Loaded, SceneError> {
+    problem_of(|| Document::of_text(path, text.to_owned()), overrides)
+}
+
+fn problem_of(
+    read: impl FnOnce() -> Result<Document, SceneError>,
+    overrides: &[String],
+) -> Result<Loaded, SceneError> {
     let overrides: Vec<Override> = overrides
         .iter()
         .map(|written| Override::parse(written))
@@ -62,7 +81,7 @@ pub fn read_problem(path: &Path, overrides: &[String]) -> Result<Loaded, SceneEr
     let (of_scene, of_problem): (Vec<_>, Vec<_>) = overrides
         .into_iter()
         .partition(|change| change.in_scene().is_some());
-    let mut document = Document::read(path)?;
+    let mut document = read()?;
     for change in &of_problem {
         change.apply(&mut document)?;
     }

@@ -1,12 +1,12 @@
-//! When to stop: at Ctrl-C, or when the time that was given is over.
+//! When to stop: at Ctrl-C, when somebody else asks for it, or when the time that was given is over.
 //!
 //! What takes long asks [`stop`] between its parts: Newton iterations, factorisations, intervals, the questions of Ipopt. It is
 //! answered while a [`Watch`] lasts, so that what is known can be written afterwards.
 
-use std::cell::Cell;
+use std::cell::RefCell;
 use std::process;
-use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Once};
 use std::time::{Duration, Instant};
 
 use crate::ipopt::status::Status;
@@ -17,7 +17,8 @@ const EXIT_STATUS: i32 = 130;
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
 thread_local! {
-    static LIMIT: Cell<Option<TimeLimit>> = const { Cell::new(None) };
+    static LIMIT: RefCell<Option<TimeLimit>> = const { RefCell::new(None) };
+    static REQUEST: RefCell<StopRequest> = RefCell::default();
 }
 
 /// Makes Ctrl-C end the solves of this process with [`Status::Interrupted`], and says so
@@ -39,16 +40,37 @@ pub fn install() {
     });
 }
 
-/// Whether Ctrl-C was pressed since [`install`].
+/// Whether Ctrl-C was pressed since [`install`], or this thread was asked to stop.
 #[must_use]
 pub fn requested() -> bool {
-    REQUESTED.load(Ordering::SeqCst)
+    REQUESTED.load(Ordering::SeqCst) || REQUEST.with_borrow(StopRequest::is_made)
+}
+
+/// A request to one thread, made by another: it stops as at Ctrl-C.
+#[derive(Clone, Debug, Default)]
+pub struct StopRequest(Arc<AtomicBool>);
+
+impl StopRequest {
+    /// Asks for it.
+    pub fn make(&self) {
+        self.0.store(true, Ordering::SeqCst);
+    }
+
+    fn is_made(&self) -> bool {
+        self.0.load(Ordering::SeqCst)
+    }
+}
+
+/// What this thread does from now on stops at this request.
+pub fn listen(request: &StopRequest) {
+    REQUEST.set(request.clone());
 }
 
 /// Until when work may go on.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct TimeLimit {
     end: Option<Instant>,
+    request: StopRequest,
 }
 
 impl TimeLimit {
@@ -57,13 +79,14 @@ impl TimeLimit {
     pub fn after(seconds: Option<f64>) -> Self {
         let length = seconds.and_then(|s| Duration::try_from_secs_f64(s.max(0.0)).ok());
         let end = length.and_then(|length| Instant::now().checked_add(length));
-        Self { end }
+        let request = REQUEST.with_borrow(StopRequest::clone);
+        Self { end, request }
     }
 
     /// Why to stop now, if so: [`Status::Interrupted`] or [`Status::TimeLimit`].
     #[must_use]
-    pub fn reached(self) -> Option<Status> {
-        if requested() {
+    pub fn reached(&self) -> Option<Status> {
+        if REQUESTED.load(Ordering::SeqCst) || self.request.is_made() {
             return Some(Status::Interrupted);
         }
         let is_over = self.end.is_some_and(|end| Instant::now() >= end);
@@ -74,13 +97,13 @@ impl TimeLimit {
 /// The limit of this thread, while somebody watches over it.
 #[must_use]
 pub fn limit() -> Option<TimeLimit> {
-    LIMIT.get()
+    LIMIT.with_borrow(Clone::clone)
 }
 
 /// Why this thread is to stop now, if so; never without a [`Watch`].
 #[must_use]
 pub fn stop() -> Option<Status> {
-    limit().and_then(TimeLimit::reached)
+    LIMIT.with_borrow(|limit| limit.as_ref()?.reached())
 }
 
 /// Watches over Ctrl-C and the time of this thread until it is dropped.
@@ -92,11 +115,11 @@ pub struct Watch {
 
 /// Begins to watch: this thread is to stop at Ctrl-C, after so many seconds, or when a watch around this one says so.
 pub fn watch(seconds: Option<f64>) -> Watch {
-    let before = LIMIT.get();
-    let around = before.and_then(|limit| limit.end);
-    let own = TimeLimit::after(seconds).end;
-    let end = [own, around].into_iter().flatten().min();
-    LIMIT.set(Some(TimeLimit { end }));
+    let before = limit();
+    let around = before.as_ref().and_then(|limit| limit.end);
+    let mut own = TimeLimit::after(seconds);
+    own.end = [own.end, around].into_iter().flatten().min();
+    LIMIT.set(Some(own));
     Watch { before }
 }
 
@@ -109,6 +132,6 @@ pub fn unwatched() -> Watch {
 
 impl Drop for Watch {
     fn drop(&mut self) {
-        LIMIT.set(self.before);
+        LIMIT.set(self.before.take());
     }
 }

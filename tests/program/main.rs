@@ -9,6 +9,7 @@ mod fe_control;
 mod fields;
 mod kept;
 mod killed;
+mod observed;
 mod paraview;
 mod refusals;
 mod report;

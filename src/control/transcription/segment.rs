@@ -38,7 +38,7 @@ pub(super) struct Shared<'a> {
     pub(super) placed: Placed,
     pub(super) order: Order,
     /// Until when intervals are evaluated.
-    pub(super) limit: Option<TimeLimit>,
+    pub(super) limit: Option<&'a TimeLimit>,
 }
 
 /// Storage of one thread.

@@ -20,6 +20,7 @@ impl<'m> Transcription<'m> {
         let (action, last) = (&self.model.action, self.intervals);
         let (layout, stride) = (action.layout(), self.stride());
         let (rows, costates) = self.rows.split_at_mut((last + 1) * stride);
+        let limit = interrupt::limit();
         let shared = Shared {
             action,
             limits: &self.limits,
@@ -34,7 +35,7 @@ impl<'m> Transcription<'m> {
             horizon: self.horizon,
             placed: self.placed,
             order,
-            limit: interrupt::limit(),
+            limit: limit.as_ref(),
         };
         let [bench, second] = &mut self.benches;
         let values = &mut self.values;

@@ -24,20 +24,31 @@ pub(crate) struct Document {
 impl Document {
     /// Reads a file.
     pub(crate) fn read(path: &Path) -> Result<Self, SceneError> {
-        let mut document = Self {
-            path: path.to_owned(),
-            value: Value::Null,
-            set: Vec::new(),
-            text: String::new(),
-        };
+        let document = Self::empty(path);
         let bytes = std::fs::read(path).map_err(|error| {
             let found = format!("no readable file ({error})");
             document.mistake(&JsonPath::default(), found, "a JSON file")
         })?;
-        document.text = String::from_utf8(bytes).map_err(|error| {
+        let text = String::from_utf8(bytes).map_err(|error| {
             let found = format!("a file that is not UTF-8 text ({})", error.utf8_error());
             document.mistake(&JsonPath::default(), found, "a JSON file")
         })?;
+        Self::of_text(path, text)
+    }
+
+    fn empty(path: &Path) -> Self {
+        Self {
+            path: path.to_owned(),
+            value: Value::Null,
+            set: Vec::new(),
+            text: String::new(),
+        }
+    }
+
+    /// Takes a text for that of a file, which need not exist.
+    pub(crate) fn of_text(path: &Path, text: String) -> Result<Self, SceneError> {
+        let mut document = Self::empty(path);
+        document.text = text;
         document.value = serde_json::from_str(&document.text)
             .map_err(|error| document.syntax_mistake(&error))?;
         document.refuse_repeated_keys()?;

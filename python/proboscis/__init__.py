@@ -1,0 +1,58 @@
+"""Simulation and optimal control of robots driven by dielectric elastomer muscles.
+
+A `System` of parts is asked to `simulate`, for an `equilibrium`, or for a `control` problem, which is then solved; a `Problem` does what a
+problem file asks. Entries are those of the JSON files; numbers are in SI units, texts have a unit. What comes back is a `Result`: numpy arrays in SI units
+and the files of the command line. All mistakes are one exception, `Error`, with the path of the wrong entry.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from proboscis import _proboscis
+from proboscis._error import Error
+from proboscis._table import Table
+from proboscis.nlp import Nlp
+from proboscis.parts import GROUND, Body, Joint, Marker, Material, Muscle, Part, Solid, Spring, Tendon
+from proboscis.problem import Iteration, Problem, Step
+from proboscis.result import Figure, Result
+from proboscis.system import System
+
+__version__ = _proboscis.version
+
+__all__ = [
+    "GROUND",
+    "Body",
+    "Error",
+    "Figure",
+    "Iteration",
+    "Joint",
+    "Marker",
+    "Material",
+    "Muscle",
+    "Nlp",
+    "Part",
+    "Problem",
+    "Result",
+    "Solid",
+    "Spring",
+    "Step",
+    "System",
+    "Table",
+    "Tendon",
+    "load",
+    "schema",
+]
+
+load = Result.load
+
+
+def schema(file: str = "problem") -> dict[str, Any]:
+    """Returns the JSON Schema of a `scene` or of a `problem`."""
+    scene, problem = _proboscis.schema()
+    files = {"scene": scene, "problem": problem}
+    if file not in files:
+        raise Error(f"file: found {file!r}, expected 'scene' or 'problem'", "file")
+    schema: dict[str, Any] = json.loads(files[file])
+    return schema

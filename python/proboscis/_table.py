@@ -1,0 +1,81 @@
+"""Tables of results: CSV files as columns in SI units."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    import pandas
+
+Array = npt.NDArray[np.float64]
+
+_SCALES = {"mm": (1e3, "m"), "ms": (1e3, "s"), "nC": (1e9, "C")}
+_NAMES = {"N m": "J"}
+
+
+class Table(Mapping[str, Array]):
+    """Columns of numbers in SI units by name, all of one length; NaN where there is no number."""
+
+    units: dict[str, str]
+    """Units by column; empty where a column has none."""
+
+    def __init__(self, columns: Mapping[str, Array], units: Mapping[str, str]) -> None:
+        self._columns = dict(columns)
+        self.units = dict(units)
+
+    @classmethod
+    def read(cls, path: Path) -> Table:
+        """Reads a table of results."""
+        with path.open(encoding="utf-8", newline="") as file:
+            rows = list(csv.reader(line for line in file if not line.startswith("#")))
+        values = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows[1:]])
+        values = values.reshape(len(rows) - 1, len(rows[0]))
+        columns, units = {}, {}
+        for index, header in enumerate(rows[0]):
+            name, _, unit = header.removesuffix("]").partition(" [")
+            scale, units[name] = _si(unit)
+            columns[name] = values[:, index] / scale
+        return cls(columns, units)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Returns the columns as a data frame, with units in their names: `tip_x [m]`."""
+        import pandas
+
+        def name(column: str) -> str:
+            unit = self.units[column]
+            return f"{column} [{unit}]" if unit else column
+
+        return pandas.DataFrame({name(column): values for column, values in self._columns.items()})
+
+    def __getitem__(self, name: str) -> Array:
+        try:
+            return self._columns[name]
+        except KeyError:
+            raise KeyError(f"no column {name!r}; there are {', '.join(self._columns)}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def __repr__(self) -> str:
+        rows = len(next(iter(self._columns.values()))) if self._columns else 0
+        return f"<Table: {len(self)} columns of {rows} rows>"
+
+
+def _si(unit: str) -> tuple[float, str]:
+    """How many of a unit an SI unit is, and that unit."""
+    scale, words = 1.0, []
+    for word in unit.split():
+        factor, name = _SCALES.get(word, (1.0, word))
+        scale *= factor
+        words.append(name)
+    name = " ".join(words)
+    return scale, _NAMES.get(name, name)

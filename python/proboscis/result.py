@@ -1,0 +1,186 @@
+"""A result: the folder that a run has written, read as arrays in SI units."""
+
+from __future__ import annotations
+
+import html
+import json
+import shutil
+import webbrowser
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from proboscis._error import Error
+from proboscis._plain import plain
+from proboscis._table import Array, Table
+
+if TYPE_CHECKING:
+    import pandas
+
+_TABLES = ("trajectory.csv", "path.csv", "equilibrium.csv")
+_SOLVED = ("solved", "acceptable", "feasible_point", "simulated", "at_rest", "path_followed")
+
+
+class Result:
+    """What a run has found, solved or not; `Result.load(folder)` reads that of an earlier run or of the command line."""
+
+    folder: Path
+    """Its files, those of the command line."""
+    summary: dict[str, Any]
+    """`summary.json`: sizes, computing times, energies, versions."""
+    is_solved: bool
+    """Whether the question has an answer that passed its checks; otherwise `status` and `message` say why not."""
+    notes: list[str]
+    """What else there is to say of it: warnings, causes."""
+
+    def __init__(
+        self,
+        folder: Path,
+        told: tuple[bool, str, list[str]] | None = None,
+        kept: TemporaryDirectory[str] | None = None,
+    ) -> None:
+        self.folder = folder
+        # A folder of its own lasts as long as the result.
+        self._kept = kept
+        path = folder / "summary.json"
+        try:
+            self.summary = json.loads(path.read_text(encoding="utf-8")) if told is None or path.is_file() else {}
+        except (OSError, ValueError) as error:
+            raise Error(f"{path}: found no readable JSON ({error}), expected the folder of a result") from error
+        if told is None:
+            is_met = self.summary.get("accuracy", {}).get("is_met") is not False
+            told = (self.status in _SOLVED and is_met, self.status, self.summary.get("notes", []))
+        self.is_solved, self._line, self.notes = told
+
+    @classmethod
+    def load(cls, folder: str | PathLike[str], /) -> Result:
+        """Reads the folder of a result. Raises `Error` where it holds none."""
+        return cls(Path(folder))
+
+    def save(self, folder: str | PathLike[str], /) -> None:
+        """Copies its files into a folder, which is made where it is missing."""
+        shutil.copytree(self.folder, folder, dirs_exist_ok=True)
+
+    @property
+    def status(self) -> str:
+        """How it ended, in a word: `solved`, `simulated`, `at_rest`, `infeasible`, `time_limit`, …."""
+        return str(self.summary.get("status", "no_equilibrium"))
+
+    @property
+    def message(self) -> str | None:
+        """Why it is not solved, in words."""
+        message = self.summary.get("message")
+        return None if message is None else str(message)
+
+    @property
+    def objective(self) -> float:
+        """Value of the objective of a control problem."""
+        return float(self._of_summary("objective"))
+
+    @property
+    def iterations(self) -> int:
+        """Iterations of the solver of a control problem."""
+        return int(self._of_summary("iterations"))
+
+    @cached_property
+    def table(self) -> Table:
+        """Columns by name: of a motion one row per instant, of a path one per equilibrium, of an equilibrium one; all at the time of the row."""
+        return self._table(*_TABLES)
+
+    @cached_property
+    def controls(self) -> Table:
+        """Columns by name, one row per interval: `start`, `end` (s) and the voltage of each source (V)."""
+        return self._table("controls.csv")
+
+    @cached_property
+    def tracking(self) -> Table:
+        """What the objective of a control problem follows, what the motion did, and the deviation, one row per instant."""
+        return self._table("tracking.csv")
+
+    @property
+    def time(self) -> Array:
+        """Instants of a motion in s."""
+        return self.table["time"]
+
+    def joint(self, joint: Any, /) -> Array:
+        """Coordinate of a joint at each instant: rad (revolute), m (prismatic); of others see `table`."""
+        return self.table[plain(joint)]
+
+    def position(self, marker: Any, /) -> Array:
+        """Position of a marker in m, an array of one row of three numbers per instant."""
+        name = plain(marker)
+        return np.column_stack([self.table[f"{name}_{axis}"] for axis in "xyz"])
+
+    def stretch(self, muscle: Any, /) -> Array:
+        """Stretch of a muscle at each instant."""
+        return self.table[f"{plain(muscle)}_stretch"]
+
+    def charge(self, source: Any, /) -> Array:
+        """Charge of a muscle or electrode in C at each instant."""
+        return self.table[f"{plain(source)}_charge".replace(".", "_")]
+
+    def voltage(self, source: Any, /) -> Array:
+        """Voltage of a muscle or electrode in V in each interval."""
+        return self.controls[plain(source)]
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Returns `table` as a data frame, with units in the names of its columns."""
+        return self.table.to_pandas()
+
+    def report(self) -> Path:
+        """Returns the path of its page, which works offline."""
+        path = self.folder / "report.html"
+        if not path.is_file():
+            raise Error(f"{self.folder}: there is no report.html in this result")
+        return path
+
+    def animate(self) -> None:
+        """Opens the page in a browser."""
+        webbrowser.open(self.report().resolve().as_uri())
+
+    def figure(self, name: str = "configuration", /) -> Figure:
+        """Returns a figure: `configuration`, `voltages`, `tip_path`, `joint_angles`, `energy`, …; a notebook shows it."""
+        path = self.folder / f"{name}.svg"
+        if not path.is_file():
+            there = ", ".join(sorted(file.stem for file in self.folder.glob("*.svg")))
+            raise Error(f"{name}: there is no such figure; there are {there or 'none'}")
+        return Figure(path.read_text(encoding="utf-8"))
+
+    def _table(self, *names: str) -> Table:
+        for name in names:
+            path = self.folder / name
+            if path.is_file():
+                return Table.read(path)
+        raise Error(f"{self.folder}: there is no {' or '.join(names)} in this result ({self.status})")
+
+    def _of_summary(self, key: str) -> Any:
+        if key not in self.summary:
+            raise Error(f"{key}: only the result of a control problem has one")
+        return self.summary[key]
+
+    def __repr__(self) -> str:
+        return f"<Result: {self._line}>"
+
+    def _repr_html_(self) -> str:
+        page = html.escape(self.report().read_text(encoding="utf-8"))
+        return f'<iframe srcdoc="{page}" width="100%" height="640" style="border:0" title="proboscis"></iframe>'
+
+
+class Figure:
+    """A figure in SVG, shown by a notebook."""
+
+    svg: str
+
+    def __init__(self, svg: str) -> None:
+        self.svg = svg
+
+    def save(self, path: str | PathLike[str], /) -> None:
+        """Writes the figure."""
+        Path(path).write_text(self.svg, encoding="utf-8")
+
+    def _repr_svg_(self) -> str:
+        return self.svg

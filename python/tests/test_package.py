@@ -1,0 +1,288 @@
+"""Problems in, arrays out, mistakes with their place, interruptions in good order."""
+
+import json
+import os
+import signal
+import subprocess
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import proboscis as pb
+
+PROBLEMS = Path(__file__).parents[2] / "problems"
+
+
+@pytest.fixture(scope="module")
+def pair() -> pb.Problem:
+    return pb.Problem.from_file(PROBLEMS / "pair.json")
+
+
+@pytest.fixture(scope="module")
+def optimum(pair: pb.Problem) -> pb.Result:
+    return pair.solve()
+
+
+def expanded() -> Any:
+    """The scene of the pair without shorthand."""
+    command = [os.environ["PROBOSCIS"], "expand", PROBLEMS / "scenes" / "pair.json"]
+    return json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
+
+
+def own_arm() -> tuple[pb.System, pb.Joint, list[pb.Muscle]]:
+    """The pair, made of parts."""
+    scene = expanded()
+    system = pb.System(scene["name"])
+    material, entries = next(iter(scene["materials"].items()))
+    silicone = system.add(pb.Material(material, **entries))
+    body = system.add(pb.Body(**scene["bodies"][0]))
+    joint = system.add(pb.Joint(**{**scene["joints"][0], "child": body}))
+    muscles = []
+    for entry in scene["muscles"]:
+        from_, to = ({**entry[end], "at": np.array(entry[end]["at"])} for end in ("from", "to"))
+        rest = {key: value for key, value in entry.items() if key not in ("from", "to", "material", "name")}
+        muscles.append(system.add(pb.Muscle(material=silicone, from_=from_, to={**to, "body": body}, **rest)))
+    for entry in scene.get("markers", []):
+        system.add(pb.Marker(**{**entry, "body": body}))
+    return system, joint, muscles
+
+
+def test_a_system_of_parts_is_the_scene_of_the_file() -> None:
+    scene = expanded()
+    scene.pop("$schema", None)
+    assert own_arm()[0].to_dict() == scene
+    assert pb.System.from_dict(scene).to_dict() == scene
+
+
+def test_a_problem_is_written_back_as_it_was(pair: pb.Problem, tmp_path: Path) -> None:
+    written = json.loads((PROBLEMS / "pair.json").read_text())
+    assert pair.to_dict() == written
+    pair.save(tmp_path / "pair.json")
+    assert json.loads((tmp_path / "pair.json").read_text()) == written
+    pair.to_dict()["control"]["intervals"] = 3
+    assert pair.to_dict() == written
+    assert pair.changed({"control.intervals": 3}).to_dict()["control"]["intervals"] == 3
+
+
+def test_results_are_arrays_in_si_units(optimum: pb.Result) -> None:
+    assert optimum.is_solved and optimum.status == "solved" and optimum.iterations > 3
+    intervals = optimum.summary["intervals"]
+    assert optimum.time.shape == (intervals + 1,)
+    assert optimum.time[-1] == optimum.summary["duration"] < 10
+    tip = optimum.position("tip")
+    assert tip.shape == (intervals + 1, 3)
+    assert np.allclose(np.linalg.norm(tip, axis=1), 0.05, rtol=1e-9)
+    voltage = optimum.voltage("muscle2")
+    assert voltage.shape == (intervals,) and 100 < voltage.max() <= 3000
+    # The joint turns the tip about z.
+    assert np.allclose(tip[:, 0], -0.05 * np.sin(optimum.joint("joint1")), atol=1e-12)
+    assert abs(optimum.joint("joint1")).max() > 0.01
+    assert 1e-10 < abs(optimum.charge("muscle1")).max() < 1e-4
+    units = optimum.table.units
+    assert (units["time"], units["tip_x"], units["muscle1_charge"]) == ("s", "m", "C")
+    assert (units["total_energy"], units["linear_momentum_x"], units["angular_momentum_x"]) == ("J", "N s", "N m s")
+    solution = json.loads((optimum.folder / "solution.json").read_text())
+    assert solution["time"] == list(optimum.time)
+    assert solution["voltages"]["muscle2"] == list(voltage)
+
+
+def test_pandas_has_units_in_its_columns(optimum: pb.Result) -> None:
+    frame = optimum.to_pandas()
+    assert list(frame["tip_x [m]"]) == list(optimum.table["tip_x"])
+    assert "muscle1_stretch" in frame
+
+
+def test_results_are_saved_and_loaded(optimum: pb.Result, tmp_path: Path) -> None:
+    optimum.save(tmp_path / "kept")
+    loaded = pb.load(tmp_path / "kept")
+    assert loaded.is_solved and loaded.objective == optimum.objective
+    assert all(np.array_equal(loaded.table[name], optimum.table[name], equal_nan=True) for name in optimum.table)
+    page = loaded.report().read_text()
+    assert page.lstrip().startswith("<!") and loaded.report().parent == tmp_path / "kept"
+    frame = loaded._repr_html_()
+    assert frame.startswith('<iframe srcdoc="&lt;!') and frame.count("<") == 2
+    assert loaded.figure("voltages").svg.count("<svg") == 1
+    with pytest.raises(pb.Error, match="summary.json"):
+        pb.load(tmp_path)
+
+
+def test_a_folder_of_its_own_goes_with_the_result(pair: pb.Problem) -> None:
+    result = pair.solve(max_iterations=1)
+    assert not result.is_solved and result.status == "iteration_limit" and result.message
+    folder = result.folder
+    assert folder.is_dir()
+    del result
+    assert not folder.exists()
+
+
+def test_a_simulation_and_an_equilibrium() -> None:
+    system, joint, muscles = own_arm()
+    heard: list[pb.Step] = []
+    voltages = {muscles[0]: "1 kV"}
+    motion = system.simulate(duration="50 ms", step="10 ms", voltages=voltages, on_step=heard.append)
+    assert motion.status == "simulated" and len(motion.time) == 6
+    assert [step.step for step in heard] == [1, 2, 3, 4, 5]
+    assert heard[-1].time == 0.05 and abs(motion.joint(joint)[-1]) > 1e-3
+    rest = system.equilibrium(voltages=voltages)
+    assert rest.status == "at_rest" and abs(rest.joint(joint)[0]) > 1e-3
+    with pytest.raises(pb.Error, match="only the result of a control problem"):
+        print(rest.objective)
+
+
+def test_mistakes_have_a_place(tmp_path: Path) -> None:
+    written = json.loads((PROBLEMS / "pair.json").read_text())
+    content = {**written, "control": {**written["control"], "intervals": -3}}
+    with pytest.raises(pb.Error, match="whole number|integer|expected") as caught:
+        pb.Problem.from_dict(content, folder=PROBLEMS)
+    assert caught.value.path == "control.intervals" and "^" in caught.value.excerpt
+    with pytest.raises(pb.Error) as caught:
+        pb.Problem.from_dict({**written, "scene": "nowhere.json"}, folder=PROBLEMS)
+    assert "nowhere.json" in str(caught.value)
+    with pytest.raises(pb.Error) as caught:
+        pb.Problem.from_dict({**written, "control": {"intervals": object()}}, folder=PROBLEMS)
+    assert caught.value.path == "control.intervals"
+    system, _, muscles = own_arm()
+    muscles[1].entries["to"]["body"] = "nobody"
+    with pytest.raises(pb.Error, match="nobody") as caught:
+        system.equilibrium()
+    assert caught.value.path == "scene.muscles[1].to.body"
+    with pytest.raises(pb.Error, match="finite"):
+        pb.Problem.from_dict({**written, "control": {**written["control"], "duration": float("nan")}}, folder=PROBLEMS)
+    (tmp_path / "twice.json").write_text('{"scene": "a", "scene": "b"}')
+    with pytest.raises(pb.Error, match="twice"):
+        pb.Problem.from_file(tmp_path / "twice.json")
+    with pytest.raises(pb.Error, match="has no name"):
+        pb.Problem.from_dict({**written, "scene": {"bodies": [pb.Body(mass=1)]}})
+    with pytest.raises(pb.Error, match="does not ask"):
+        pb.Problem.from_file(PROBLEMS / "pair.json").simulate()
+
+
+def test_what_does_not_apply_is_refused(pair: pb.Problem, optimum: pb.Result) -> None:
+    simulation = pb.Problem.from_file(PROBLEMS / "pair_constant.json")
+    for wrong in ({"start": optimum}, {"on_iteration": print}, {"max_iterations": 3}):
+        with pytest.raises(pb.Error):
+            simulation.solve(**wrong)  # type: ignore[arg-type]
+    for limit in (0.0, -1.0, float("nan")):
+        with pytest.raises(pb.Error, match="max_seconds"):
+            pair.solve(max_seconds=limit)
+
+
+def test_a_solve_starts_from_a_result(pair: pb.Problem, optimum: pb.Result) -> None:
+    again = pair.solve(start=optimum)
+    assert again.is_solved and again.iterations < optimum.iterations
+    assert np.allclose(again.objective, optimum.objective, rtol=1e-7)
+
+
+def test_iterations_are_told(pair: pb.Problem, optimum: pb.Result) -> None:
+    heard: list[pb.Iteration] = []
+    main = threading.get_ident()
+
+    def hear(iteration: pb.Iteration) -> None:
+        assert threading.get_ident() == main
+        heard.append(iteration)
+
+    result = pair.solve(on_iteration=hear)
+    assert [one.iteration for one in heard] == list(range(optimum.iterations + 1))
+    assert heard[0].infeasibility > heard[-1].infeasibility
+    assert heard[-1].optimality < 1e-6 and heard[0].intervals == optimum.summary["intervals"]
+    assert result.objective == optimum.objective
+
+
+def test_an_exception_of_a_callback_comes_out(pair: pb.Problem) -> None:
+    class Enough(Exception):
+        result: pb.Result | None
+
+    heard = []
+
+    def stop(iteration: pb.Iteration) -> None:
+        heard.append(iteration.iteration)
+        if iteration.iteration == 3:
+            raise Enough("of it")
+
+    with pytest.raises(Enough, match="of it") as caught:
+        pair.solve(on_iteration=stop)
+    assert heard == [0, 1, 2, 3]
+    result = caught.value.result
+    assert result is not None and result.status == "interrupted" and not result.is_solved
+    assert result.iterations == 3 and len(result.time) == result.summary["intervals"] + 1
+    assert pair.solve().is_solved
+
+
+def ctrl_c_after(seconds: float) -> threading.Thread:
+    def press() -> None:
+        time.sleep(seconds)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    thread = threading.Thread(target=press)
+    thread.start()
+    return thread
+
+
+def test_ctrl_c_ends_a_run_in_good_order() -> None:
+    path = PROBLEMS / "elephant_trunk_constant.json"
+    content = json.loads(path.read_text())
+    content["simulate"].update(duration="10000 s", step="10 ms")
+    simulation = pb.Problem.from_dict(content, folder=PROBLEMS)
+    before = signal.getsignal(signal.SIGINT)
+    thread = ctrl_c_after(0.5)
+    with pytest.raises(KeyboardInterrupt) as caught:
+        simulation.simulate()
+    thread.join()
+    result: Any = getattr(caught.value, "result")
+    assert result.status == "interrupted" and not result.is_solved
+    assert 1 < len(result.time) < 1_000_000 and result.joint("joint1").shape == result.time.shape
+    assert signal.getsignal(signal.SIGINT) is before
+    # The next run knows nothing of it.
+    assert pb.Problem.from_file(PROBLEMS / "pair.json").solve().is_solved
+
+
+def test_time_is_limited() -> None:
+    content = json.loads((PROBLEMS / "elephant_trunk_constant.json").read_text())
+    content["simulate"].update(duration="10000 s", step="10 ms")
+    result = pb.Problem.from_dict(content, folder=PROBLEMS).simulate(max_seconds=0.3)
+    assert result.status == "time_limit" and not result.is_solved and len(result.time) > 1
+
+
+def test_solves_run_at_once_in_threads(pair: pb.Problem, optimum: pb.Result) -> None:
+    meeting = threading.Barrier(2, timeout=20)
+
+    def meet(iteration: pb.Iteration) -> None:
+        # Each solve goes on only when the other one is within a solve too.
+        if iteration.iteration == 2:
+            meeting.wait()
+
+    with ThreadPoolExecutor(2) as pool:
+        results = list(pool.map(lambda _: pair.solve(on_iteration=meet), range(2)))
+    assert [result.objective for result in results] == [optimum.objective] * 2
+
+
+def test_others_run_while_a_solve_does(pair: pb.Problem) -> None:
+    ticks = 0
+    done = threading.Event()
+
+    def tick() -> None:
+        nonlocal ticks
+        while not done.is_set():
+            ticks += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    before = ticks
+    pair.solve()
+    after = ticks
+    done.set()
+    thread.join()
+    assert after - before > 3
+
+
+def test_schemas() -> None:
+    assert "control" in pb.schema()["properties"]
+    assert "muscles" in pb.schema("scene")["properties"]
+    with pytest.raises(pb.Error):
+        pb.schema("study")
