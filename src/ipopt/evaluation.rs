@@ -4,10 +4,13 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::ipopt::interrupt::{self, Watch};
-use crate::ipopt::solution::{Evaluations, Iteration, Seconds};
+use crate::ipopt::session;
+use crate::ipopt::solution::{Evaluations, Iteration, Multipliers, Seconds};
 use crate::ipopt::status::Status;
-use crate::nlp::{Entries, Nlp};
+use crate::nlp::{Bounds, Entries, Nlp};
 
+/// By how much Ipopt relaxes bounds, of their magnitude and at least of one (`bound_relax_factor`).
+const RELAXED: f64 = 1e-8;
 /// Records of iterations for which room is made beforehand.
 const RESERVED_ITERATIONS: usize = 4096;
 
@@ -54,6 +57,8 @@ pub(super) struct Record {
     derivatives_at: Vec<f64>,
     /// The latest iterate told; before the first one, the starting point.
     pub(super) latest: Vec<f64>,
+    /// Multipliers of the constraints there, as the Hessian was asked with; empty until it was.
+    costates: Vec<f64>,
     /// Why the solve was stopped from outside, if it was.
     pub(super) stopped: Option<Status>,
     /// Where the time went; `total` and `solver` are filled in at the end.
@@ -73,10 +78,29 @@ impl Record {
             place.clear();
             place.extend_from_slice(start);
         }
+        self.costates.clear();
         self.stopped = None;
         self.seconds = Seconds::default();
         self.evaluations = Evaluations::default();
         self.failed = 0;
+    }
+
+    /// Multipliers of the latest iterate, where they are known: Ipopt has lost them where it was stopped on the way to the next one. Those of
+    /// bounds are the barrier parameter over the distance, to which Ipopt keeps them near.
+    pub(super) fn write_multipliers(&self, bounds: &Bounds, to: &mut Multipliers) {
+        let (Some(last), false) = (self.iterations.last(), self.costates.is_empty()) else {
+            return;
+        };
+        to.constraints.copy_from_slice(&self.costates);
+        for (i, x) in self.latest.iter().enumerate() {
+            let (lower, upper) = (bounds.lower[i], bounds.upper[i]);
+            let of_bound = |gap: f64, bound: f64| match lower == upper {
+                true => 0.0,
+                false => last.mu / (gap.max(0.0) + RELAXED * bound.abs().max(1.0)),
+            };
+            to.lower[i] = of_bound(x - lower, lower);
+            to.upper[i] = of_bound(upper - x, upper);
+        }
     }
 }
 
@@ -159,6 +183,12 @@ impl<'a> Evaluator<'a> {
         costates: &[f64],
         values: &mut [f64],
     ) -> bool {
+        // In the restoration phase, where σ is zero, they are of another problem.
+        if sigma > 0.0 && x == self.record.latest {
+            self.record.costates.clear();
+            let scaled = costates.iter().map(|y| y / sigma);
+            self.record.costates.extend(scaled);
+        }
         if self.is_stopped() {
             return false;
         }
@@ -181,8 +211,11 @@ impl<'a> Evaluator<'a> {
         &self.asked.structures.hessian
     }
 
-    /// Takes note of an accepted iterate and says whether to go on.
+    /// Takes note of an accepted iterate and says whether to go on. Where the step to it was left off it is none.
     pub(super) fn iteration(&mut self, iteration: &Iteration) -> ControlFlow<()> {
+        if session::stopped().is_some() {
+            return ControlFlow::Break(());
+        }
         let objective = iteration.objective / self.scale;
         let iteration = &Iteration {
             objective,
@@ -192,6 +225,7 @@ impl<'a> Evaluator<'a> {
         self.record
             .latest
             .copy_from_slice(&self.record.derivatives_at);
+        self.record.costates.clear();
         let verdict = timed(&mut self.record.seconds.observer, || {
             (self.asked.observer)(iteration, &self.record.derivatives_at)
         });

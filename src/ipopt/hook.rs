@@ -13,6 +13,7 @@ use std::slice;
 use std::sync::OnceLock;
 
 use crate::ipopt::session::with_current;
+use crate::kkt::Stopped;
 
 /// Numbers in `info`, in `icntl` and in `cntl`.
 const INFO: usize = 40;
@@ -192,12 +193,12 @@ unsafe extern "C" fn factor(
     unsafe {
         let (order, values, tolerance) = (count(n), read(values, count(entries)), *cntl);
         match with_current(|session| session.factor(values, tolerance)) {
-            Some(inertia) => {
+            Some(Ok(inertia)) => {
                 let first = if inertia.zero > 0 { SINGULAR } else { 0 };
                 let rank = order - inertia.zero;
                 answer(info, first, &[(24, inertia.negative), (25, rank)]);
             }
-            None => answer(info, FAILED, &[]),
+            Some(Err(Stopped)) | None => answer(info, FAILED, &[]),
         }
     }
 }

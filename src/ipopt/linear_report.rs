@@ -1,5 +1,6 @@
 //! What the linear systems of a solve took.
 
+use crate::ipopt::status::Status;
 use crate::kkt::Statistics;
 
 /// What the linear systems of a solve took.
@@ -18,6 +19,8 @@ pub struct StagesReport {
     pub analyses: usize,
     /// Factorisations, solutions and their errors.
     pub statistics: Statistics,
+    /// Why the last factorisation was left off in its midst, if it was.
+    pub stopped: Option<Status>,
     /// Seconds in analyses.
     pub analysis: f64,
     /// Seconds in factorisations.

@@ -9,8 +9,10 @@ use std::ffi::c_int;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
+use crate::ipopt::interrupt;
 use crate::ipopt::linear_report::StagesReport;
-use crate::kkt::{Inertia, Plan, Solver, Unknown};
+use crate::ipopt::status::Status;
+use crate::kkt::{Inertia, Plan, Solver, Stopped, Unknown};
 use crate::nlp::{Bounds, Stage};
 
 thread_local! {
@@ -109,17 +111,20 @@ impl Session {
         self.report.analysis += began.elapsed().as_secs_f64();
     }
 
-    /// Factors a matrix; a tolerance greater than before asks for better factors.
-    pub(super) fn factor(&mut self, entries: &[f64], tolerance: f64) -> Inertia {
+    /// Factors a matrix; a tolerance greater than before asks for better factors. What takes long stops when it is time to.
+    pub(super) fn factor(&mut self, entries: &[f64], tolerance: f64) -> Result<Inertia, Stopped> {
         let began = Instant::now();
         let solver = &mut self.current.as_mut().expect("analysed first").solver;
         if self.tolerance > 0.0 && tolerance > self.tolerance {
             solver.improve();
         }
         self.tolerance = tolerance;
-        let inertia = solver.factor(entries);
+        let factored = solver.factor_unless(entries, &|| interrupt::stop().is_some());
+        if factored.is_err() {
+            self.report.stopped = interrupt::stop();
+        }
         self.report.factorisation += began.elapsed().as_secs_f64();
-        inertia
+        factored
     }
 
     /// Solves for right-hand sides that begin every `stride` numbers.
@@ -157,6 +162,11 @@ pub(super) fn with_current<T>(work: impl FnOnce(&mut Session) -> T) -> Option<T>
             .map_err(|panic| session.panic = Some(panic))
             .ok()
     })
+}
+
+/// Why the solve of this thread left a factorisation off, if it did.
+pub(super) fn stopped() -> Option<Status> {
+    CURRENT.with_borrow(|current| current.as_ref()?.report.stopped)
 }
 
 /// The unknowns in the order of Ipopt: variables, slacks, multipliers of equalities, multipliers of inequalities.

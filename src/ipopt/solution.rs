@@ -145,7 +145,8 @@ impl AddAssign for Evaluations {
 /// If the status is not [`is_solved`](Status::is_solved), `x` is the point at which Ipopt gave up or the latest iterate it
 /// had told, whichever violates constraints and bounds less; a point where f or g does not exist counts as worst.
 /// The two differ if Ipopt gave up on the way to the next iterate, for instance for want of a derivative there.
-/// `costates` are always those of Ipopt.
+/// `costates` are those of Ipopt, but of a solve that was stopped between two iterates: there they are those of the latest iterate, where
+/// the multipliers of bounds are the barrier parameter over the distance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverResult {
     /// How the solve ended.

@@ -182,6 +182,13 @@ impl<N: Nlp> Solver<N> {
         // MUMPS is there for others until the next solve.
         self.problem = self.session.is_some().then_some(problem);
         let _unwatched = interrupt::unwatched();
+        let within = stages.and_then(|stages| stages.stopped);
+        let stopped = self.record.stopped.or(within);
+        let status = Status::from_code(code);
+        if stopped.is_some() && !status.is_solved() && status != Status::Interrupted {
+            let bounds = &self.bounds.variables;
+            self.record.write_multipliers(bounds, &mut costates);
+        }
         costates.scale(scale.recip());
         let (record, result) = (&mut self.record, &mut self.result);
         (result.x, result.costates) = (x, costates);
@@ -190,11 +197,11 @@ impl<N: Nlp> Solver<N> {
         result.evaluations = record.evaluations;
         result.failed_evaluations = record.failed;
         result.linear.stages = stages;
-        result.status = match Status::from_code(code) {
+        result.status = match status {
             // Ipopt minimises nothing where equations leave no freedom, or seem to.
             Status::Solved if self.bounds.is_square() => Status::FeasiblePoint,
             status if status.is_solved() => status,
-            status => record.stopped.unwrap_or(status),
+            status => stopped.unwrap_or(status),
         };
         self.end();
         Ok(&self.result)

@@ -21,6 +21,7 @@ use super::inertia::Inertia;
 use super::numeric::{Factors, Outcome};
 use super::pivot::Rules;
 use super::products::{Curvature, Product};
+use super::progress::{Progress, Stopped};
 
 /// Greatest response of a state against the greatest direct one. Beyond, what is left of R are errors of rounding;
 /// free motions of a thousand stages stay below.
@@ -97,10 +98,14 @@ impl Condensed {
 
     /// Factors the matrix with these entries; `None` where the equations hold more than they may, depend on each other, or responses
     /// grow along the horizon.
-    pub(super) fn factor(&mut self, entries: &[f64]) -> Option<Outcome> {
+    pub(super) fn factor(
+        &mut self,
+        entries: &[f64],
+        progress: &mut Progress<'_>,
+    ) -> Result<Option<Outcome>, Stopped> {
         let mut zeros = self.parts.zeros.iter();
         if zeros.any(|&entry| entries[entry as usize] != 0.0) {
-            return None;
+            return Ok(None);
         }
         self.values.fill(0.0);
         for (&value, entry) in self.parts.values.iter().zip(entries) {
@@ -110,41 +115,50 @@ impl Condensed {
         self.has_diagonal = diagonals.any(|item| self.values[item.value as usize] != 0.0);
         let mut exclusive = self.parts.exclusive.iter();
         let is_excluded = exclusive.any(|&entry| entries[entry as usize] != 0.0);
-        if self.has_diagonal && is_excluded || !self.factor_blocks() {
-            return None;
+        if self.has_diagonal && is_excluded || !self.factor_blocks(progress)? {
+            return Ok(None);
         }
         for k in 0..self.parts.blocks.len() {
+            let block = &self.parts.blocks[k];
+            progress.add(block.equations.len().pow(2) * block.reach.len())?;
             self.respond(k);
         }
         if self.is_growing() {
-            return None;
+            return Ok(None);
         }
-        self.reduce();
+        self.reduce(progress)?;
         let plan = &self.parts.plans[usize::from(self.has_diagonal)];
         let entries = &self.entries[..plan.pattern().0.len()];
         if !entries.iter().all(|entry| entry.is_finite()) {
-            return None;
+            return Ok(None);
         }
-        let outcome = self.factors.factor(plan, entries, RULES, usize::MAX)?;
-        let inertia = Inertia {
-            negative: outcome.inertia.negative + self.parts.equations.len(),
-            ..outcome.inertia
-        };
-        Some(Outcome { inertia, ..outcome })
+        let factors = &mut self.factors;
+        let outcome = factors.factor(plan, entries, RULES, usize::MAX, progress)?;
+        Ok(outcome.map(|outcome| Outcome {
+            inertia: Inertia {
+                negative: outcome.inertia.negative + self.parts.equations.len(),
+                ..outcome.inertia
+            },
+            ..outcome
+        }))
     }
 
-    fn factor_blocks(&mut self) -> bool {
+    /// Whether the equations of all blocks are independent.
+    fn factor_blocks(&mut self, progress: &mut Progress<'_>) -> Result<bool, Stopped> {
         self.blocks.clear();
-        let blocks = self.parts.blocks.iter().enumerate();
-        blocks.into_iter().all(|(k, block)| {
+        for (k, block) in self.parts.blocks.iter().enumerate() {
+            progress.add(block.equations.len().pow(2) * block.states.len() / 2)?;
             for item in &block.own {
                 let equation = item.row as usize - block.equations.start;
                 let state = item.column as usize - block.states.start;
                 let value = self.values[item.value as usize];
                 self.blocks.add(k, equation, state, value);
             }
-            self.blocks.factor(k)
-        })
+            if !self.blocks.factor(k) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// S of one block.
@@ -208,10 +222,12 @@ impl Condensed {
     }
 
     /// R: each block adds `Sᵀ W` and its transpose, with W = ½ H S of its own states, H S of earlier ones, and Kᵀ.
-    fn reduce(&mut self) {
+    fn reduce(&mut self, progress: &mut Progress<'_>) -> Result<(), Stopped> {
         let plain = self.parts.plans[0].pattern().0.len();
         let (mut end, mut end_of_diagonals) = (0, plain);
         for k in 0..self.parts.blocks.len() {
+            let block = &self.parts.blocks[k];
+            progress.add(block.states.len() * block.reach.len() * block.weighted.len())?;
             self.weigh(k);
             end = self.add_responses(k, end);
             if self.has_diagonal {
@@ -224,6 +240,7 @@ impl Condensed {
         for &at in &self.parts.twice {
             self.entries[at as usize] *= 2.0;
         }
+        Ok(())
     }
 
     /// W of one block, in `rows`.

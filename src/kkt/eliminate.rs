@@ -7,6 +7,7 @@ use pulp::{Simd, WithSimd};
 
 use super::dense::Dense;
 use super::pivot::{Pivot, Rules};
+use super::progress::{Progress, Stopped};
 use super::update::{Packed, Panel, update};
 
 /// Columns of a panel: wide, so that good pairs are found in it.
@@ -32,18 +33,19 @@ pub(super) struct Count {
 }
 
 /// Eliminates what it can; at a root, all.
-pub(super) struct Eliminate<'a, 'b> {
+pub(super) struct Eliminate<'a, 'b, 'c> {
     pub(super) front: Dense<'a>,
     pub(super) rules: Rules,
     pub(super) is_root: bool,
     pub(super) workspace: &'b mut Workspace,
+    pub(super) progress: &'b mut Progress<'c>,
 }
 
-impl WithSimd for Eliminate<'_, '_> {
-    type Output = Count;
+impl WithSimd for Eliminate<'_, '_, '_> {
+    type Output = Result<Count, Stopped>;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, unit: S) -> Count {
+    fn with_simd<S: Simd>(mut self, unit: S) -> Self::Output {
         let all = self.front.candidates;
         let mut count = Count::default();
         let mut tail = all;
@@ -55,7 +57,7 @@ impl WithSimd for Eliminate<'_, '_> {
             } else {
                 begin + PANEL
             };
-            self.panel(unit, end, &mut count);
+            self.panel(unit, end, &mut count)?;
             let left = end - count.eliminated;
             for i in 0..left.min(tail - end) {
                 self.front.swap(count.eliminated + i, tail - 1 - i);
@@ -63,28 +65,29 @@ impl WithSimd for Eliminate<'_, '_> {
             tail -= left;
         }
         if count.eliminated < all {
-            self.panel(unit, all, &mut count);
+            self.panel(unit, all, &mut count)?;
         }
         if self.is_root && count.eliminated < all {
             self.rules.threshold = 0.0;
-            self.panel(unit, all, &mut count);
+            self.panel(unit, all, &mut count)?;
             for q in count.eliminated..all {
                 self.front.clear(q);
             }
             count.zero += all - count.eliminated;
             count.eliminated = all;
         }
-        count
+        Ok(count)
     }
 }
 
-impl Eliminate<'_, '_> {
+impl Eliminate<'_, '_, '_> {
     /// Eliminates columns up to `end` as long as there are pivots, and updates those behind.
     #[inline(always)]
-    fn panel<S: Simd>(&mut self, unit: S, end: usize, count: &mut Count) {
+    fn panel<S: Simd>(&mut self, unit: S, end: usize, count: &mut Count) -> Result<(), Stopped> {
         let begin = count.eliminated;
         let stride = self.front.stride;
         let needed = (end - begin) * stride;
+        self.progress.add(needed * (self.front.order - begin) / 2)?;
         if self.workspace.unscaled.len() < needed {
             self.workspace.unscaled.resize(needed, 0.0);
         }
@@ -124,5 +127,6 @@ impl Eliminate<'_, '_> {
             let packed = &mut self.workspace.packed;
             update(unit, packed, panel, right, (end, self.front.order));
         }
+        Ok(())
     }
 }

@@ -18,6 +18,7 @@
 //! | `numeric`, `solve`, `scales` | factors, solutions, equilibration |
 //! | `groups`, `condense`, `condensed`, `products`, `block_lu`, `substitute` | unknowns that equations determine, eliminated before all others |
 //! | `solver` | when to scale, how strictly to pivot, whether the factors are good |
+//! | `progress` | whether a long factorisation is to go on |
 //!
 //! After the first matrix nothing is allocated, unless more pivots are delayed than ever before.
 
@@ -36,6 +37,7 @@ mod order;
 mod pivot;
 mod plan;
 mod products;
+mod progress;
 mod scales;
 mod solve;
 mod solver;
@@ -46,4 +48,5 @@ mod update;
 pub use inertia::Inertia;
 pub use order::Unknown;
 pub use plan::Plan;
+pub use progress::Stopped;
 pub use solver::{Solver, Statistics};

@@ -8,6 +8,7 @@ use super::fronts::{Front, Fronts};
 use super::inertia::Inertia;
 use super::lanes::padded;
 use super::pivot::Rules;
+use super::progress::{Progress, Stopped};
 
 /// Rows of a leaf of one column that is eliminated without a front.
 const SHORT: usize = 32;
@@ -67,14 +68,16 @@ pub(super) struct Outcome {
 }
 
 impl Factors {
-    /// Factors the matrix with these entries. `None` if more columns than `most_delays` are delayed; there are no factors then.
+    /// Factors the matrix with these entries. `None` if more columns than `most_delays` are delayed; there are no factors then, and none
+    /// where it was stopped.
     pub(super) fn factor(
         &mut self,
         plan: &Fronts,
         entries: &[f64],
         rules: Rules,
         most_delays: usize,
-    ) -> Option<Outcome> {
+        progress: &mut Progress<'_>,
+    ) -> Result<Option<Outcome>, Stopped> {
         self.blocks.clear();
         self.unknowns.clear();
         self.columns.clear();
@@ -84,23 +87,27 @@ impl Factors {
         let mut outcome = Outcome::default();
         let arch = Arch::new();
         for front in &plan.list {
+            progress.add(front.unknowns.len().pow(2))?;
             let is_leaf = front.children.is_empty() && front.columns == 1;
             let is_short = front.unknowns.len() <= SHORT && !front.is_root;
             let count = match is_leaf && is_short {
                 true => self.leaf(plan, front, entries, rules),
                 false => None,
             };
-            let count = count.unwrap_or_else(|| self.front(arch, plan, front, entries, rules));
+            let count = match count {
+                Some(count) => count,
+                None => self.front(arch, plan, front, (entries, rules), progress)?,
+            };
             let block = self.blocks.last().expect("a block for each front");
             self.largest = self.largest.max(block.order);
             outcome.inertia.negative += count.negative;
             outcome.inertia.zero += count.zero;
             outcome.delays += block.delayed;
             if outcome.delays > most_delays {
-                return None;
+                return Ok(None);
             }
         }
-        Some(outcome)
+        Ok(Some(outcome))
     }
 
     /// A front of one column and no children, without making it; `None` if its diagonal is no pivot.
@@ -157,9 +164,9 @@ impl Factors {
         arch: Arch,
         plan: &Fronts,
         front: &Front,
-        entries: &[f64],
-        rules: Rules,
-    ) -> Count {
+        (entries, rules): (&[f64], Rules),
+        progress: &mut Progress<'_>,
+    ) -> Result<Count, Stopped> {
         let children = &plan.children[front.children.clone()];
         let delayed_to = |&child: &u32| self.blocks[child as usize].delayed;
         let delayed: usize = children.iter().map(delayed_to).sum();
@@ -187,7 +194,8 @@ impl Factors {
             rules,
             is_root: front.is_root,
             workspace: &mut self.workspace,
-        });
+            progress,
+        })?;
         block.eliminated = count.eliminated;
         block.delayed = candidates - count.eliminated;
         self.pivots.truncate(block.pivots + count.eliminated);
@@ -204,7 +212,7 @@ impl Factors {
             self.stack.extend_from_slice(column);
         }
         self.blocks.push(block);
-        count
+        Ok(count)
     }
 
     /// Sums the entries that begin in a front and the remainders of its children; columns delayed to it come first.

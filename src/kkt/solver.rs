@@ -6,6 +6,7 @@
 //!   wrong, and the matrix is factored again under a stricter rule.
 //! * Where equations determine unknowns cheaply the system is condensed; one whose equations depend on each other or have a diagonal that they do
 //!   not bear, or that grows along the horizon, is factored as it is.
+//! * Long work asks now and then whether it is to stop; there are no factors then.
 //! * Zero pivots are counted in an equilibrated matrix under the strictest rule.
 
 use super::condensed::Condensed;
@@ -13,6 +14,7 @@ use super::inertia::Inertia;
 use super::numeric::{Factors, Outcome};
 use super::pivot::Rules;
 use super::plan::Plan;
+use super::progress::{Progress, Stopped};
 use super::scales::Scales;
 use super::solve::solve;
 
@@ -161,6 +163,24 @@ impl Solver {
     ///
     /// If there are more or fewer entries than in the pattern.
     pub fn factor(&mut self, entries: &[f64]) -> Inertia {
+        let factored = self.factor_unless(entries, &|| false);
+        factored.expect("nothing stops it")
+    }
+
+    /// The same, unless it is told to stop, as it asks at the beginning and after about a millisecond again and again.
+    ///
+    /// # Errors
+    ///
+    /// Where `is_over` said so; the matrix is not factored then.
+    ///
+    /// # Panics
+    ///
+    /// If there are more or fewer entries than in the pattern.
+    pub fn factor_unless(
+        &mut self,
+        entries: &[f64],
+        is_over: &dyn Fn() -> bool,
+    ) -> Result<Inertia, Stopped> {
         assert_eq!(
             entries.len(),
             self.plan.pattern().0.len(),
@@ -169,19 +189,20 @@ impl Solver {
         self.statistics.factorisations += 1;
         self.entries.clear();
         self.entries.extend_from_slice(entries);
-        self.is_factored = entries.iter().all(|entry| entry.is_finite());
-        if !self.is_factored {
-            return Inertia {
+        self.is_factored = false;
+        if !entries.iter().all(|entry| entry.is_finite()) {
+            return Ok(Inertia {
                 negative: 0,
                 zero: self.plan.order(),
-            };
+            });
         }
+        let progress = &mut Progress::new(is_over);
         self.care = match self.kept {
             0 => self.least,
             _ => self.least.max(self.lately),
         };
         let outcome = loop {
-            match self.attempt() {
+            match self.attempt(progress)? {
                 Ok(outcome) => break outcome,
                 // Growth hides zeros, so that no weak rule counts them all.
                 Err(Doubt::Zeros) => self.care = Care::Strict,
@@ -193,17 +214,23 @@ impl Solver {
             }
         };
         self.kept = self.kept.saturating_sub(1);
+        self.is_factored = true;
         self.statistics.delays += outcome.delays;
-        outcome.inertia
+        Ok(outcome.inertia)
     }
 
     /// A factorisation with the care at hand, unless a stricter one may be better.
-    fn attempt(&mut self) -> Result<Outcome, Doubt> {
+    fn attempt(&mut self, progress: &mut Progress<'_>) -> Result<Result<Outcome, Doubt>, Stopped> {
         let outcome = match self.care {
-            Care::Condensed => self.condensed().ok_or(Doubt::Structure)?,
-            Care::Plain => self.plain().ok_or(Doubt::Growth)?,
-            _ => self.equilibrated(),
+            Care::Condensed => self.condensed(progress)?.ok_or(Doubt::Structure),
+            Care::Plain => self.plain(progress)?.ok_or(Doubt::Growth),
+            _ => Ok(self.equilibrated(progress)?),
         };
+        Ok(outcome.and_then(|outcome| self.judge(outcome)))
+    }
+
+    /// What was found, unless a stricter care may be better.
+    fn judge(&mut self, outcome: Outcome) -> Result<Outcome, Doubt> {
         if outcome.inertia.zero > 0 {
             // The solution of a singular system tells nothing.
             return match self.care {
@@ -221,43 +248,51 @@ impl Solver {
     }
 
     /// The matrix condensed, if its equations allow it.
-    fn condensed(&mut self) -> Option<Outcome> {
-        let outcome = self.condensed.as_mut()?.factor(&self.entries)?;
-        self.statistics.condensed += 1;
-        Some(outcome)
+    fn condensed(&mut self, progress: &mut Progress<'_>) -> Result<Option<Outcome>, Stopped> {
+        let Some(condensed) = &mut self.condensed else {
+            return Ok(None);
+        };
+        let outcome = condensed.factor(&self.entries, progress)?;
+        self.statistics.condensed += usize::from(outcome.is_some());
+        Ok(outcome)
     }
 
     /// The matrix as it is, if there are few delays.
-    fn plain(&mut self) -> Option<Outcome> {
+    fn plain(&mut self, progress: &mut Progress<'_>) -> Result<Option<Outcome>, Stopped> {
         let few = self.plan.order() / MANY;
         let rules = rules(self.care);
         self.factors
-            .factor(&self.plan.fronts, &self.entries, rules, few)
+            .factor(&self.plan.fronts, &self.entries, rules, few, progress)
     }
 
     /// The matrix with its scales: those of an earlier one as long as they do.
-    fn equilibrated(&mut self) -> Outcome {
+    fn equilibrated(&mut self, progress: &mut Progress<'_>) -> Result<Outcome, Stopped> {
         let are_kept = self.kept > 0 && self.kept < KEPT && self.least == Care::Plain;
         if are_kept {
-            let outcome = self.scaled(self.plan.order() / MANY);
+            let outcome = self.scaled(self.plan.order() / MANY, progress)?;
             if let Some(outcome) = outcome.filter(|outcome| outcome.inertia.zero == 0) {
-                return outcome;
+                return Ok(outcome);
             }
         }
         self.statistics.equilibrations += 1;
         let plan = &self.plan;
         self.scales
             .find(plan.order(), plan.pattern(), &self.entries);
-        self.scaled(usize::MAX).expect("any number of delays")
+        let outcome = self.scaled(usize::MAX, progress)?;
+        Ok(outcome.expect("any number of delays"))
     }
 
     /// The matrix with the scales at hand.
-    fn scaled(&mut self, most_delays: usize) -> Option<Outcome> {
+    fn scaled(
+        &mut self,
+        most_delays: usize,
+        progress: &mut Progress<'_>,
+    ) -> Result<Option<Outcome>, Stopped> {
         self.scales
             .scale(self.plan.pattern(), &self.entries, &mut self.scaled);
         let rules = rules(self.care);
-        self.factors
-            .factor(&self.plan.fronts, &self.scaled, rules, most_delays)
+        let (factors, fronts) = (&mut self.factors, &self.plan.fronts);
+        factors.factor(fronts, &self.scaled, rules, most_delays, progress)
     }
 
     /// Replaces a right-hand side by the solution; by NaN if the matrix was not finite.

@@ -14,3 +14,4 @@ mod kkt;
 mod linear_solver;
 mod matrices;
 mod sparse;
+mod stopped;

@@ -1,0 +1,37 @@
+//! Long work that may be told to stop in its midst.
+
+/// Multiplications between two questions: about a millisecond, and more than a small system takes.
+const BETWEEN: usize = 1 << 22;
+
+/// The matrix is not factored, because it was time to stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("stopped within a factorisation")]
+pub struct Stopped;
+
+/// Asks whether to stop: at the beginning, then after so much work that a question costs nothing against it.
+pub(super) struct Progress<'a> {
+    is_over: &'a dyn Fn() -> bool,
+    /// Multiplications since the last question.
+    since: usize,
+}
+
+impl<'a> Progress<'a> {
+    pub(super) fn new(is_over: &'a dyn Fn() -> bool) -> Self {
+        Self {
+            is_over,
+            since: BETWEEN,
+        }
+    }
+
+    /// Says how many multiplications come next.
+    pub(super) fn add(&mut self, multiplications: usize) -> Result<(), Stopped> {
+        if self.since >= BETWEEN {
+            self.since = 0;
+            if (self.is_over)() {
+                return Err(Stopped);
+            }
+        }
+        self.since += multiplications;
+        Ok(())
+    }
+}

@@ -1,0 +1,252 @@
+//! Factorisations that are told to stop, alone and within a solve.
+
+use crate::common::programs::{Program, bounds};
+use crate::horizon::{Horizon, System};
+use crate::ipopt::from;
+use crate::matrices::Random;
+use proboscis::ipopt::{Iteration, Options, Solver, Status};
+use proboscis::kkt::{Plan, Solver as Factors, Stopped, Unknown};
+use std::cell::{Cell, RefCell};
+use std::ops::ControlFlow;
+use std::rc::Rc;
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::{Duration, Instant};
+
+const SMALL: Horizon = Horizon {
+    intervals: 40,
+    states: 6,
+    inputs: 3,
+    limits: 1,
+    has_border: false,
+    own: 0.0,
+};
+
+/// Few inputs, so that it is condensed.
+const LONG: Horizon = Horizon {
+    intervals: 5,
+    states: 260,
+    inputs: 1,
+    limits: 0,
+    has_border: false,
+    own: 260.0,
+};
+
+/// One front.
+fn dense(order: usize, random: &mut Random) -> System {
+    let mut system = System {
+        rows: Vec::new(),
+        cols: Vec::new(),
+        entries: Vec::new(),
+        unknowns: vec![Unknown::Variable(0); order],
+    };
+    for i in 0..order {
+        for j in 0..=i {
+            system.push(i, j, random.number());
+        }
+    }
+    system
+}
+
+fn factors(system: &System) -> Factors {
+    let unknowns = Some(system.unknowns.as_slice());
+    let plan = Plan::new(system.order(), &system.rows, &system.cols, unknowns);
+    Factors::new(plan)
+}
+
+fn solution(factors: &mut Factors) -> Vec<f64> {
+    let order = factors.plan().order();
+    let mut x: Vec<f64> = (0..order).map(|i| (i as f64).cos()).collect();
+    factors.solve(&mut x);
+    x
+}
+
+/// How often a factorisation asks whether to stop.
+fn questions(system: &System) -> usize {
+    let asked = Cell::new(0);
+    let count = || {
+        asked.set(asked.get() + 1);
+        false
+    };
+    factors(system)
+        .factor_unless(&system.entries, &count)
+        .unwrap();
+    asked.get()
+}
+
+#[test]
+fn a_factorisation_stops_at_any_question_and_leaves_no_trace() {
+    let mut random = Random(31);
+    let condensed = System::of_horizon(LONG, 1.0, &mut random);
+    for (system, is_condensed) in [(condensed, true), (dense(700, &mut random), false)] {
+        let mut fresh = factors(&system);
+        let inertia = fresh.factor(&system.entries);
+        assert!(inertia.negative > 0 && inertia.zero == 0);
+        assert_eq!(fresh.statistics().condensed, usize::from(is_condensed));
+        let expected = solution(&mut fresh);
+        assert!(expected.iter().any(|x| x.abs() > 1e-6));
+        let questions = questions(&system);
+        assert!(questions >= 3, "{questions}");
+        let mut factors = factors(&system);
+        for last in [0, 1, questions / 2, questions - 1] {
+            let left = Cell::new(last);
+            let is_over = || left.replace(left.get().saturating_sub(1)) == 0;
+            let stopped = factors.factor_unless(&system.entries, &is_over);
+            assert_eq!(stopped, Err(Stopped), "question {last} of {questions}");
+            assert!(solution(&mut factors).iter().all(|x| x.is_nan()));
+            assert_eq!(factors.factor(&system.entries), inertia);
+            assert!(solution(&mut factors) == expected);
+        }
+    }
+}
+
+/// A question takes as long as some hundred multiplications.
+#[test]
+fn a_small_system_asks_once() {
+    let system = System::of_horizon(SMALL, 1.0, &mut Random(32));
+    assert!(system.order() > 500);
+    assert_eq!(questions(&system), 1);
+}
+
+/// When the Hessian answers next time: at once, or shortly before the time is over.
+type Answer = Arc<Mutex<Option<(usize, Instant)>>>;
+
+/// Σ over all pairs of `½ aᵢⱼ xᵢ xⱼ + ¼ xᵢ⁴ − xᵢ` on a sphere: the Hessian is dense.
+fn large(order: usize, answer: Answer) -> Program {
+    let places: Vec<(u32, u32)> = (0..order as u32)
+        .flat_map(|i| (0..=i).map(move |j| (i, j)))
+        .collect();
+    let mut random = Random(33);
+    let of_place = |&(i, j): &(u32, u32)| random.number() + if i == j { 30.0 } else { 0.0 };
+    let values: Vec<f64> = places.iter().map(of_place).collect();
+    let product = {
+        let (places, values) = (places.clone(), values.clone());
+        move |x: &[f64]| {
+            let mut to = vec![0.0; x.len()];
+            for (&(i, j), value) in places.iter().zip(&values) {
+                to[i as usize] += value * x[j as usize];
+                if i != j {
+                    to[j as usize] += value * x[i as usize];
+                }
+            }
+            to
+        }
+    };
+    let of_gradient = product.clone();
+    let diagonal: Vec<usize> = (0..order).map(|i| i * (i + 3) / 2).collect();
+    Program {
+        variables: bounds(&vec![(-3.0, f64::INFINITY); order]),
+        constraints: bounds(&[(order as f64, order as f64)]),
+        jacobian_places: (0..order as u32).map(|j| (0, j)).collect(),
+        hessian_places: places,
+        f: Box::new(move |x| {
+            let of_x = |(x, p): (&f64, f64)| 0.5 * x * p + 0.25 * x.powi(4) - x;
+            x.iter().zip(product(x)).map(of_x).sum()
+        }),
+        grad: Box::new(move |x, grad| {
+            for ((grad, p), x) in grad.iter_mut().zip(of_gradient(x)).zip(x) {
+                *grad = p + x.powi(3) - 1.0;
+            }
+        }),
+        g: Box::new(|x, g| g[0] = x.iter().map(|x| x * x).sum()),
+        jac: Box::new(|x, to| to.iter_mut().zip(x).for_each(|(to, x)| *to = 2.0 * x)),
+        hess: Box::new(move |x, sigma, y, to| {
+            to.iter_mut()
+                .zip(&values)
+                .for_each(|(to, v)| *to = sigma * v);
+            for (&at, x) in diagonal.iter().zip(x) {
+                to[at] += sigma * 3.0 * x * x + 2.0 * y[0];
+            }
+            let mut answer = answer.lock().unwrap();
+            if let Some((calls, at)) = &mut *answer {
+                *calls -= 1;
+                if *calls == 0 {
+                    thread::sleep(at.saturating_duration_since(Instant::now()));
+                }
+            }
+        }),
+    }
+}
+
+/// Iterates that an observer has heard of.
+type Heard = Rc<RefCell<Vec<(Iteration, Vec<f64>)>>>;
+
+/// Hears of iterates up to the last one it wants.
+fn observer(heard: &Heard, last: usize) -> impl FnMut(&Iteration, &[f64]) -> ControlFlow<()> {
+    let heard = heard.clone();
+    move |iteration, x| {
+        heard.borrow_mut().push((*iteration, x.to_vec()));
+        match iteration.iteration < last {
+            true => ControlFlow::Continue(()),
+            false => ControlFlow::Break(()),
+        }
+    }
+}
+
+/// The Hessian of the third iterate comes shortly before the time is over, so that the factorisation is stopped: what is left is the same as if
+/// the observer had stopped at this iterate.
+#[test]
+fn a_limit_within_a_factorisation_leaves_the_last_iterate() {
+    const LAST: usize = 2;
+    const ORDER: usize = 400;
+    let answer = Answer::default();
+    let point = from(&vec![0.3; ORDER]);
+    let heard = Heard::default();
+    let mut solver = Solver::new(large(ORDER, answer.clone()), Options::default());
+    let began = Instant::now();
+    let whole = solver.solve(&point, &mut observer(&heard, usize::MAX));
+    let whole = whole.unwrap().clone();
+    let took = began.elapsed();
+    assert!(whole.status.is_solved() && whole.iterations.len() > LAST + 2);
+    let of_whole = heard.take();
+    let stages = whole.linear.stages.unwrap();
+    let count = stages.statistics.factorisations;
+    let of_one = Duration::from_secs_f64(stages.factorisation / count as f64);
+
+    let asked = solver.solve(&point, &mut observer(&heard, LAST)).unwrap();
+    let asked = asked.clone();
+    assert_eq!(asked.status, Status::Interrupted);
+    assert!(asked.costates.constraints[0].abs() > 1e-6);
+    let of_asked = heard.take();
+    assert!(of_asked == of_whole[..=LAST]);
+
+    // Where another program takes the core in the wrong moment the time is over before the factorisation, or after it.
+    let limit = took + of_one;
+    let stopped = (0..10).find_map(|_| {
+        heard.take();
+        let began = Instant::now();
+        *answer.lock().unwrap() = Some((LAST + 1, began + limit - of_one / 2));
+        solver.set_options(Options {
+            max_seconds: Some(limit.as_secs_f64()),
+            ..Options::default()
+        });
+        let result = solver.solve(&point, &mut observer(&heard, usize::MAX));
+        let result = result.unwrap().clone();
+        result.linear.stages.unwrap().stopped.map(|_| result)
+    });
+    let stopped = stopped.expect("a time that is over within a factorisation");
+    assert_eq!(stopped.status, Status::TimeLimit);
+    assert!(heard.take() == of_asked);
+    assert_eq!(stopped.x, asked.x);
+    assert_eq!(stopped.objective.to_bits(), asked.objective.to_bits());
+    assert_eq!(stopped.constraints, asked.constraints);
+    assert_eq!(stopped.iterations, asked.iterations);
+    let (costates, expected) = (&stopped.costates, &asked.costates);
+    assert_eq!(costates.constraints, expected.constraints);
+    assert_eq!(costates.upper, expected.upper);
+    let mu = stopped.iterations[LAST].mu;
+    for ((z, expected), x) in costates.lower.iter().zip(&expected.lower).zip(&stopped.x) {
+        assert!((z * (x + 3.0) / mu - 1.0).abs() < 1e-6, "{z} {x} {mu}");
+        assert!(
+            *expected > 0.0 && (0.1..10.0).contains(&(z / expected)),
+            "{z} {expected}"
+        );
+    }
+
+    *answer.lock().unwrap() = None;
+    solver.set_options(Options::default());
+    let again = solver.solve(&point, &mut observer(&heard, usize::MAX));
+    let again = again.unwrap();
+    assert_eq!(again.linear.stages.unwrap().stopped, None);
+    assert_eq!((&again.x, &again.iterations), (&whole.x, &whole.iterations));
+}
