@@ -7,6 +7,7 @@ mod again;
 mod checker;
 mod constrained;
 mod faults;
+mod hook;
 mod horizon;
 mod ipopt;
 mod ipopt_stops;
