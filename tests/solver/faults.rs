@@ -6,7 +6,9 @@ use proboscis::control::problem::Control;
 use proboscis::control::{BoundaryConditions, InitialGuess, Transcription, guess};
 use proboscis::dynamics::{DiscreteTrajectory, Start, StepError, simulate};
 use proboscis::functional::{Couplings, Kind, Order, Output, Sample, Term};
-use proboscis::ipopt::{self, Iteration, Options, SolverResult, StartingPoint, Status};
+use proboscis::ipopt::{
+    self, Iteration, LinearSolver, Options, SolverResult, StartingPoint, Status,
+};
 use proboscis::math::Vector;
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::{Bounds, Entries, Nlp};
@@ -147,10 +149,16 @@ fn pair() -> (Control, Model, BoundaryConditions) {
     (control, model, boundary)
 }
 
-fn solve(program: &mut Transcription<'_>, start: &StartingPoint, faults: &Faults) -> SolverResult {
+fn solve(
+    linear_solver: LinearSolver,
+    program: &mut Transcription<'_>,
+    start: &StartingPoint,
+    faults: &Faults,
+) -> SolverResult {
     let mut faulty = Faulty { program, faults };
     let options = Options {
         tolerance: 1e-10,
+        linear_solver,
         ..Options::default()
     };
     let mut observer = |_: &Iteration, _: &[f64]| match faults.strikes(Callback::Observer) {
@@ -190,25 +198,24 @@ fn bits(solution: &SolverResult) -> Vec<u64> {
     values.map(|value| value.to_bits()).collect()
 }
 
-#[test]
-fn every_call_of_a_solve_may_fail() {
-    silence_injected_panics();
+/// Solves with a fault in every call: which one, and how they ended.
+fn ends(linear_solver: LinearSolver) -> Vec<(String, SolverResult)> {
     let (control, model, boundary) = pair();
     let initial: InitialGuess = guess(&model, &boundary, &control, 10.0, None);
     let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
     let start = program.start(&initial);
+    let mut solve = |faults: &Faults| solve(linear_solver, &mut program, &start, faults);
     let counted = Faults::default();
-    let undisturbed = solve(&mut program, &start, &counted);
+    let undisturbed = solve(&counted);
     assert_eq!(undisturbed.status, Status::Solved);
     let calls = CALLBACKS.map(|callback| counted.calls[callback as usize].get());
     assert!(calls.iter().all(|&count| count > 10), "{calls:?}");
 
-    let mut ends: BTreeMap<String, usize> = BTreeMap::new();
+    let mut ends = Vec::new();
     for (callback, count) in CALLBACKS.into_iter().zip(calls) {
         for (call, way) in (1..=count).flat_map(|k| [(k, Way::False), (k, Way::Nan)]) {
             let told = format!("{callback:?}, call {call} of {count}, {way:?}");
-            let solution = solve(&mut program, &start, &Faults::at(callback, call, way));
-            *ends.entry(solution.status.to_string()).or_default() += 1;
+            let solution = solve(&Faults::at(callback, call, way));
             assert!(is_finite(&solution), "{told}: {solution:?}");
             match solution.status {
                 Status::Solved => {
@@ -226,23 +233,46 @@ fn every_call_of_a_solve_may_fail() {
                 Status::InvalidNumber => assert_ne!(callback, Callback::Observer, "{told}"),
                 status => panic!("{told}: {status}"),
             }
+            ends.push((told, solution));
         }
         for call in 1..=count {
             let told = format!("{callback:?}, call {call} of {count}");
             let faults = Faults::at(callback, call, Way::Panic);
-            let panic = catch_unwind(AssertUnwindSafe(|| solve(&mut program, &start, &faults)));
+            let panic = catch_unwind(AssertUnwindSafe(|| solve(&faults)));
             let message = panic.expect_err(&told);
             let message = message.downcast_ref::<String>().map(String::as_str);
             assert_eq!(message, Some(INJECTED), "{told}");
-            let again = solve(&mut program, &start, &Faults::default());
+            let again = solve(&Faults::default());
             assert_eq!(bits(&again), bits(&undisturbed), "{told}");
         }
     }
-    println!("{calls:?} calls, {ends:?}");
+    let mut words: BTreeMap<&str, usize> = BTreeMap::new();
+    for (_, solution) in &ends {
+        *words.entry(solution.status.word()).or_default() += 1;
+    }
+    println!("{calls:?} calls, {words:?}");
     // Failed trial points were got over, missing derivatives told.
-    assert!(ends["solved"] > 20, "{ends:?}");
-    assert!(ends["invalid_number"] > 20, "{ends:?}");
-    assert_eq!(ends["interrupted"], 2 * calls[5], "{ends:?}");
+    assert!(words["solved"] > 20, "{words:?}");
+    assert!(words["invalid_number"] > 20, "{words:?}");
+    assert_eq!(words["interrupted"], 2 * calls[5], "{words:?}");
+    ends
+}
+
+#[test]
+fn every_call_of_a_solve_may_fail_under_both_linear_solvers() {
+    silence_injected_panics();
+    let [stages, mumps] = [LinearSolver::Stages, LinearSolver::Mumps].map(ends);
+    assert_eq!(stages.len(), mumps.len());
+    for ((told, one), (same, other)) in stages.iter().zip(&mumps) {
+        assert_eq!(told, same);
+        assert_eq!(one.status, other.status, "{told}");
+        let iterations = one.iterations.len().abs_diff(other.iterations.len());
+        assert!(iterations <= 1, "{told}: {iterations}");
+        if one.status.is_solved() {
+            let error = (one.objective / other.objective - 1.0).abs();
+            assert!(error < 1e-9, "{told}: {error}");
+        }
+    }
 }
 
 /// An effect whose derivatives do not exist in some of its evaluations.
