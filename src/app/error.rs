@@ -1,6 +1,7 @@
 //! Why a command gives no answer: the input is wrong, or a file cannot be written.
 
 use std::error::Error as StdError;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
@@ -61,6 +62,14 @@ pub enum CommandError {
     /// A file stands where a new one was to be written.
     #[error("{} exists already and is left as it is; choose another folder", .0.display())]
     Exists(PathBuf),
+    /// A result that was written cannot be read.
+    #[error("cannot read {}: {cause}", file.display())]
+    Unreadable {
+        /// The file.
+        file: PathBuf,
+        /// What the operating system said.
+        cause: io::Error,
+    },
     /// A file could not be written.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -71,7 +80,10 @@ impl CommandError {
     /// be kept.
     pub fn exit_status(&self) -> u8 {
         match self {
-            Self::Write(_) | Self::Stopped(_) | Self::NoEquilibrium { .. } => 1,
+            Self::Write(_)
+            | Self::Unreadable { .. }
+            | Self::Stopped(_)
+            | Self::NoEquilibrium { .. } => 1,
             _ => 2,
         }
     }

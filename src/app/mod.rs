@@ -50,5 +50,6 @@ pub(crate) use progress::progress_bar;
 pub use progress::{ProgressDisplay, Reached};
 pub use request::{CommandInput, CommandOutput};
 pub use rest::equilibrium_of_file;
+pub use summary::written_summary;
 pub use task::{run, run_observed};
-pub use templates::{expand, new_trunk, schema, study_schema};
+pub use templates::{Template, expand, new_files, schema, study_schema, write_file};

@@ -1,8 +1,10 @@
 //! What is typed and what is told: a command with its options, and its answer.
 
+use std::ffi::OsStr;
 use std::path::PathBuf;
 
 use crate::app::progress::ProgressDisplay;
+use crate::files::is_standard_input;
 use crate::report::origin::Origin;
 use crate::workflow::accuracy::AccuracyTarget;
 
@@ -11,7 +13,7 @@ use crate::workflow::accuracy::AccuracyTarget;
 pub struct CommandInput {
     /// The command as typed.
     pub command: String,
-    /// The problem file as typed.
+    /// The problem file as typed; `-` for standard input.
     pub input: PathBuf,
     /// Overrides `path=value`.
     pub set: Vec<String>,
@@ -42,7 +44,10 @@ impl CommandInput {
     /// Folder for the results.
     pub fn folder(&self) -> PathBuf {
         self.output.clone().unwrap_or_else(|| {
-            let stem = self.input.file_stem().unwrap_or_default();
+            let stem = match is_standard_input(&self.input) {
+                true => OsStr::new("stdin"),
+                false => self.input.file_stem().unwrap_or_default(),
+            };
             PathBuf::from("results").join(stem)
         })
     }

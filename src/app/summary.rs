@@ -1,11 +1,13 @@
 //! `summary.json`: what was asked, how it ended, how large it was and how long it took.
 
+use std::fs;
 use std::path::Path;
 
 use serde::Serialize;
 
 use crate::app::blocks::BlockSizes;
 use crate::app::comparison::Comparison;
+use crate::app::error::CommandError;
 use crate::app::exchanged::Exchanged;
 use crate::app::followed::Followed;
 use crate::app::request::CommandInput;
@@ -331,6 +333,15 @@ impl Versions {
             ipopt: ipopt::VERSION,
         }
     }
+}
+
+/// The summary that a command has written.
+///
+/// # Errors
+/// It cannot be read any more.
+pub fn written_summary(request: &CommandInput) -> Result<String, CommandError> {
+    let file = request.folder().join("summary.json");
+    fs::read_to_string(&file).map_err(|cause| CommandError::Unreadable { file, cause })
 }
 
 impl Summary {

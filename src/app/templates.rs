@@ -1,4 +1,4 @@
-//! Files to begin with: a trunk of any length, the scene without shorthand, the schemas.
+//! Files to begin with: robots, the scene without shorthand, the schemas.
 
 use std::path::{Path, PathBuf};
 
@@ -7,28 +7,77 @@ use crate::app::folder::make_folder;
 use crate::files;
 use crate::report::atomic;
 
-/// Writes `scene.json` and `problem.json` of a trunk into a folder; files that exist are left alone.
+/// A robot to begin with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Template {
+    /// Segments in a row, with two muscles at each joint, steered from rest to rest.
+    Trunk {
+        /// Their number.
+        segments: usize,
+    },
+    /// An arm of three links under gravity, steered to a posture.
+    Arm,
+    /// A finger of finite elements with two electrodes, steered to a bent state of rest.
+    Finger,
+    /// Two fingers of two phalanges, which close.
+    Gripper,
+    /// A body that nothing holds, with a trunk, which tumbles.
+    Satellite,
+}
+
+impl Template {
+    /// Its scene and its problem.
+    fn files(self) -> (String, String) {
+        macro_rules! kept {
+            ($name:literal) => {
+                (
+                    include_str!(concat!("templates/", $name, ".scene.json")).to_owned(),
+                    include_str!(concat!("templates/", $name, ".problem.json")).to_owned(),
+                )
+            };
+        }
+        match self {
+            Self::Trunk { segments } => files::new_trunk(segments),
+            Self::Arm => kept!("arm"),
+            Self::Finger => kept!("finger"),
+            Self::Gripper => kept!("gripper"),
+            Self::Satellite => kept!("satellite"),
+        }
+    }
+}
+
+/// Writes `scene.json` and `problem.json` of a robot into a folder; files that exist are left alone.
 ///
 /// # Errors
-/// There are no segments, a file exists, or cannot be written.
-pub fn new_trunk(segments: usize, folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
-    if segments == 0 {
+/// A trunk has no segments, a file exists, or cannot be written.
+pub fn new_files(template: Template, folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
+    if template == (Template::Trunk { segments: 0 }) {
         return Err(CommandError::Option {
             option: "--segments",
             reason: "a trunk has 1 segment or more".to_owned(),
         });
     }
-    let (scene, problem) = files::new_trunk(segments);
+    let (scene, problem) = template.files();
     let files = [("scene.json", scene), ("problem.json", problem)]
         .map(|(name, text)| (folder.join(name), text));
     if let Some((path, _)) = files.iter().find(|(path, _)| path.exists()) {
         return Err(CommandError::Exists(path.clone()));
     }
-    make_folder(folder)?;
     for (path, text) in &files {
-        atomic::write(path, text.as_bytes())?;
+        write_file(path, text.as_bytes())?;
     }
     Ok(files.map(|(path, _)| path).to_vec())
+}
+
+/// Writes a file, and the folders that it lies in where they are missing.
+///
+/// # Errors
+/// It cannot be written.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
+    if let Some(folder) = path.parent() {
+        make_folder(folder)?;
+    }
+    Ok(atomic::write(path, bytes)?)
 }
 
 /// The scene of a file without shorthand.

@@ -14,7 +14,7 @@ pub mod study;
 mod typed;
 pub mod units;
 
-pub(crate) use json::document::Document;
+pub(crate) use json::document::{Document, is_standard_input};
 pub use json::error::{SceneError, printable};
 pub(crate) use json::layout::lay_out;
 pub(crate) use json::locate::JsonPath;
@@ -50,12 +50,12 @@ pub struct Loaded {
     pub problem: Value,
 }
 
-/// Reads a problem file and its scene, with overrides such as `control.intervals=80` or `scene.gravity=[0,0,0]`.
+/// Reads a problem file, or standard input where it is `-`, and its scene, with overrides such as `control.intervals=80` or `scene.gravity=[0,0,0]`.
 ///
 /// # Errors
 /// A file cannot be read, is no JSON, or says what does not make sense; the error has its place.
 pub fn read_problem(path: &Path, overrides: &[String]) -> Result<Loaded, SceneError> {
-    problem_of(|| Document::read(path), overrides)
+    problem_of(|| Document::read_typed(path), overrides)
 }
 
 /// Reads a problem from its text, as if it stood in the file `path`, which need not exist: paths in it are relative to that file.

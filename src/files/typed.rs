@@ -18,7 +18,7 @@ use crate::model::system::{Source, System};
 /// # Errors
 /// The file, its scene or an override is wrong.
 pub fn read_system(path: &Path, overrides: &[String]) -> Result<System, SceneError> {
-    let mut document = Document::read(path)?;
+    let mut document = Document::read_typed(path)?;
     if document.value.get("scene").is_some() {
         return Ok(crate::files::read_problem(path, overrides)?.system);
     }

@@ -54,6 +54,10 @@ pub enum Start {
     },
     /// Variables and multipliers close to a solution, of the same problem or of another goal on the same grid: both are hardly
     /// moved, and the barrier parameter follows from their complementarity (`mu_strategy adaptive`).
+    ///
+    /// Median and sum of the iterations to 32 moved goals of the trunk (N = 20) whose voltages of rest change by up to 20, 100, 300 V: 4 and 247,
+    /// 10 and 674, 39 and 1323; [`Start::Centred`] takes 10 and 430, 11 and 451, 19 and 613, a cold start about 21 each. The many iterations of a few
+    /// come from voltages that leave zero, where neither effort nor force has a slope: between 300 V and 3 kV the sum to the nearest goals halves.
     PrimalDual,
     /// Variables and multipliers of a solution on another grid or of another duration: bounded variables and the multipliers of
     /// their bounds are moved to the barrier's path at a parameter from their complementarity, which is then chosen in each

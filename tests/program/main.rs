@@ -14,6 +14,7 @@ mod paraview;
 mod refusals;
 mod report;
 mod runs;
+mod shell;
 mod sought;
 mod starts;
 mod study;

@@ -37,7 +37,17 @@ pub(crate) fn proboscis(folder: &Path) -> Command {
 
 /// Exit status, standard output and standard error of a run in a folder.
 pub(crate) fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let output = proboscis(folder).args(arguments).output().unwrap();
+    run_with_input(folder, arguments, "")
+}
+
+/// A run with a text on standard input.
+pub(crate) fn run_with_input(
+    folder: &Path,
+    arguments: &[&str],
+    input: &str,
+) -> (i32, String, String) {
+    let mut command = proboscis(folder);
+    let output = command.args(arguments).write_stdin(input).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     let status = output.status.code().unwrap();
     (status, text(output.stdout), text(output.stderr))

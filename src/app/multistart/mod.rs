@@ -19,7 +19,7 @@ use crate::app::folder::make_folder;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::words::key;
 use crate::control::problem::Task;
-use crate::files::read_problem;
+use crate::files::{is_standard_input, read_problem};
 use crate::ipopt::Options;
 use crate::workflow::memory;
 use crate::workflow::resolve::resolve;
@@ -68,6 +68,21 @@ pub fn solve_from_starts(
     };
     memory::of_elements(&loaded.system).map_err(CommandError::of(&request.input))?;
     resolve(&loaded.system, control).map_err(CommandError::of(&request.input))?;
+    let options = Options {
+        linear_solver: control.solver.linear_solver,
+        extra: control.solver.ipopt.clone(),
+        ..Options::default()
+    };
+    let run_in = match options.run_at_once() {
+        true => wanted,
+        false => StartsIn::Processes,
+    };
+    if run_in == StartsIn::Processes && is_standard_input(&request.input) {
+        return Err(CommandError::Option {
+            option: "--starts",
+            reason: "each process reads the problem anew, which standard input does not allow: give a file".to_owned(),
+        });
+    }
     let folder = request.folder();
     make_folder(&folder)?;
     remove_older(&folder.join(FOLDER));
@@ -80,15 +95,6 @@ pub fn solve_from_starts(
             seed: (number > 1).then(|| seed_of(number)),
         })
         .collect();
-    let options = Options {
-        linear_solver: control.solver.linear_solver,
-        extra: control.solver.ipopt.clone(),
-        ..Options::default()
-    };
-    let run_in = match options.run_at_once() {
-        true => wanted,
-        false => StartsIn::Processes,
-    };
     let batch = Batch {
         request,
         run_in,

@@ -2,8 +2,11 @@
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;
+use std::fs;
+use std::io::{self, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use crate::files::json::error::{Mistake, SceneError, is_printable, nearest};
 use crate::files::json::locate::{JsonPath, Step, locate};
@@ -21,11 +24,43 @@ pub(crate) struct Document {
     text: String,
 }
 
+/// Whether a file that is typed stands for standard input.
+pub(crate) fn is_standard_input(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// What came through standard input. A process reads it once: several starts have the same problem.
+fn standard_input() -> io::Result<Vec<u8>> {
+    static READ: Mutex<Option<Vec<u8>>> = Mutex::new(None);
+    let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(bytes) = &*read {
+        return Ok(bytes.clone());
+    }
+    let mut bytes = Vec::new();
+    io::stdin().lock().read_to_end(&mut bytes)?;
+    Ok(read.insert(bytes).clone())
+}
+
 impl Document {
+    /// Reads a file that is typed: standard input where it is `-`.
+    pub(crate) fn read_typed(path: &Path) -> Result<Self, SceneError> {
+        match is_standard_input(path) {
+            true => Self::from_bytes(path, standard_input),
+            false => Self::read(path),
+        }
+    }
+
     /// Reads a file.
     pub(crate) fn read(path: &Path) -> Result<Self, SceneError> {
+        Self::from_bytes(path, || fs::read(path))
+    }
+
+    fn from_bytes(
+        path: &Path,
+        bytes: impl FnOnce() -> io::Result<Vec<u8>>,
+    ) -> Result<Self, SceneError> {
         let document = Self::empty(path);
-        let bytes = std::fs::read(path).map_err(|error| {
+        let bytes = bytes().map_err(|error| {
             let found = format!("no readable file ({error})");
             document.mistake(&JsonPath::default(), found, "a JSON file")
         })?;

@@ -1,0 +1,281 @@
+//! What may be typed: commands, options and their meaning.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
+use clap_complete::Shell;
+use proboscis::app::{CommandInput, ProgressDisplay};
+use proboscis::study::StudyRequest;
+use proboscis::workflow::accuracy::AccuracyTarget;
+
+/// Simulation and optimal control of robots driven by dielectric elastomer muscles.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    after_help = "Exit status: 0 solved; 1 no solution, or stopped early; 2 wrong input."
+)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// Show events of solver and simulator on standard error; RUST_LOG chooses them more finely.
+    #[arg(short, long, global = true)]
+    pub(crate) verbose: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Solve a problem: find optimal voltages, or do what else its file asks.
+    Solve {
+        #[command(flatten)]
+        problem: InTime,
+        /// Stop after so many iterations of the solver; of a control problem only.
+        #[arg(long, value_name = "N")]
+        max_iterations: Option<usize>,
+        /// Solve from so many starting points, its own guess and random ones, and keep the best.
+        #[arg(long, value_name = "N", conflicts_with_all = ["accuracy", "estimate_error"])]
+        starts: Option<usize>,
+        /// Seed of the random starting points.
+        #[arg(long, value_name = "SEED", default_value_t = 1, requires = "starts")]
+        seed: u64,
+        /// Solve from each starting point in a process of its own, in place of threads; with MUMPS it is always so.
+        #[arg(long, requires = "starts")]
+        processes: bool,
+    },
+    /// Simulate a problem forward in time, or do what else its file asks.
+    Simulate(InTime),
+    /// Find the static equilibrium of a problem, or of any scene under given voltages.
+    Equilibrium {
+        #[command(flatten)]
+        problem: Problem,
+        /// Voltages such as muscle2=1.7kV,muscle3=1.6kV; 0 where not named.
+        #[arg(long, value_name = "MUSCLE=VOLTAGE", value_delimiter = ',')]
+        voltages: Option<Vec<String>>,
+    },
+    /// Show what a problem consists of: effects, unknowns, equations, nonzeros.
+    Inspect {
+        #[command(flatten)]
+        input: Input,
+        /// Folder for pictures of Jacobian and Hessian; none are drawn where it is not given.
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+    },
+    /// Compare the derivatives of a problem with differences.
+    Check {
+        #[command(flatten)]
+        input: Input,
+        /// Stop after so many seconds.
+        #[arg(long, value_name = "S", value_parser = seconds)]
+        max_seconds: Option<f64>,
+    },
+    /// Run variants of a problem, to see what accuracy costs in time.
+    Study(Variants),
+    /// Print a scene without shorthand.
+    Expand {
+        /// The scene file.
+        scene: PathBuf,
+    },
+    /// Print the JSON Schema of a file.
+    Schema {
+        /// Which file.
+        #[arg(default_value = "problem")]
+        file: File,
+    },
+    /// Write a scene and a problem to start from.
+    New {
+        #[command(subcommand)]
+        what: New,
+    },
+    /// Print what a shell needs to complete commands and options.
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
+    /// Write the manual pages of all commands.
+    Man {
+        /// Folder for them.
+        #[arg(default_value = ".")]
+        folder: PathBuf,
+    },
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum New {
+    /// A trunk of segments with two muscles at each joint, and its rest-to-rest problem.
+    Trunk {
+        /// Number of segments.
+        #[arg(long, default_value_t = 6)]
+        segments: usize,
+        #[command(flatten)]
+        files: NewFiles,
+    },
+    /// An arm of three links under gravity, with two muscles at each joint, steered to a posture.
+    Arm(NewFiles),
+    /// A finger of finite elements with two electrodes, which bends.
+    Finger(NewFiles),
+    /// A gripper of two fingers with two phalanges each, which closes.
+    Gripper(NewFiles),
+    /// A satellite that carries a trunk and tumbles freely.
+    Satellite(NewFiles),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct NewFiles {
+    /// Folder for scene.json and problem.json.
+    #[arg(default_value = ".")]
+    pub(crate) folder: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum File {
+    /// What exists.
+    Scene,
+    /// What is asked.
+    Problem,
+    /// Which variants of it are compared.
+    Study,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Variants {
+    /// The study file.
+    study: PathBuf,
+    /// Folder for the results [default: results/studies/<name of the study>].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Time each point so many times, in place of what the study says.
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..))]
+    runs: Option<u16>,
+    /// Show no progress.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+impl Variants {
+    pub(crate) fn request(self) -> StudyRequest {
+        StudyRequest {
+            command: typed(),
+            input: self.study,
+            output: self.output,
+            runs: self.runs.map(usize::from),
+            progress: shown(self.quiet),
+        }
+    }
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Input {
+    /// The problem file; - for standard input.
+    problem: PathBuf,
+    /// Override an entry, such as control.intervals=80 or scene.gravity=[0,-9.81,0]; may be repeated.
+    #[arg(long, value_name = "PATH=VALUE")]
+    set: Vec<String>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Problem {
+    #[command(flatten)]
+    input: Input,
+    /// Folder for the results [default: results/<name of the problem>].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Stop after so many seconds.
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    max_seconds: Option<f64>,
+    /// Print the summary, as in summary.json, in place of words.
+    #[arg(long)]
+    json: bool,
+    /// Show no progress.
+    #[arg(short, long, conflicts_with = "verbose")]
+    quiet: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct InTime {
+    #[command(flatten)]
+    problem: Problem,
+    /// Double the number of intervals until the error of discretisation is estimated below this part of the objective, and
+    /// below this part of the robot's size along the path and at the end.
+    #[arg(long, value_name = "ERROR", value_parser = part)]
+    accuracy: Option<f64>,
+    /// Estimate the error of discretisation by a second run with twice the intervals; what is written stays the same.
+    #[arg(long, conflicts_with = "accuracy")]
+    estimate_error: bool,
+}
+
+impl InTime {
+    pub(crate) const fn json(&self) -> bool {
+        self.problem.json()
+    }
+
+    pub(crate) fn request(self) -> CommandInput {
+        let wanted = match (self.accuracy, self.estimate_error) {
+            (Some(error), _) => Some(AccuracyTarget::Below(error)),
+            (None, true) => Some(AccuracyTarget::Estimate),
+            (None, false) => None,
+        };
+        CommandInput {
+            wanted,
+            ..self.problem.request()
+        }
+    }
+}
+
+impl Input {
+    pub(crate) fn request(self) -> CommandInput {
+        CommandInput {
+            command: typed(),
+            input: self.problem,
+            set: self.set,
+            output: None,
+            max_seconds: None,
+            max_iterations: None,
+            wanted: None,
+            progress: ProgressDisplay::Never,
+        }
+    }
+}
+
+impl Problem {
+    /// Whether the summary is asked for in place of words.
+    pub(crate) const fn json(&self) -> bool {
+        self.json
+    }
+
+    pub(crate) fn request(self) -> CommandInput {
+        CommandInput {
+            output: self.output,
+            max_seconds: self.max_seconds,
+            progress: shown(self.quiet),
+            ..self.input.request()
+        }
+    }
+}
+
+/// The command as typed.
+fn typed() -> String {
+    let words = std::env::args_os().skip(1);
+    let words = words.map(|word| word.to_string_lossy().into_owned());
+    let command = ["proboscis".to_owned()].into_iter().chain(words);
+    command.collect::<Vec<_>>().join(" ")
+}
+
+fn shown(quiet: bool) -> ProgressDisplay {
+    match quiet {
+        true => ProgressDisplay::Never,
+        false => ProgressDisplay::OnTerminal,
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if value > 0.0 => Ok(value),
+        _ => Err("expected a positive number of seconds".to_owned()),
+    }
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if value > 0.0 && value < 1.0 => Ok(value),
+        _ => Err("expected a number between 0 and 1, such as 1e-3".to_owned()),
+    }
+}
