@@ -55,6 +55,7 @@ class Result:
             is_met = self.summary.get("accuracy", {}).get("is_met") is not False
             told = (self.status in _SOLVED and is_met, self.status, self.summary.get("notes", []))
         self.is_solved, self._line, self.notes = told
+        self._line = self._line.removesuffix(f", {folder}")
 
     @classmethod
     def load(cls, folder: str | PathLike[str], /) -> Result:
@@ -163,7 +164,9 @@ class Result:
         return self.summary[key]
 
     def __repr__(self) -> str:
-        return f"<Result: {self._line}>"
+        # That of an equilibrium has several lines.
+        line = self.status if "\n" in self._line else self._line
+        return f"<Result: {line}>"
 
     def _repr_html_(self) -> str:
         page = html.escape(self.report().read_text(encoding="utf-8"))
