@@ -17,7 +17,7 @@ use crate::dynamics::tangent::EntryList;
 use crate::functional::{BlockMask, Order};
 use crate::math::Vector;
 use crate::model::Model;
-use crate::sparse::{DENSE, Symmetry};
+use crate::sparse::DENSE;
 
 /// Steps of the midpoint rule.
 pub type Stepper<'m> = Steps<Midpoint<'m>>;
@@ -91,12 +91,10 @@ impl<'m> Stepper<'m> {
             saved: [motion.multipliers, algebraic.len()].map(|count| vec![0.0; count]),
         };
         let symmetry = model.step_symmetry();
-        let is_corrected = solving.newton == Newton::Modified && motion.multipliers == 0;
-        let tangent = match (symmetry, solving.backend) {
-            (Symmetry::Unsymmetric, None) if is_corrected && sizes.len() > DENSE => {
-                entries.symmetric_part(sizes.len())
-            }
-            _ => entries.tangent(sizes.len(), symmetry, solving.backend),
+        let is_corrected = solving.newton == Newton::Modified && solving.backend.is_none();
+        let tangent = match is_corrected && motion.multipliers == 0 && sizes.len() > DENSE {
+            true => entries.corrected_tangent(model, symmetry),
+            false => entries.tangent(sizes.len(), symmetry, solving.backend),
         };
         Self::by(equations, tangent, sizes, solving.newton)
     }

@@ -126,7 +126,7 @@ impl<E: Equations> Steps<E> {
                 Err(stopped @ StepError::Stopped { .. }) => return Err(stopped),
                 // What an old tangent could not do, a new one may.
                 Err(_) if std::mem::take(&mut self.stale) => self.factored = None,
-                Err(_) if self.updates.make_exact() => self.factored = None,
+                Err(ref error) if self.make_exact_after(error) => self.factored = None,
                 Err(error) if halvings == HALVINGS => return Err(error),
                 Err(_) => {
                     halvings += 1;
@@ -160,7 +160,7 @@ impl<E: Equations> Steps<E> {
                 Err(stopped @ StepError::Stopped { .. }) => return Err(stopped),
                 Err(error) => error,
             };
-            if std::mem::take(&mut self.stale) || self.updates.make_exact() {
+            if std::mem::take(&mut self.stale) || self.make_exact_after(&error) {
                 self.factored = None;
                 if self.used <= 1.0 {
                     continue;
@@ -183,6 +183,11 @@ impl<E: Equations> Steps<E> {
             next,
             multipliers: self.equations.multipliers().to_vec(),
         })
+    }
+
+    /// Lets the whole tangent be factorised in double precision where an iteration failed; whether it was not before.
+    fn make_exact_after(&mut self, error: &StepError) -> bool {
+        matches!(error, StepError::NoConvergence { .. }) && self.updates.make_exact()
     }
 
     /// One Newton solution; accepted only when it converged.

@@ -4,7 +4,7 @@
 
 use crate::coordinates::StepPattern;
 use crate::model::Model;
-use crate::sparse::{Backend, Direct, Singular, Symmetry};
+use crate::sparse::{Backend, Direct, Precision, Singular, Symmetry};
 
 /// Places in the values of the action, summed into the entries of a matrix.
 #[derive(Debug)]
@@ -81,16 +81,22 @@ impl EntryList {
         }
     }
 
-    /// Prepares the factorisation of the symmetric part of a matrix without symmetry, for an iteration that corrects the rest.
-    pub(super) fn symmetric_part(self, size: usize) -> Tangent {
+    /// Prepares a factorisation for an iteration that corrects what it leaves out: of the symmetric part where the matrix has
+    /// no symmetry, and in single precision where it is large.
+    pub(super) fn corrected_tangent(self, model: &Model, symmetry: Symmetry) -> Tangent {
+        let is_approximate = symmetry == Symmetry::Unsymmetric;
+        let places = model.unknown_places();
         let entries = self.entries.iter();
-        let lower: Vec<_> = entries.map(|&(i, j)| (i.max(j), i.min(j))).collect();
+        let kept: Vec<_> = match is_approximate {
+            true => entries.map(|&(i, j)| (i.max(j), i.min(j))).collect(),
+            false => entries.copied().collect(),
+        };
         Tangent {
-            matrix: vec![0.0; lower.len()],
-            solver: Direct::with(size, &lower, Symmetry::Symmetric, None),
+            matrix: vec![0.0; kept.len()],
+            solver: Direct::for_iteration(places.len(), &kept, &places),
             gather: self.gather,
             entries: self.entries,
-            is_approximate: true,
+            is_approximate,
         }
     }
 
@@ -129,9 +135,9 @@ impl Tangent {
         self.solver.factor(&self.matrix)
     }
 
-    /// Whether the factors are those of the symmetric part of a matrix without symmetry.
+    /// Whether the factors are those of the symmetric part of a matrix without symmetry, or in single precision.
     pub(super) fn is_approximate(&self) -> bool {
-        self.is_approximate
+        self.is_approximate || self.solver.precision() == Precision::Single
     }
 
     /// S⁻¹ (A − S) u where the symmetric part S of the matrix A is factorised: an update u leaves so much.
@@ -149,10 +155,10 @@ impl Tangent {
         Some(rest)
     }
 
-    /// From now on factorises the whole matrix; whether it did not before.
+    /// From now on factorises the whole matrix in double precision; whether it did not before.
     pub(super) fn make_exact(&mut self) -> bool {
         if !std::mem::take(&mut self.is_approximate) {
-            return false;
+            return self.solver.make_double();
         }
         self.solver = Direct::new(self.solver.size(), &self.entries);
         true

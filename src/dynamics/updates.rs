@@ -53,12 +53,12 @@ impl Updates {
         }
     }
 
-    /// Whether the factors are those of a symmetric part.
+    /// Whether the factors leave out a part of the tangent, or its last digits.
     pub(super) fn are_approximate(&self) -> bool {
         self.tangent.is_approximate()
     }
 
-    /// From now on the whole tangent is factorised; whether it was not before.
+    /// From now on the whole tangent is factorised in double precision; whether it was not before.
     pub(super) fn make_exact(&mut self) -> bool {
         self.tangent.make_exact()
     }

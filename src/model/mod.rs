@@ -23,6 +23,7 @@ mod measures;
 mod model;
 mod named;
 mod parameter;
+mod places;
 pub mod plan;
 mod presolved;
 mod quantity;

@@ -7,17 +7,18 @@
 //! but the solution does not come back. Later solutions are refined once where their residual is poor.
 
 use crate::sparse::dense::Dense;
+use crate::sparse::dissection::{self, Places};
 use crate::sparse::faer::{FaerLdlt, FaerLu};
-use crate::sparse::mumps::Mumps;
+use crate::sparse::mumps::{self, Mumps};
 use crate::sparse::pattern::Pattern;
-use crate::sparse::{Factorisation, Singular, Symmetry};
+use crate::sparse::{Factorisation, Precision, Singular, Symmetry};
 
 /// Up to this size a dense factorisation is faster.
 pub const DENSE: usize = 48;
 /// Above this size MUMPS is faster than LU of faer, with OpenBLAS, as `benches/factorisation.rs` measures.
 const LARGE: usize = 15_000;
-/// A known solution, with each unknown measured by its column, has to come back better than this.
-const LOST: f64 = 1e-6;
+/// Above this size, factors for an iteration are in single precision, as `benches/block.rs` measures.
+const SINGLE: usize = 5_000;
 /// What is added to entries near 1 to make a singular matrix regular.
 const NEARBY: f64 = 1e-10;
 /// A residual above this, relative to the largest term of the equations, is refined.
@@ -51,7 +52,10 @@ impl Backend {
     fn factorisation(self, pattern: &Pattern) -> Box<dyn Factorisation> {
         match (self, pattern.symmetry) {
             (Self::Dense, _) => Box::new(Dense::new(pattern)),
-            (Self::Faer, Symmetry::Symmetric) => Box::new(FaerLdlt::new(pattern)),
+            (Self::Faer, Symmetry::Symmetric) => {
+                // Nested dissection leaves less fill than the minimum degree of faer.
+                Box::new(FaerLdlt::<f64>::new(pattern, &mumps::order(pattern)))
+            }
             (Self::Faer, Symmetry::Unsymmetric) => Box::new(FaerLu::new(pattern)),
             (Self::Mumps, _) => Box::new(Mumps::new(pattern)),
         }
@@ -103,9 +107,38 @@ impl Direct {
             true => Backend::Dense,
             false => backend.unwrap_or_else(|| Backend::of_size(size, symmetry)),
         };
+        let factorisation = backend.factorisation(&pattern);
+        Self::by(pattern, backend, factorisation)
+    }
+
+    /// A solver of symmetric matrices for an iteration that corrects what [`solve_roughly`](Self::solve_roughly) loses: the
+    /// factors of large ones are in single precision, where those tell the solution at all.
+    ///
+    /// Entries are those of [`with`](Self::with). Unknowns with places in space, one for each unknown or none, are eliminated in
+    /// an order that follows from the places.
+    ///
+    /// # Panics
+    /// An entry lies outside the matrix.
+    pub fn for_iteration(size: usize, entries: &[(usize, usize)], places: &Places) -> Self {
+        if size <= SINGLE || entries.is_empty() {
+            return Self::with(size, entries, Symmetry::Symmetric, None);
+        }
+        let pattern = Pattern::new(size, entries, Symmetry::Symmetric);
+        // Those without a place come last, in a dense block.
+        let placed = places.iter().flatten().count();
+        let order = match (size - placed).pow(2) <= size {
+            true => dissection::order(&pattern, places),
+            false => mumps::order(&pattern),
+        };
+        let factorisation = Box::new(FaerLdlt::<f32>::new(&pattern, &order));
+        Self::by(pattern, Backend::Faer, factorisation)
+    }
+
+    fn by(pattern: Pattern, backend: Backend, factorisation: Box<dyn Factorisation>) -> Self {
+        let size = pattern.size;
         Self {
             backend,
-            factorisation: backend.factorisation(&pattern),
+            factorisation,
             values: vec![0.0; pattern.rows.len()],
             scales: [vec![1.0; size], vec![1.0; size]],
             largest: [vec![0.0; size], vec![0.0; size]],
@@ -124,6 +157,21 @@ impl Direct {
     /// The method, as a table names it.
     pub fn method(&self) -> &'static str {
         self.factorisation.name()
+    }
+
+    /// The precision of the factors.
+    pub fn precision(&self) -> Precision {
+        self.factorisation.precision()
+    }
+
+    /// From now on factors are in double precision; whether they were not before.
+    pub fn make_double(&mut self) -> bool {
+        let is_single = self.precision() == Precision::Single;
+        if let (true, Some(other)) = (is_single, self.factorisation.more_robust()) {
+            self.factorisation = other;
+            self.factored = false;
+        }
+        is_single
     }
 
     /// Factorises the matrix with these values, one for each entry.
@@ -146,21 +194,18 @@ impl Direct {
         }
         self.rehearse();
         let mut outcome = self.attempt();
-        let unpivoted =
-            self.backend == Backend::Faer && self.pattern.symmetry == Symmetry::Symmetric;
-        if outcome.is_err() && unpivoted {
-            // The matrix is singular, or merely not quasi-definite.
-            let pivoted = Backend::Mumps.factorisation(&self.pattern);
-            let unpivoted = std::mem::replace(&mut self.factorisation, pivoted);
-            outcome = self
-                .attempt()
-                .map_err(|singular| self.undetermined(singular));
-            match outcome {
-                Ok(()) => self.backend = Backend::Mumps,
-                Err(_) => self.factorisation = unpivoted,
-            }
-        } else {
-            outcome = outcome.map_err(|singular| self.undetermined(singular));
+        let mut first = None;
+        while outcome.is_err()
+            && let Some(other) = self.factorisation.more_robust()
+        {
+            let failed = std::mem::replace(&mut self.factorisation, other);
+            first.get_or_insert(failed);
+            outcome = self.attempt();
+        }
+        outcome = outcome.map_err(|singular| self.undetermined(singular));
+        // A singular matrix says nothing against the way in which the next one is factorised.
+        if let (Err(_), Some(first)) = (outcome, first) {
+            self.factorisation = first;
         }
         self.factored = outcome.is_ok();
         outcome
@@ -295,7 +340,8 @@ impl Direct {
         self.factorisation.solve(&mut self.residual);
         let error =
             |col: usize| ((self.residual[col] - self.known(col)) * self.largest[1][col]).abs();
-        let lost = |col: &usize| error(*col).is_nan() || error(*col) > LOST;
+        let tolerated = self.factorisation.precision().tolerated_loss();
+        let lost = |col: &usize| error(*col).is_nan() || error(*col) > tolerated;
         let worst = (0..self.pattern.size)
             .filter(lost)
             .max_by(|&a, &b| error(a).total_cmp(&error(b)));

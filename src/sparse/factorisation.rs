@@ -4,6 +4,8 @@ use std::fmt::Debug;
 
 use thiserror::Error;
 
+use crate::sparse::Precision;
+
 /// The matrix is singular to working precision.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error("the matrix is singular: nothing determines unknown {column}")]
@@ -17,6 +19,11 @@ pub trait Factorisation: Debug + Send {
     /// The method, as a table names it.
     fn name(&self) -> &'static str;
 
+    /// The precision of its factors.
+    fn precision(&self) -> Precision {
+        Precision::Double
+    }
+
     /// Factorises the matrix with these values, one for each slot of its pattern.
     ///
     /// # Errors
@@ -28,4 +35,9 @@ pub trait Factorisation: Debug + Send {
 
     /// The number of negative eigenvalues, where the method tells it.
     fn negative_pivots(&self) -> Option<usize>;
+
+    /// A factorisation of the same pattern that may succeed where this one does not, if there is one.
+    fn more_robust(&self) -> Option<Box<dyn Factorisation>> {
+        None
+    }
 }

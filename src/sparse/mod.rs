@@ -4,12 +4,16 @@
 
 mod dense;
 mod direct;
+mod dissection;
 mod factorisation;
 mod faer;
 pub(crate) mod mumps;
 mod pattern;
+mod precision;
 mod symmetry;
 
 pub use direct::{Backend, DENSE, Direct};
+pub use dissection::Places;
 pub use factorisation::{Factorisation, Singular};
+pub use precision::Precision;
 pub use symmetry::Symmetry;

@@ -247,3 +247,60 @@ fn a_tangent_far_from_symmetric_is_factorised_whole() {
     let apart = apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(apart < 1e-6, "{apart:e} mm");
 }
+
+/// A few steps of a block of 5 568 unknowns that stretches and bends, viscous or not.
+fn large(viscosity: Option<f64>, solving: Solving) -> DiscreteTrajectory {
+    let size = Vector3::new(10.0, 10.0, 40.0);
+    let mesh = Grid::uniform(Vector3::zeros(), size, [7, 7, 28]).mesh();
+    let rubber = Material {
+        density: Some(1e-3),
+        shear_modulus: 0.1,
+        lame_lambda: Some(0.4),
+        electric: None,
+        viscosity,
+    };
+    let mut solid = block(mesh, rubber);
+    let lift = |x: &Vector3<f64>| Vector3::new(1e-3 * x.z * x.z, 0.0, 0.01 * x.z);
+    solid.velocities = solid.mesh.nodes.iter().map(lift).collect();
+    let model = Model::new(system(vec![solid]), None, 0.5, &[]).unwrap();
+    let rates = model.node_rates().unwrap();
+    let start = Start::with_rates(&model, model.coordinates_at(&[]), &rates);
+    let observer = |_: &_| ControlFlow::Continue(());
+    let none = |_: f64, _: f64| Vec::new();
+    let (history, failure) = simulate_by(solving, &model, &start, 0.5, 4, none, observer);
+    assert_eq!(failure, None);
+    history
+}
+
+#[test]
+fn factors_in_single_precision_give_the_motion_of_those_in_double_precision() {
+    for viscosity in [None, Some(1.0)] {
+        let by = |newton, backend| {
+            let solving = Solving {
+                newton,
+                backend,
+                ..Solving::default()
+            };
+            large(viscosity, solving)
+        };
+        let single = by(Newton::Modified, None);
+        let double = by(Newton::Full, Some(Backend::Mumps));
+        assert!(
+            single.solver.contains("single precision"),
+            "{}",
+            single.solver
+        );
+        assert_eq!(
+            single.solver.contains("symmetric part"),
+            viscosity.is_some()
+        );
+        assert!(single.report.factorisations < double.report.factorisations / 2);
+        let largest = |a: &[f64], b: &[f64]| {
+            let parts = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+            parts.fold(0.0, f64::max)
+        };
+        assert!(largest(&double.z[4], &double.z[0]) > 0.5);
+        let apart = largest(&single.z[4], &double.z[4]);
+        assert!(apart < 1e-7, "{apart:e} mm");
+    }
+}

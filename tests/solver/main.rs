@@ -14,5 +14,6 @@ mod ipopt_stops;
 mod kkt;
 mod linear_solver;
 mod matrices;
+mod precision;
 mod sparse;
 mod stopped;
