@@ -158,10 +158,10 @@ fn large(order: usize, answer: Answer) -> Program {
                 to[at] += sigma * 3.0 * x * x + 2.0 * y[0];
             }
             let mut answer = answer.lock().unwrap();
-            if let Some((calls, at)) = &mut *answer {
-                *calls -= 1;
-                if *calls == 0 {
-                    thread::sleep(at.saturating_duration_since(Instant::now()));
+            if let Some((calls, at)) = answer.take() {
+                match calls {
+                    1 => thread::sleep(at.saturating_duration_since(Instant::now())),
+                    calls => *answer = Some((calls - 1, at)),
                 }
             }
         }),
