@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from proboscis._error import Error
+
 if TYPE_CHECKING:
     import pandas
 
@@ -32,10 +34,13 @@ class Table(Mapping[str, Array]):
     @classmethod
     def read(cls, path: Path) -> Table:
         """Reads a table of results."""
-        with path.open(encoding="utf-8", newline="") as file:
-            rows = list(csv.reader(line for line in file if not line.startswith("#")))
-        values = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows[1:]])
-        values = values.reshape(len(rows) - 1, len(rows[0]))
+        try:
+            with path.open(encoding="utf-8", newline="") as file:
+                rows = list(csv.reader(line for line in file if not line.startswith("#")))
+            values = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows[1:]])
+            values = values.reshape(len(rows) - 1, len(rows[0]))
+        except (OSError, ValueError, IndexError) as error:
+            raise Error(f"{path}: found no readable table ({error}), expected rows of numbers under a header") from error
         columns, units = {}, {}
         for index, header in enumerate(rows[0]):
             name, _, unit = header.removesuffix("]").partition(" [")

@@ -207,6 +207,7 @@ class Problem:
         problem = self if start is None else self._from(start)
         kept = tempfile.TemporaryDirectory(prefix="proboscis-") if output is None else None
         folder = Path(output if output is not None else kept.name if kept else "")
+        before = _state(folder / "summary.json")
         told, raised = _proboscis.run(
             problem._input,
             problem._text,
@@ -219,7 +220,9 @@ class Problem:
             estimate_error=estimate_error,
             observer=observer,
         )
-        result = Result(folder, told, kept) if told else None
+        # A state of rest that is refused leaves no files, and those of an earlier run alone.
+        is_written = _state(folder / "summary.json") != before
+        result = Result(folder, told, kept, is_written=is_written) if told else None
         if raised is not None:
             raised.result = result  # type: ignore[attr-defined]
             raise raised
@@ -240,6 +243,15 @@ class Problem:
         scene = self._content["scene"]
         name = scene if isinstance(scene, str) else scene["name"]
         return f"<Problem: {self.task} {name!r}>"
+
+
+def _state(path: Path) -> tuple[int, int] | None:
+    """What changes when a file is written anew."""
+    try:
+        stat = path.stat()
+    except OSError:
+        return None
+    return stat.st_ino, stat.st_mtime_ns
 
 
 def _put(content: Any, path: str, value: Any) -> None:

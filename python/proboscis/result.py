@@ -42,17 +42,15 @@ class Result:
         folder: Path,
         told: tuple[bool, str, list[str]] | None = None,
         kept: TemporaryDirectory[str] | None = None,
+        *,
+        is_written: bool = True,
     ) -> None:
         self.folder = folder
         # A folder of its own lasts as long as the result.
         self._kept = kept
-        path = folder / "summary.json"
-        try:
-            self.summary = json.loads(path.read_text(encoding="utf-8")) if told is None or path.is_file() else {}
-        except (OSError, ValueError) as error:
-            raise Error(f"{path}: found no readable JSON ({error}), expected the folder of a result") from error
+        self.summary = _summary(folder / "summary.json") if is_written else {}
         if told is None:
-            is_met = self.summary.get("accuracy", {}).get("is_met") is not False
+            is_met = (self.summary.get("accuracy") or {}).get("is_met") is not False
             told = (self.status in _SOLVED and is_met, self.status, self.summary.get("notes", []))
         self.is_solved, self._line, self.notes = told
         self._line = self._line.removesuffix(f", {folder}")
@@ -74,8 +72,8 @@ class Result:
     @property
     def message(self) -> str | None:
         """Why it is not solved, in words."""
-        message = self.summary.get("message")
-        return None if message is None else str(message)
+        reasons = [self.summary.get("message"), *([] if self.is_solved else self.notes)]
+        return next((str(reason) for reason in reasons if reason), None)
 
     @property
     def objective(self) -> float:
@@ -171,6 +169,16 @@ class Result:
     def _repr_html_(self) -> str:
         page = html.escape(self.report().read_text(encoding="utf-8"))
         return f'<iframe srcdoc="{page}" width="100%" height="640" style="border:0" title="proboscis"></iframe>'
+
+
+def _summary(path: Path) -> dict[str, Any]:
+    try:
+        summary = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise Error(f"{path}: found no readable JSON ({error}), expected the folder of a result") from error
+    if not (isinstance(summary, dict) and isinstance(summary.get("status"), str)):
+        raise Error(f'{path}: found no "status", expected the summary of a result', "status")
+    return summary
 
 
 class Figure:

@@ -109,6 +109,13 @@ def test_results_are_saved_and_loaded(optimum: pb.Result, tmp_path: Path) -> Non
     assert loaded.figure("voltages").svg.count("<svg") == 1
     with pytest.raises(pb.Error, match="summary.json"):
         pb.load(tmp_path)
+    for text in ("[]", "{", '{"status": 3}'):
+        (tmp_path / "summary.json").write_text(text)
+        with pytest.raises(pb.Error, match="summary.json"):
+            pb.load(tmp_path)
+    (tmp_path / "kept" / "trajectory.csv").write_text("# x\ntime [ms],b\n1,2\n3\n")
+    with pytest.raises(pb.Error, match="trajectory.csv"):
+        print(pb.load(tmp_path / "kept").time)
 
 
 def test_a_folder_of_its_own_goes_with_the_result(pair: pb.Problem) -> None:
@@ -132,6 +139,18 @@ def test_a_simulation_and_an_equilibrium() -> None:
     assert rest.status == "at_rest" and abs(rest.joint(joint)[0]) > 1e-3
     with pytest.raises(pb.Error, match="only the result of a control problem"):
         print(rest.objective)
+
+
+def test_a_refused_state_of_rest_tells_nothing_of_an_earlier_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    system, _, muscles = own_arm()
+    assert system.equilibrium(voltages={muscles[0]: "1 kV"}, output=tmp_path).is_solved
+    lost = system.equilibrium(voltages={muscles[0]: "100 kV"}, output=tmp_path)
+    assert not lost.is_solved and lost.status == "pull_in" and "pull-in at" in str(lost.message)
+    # A run that ends without files.
+    monkeypatch.setattr(pb._proboscis, "run", lambda *_, **__: ((False, "no equilibrium", ["no way there"]), None))
+    refused = system.equilibrium(voltages={muscles[0]: "2 kV"}, output=tmp_path)
+    assert not refused.is_solved and refused.message == "no way there"
+    assert refused.status == "no_equilibrium" and not refused.summary
 
 
 def test_mistakes_have_a_place(tmp_path: Path) -> None:
