@@ -127,6 +127,11 @@ impl<E: Equations> Steps<E> {
                 // What an old tangent could not do, a new one may.
                 Err(_) if std::mem::take(&mut self.stale) => self.factored = None,
                 Err(ref error) if self.make_exact_after(error) => self.factored = None,
+                // Each factor has shown what it loses, so that precision comes last.
+                Err(_) if halvings == HALVINGS && self.updates.make_double() => {
+                    self.factored = None;
+                    (part, halvings) = (h - done, 0);
+                }
                 Err(error) if halvings == HALVINGS => return Err(error),
                 Err(_) => {
                     halvings += 1;
@@ -168,7 +173,11 @@ impl<E: Equations> Steps<E> {
             }
             let shorter = part * factor(self.used).min(0.5);
             if shorter < least {
-                return Err(error);
+                if !self.updates.make_double() {
+                    return Err(error);
+                }
+                (self.factored, part) = (None, h);
+                continue;
             }
             self.report.halved += 1;
             part = shorter;
@@ -185,7 +194,7 @@ impl<E: Equations> Steps<E> {
         })
     }
 
-    /// Lets the whole tangent be factorised in double precision where an iteration failed; whether it was not before.
+    /// Lets the whole tangent be factorised where an iteration failed; whether it was not before.
     fn make_exact_after(&mut self, error: &StepError) -> bool {
         matches!(error, StepError::NoConvergence { .. }) && self.updates.make_exact()
     }
@@ -250,17 +259,11 @@ impl<E: Equations> Steps<E> {
         }
         self.equations.restore();
         let first = residuals.first().copied().unwrap_or(f64::NAN);
-        let residuals = residuals
-            .iter()
-            .rev()
-            .take(4)
-            .rev()
-            .map(|r| r / first)
-            .collect();
+        let last = &residuals[residuals.len().saturating_sub(4)..];
         Err(StepError::NoConvergence {
             time: self.equations.time(),
             step: h,
-            residuals,
+            residuals: last.iter().map(|r| r / first).collect(),
             muscle: self.short_muscle(),
         })
     }

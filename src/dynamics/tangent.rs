@@ -155,10 +155,15 @@ impl Tangent {
         Some(rest)
     }
 
-    /// From now on factorises the whole matrix in double precision; whether it did not before.
+    /// From now on factorises in double precision; whether it did not before.
+    pub(super) fn make_double(&mut self) -> bool {
+        self.solver.make_double()
+    }
+
+    /// From now on factorises the whole matrix, in double precision; whether it did not before.
     pub(super) fn make_exact(&mut self) -> bool {
         if !std::mem::take(&mut self.is_approximate) {
-            return self.solver.make_double();
+            return false;
         }
         self.solver = Direct::new(self.solver.size(), &self.entries);
         true

@@ -58,7 +58,12 @@ impl Updates {
         self.tangent.is_approximate()
     }
 
-    /// From now on the whole tangent is factorised in double precision; whether it was not before.
+    /// From now on factors are in double precision; whether they were not before.
+    pub(super) fn make_double(&mut self) -> bool {
+        self.tangent.make_double()
+    }
+
+    /// From now on the whole tangent is factorised, in double precision; whether it was not before.
     pub(super) fn make_exact(&mut self) -> bool {
         self.tangent.make_exact()
     }
