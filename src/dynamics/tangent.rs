@@ -10,12 +10,22 @@ use crate::sparse::{Backend, Direct, Precision, Singular, Symmetry};
 #[derive(Debug)]
 pub(super) struct Tangent {
     /// (place in the values, entry of the matrix).
-    gather: Vec<(usize, usize)>,
-    entries: Vec<(usize, usize)>,
+    gather: Vec<(u32, u32)>,
+    entries: Vec<(u32, u32)>,
     matrix: Vec<f64>,
     solver: Direct,
     /// Whether the symmetric part ½(A + Aᵀ) is factorised in place of the matrix A.
     is_approximate: bool,
+}
+
+/// Pairs of numbers in half of the memory: large blocks have tens of millions of them.
+///
+/// # Panics
+/// A number is too large for that.
+fn counted(pairs: &[(usize, usize)]) -> Vec<(u32, u32)> {
+    let number = |i: usize| u32::try_from(i).expect("entries can be counted");
+    let pair = |&(i, j): &(usize, usize)| (number(i), number(j));
+    pairs.iter().map(pair).collect()
 }
 
 /// Lists entries before the factorisation is prepared.
@@ -75,8 +85,8 @@ impl EntryList {
         Tangent {
             matrix: vec![0.0; self.entries.len()],
             solver: Direct::with(size, &self.entries, symmetry, backend),
-            gather: self.gather,
-            entries: self.entries,
+            gather: counted(&self.gather),
+            entries: counted(&self.entries),
             is_approximate: false,
         }
     }
@@ -94,8 +104,8 @@ impl EntryList {
         Tangent {
             matrix: vec![0.0; kept.len()],
             solver: Direct::for_iteration(places.len(), &kept, &places),
-            gather: self.gather,
-            entries: self.entries,
+            gather: counted(&self.gather),
+            entries: counted(&self.entries),
             is_approximate,
         }
     }
@@ -125,7 +135,7 @@ impl Tangent {
     pub(super) fn factor(&mut self, values: &[f64]) -> Result<(), Singular> {
         self.matrix.fill(0.0);
         for &(place, entry) in &self.gather {
-            self.matrix[entry] += values[place];
+            self.matrix[entry as usize] += values[place as usize];
         }
         if self.is_approximate {
             for (value, (row, col)) in self.matrix.iter_mut().zip(&self.entries) {
@@ -147,8 +157,8 @@ impl Tangent {
         for (&(row, col), value) in self.entries.iter().zip(&self.matrix) {
             if row != col {
                 // The matrix holds halves beside the diagonal.
-                rest[row] += value * update[col];
-                rest[col] -= value * update[row];
+                rest[row as usize] += value * update[col as usize];
+                rest[col as usize] -= value * update[row as usize];
             }
         }
         self.solver.solve_roughly(&mut rest);
@@ -165,7 +175,9 @@ impl Tangent {
         if !std::mem::take(&mut self.is_approximate) {
             return false;
         }
-        self.solver = Direct::new(self.solver.size(), &self.entries);
+        let pair = |&(row, col): &(u32, u32)| (row as usize, col as usize);
+        let entries: Vec<_> = self.entries.iter().map(pair).collect();
+        self.solver = Direct::new(self.solver.size(), &entries);
         true
     }
 
@@ -178,7 +190,7 @@ impl Tangent {
     pub(super) fn entries(&self) -> impl Iterator<Item = ((usize, usize), f64)> + '_ {
         self.entries
             .iter()
-            .copied()
+            .map(|&(row, col)| (row as usize, col as usize))
             .zip(self.matrix.iter().copied())
     }
 

@@ -6,6 +6,8 @@
 //! A sparse factor is tried on a known solution before it is trusted: residuals of a singular or unstable factor may be small,
 //! but the solution does not come back. Later solutions are refined once where their residual is poor.
 
+use std::sync::Arc;
+
 use crate::sparse::dense::Dense;
 use crate::sparse::dissection::{self, Places};
 use crate::sparse::faer::{FaerLdlt, FaerLu};
@@ -49,7 +51,7 @@ impl Backend {
         }
     }
 
-    fn factorisation(self, pattern: &Pattern) -> Box<dyn Factorisation> {
+    fn factorisation(self, pattern: &Arc<Pattern>) -> Box<dyn Factorisation> {
         match (self, pattern.symmetry) {
             (Self::Dense, _) => Box::new(Dense::new(pattern)),
             (Self::Faer, Symmetry::Symmetric) => {
@@ -65,7 +67,7 @@ impl Backend {
 /// A direct solver for one pattern.
 #[derive(Debug)]
 pub struct Direct {
-    pattern: Pattern,
+    pattern: Arc<Pattern>,
     backend: Backend,
     factorisation: Box<dyn Factorisation>,
     /// The scaled matrix, by slot.
@@ -101,7 +103,7 @@ impl Direct {
         symmetry: Symmetry,
         backend: Option<Backend>,
     ) -> Self {
-        let pattern = Pattern::new(size, entries, symmetry);
+        let pattern = Arc::new(Pattern::new(size, entries, symmetry));
         let backend = match pattern.rows.is_empty() {
             // There is nothing to analyse.
             true => Backend::Dense,
@@ -123,7 +125,7 @@ impl Direct {
         if size <= SINGLE || entries.is_empty() {
             return Self::with(size, entries, Symmetry::Symmetric, None);
         }
-        let pattern = Pattern::new(size, entries, Symmetry::Symmetric);
+        let pattern = Arc::new(Pattern::new(size, entries, Symmetry::Symmetric));
         // Those without a place come last, in a dense block.
         let placed = places.iter().flatten().count();
         let order = match (size - placed).pow(2) <= size {
@@ -134,7 +136,7 @@ impl Direct {
         Self::by(pattern, Backend::Faer, factorisation)
     }
 
-    fn by(pattern: Pattern, backend: Backend, factorisation: Box<dyn Factorisation>) -> Self {
+    fn by(pattern: Arc<Pattern>, backend: Backend, factorisation: Box<dyn Factorisation>) -> Self {
         let size = pattern.size;
         Self {
             backend,

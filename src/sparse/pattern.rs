@@ -12,7 +12,7 @@ pub(crate) struct Pattern {
     /// Row of each slot, ascending within a column.
     pub(crate) rows: Vec<usize>,
     /// (entry, slot), without the entries above the diagonal of a symmetric matrix.
-    gather: Vec<(usize, usize)>,
+    gather: Vec<(u32, u32)>,
     entries: usize,
 }
 
@@ -25,6 +25,10 @@ impl Pattern {
         assert!(
             entries.iter().all(|&(row, col)| row < size && col < size),
             "entries lie inside the matrix"
+        );
+        assert!(
+            u32::try_from(entries.len()).is_ok(),
+            "entries can be counted"
         );
         let kept = |&(row, col): &(usize, usize)| match symmetry {
             Symmetry::Symmetric => row >= col,
@@ -41,7 +45,7 @@ impl Pattern {
                 rows.push(row);
                 starts[col + 1] += 1;
             }
-            gather.push((k, rows.len() - 1));
+            gather.push((k as u32, rows.len() as u32 - 1));
         }
         gather.sort_unstable();
         for col in 0..size {
@@ -67,7 +71,7 @@ impl Pattern {
         assert_eq!(entries.len(), self.entries, "one value per entry");
         values.fill(0.0);
         for &(entry, slot) in &self.gather {
-            values[slot] += entries[entry];
+            values[slot as usize] += entries[entry as usize];
         }
     }
 

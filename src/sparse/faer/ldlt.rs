@@ -32,13 +32,13 @@ pub(crate) struct FaerLdlt<T> {
 
 #[derive(Debug)]
 struct Analysis {
-    pattern: Pattern,
+    pattern: Arc<Pattern>,
     symbolic: SymbolicCholesky<usize>,
 }
 
 impl Analysis {
     /// For an order of elimination.
-    fn new(pattern: &Pattern, order: &[usize]) -> Self {
+    fn new(pattern: &Arc<Pattern>, order: &[usize]) -> Self {
         let mut places = vec![0; order.len()];
         for (place, &row) in order.iter().enumerate() {
             places[row] = place;
@@ -50,7 +50,7 @@ impl Analysis {
             Default::default(),
         );
         Self {
-            pattern: pattern.clone(),
+            pattern: Arc::clone(pattern),
             symbolic: symbolic.expect("memory for the symbolic factorisation"),
         }
     }
@@ -58,7 +58,7 @@ impl Analysis {
 
 impl<T: Number> FaerLdlt<T> {
     /// For the rows in an order of elimination.
-    pub(crate) fn new(pattern: &Pattern, order: &[usize]) -> Self {
+    pub(crate) fn new(pattern: &Arc<Pattern>, order: &[usize]) -> Self {
         Self::of(Arc::new(Analysis::new(pattern, order)))
     }
 
