@@ -8,19 +8,17 @@
 
 use std::sync::Arc;
 
-use crate::sparse::dense::Dense;
+use crate::sparse::backend::Backend;
 use crate::sparse::dissection::{self, Places};
-use crate::sparse::faer::{FaerLdlt, FaerLu};
-use crate::sparse::mumps::{self, Mumps};
+use crate::sparse::faer::FaerLdlt;
+use crate::sparse::mumps;
 use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Precision, Singular, Symmetry};
 
-/// Up to this size a dense factorisation is faster.
-pub const DENSE: usize = 48;
-/// Above this size MUMPS is faster than LU of faer, with OpenBLAS, as `benches/factorisation.rs` measures.
-const LARGE: usize = 15_000;
 /// Above this size, factors for an iteration are in single precision, as `benches/block.rs` measures.
 const SINGLE: usize = 5_000;
+/// So many further matrices are tried in single precision in a row; then double precision stays.
+const RETRIES: usize = 2;
 /// What is added to entries near 1 to make a singular matrix regular.
 const NEARBY: f64 = 1e-10;
 /// A residual above this, relative to the largest term of the equations, is refined.
@@ -28,41 +26,6 @@ const POOR: f64 = 1e-13;
 /// Scaling of rows and columns at once ends when their largest entries are between this and its inverse, or after so many
 /// rounds.
 const BALANCED: (f64, usize) = (4.0, 12);
-
-/// Who factorises.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Backend {
-    /// LU of nalgebra, for small matrices.
-    Dense,
-    /// LU of faer, or its LDLᵀ without exchanges where the matrix is symmetric: MUMPS gives the order of elimination, and takes
-    /// over where the matrix turns out not to be quasi-definite.
-    Faer,
-    /// LU or LDLᵀ of MUMPS, one thread at a time.
-    Mumps,
-}
-
-impl Backend {
-    /// What is fastest.
-    fn of_size(size: usize, symmetry: Symmetry) -> Self {
-        match symmetry {
-            _ if size <= DENSE => Self::Dense,
-            Symmetry::Unsymmetric if size > LARGE => Self::Mumps,
-            _ => Self::Faer,
-        }
-    }
-
-    fn factorisation(self, pattern: &Arc<Pattern>) -> Box<dyn Factorisation> {
-        match (self, pattern.symmetry) {
-            (Self::Dense, _) => Box::new(Dense::new(pattern)),
-            (Self::Faer, Symmetry::Symmetric) => {
-                // Nested dissection leaves less fill than the minimum degree of faer.
-                Box::new(FaerLdlt::<f64>::new(pattern, &mumps::order(pattern)))
-            }
-            (Self::Faer, Symmetry::Unsymmetric) => Box::new(FaerLu::new(pattern)),
-            (Self::Mumps, _) => Box::new(Mumps::new(pattern)),
-        }
-    }
-}
 
 /// A direct solver for one pattern.
 #[derive(Debug)]
@@ -79,6 +42,8 @@ pub struct Direct {
     rhs: Vec<f64>,
     residual: Vec<f64>,
     factored: bool,
+    /// Matrices in a row that needed double precision in place of single.
+    doubled: usize,
 }
 
 impl Direct {
@@ -147,6 +112,7 @@ impl Direct {
             rhs: vec![0.0; size],
             residual: vec![0.0; size],
             factored: false,
+            doubled: RETRIES,
             pattern,
         }
     }
@@ -161,6 +127,18 @@ impl Direct {
         self.factorisation.name()
     }
 
+    /// Tries single precision again after a matrix that needed double precision.
+    fn return_to_single(&mut self) {
+        if self.precision() == Precision::Single {
+            self.doubled = 0;
+        } else if self.doubled < RETRIES
+            && let Some(single) = self.factorisation.in_single_precision()
+        {
+            self.doubled += 1;
+            self.factorisation = single;
+        }
+    }
+
     /// The precision of the factors.
     pub fn precision(&self) -> Precision {
         self.factorisation.precision()
@@ -172,6 +150,7 @@ impl Direct {
         if let (true, Some(other)) = (is_single, self.factorisation.more_robust()) {
             self.factorisation = other;
             self.factored = false;
+            self.doubled = RETRIES;
         }
         is_single
     }
@@ -195,13 +174,18 @@ impl Direct {
             return outcome;
         }
         self.rehearse();
+        self.return_to_single();
         let mut outcome = self.attempt();
         let mut first = None;
         while outcome.is_err()
             && let Some(other) = self.factorisation.more_robust()
         {
             let failed = std::mem::replace(&mut self.factorisation, other);
-            first.get_or_insert(failed);
+            match failed.precision() {
+                // Its memory is needed now.
+                Precision::Single => drop(failed),
+                Precision::Double => _ = first.get_or_insert(failed),
+            }
             outcome = self.attempt();
         }
         outcome = outcome.map_err(|singular| self.undetermined(singular));
@@ -347,7 +331,11 @@ impl Direct {
         let worst = (0..self.pattern.size)
             .filter(lost)
             .max_by(|&a, &b| error(a).total_cmp(&error(b)));
-        worst.map_or(Ok(()), |column| Err(Singular { column }))
+        worst.map_or(Ok(()), |column| {
+            let (method, lost) = (self.method(), error(column));
+            tracing::debug!(method, lost, "factors do not give a known solution");
+            Err(Singular { column })
+        })
     }
 
     /// The unknown that nothing determines in a matrix whose factor failed, perhaps with infinite numbers.

@@ -36,6 +36,11 @@ pub trait Factorisation: Debug + Send {
     /// The number of negative eigenvalues, where the method tells it.
     fn negative_pivots(&self) -> Option<usize>;
 
+    /// The same factorisation in single precision, if there is one.
+    fn in_single_precision(&self) -> Option<Box<dyn Factorisation>> {
+        None
+    }
+
     /// A factorisation of the same pattern that may succeed where this one does not, if there is one.
     fn more_robust(&self) -> Option<Box<dyn Factorisation>> {
         None

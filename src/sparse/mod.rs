@@ -2,6 +2,7 @@
 //!
 //! [`Direct`] lays the pattern, scales, checks and refines; a [`Factorisation`] is what it does so with.
 
+mod backend;
 mod dense;
 mod direct;
 mod dissection;
@@ -12,7 +13,8 @@ mod pattern;
 mod precision;
 mod symmetry;
 
-pub use direct::{Backend, DENSE, Direct};
+pub use backend::{Backend, DENSE};
+pub use direct::Direct;
 pub use dissection::Places;
 pub use factorisation::{Factorisation, Singular};
 pub use precision::Precision;

@@ -109,6 +109,28 @@ fn double_precision_takes_over_where_single_precision_tells_nothing() {
 }
 
 #[test]
+fn double_precision_stays_where_three_matrices_in_a_row_needed_it() {
+    let (fair, poor) = (cube(0.1, true), cube(1e-8, true));
+    for in_a_row in 1..=4 {
+        let mut direct = for_iteration(&fair);
+        direct.factor(&fair.values).unwrap();
+        for _ in 0..in_a_row {
+            direct.factor(&poor.values).unwrap();
+            assert_eq!(direct.precision(), Precision::Double);
+        }
+        direct.factor(&fair.values).unwrap();
+        let expected = match in_a_row {
+            1 | 2 => Precision::Single,
+            _ => Precision::Double,
+        };
+        assert_eq!(direct.precision(), expected, "{in_a_row}");
+        let [x, mut found] = known(&fair);
+        direct.solve_roughly(&mut found);
+        assert!(distance(&found, &x) < 1e-3);
+    }
+}
+
+#[test]
 fn factors_are_in_double_precision_on_request_and_where_they_are_small() {
     let matrix = cube(0.1, false);
     let [x, rhs] = known(&matrix);

@@ -152,6 +152,10 @@ impl<T: Number> Factorisation for FaerLdlt<T> {
         Some(pivots.iter().filter(|d| d.value() < 0.0).count())
     }
 
+    fn in_single_precision(&self) -> Option<Box<dyn Factorisation>> {
+        Some(Box::new(FaerLdlt::<f32>::of(Arc::clone(&self.analysis))))
+    }
+
     /// The same with more digits, and then with exchanges: the matrix may merely not be quasi-definite.
     fn more_robust(&self) -> Option<Box<dyn Factorisation>> {
         match T::PRECISION {
