@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use clap_complete::Shell;
-use proboscis::app::{CommandInput, ProgressDisplay};
+use proboscis::app::{CommandInput, ProgressDisplay, RunIn};
 use proboscis::study::StudyRequest;
+use proboscis::sweep::{Shard, SweepRequest};
 use proboscis::workflow::accuracy::AccuracyTarget;
 
 /// Simulation and optimal control of robots driven by dielectric elastomer muscles.
@@ -69,6 +70,8 @@ pub(crate) enum Command {
     },
     /// Run variants of a problem, to see what accuracy costs in time.
     Study(Variants),
+    /// Solve many variants of a problem; those that are solved already are not solved again.
+    Sweep(Sweep),
     /// Print a scene without shorthand.
     Expand {
         /// The scene file.
@@ -133,6 +136,8 @@ pub(crate) enum File {
     Problem,
     /// Which variants of it are compared.
     Study,
+    /// Which variants of it are solved.
+    Sweep,
 }
 
 #[derive(Args, Debug)]
@@ -159,6 +164,49 @@ impl Variants {
             runs: self.runs.map(usize::from),
             progress: shown(self.quiet),
         }
+    }
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct Sweep {
+    /// The sweep file.
+    sweep: PathBuf,
+    /// Folder for the results [default: results/sweeps/<name of the sweep>].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Solve each n-th variant from the i-th one, as one of n machines; the table has all that are in the folder.
+    #[arg(long, value_name = "i/n", default_value = "1/1")]
+    shard: Shard,
+    /// Solve each variant in a process of its own, in place of threads.
+    #[arg(long)]
+    processes: bool,
+    /// Stop after so many seconds.
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    max_seconds: Option<f64>,
+    /// Show no progress.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+impl Sweep {
+    pub(crate) fn request(self) -> SweepRequest {
+        SweepRequest {
+            command: typed(),
+            input: self.sweep,
+            output: self.output,
+            shard: self.shard,
+            run_in: run_in(self.processes),
+            max_seconds: self.max_seconds,
+            progress: shown(self.quiet),
+        }
+    }
+}
+
+/// Where several solves run.
+pub(crate) const fn run_in(processes: bool) -> RunIn {
+    match processes {
+        true => RunIn::Processes,
+        false => RunIn::Threads,
     }
 }
 

@@ -88,6 +88,9 @@ pub mod sparse;
 #[cfg(feature = "cli")]
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod study;
+#[cfg(feature = "cli")]
+#[cfg_attr(not(internals), doc(hidden))]
+pub mod sweep;
 pub mod units;
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod workflow;

@@ -6,12 +6,13 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use arguments::{Arguments, Command, File, New};
+use arguments::{Arguments, Command, File, New, run_in};
 use clap::{CommandFactory, Parser};
-use proboscis::app::{self, CommandError, CommandInput, CommandOutput, StartsIn, Template};
+use proboscis::app::{self, CommandError, CommandInput, CommandOutput, Template};
 use proboscis::files::printable;
 use proboscis::ipopt::interrupt;
 use proboscis::study::study;
+use proboscis::sweep::sweep;
 use tracing_subscriber::EnvFilter;
 
 /// The name of the program.
@@ -70,10 +71,7 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
                 max_iterations,
                 ..problem.request()
             };
-            let run_in = match processes {
-                true => StartsIn::Processes,
-                false => StartsIn::Threads,
-            };
+            let run_in = run_in(processes);
             told(json, &request, |request| match starts {
                 Some(starts) => app::solve_from_starts(request, starts, seed, run_in),
                 None => app::run(request),
@@ -104,6 +102,10 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
             interrupt::install();
             study(&variants.request())
         }
+        Command::Sweep(variants) => {
+            interrupt::install();
+            sweep(&variants.request())
+        }
         Command::Expand { scene } => app::expand(&scene).map(text),
         Command::Schema { file } => {
             let (scene, problem) = app::schema();
@@ -111,6 +113,7 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
                 File::Scene => scene,
                 File::Problem => problem,
                 File::Study => app::study_schema(),
+                File::Sweep => app::sweep_schema(),
             }))
         }
         Command::New { what } => {

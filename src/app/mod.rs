@@ -1,13 +1,14 @@
 //! What the commands do: files in, files and words out.
 //!
 //! - `solve`, `forward`, `rest`: the three tasks; `task` chooses what a file asks for; `path`, `followed`: paths of equilibria.
-//! - `multistart`: a control problem from several guesses, in threads or processes.
+//! - `batch`: several solves at once, in threads or processes; `multistart`: a control problem from several guesses.
 //! - `inspect`, `sparsity`, `check`, `templates`: the other commands; `program`: what is asked from other languages in place of files.
 //! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
 //! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`: what is told of a result.
 //! - `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `progress`, `request`, `error`: what commands share.
 
 mod accuracy_table;
+mod batch;
 mod blocks;
 mod check;
 mod comparison;
@@ -39,17 +40,19 @@ mod tracking_words;
 mod unfinished;
 mod words;
 
+pub use batch::RunIn;
+pub(crate) use batch::{Batch, RunEnd, Said};
 pub use blocks::{BlockSize, BlockSizes};
 pub use check::check;
 pub use error::CommandError;
 pub(crate) use folder::make_folder;
 pub use inspect::inspect;
-pub use multistart::{StartsIn, solve_from_starts};
+pub use multistart::solve_from_starts;
 pub use program::{check_text, with_program};
-pub(crate) use progress::progress_bar;
+pub(crate) use progress::{Progress, progress_bar};
 pub use progress::{ProgressDisplay, Reached};
 pub use request::{CommandInput, CommandOutput};
 pub use rest::equilibrium_of_file;
 pub use summary::written_summary;
 pub use task::{run, run_observed};
-pub use templates::{Template, expand, new_files, schema, study_schema, write_file};
+pub use templates::{Template, expand, new_files, schema, study_schema, sweep_schema, write_file};

@@ -46,7 +46,7 @@ fn show_phases() {
 
 /// A line that changes while a run goes on.
 #[derive(Debug)]
-pub(super) struct Progress {
+pub(crate) struct Progress {
     bar: ProgressBar,
     began: Instant,
     before: Option<ProgressBar>,
@@ -70,12 +70,12 @@ impl Progress {
         Self::starting(bar, "{elapsed_precise} {bar:20} step {pos} of {len} {msg}")
     }
 
-    /// A solve from `starts` starting points.
-    pub(super) fn of_starts(shown: ProgressDisplay, starts: usize) -> Self {
-        let bar = target(ProgressBar::new(starts as u64), shown);
+    /// Several runs, each of which is called `what`.
+    pub(crate) fn of_runs(shown: ProgressDisplay, what: &str, count: usize) -> Self {
+        let bar = target(ProgressBar::new(count as u64), shown);
         Self::starting(
             bar,
-            "{elapsed_precise} {wide_bar} start {pos} of {len} {msg}",
+            &format!("{{elapsed_precise}} {{wide_bar}} {what} {{pos}} of {{len}} {{msg}}"),
         )
     }
 
@@ -108,10 +108,17 @@ impl Progress {
     }
 
     /// So many starts have ended, some of them solved, with this objective at best.
-    pub(super) fn start(&self, ended: usize, solved: usize, best: Option<f64>) {
+    pub(crate) fn run(&self, ended: usize, solved: usize, best: Option<f64>) {
         self.bar.set_position(ended as u64);
         let best = best.map_or_else(String::new, |best| format!(", best objective {best:.6e}"));
-        self.bar.set_message(format!("({solved} solved{best})"));
+        let waiting = self.bar.length().unwrap_or(0).saturating_sub(ended as u64);
+        let seconds = self.began.elapsed().as_secs_f64() / ended.max(1) as f64;
+        let left = match waiting {
+            0 => String::new(),
+            waiting => format!(", about {} left", rough(seconds * waiting as f64)),
+        };
+        self.bar
+            .set_message(format!("({solved} solved{best}{left})"));
     }
 
     /// Step `step` of so many is done.

@@ -99,6 +99,11 @@ pub fn study_schema() -> String {
     text(&files::study_schema())
 }
 
+/// The JSON Schema of a sweep as text.
+pub fn sweep_schema() -> String {
+    text(&files::sweep_schema())
+}
+
 fn text(schema: &serde_json::Value) -> String {
     serde_json::to_string_pretty(schema).expect("a schema is JSON")
 }

@@ -48,6 +48,11 @@ impl Columns {
         })
     }
 
+    /// All headers, and all rows, as they are written.
+    pub(crate) fn written(&self) -> (&StringRecord, &[StringRecord]) {
+        (&self.headers, &self.rows)
+    }
+
     /// The column with a header, or with a header of this name and any unit.
     pub(crate) fn column<M: PhysicalQuantity>(
         &self,

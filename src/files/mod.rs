@@ -2,18 +2,21 @@
 //!
 //! - [`units`]: numbers with units; [`json`]: text, places in it, mistakes, overrides.
 //! - [`scene`], [`problem`]: what is written in the two files, and what it becomes: [`System`] and [`Task`].
-//! - [`study`]: what is written in a study of variants of a problem.
+//! - [`study`], [`sweep`]: what is written in a study of variants of a problem, or a sweep of them; `changes`: their overrides.
 //! - `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
 
+pub(crate) mod changes;
 mod columns;
 pub mod json;
 pub mod problem;
 pub mod scene;
 pub mod solution;
 pub mod study;
+pub mod sweep;
 mod typed;
 pub mod units;
 
+pub(crate) use columns::Columns;
 pub(crate) use json::document::{Document, is_standard_input};
 pub use json::error::{SceneError, printable};
 pub(crate) use json::layout::lay_out;
@@ -33,6 +36,7 @@ use crate::files::scene::build::build_scene;
 use crate::files::scene::expand::expanded;
 use crate::files::scene::spec::SceneSpec;
 use crate::files::study::StudySpec;
+use crate::files::sweep::SweepSpec;
 use crate::model::system::System;
 
 /// A problem with its scene, read and checked.
@@ -150,4 +154,9 @@ pub fn schema() -> (Value, Value) {
 /// The JSON Schema of the study file.
 pub fn study_schema() -> Value {
     schemars::schema_for!(StudySpec).to_value()
+}
+
+/// The JSON Schema of the sweep file.
+pub fn sweep_schema() -> Value {
+    schemars::schema_for!(SweepSpec).to_value()
 }

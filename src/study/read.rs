@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use crate::control::problem::{Duration, Task};
+use crate::files::changes::Changes;
 use crate::files::study::{MethodSpec, ReferenceSpec, RefineSpec, StudySpec};
 use crate::files::{Document, Loaded, SceneError, Scope, read_problem};
-use crate::study::changes::Changes;
 use crate::study::measure::{self, StudyMeasure, StudyTask};
 use crate::study::sizes::sizes;
 

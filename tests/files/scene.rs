@@ -323,7 +323,14 @@ fn every_kept_problem_is_right() {
 fn kept_schemas_are_current() {
     let (scene, problem) = schema();
     let study = proboscis::files::study_schema();
-    for (name, schema) in [("scene", scene), ("problem", problem), ("study", study)] {
+    let sweep = proboscis::files::sweep_schema();
+    let all = [
+        ("scene", scene),
+        ("problem", problem),
+        ("study", study),
+        ("sweep", sweep),
+    ];
+    for (name, schema) in all {
         let path = format!("problems/{name}.schema.json");
         let text = serde_json::to_string_pretty(&schema).expect("a schema is JSON") + "\n";
         if std::env::var_os("PROBOSCIS_WRITE_SCHEMA").is_some() {

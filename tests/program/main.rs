@@ -22,6 +22,7 @@ mod study_conclusion;
 mod study_control;
 mod study_limits;
 mod study_refused;
+mod sweep;
 mod told;
 mod warm_starts;
 mod whole_files;

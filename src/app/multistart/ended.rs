@@ -1,6 +1,7 @@
 //! How one start ended, and which of them found one optimum.
 
-use super::launch::{Start, folder_of};
+use super::start::{Start, folder_of};
+use crate::app::batch::{RunEnd, Said};
 use crate::app::error::CommandError;
 use crate::ipopt::interrupt;
 use serde::{Deserialize, Serialize};
@@ -13,6 +14,9 @@ pub(super) const SAME_OBJECTIVE: f64 = 1e-6;
 
 /// Difference of the voltages of one optimum, relative to the largest: weakly bounded ones are known to 1e-4.
 pub(super) const SAME_VOLTAGE: f64 = 1e-3;
+
+/// The word of a start for which there was no time.
+const NOT_STARTED: &str = "not_started";
 
 /// How one start ended.
 #[derive(Clone, Debug, Serialize)]
@@ -65,18 +69,6 @@ pub(super) struct SolutionRecord {
     pub(super) voltages: BTreeMap<String, Vec<f64>>,
 }
 
-/// What a start says when it has ended.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Said {
-    Solved,
-    /// Its files tell why; where it left none, these words do.
-    Unsolved(String),
-    /// It broke off.
-    Failed(String),
-    /// The input is wrong.
-    Refused(String),
-}
-
 impl Ended {
     /// A start that left no files.
     pub(super) fn without_files(start: Start, status: &str, seconds: f64) -> Self {
@@ -102,8 +94,7 @@ impl Ended {
     /// It says that the input is wrong.
     pub(super) fn of(
         start: Start,
-        said: Said,
-        seconds: f64,
+        RunEnd { said, seconds }: RunEnd,
         folder: &Path,
     ) -> Result<Self, CommandError> {
         let failed = |message: String| match interrupt::requested() {
@@ -114,6 +105,7 @@ impl Ended {
             },
         };
         let (is_solved, message) = match said {
+            Said::NotStarted => return Ok(Self::without_files(start, NOT_STARTED, seconds)),
             Said::Solved => (true, String::new()),
             Said::Unsolved(message) => (false, message),
             Said::Failed(message) => return Ok(failed(message)),

@@ -1,11 +1,11 @@
 //! The files of the best start, and the table of all.
 
-use super::batch::{Batch, StartsIn};
 use super::ended::{Ended, best};
-use super::launch::folder_of;
+use super::start::folder_of;
+use crate::app::batch::{Batch, RunIn};
 use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
-use crate::app::request::CommandOutput;
+use crate::app::request::{CommandInput, CommandOutput};
 use crate::files::{lay_out, printable};
 use crate::ipopt::interrupt;
 use crate::report::atomic::{self, WriteError};
@@ -18,7 +18,7 @@ use std::path::Path;
 #[derive(Debug, Serialize)]
 pub(super) struct Section<'a> {
     pub(super) command: &'a str,
-    pub(super) run_in: StartsIn,
+    pub(super) run_in: RunIn,
     pub(super) count: usize,
     pub(super) solved: usize,
     pub(super) distinct_optima: usize,
@@ -31,16 +31,13 @@ pub(super) struct Section<'a> {
 
 /// Writes the files of the best start and the table of all, and tells of them.
 pub(super) fn write(
+    request: &CommandInput,
     batch: &Batch<'_>,
     ended: &[Ended],
     distinct: usize,
 ) -> Result<CommandOutput, CommandError> {
-    let Batch {
-        request,
-        run_in,
-        folder,
-        ..
-    } = *batch;
+    let folder = &*request.folder();
+    let run_in = batch.run_in;
     let origin = request.origin(true);
     let csv = cells_csv(&cells(ended), &origin);
     atomic::write(&folder.join("starts.csv"), csv.as_bytes())?;

@@ -3,19 +3,19 @@
 //! Each start is an ordinary `solve` of the same problem with another guess in a folder of its own, `starts/03`, and can be run again
 //! alone. Ipopt with MUMPS takes one solve at a time in a process, so that each start has a process of its own then.
 
-mod batch;
 mod ended;
 mod files;
-mod launch;
-mod processes;
-mod threads;
+mod start;
 
-use std::fs::{self};
+use std::fs;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
+use crate::app::batch::{Batch, RunIn};
 use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
+use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::words::key;
 use crate::control::problem::Task;
@@ -23,11 +23,9 @@ use crate::files::{is_standard_input, read_problem};
 use crate::ipopt::Options;
 use crate::workflow::memory;
 use crate::workflow::resolve::resolve;
-use batch::Batch;
-pub use batch::StartsIn;
-use ended::number_optima;
+use ended::{Ended, best, number_optima};
 use files::write;
-use launch::{FOLDER, Start};
+use start::{FOLDER, Start};
 
 /// Most starting points of one command; the seed of a start is that of the command times this number and its own.
 const MOST: usize = 1000;
@@ -42,7 +40,7 @@ pub fn solve_from_starts(
     request: &CommandInput,
     starts: usize,
     seed: u64,
-    wanted: StartsIn,
+    wanted: RunIn,
 ) -> Result<CommandOutput, CommandError> {
     let began = Instant::now();
     if !(1..MOST).contains(&starts) {
@@ -75,9 +73,9 @@ pub fn solve_from_starts(
     };
     let run_in = match options.run_at_once() {
         true => wanted,
-        false => StartsIn::Processes,
+        false => RunIn::Processes,
     };
-    if run_in == StartsIn::Processes && is_standard_input(&request.input) {
+    if run_in == RunIn::Processes && is_standard_input(&request.input) {
         return Err(CommandError::Option {
             option: "--starts",
             reason: "each process reads the problem anew, which standard input does not allow: give a file".to_owned(),
@@ -95,20 +93,40 @@ pub fn solve_from_starts(
             seed: (number > 1).then(|| seed_of(number)),
         })
         .collect();
+    let runs: Vec<CommandInput> = plan
+        .iter()
+        .map(|start| start.run(request, &folder))
+        .collect();
     let batch = Batch {
-        request,
+        runs: &runs,
         run_in,
-        folder: &folder,
-        plan: &plan,
+        max_seconds: request.max_seconds,
         began,
     };
-    let mut ended = match batch.run_in {
-        StartsIn::Threads => threads::run_all(&batch)?,
-        StartsIn::Processes => processes::run_all(&batch)?,
-    };
+    let progress = Progress::of_runs(request.progress, "start", plan.len());
+    let mut ended: Vec<Ended> = Vec::new();
+    let mut refused = None;
+    batch.run(&mut |index, end| {
+        match Ended::of(plan[index], end, &folder) {
+            Ok(one) => ended.push(one),
+            Err(error) => refused = refused.take().or(Some(error)),
+        }
+        let solved = ended.iter().filter(|one| one.is_solved).count();
+        let least = best(&ended).and_then(|i| ended[i].objective);
+        progress.run(ended.len(), solved, least);
+        // Where one finds the input wrong no other one begins.
+        match refused {
+            Some(_) => ControlFlow::Break(()),
+            None => ControlFlow::Continue(()),
+        }
+    })?;
+    drop(progress);
+    if let Some(error) = refused {
+        return Err(error);
+    }
     ended.sort_by_key(|one| one.start);
     let distinct = number_optima(&mut ended);
-    write(&batch, &ended, distinct)
+    write(request, &batch, &ended, distinct)
 }
 
 /// Starts of an earlier command.

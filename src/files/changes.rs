@@ -1,19 +1,19 @@
-//! Overrides of a study, with the places that they are from.
+//! Overrides that a study or a sweep writes, with the places that they are from.
 
 use crate::files::study::ChangesSpec;
 use crate::files::{JsonPath, SceneError, Scope};
 use serde_json::Value;
 use std::path::Path;
 
-/// Overrides with the places in the study that they are from.
-#[derive(Default)]
-pub(super) struct Changes<'a> {
-    pub(super) words: Vec<String>,
-    pub(super) from: Vec<(JsonPath, Scope<'a>)>,
+/// Overrides with the places in their file that they are from.
+#[derive(Clone, Default)]
+pub(crate) struct Changes<'a> {
+    pub(crate) words: Vec<String>,
+    pub(crate) from: Vec<(JsonPath, Scope<'a>)>,
 }
 
 impl<'a> Changes<'a> {
-    pub(super) fn extend(
+    pub(crate) fn extend(
         &mut self,
         set: &ChangesSpec,
         scope: &Scope<'a>,
@@ -22,7 +22,7 @@ impl<'a> Changes<'a> {
         each.try_for_each(|(key, value)| self.push(key, value, scope.key(key)))
     }
 
-    pub(super) fn push(
+    pub(crate) fn push(
         &mut self,
         key: &str,
         value: &Value,
@@ -37,8 +37,8 @@ impl<'a> Changes<'a> {
         Ok(())
     }
 
-    /// A mistake of an override, told at its place in the study; any other stays where it is.
-    pub(super) fn at_fault(&self, error: SceneError, file: &Path) -> SceneError {
+    /// A mistake of an override, told at its place in that file; any other stays where it is.
+    pub(crate) fn at_fault(&self, error: SceneError, file: &Path) -> SceneError {
         if !error.is_overridden() {
             return error;
         }
@@ -67,7 +67,7 @@ impl<'a> Changes<'a> {
 }
 
 /// A value as it is typed after `path=`: a text without quotes, where that reads back as the same text.
-pub(super) fn word(value: &Value) -> String {
+pub(crate) fn word(value: &Value) -> String {
     match value {
         Value::String(text)
             if serde_json::from_str::<Value>(text).is_err() && text.trim() == text =>

@@ -1,26 +1,26 @@
-//! Starts in processes, as many at once as there are cores.
+//! Solves in processes, as many at once as there are cores.
 
-use super::batch::{Batch, NOT_STARTED, tell};
-use super::ended::{Ended, Said};
-use super::launch::{Running, folder_of, launch};
-use crate::app::error::CommandError;
-use crate::app::progress::Progress;
-use crate::ipopt::interrupt;
-use crate::report::atomic::WriteError;
-use crate::workflow::at_once::cores;
 use std::io::{Read, Seek};
+use std::ops::ControlFlow;
 use std::process::ExitStatus;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use super::launch::{Running, launch};
+use super::{Batch, RunEnd, Said};
+use crate::app::error::CommandError;
+use crate::ipopt::interrupt;
+use crate::report::atomic::WriteError;
+use crate::workflow::at_once::cores;
+
 /// Time between two looks at the processes.
-pub(super) const PATIENCE: Duration = Duration::from_millis(10);
+const PATIENCE: Duration = Duration::from_millis(10);
 
 /// Time that processes have to end in good order after Ctrl-C.
-pub(super) const GRACE: Duration = Duration::from_secs(3);
+const GRACE: Duration = Duration::from_secs(3);
 
-/// The starts that run; none of them outlives this list.
-pub(super) struct All(Vec<Running>);
+/// The solves that run; none of them outlives this list.
+struct All(Vec<Running>);
 
 impl Drop for All {
     fn drop(&mut self) {
@@ -31,26 +31,28 @@ impl Drop for All {
     }
 }
 
-/// Runs the starts of a plan and tells how each ended.
-pub(super) fn run_all(batch: &Batch<'_>) -> Result<Vec<Ended>, CommandError> {
-    let progress = Progress::of_starts(batch.request.progress, batch.plan.len());
-    let mut waiting = batch.plan.iter().copied().peekable();
+/// Runs all of a batch.
+pub(super) fn run_all(
+    batch: &Batch<'_>,
+    told: &mut dyn FnMut(usize, RunEnd) -> ControlFlow<()>,
+) -> Result<(), CommandError> {
+    let mut waiting = batch.runs.iter().enumerate().peekable();
     let mut running = All(Vec::new());
-    let mut ended: Vec<Ended> = Vec::new();
+    let mut is_over = false;
     let mut stop_at = None;
     loop {
         if interrupt::requested() && stop_at.is_none() {
             stop_at = Some(Instant::now() + GRACE);
         }
         while running.0.len() < cores() {
-            let Some(start) = waiting.next() else {
+            let Some((index, run)) = waiting.next() else {
                 break;
             };
-            let Some(command) = batch.command(start) else {
-                ended.push(Ended::without_files(start, NOT_STARTED, 0.0));
+            let Some(command) = batch.command(run).filter(|_| !is_over) else {
+                is_over |= told(index, RunEnd::NOT_STARTED).is_break();
                 continue;
             };
-            let launched = launch(&command, start);
+            let launched = launch(&command, index);
             running.0.push(launched.map_err(|cause| WriteError {
                 path: command.folder(),
                 cause,
@@ -61,29 +63,29 @@ pub(super) fn run_all(batch: &Batch<'_>) -> Result<Vec<Ended>, CommandError> {
                 running.child.kill().ok();
             }
         }
-        let mut index = 0;
-        while index < running.0.len() {
-            match running.0[index].child.try_wait() {
-                Ok(None) => index += 1,
+        let mut place = 0;
+        while place < running.0.len() {
+            match running.0[place].child.try_wait() {
+                Ok(None) => place += 1,
                 Ok(Some(status)) => {
-                    let mut done = running.0.swap_remove(index);
-                    let said = said(&mut done, status);
-                    let seconds = done.began.elapsed().as_secs_f64();
-                    ended.push(Ended::of(done.start, said, seconds, batch.folder)?);
-                    tell(&progress, &ended);
+                    let mut done = running.0.swap_remove(place);
+                    let end = RunEnd {
+                        said: said(&mut done, status),
+                        seconds: done.began.elapsed().as_secs_f64(),
+                    };
+                    is_over |= told(done.index, end).is_break();
                 }
                 Err(cause) => {
-                    let path = folder_of(batch.folder, running.0[index].start.number);
+                    let path = batch.runs[running.0[place].index].folder();
                     return Err(WriteError { path, cause }.into());
                 }
             }
         }
         if running.0.is_empty() && waiting.peek().is_none() {
-            break;
+            return Ok(());
         }
         thread::sleep(PATIENCE);
     }
-    Ok(ended)
 }
 
 /// What a process said when it ended with a status.

@@ -1,0 +1,65 @@
+//! A solve as it is typed, and a process of it.
+
+use std::ffi::OsString;
+use std::fs::File;
+use std::io;
+use std::process::{Child, Command, Stdio};
+use std::time::Instant;
+
+use crate::app::progress::ProgressDisplay;
+use crate::app::request::CommandInput;
+
+/// A solve that runs.
+pub(super) struct Running {
+    pub(super) index: usize,
+    pub(super) child: Child,
+    pub(super) told: File,
+    pub(super) began: Instant,
+}
+
+/// The solve as if it had been typed by itself.
+pub(super) fn as_typed(request: CommandInput) -> CommandInput {
+    let typed = words(&request);
+    let typed = typed.iter().map(|word| word.to_string_lossy());
+    let typed: Vec<_> = ["proboscis".into()].into_iter().chain(typed).collect();
+    CommandInput {
+        command: typed.join(" "),
+        progress: ProgressDisplay::Never,
+        ..request
+    }
+}
+
+/// What one types for a solve.
+fn words(request: &CommandInput) -> Vec<OsString> {
+    let mut words: Vec<OsString> = vec!["solve".into(), request.input.clone().into()];
+    let mut option = |name: &str, value: OsString| words.extend([name.into(), value]);
+    for change in &request.set {
+        option("--set", change.into());
+    }
+    option("-o", request.folder().into());
+    if let Some(iterations) = request.max_iterations {
+        option("--max-iterations", iterations.to_string().into());
+    }
+    if let Some(seconds) = request.max_seconds {
+        option("--max-seconds", seconds.to_string().into());
+    }
+    words.push("--quiet".into());
+    words
+}
+
+/// Starts the process of a solve.
+pub(super) fn launch(command: &CommandInput, index: usize) -> io::Result<Running> {
+    let told = tempfile::tempfile()?;
+    let child = Command::new(std::env::current_exe()?)
+        .args(words(command))
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(told.try_clone()?)
+        .spawn()?;
+    Ok(Running {
+        index,
+        child,
+        told,
+        began: Instant::now(),
+    })
+}

@@ -1,0 +1,100 @@
+//! A sweep as it is written: the serde types of the sweep file.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+use crate::files::study::ChangesSpec;
+
+/// A sweep: one problem solved in many variants.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SweepSpec {
+    /// JSON Schema of this file, for editors.
+    #[serde(rename = "$schema", default)]
+    #[expect(dead_code, reason = "read by editors only")]
+    pub(crate) schema: Option<String>,
+    /// Title of the page; the name of the file where not written.
+    #[serde(default)]
+    pub title: Option<String>,
+    /// Path of the problem file, relative to this file.
+    pub problem: String,
+    /// Overrides of all variants.
+    #[serde(default)]
+    pub set: ChangesSpec,
+    /// What varies, by its place in the problem, or in its scene after `scene.`.
+    #[serde(default)]
+    pub vary: BTreeMap<String, VarySpec>,
+    /// How the values are combined; as a grid where not written.
+    #[serde(default)]
+    pub combine: CombineSpec,
+    /// Path of a CSV file with a variant per line, in place of `vary`: its headers are places, its cells values.
+    #[serde(default)]
+    pub table: Option<String>,
+}
+
+/// The values of one entry.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum VarySpec {
+    /// These.
+    Values(Vec<Value>),
+    /// Those of a range.
+    Range(RangeSpec),
+}
+
+/// A range of numbers, or of quantities of one unit.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RangeSpec {
+    /// The first value: a number, or a text with a unit.
+    pub from: Value,
+    /// The last value, in the same unit.
+    pub to: Value,
+    /// How many values, both ends included; 2 or more. Not for values at random.
+    #[serde(default)]
+    pub count: Option<usize>,
+    /// How they are spaced; evenly where not written.
+    #[serde(default)]
+    pub spacing: SpacingSpec,
+}
+
+/// How values are spaced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SpacingSpec {
+    /// Equal differences.
+    #[default]
+    Linear,
+    /// Equal ratios, of values above zero.
+    Logarithmic,
+}
+
+/// How the values of several entries are combined.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CombineSpec {
+    /// Each with each.
+    #[default]
+    Grid,
+    /// The first of each, the second of each, and so on: lists of one length.
+    Together,
+    /// Values drawn at random from each list or range.
+    Random(RandomSpec),
+}
+
+/// Variants at random.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RandomSpec {
+    /// How many.
+    pub count: usize,
+    /// Equal seeds give equal variants; 1 where not written.
+    #[serde(default = "one")]
+    pub seed: u64,
+}
+
+fn one() -> u64 {
+    1
+}

@@ -1,0 +1,54 @@
+//! What tells whether two variants are one, and whether a result is that of a variant.
+
+use std::fmt::{self, Write};
+
+use sha2::{Digest, Sha256};
+
+use crate::files::Loaded;
+use crate::report::origin::Origin;
+
+/// Digits of an identity.
+const DIGITS: usize = 16;
+
+/// Hexadecimal digits of a hash of a problem as it was read, with the files that it names, and of the version of the program.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Identity(String);
+
+impl Identity {
+    /// Of a problem.
+    pub(super) fn of_problem(loaded: &Loaded) -> Self {
+        // All numbers are written so that they read back identical.
+        Self::of(format_args!("{:?}{:?}", loaded.system, loaded.task))
+    }
+
+    /// Of overrides that make no problem.
+    pub(super) fn of_words(words: &[String]) -> Self {
+        Self::of(format_args!("{words:?}"))
+    }
+
+    fn of(written: fmt::Arguments<'_>) -> Self {
+        let mut hash = Hash(Sha256::new());
+        let all = write!(hash, "{}\n{written}", Origin::program());
+        all.expect("a hash takes everything");
+        let mut digits = String::new();
+        for byte in hash.0.finalize().iter().take(DIGITS / 2) {
+            write!(digits, "{byte:02x}").expect("room for digits");
+        }
+        Self(digits)
+    }
+
+    /// Its digits.
+    pub(super) fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+/// What is written is hashed piece by piece.
+struct Hash(Sha256);
+
+impl Write for Hash {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0.update(text.as_bytes());
+        Ok(())
+    }
+}

@@ -1,0 +1,196 @@
+//! Variants of one problem, solved at once, each in a folder of its own; what is solved already is not solved again.
+//!
+//! - `request`: the command; `read`, `values`: the sweep file and its variants; `identity`: which of them are one.
+//! - `kept`: what a variant leaves; `table`, `page`: what all of them tell.
+
+mod identity;
+mod kept;
+mod page;
+mod read;
+mod request;
+mod table;
+mod values;
+
+pub use request::{Shard, SweepRequest};
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use crate::app::{
+    Batch, CommandError, CommandInput, CommandOutput, Progress, RunEnd, RunIn, make_folder,
+};
+use crate::ipopt;
+use crate::ipopt::interrupt;
+use crate::report::atomic;
+use crate::report::origin::Origin;
+use crate::report::table::cells_csv;
+use crate::sweep::kept::Kept;
+use crate::sweep::read::{Sweep, Variant, read_sweep};
+
+/// Folder of the variants within that of the results.
+const VARIANTS: &str = "variants";
+
+/// Solves the variants of a sweep that are not solved yet, and writes the table of all.
+///
+/// # Errors
+/// The sweep or the problems of all variants are wrong, or the results cannot be written.
+pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
+    let began = Instant::now();
+    let sweep = read_sweep(&request.input)?;
+    let folder = request.folder();
+    make_folder(&folder)?;
+    let of = |variant: &Variant| folder.join(VARIANTS).join(variant.identity.as_str());
+
+    // By identity, so that equal variants are solved once.
+    let mut ends: BTreeMap<&str, Kept> = BTreeMap::new();
+    let mut todo: Vec<&Variant> = Vec::new();
+    let mut chosen = BTreeSet::new();
+    let mut found = 0;
+    for (index, variant) in sweep.variants.iter().enumerate() {
+        let identity = variant.identity.as_str();
+        if !chosen.insert(identity) {
+            continue;
+        }
+        let kept = match &variant.refused {
+            Some(message) => Some(Kept::refused(variant, message)),
+            None => Kept::read(variant, &of(variant)).inspect(|_| found += 1),
+        };
+        match kept {
+            Some(kept) => {
+                ends.insert(identity, kept);
+            }
+            None if request.shard.has(index) => todo.push(variant),
+            None => {}
+        }
+    }
+    solve(request, &sweep, &todo, &of, began, &mut ends)?;
+
+    let ends: Vec<Kept> = sweep
+        .variants
+        .iter()
+        .map(|variant| match ends.get(variant.identity.as_str()) {
+            Some(end) => end.clone(),
+            None => Kept::of(variant, &RunEnd::NOT_STARTED, Path::new("")),
+        })
+        .collect();
+    write(request, &sweep, &ends, &folder)?;
+    Ok(told(request.shard, &sweep, &ends, found, &folder, began))
+}
+
+/// Solves variants, and keeps each as soon as it has ended.
+fn solve<'a>(
+    request: &SweepRequest,
+    sweep: &'a Sweep,
+    todo: &[&'a Variant],
+    folder: &dyn Fn(&Variant) -> PathBuf,
+    began: Instant,
+    ends: &mut BTreeMap<&'a str, Kept>,
+) -> Result<(), CommandError> {
+    let run = |variant: &&Variant| CommandInput {
+        command: String::new(),
+        input: sweep.problem.clone(),
+        set: variant.set.clone(),
+        output: Some(folder(variant)),
+        max_seconds: None,
+        max_iterations: None,
+        wanted: None,
+        progress: request.progress,
+    };
+    let runs: Vec<CommandInput> = todo.iter().map(run).collect();
+    let batch = Batch {
+        runs: &runs,
+        run_in: match sweep.run_at_once {
+            true => request.run_in,
+            false => RunIn::Processes,
+        },
+        max_seconds: request.max_seconds,
+        began,
+    };
+    let progress = Progress::of_runs(request.progress, "variant", todo.len());
+    let mut counts = [0, 0];
+    let mut unwritten = None;
+    batch.run(&mut |index, end| {
+        let kept = Kept::of(todo[index], &end, &folder(todo[index]));
+        if !kept.is_unfinished() {
+            unwritten = kept.write(&folder(todo[index])).err();
+        }
+        counts[0] += 1;
+        counts[1] += usize::from(kept.is_solved);
+        progress.run(counts[0], counts[1], None);
+        ends.insert(todo[index].identity.as_str(), kept);
+        match unwritten {
+            Some(_) => ControlFlow::Break(()),
+            None => ControlFlow::Continue(()),
+        }
+    })?;
+    unwritten.map_or(Ok(()), Err)
+}
+
+/// Writes table and page.
+fn write(
+    request: &SweepRequest,
+    sweep: &Sweep,
+    ends: &[Kept],
+    folder: &Path,
+) -> Result<(), CommandError> {
+    let origin = Origin {
+        command: request.command.clone(),
+        input: request.input.display().to_string(),
+        version: Origin::program(),
+        ipopt: ipopt::VERSION.to_owned(),
+    };
+    let table = table::table(sweep, ends);
+    let csv = cells_csv(&table, &origin);
+    atomic::write(&folder.join("sweep.csv"), csv.as_bytes())?;
+    let page = page::html(sweep, ends, &table, &origin);
+    Ok(atomic::write(&folder.join("report.html"), page.as_bytes())?)
+}
+
+/// How many variants ended how.
+fn told(
+    shard: Shard,
+    sweep: &Sweep,
+    ends: &[Kept],
+    found: usize,
+    folder: &Path,
+    began: Instant,
+) -> CommandOutput {
+    let solved = ends.iter().filter(|end| end.is_solved).count();
+    let mut words: BTreeMap<&str, usize> = BTreeMap::new();
+    for end in ends {
+        *words.entry(&end.status).or_default() += 1;
+    }
+    let words = words.iter().map(|(word, count)| format!("{count} {word}"));
+    let words: Vec<String> = words.collect();
+    let mut notes: Vec<String> = Vec::new();
+    let mut messages = BTreeSet::new();
+    for (variant, end) in sweep.variants.iter().zip(ends) {
+        let message = end.message.as_ref();
+        if let Some(message) = message.filter(|message| messages.insert(message.as_str())) {
+            notes.push(format!("{}: {message}", variant.set.join(", ")));
+        }
+    }
+    let own = ends.iter().enumerate();
+    let mut own = own.filter(|(index, _)| shard.has(*index));
+    let is_complete = own.all(|(_, end)| !end.is_unfinished());
+    if interrupt::requested() {
+        notes.push("interrupted; the same command goes on".to_owned());
+    }
+    let before = match found {
+        0 => String::new(),
+        found => format!(", {found} found solved before"),
+    };
+    CommandOutput {
+        is_solved: solved > 0 && is_complete,
+        result: format!(
+            "{} variants: {}{before}, {:.1} s, {}",
+            ends.len(),
+            words.join(", "),
+            began.elapsed().as_secs_f64(),
+            folder.display()
+        ),
+        notes,
+    }
+}

@@ -1,0 +1,218 @@
+//! A sweep file, and the variants that it asks for.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::control::problem::Task;
+use crate::files::changes::Changes;
+use crate::files::sweep::{CombineSpec, SweepSpec};
+use crate::files::{Columns, Document, Loaded, SceneError, Scope, read_problem};
+use crate::ipopt::Options;
+use crate::math::random::Random;
+use crate::sweep::identity::Identity;
+use crate::sweep::values::Values;
+
+/// Most variants of a sweep.
+const MOST: usize = 100_000;
+
+/// A sweep and its variants, read and checked.
+#[derive(Debug)]
+pub(super) struct Sweep {
+    pub(super) title: String,
+    /// The problem file.
+    pub(super) problem: PathBuf,
+    /// What varies, by its place in the problem.
+    pub(super) places: Vec<String>,
+    pub(super) variants: Vec<Variant>,
+    /// Whether several variants may be solved at once in one process.
+    pub(super) run_at_once: bool,
+}
+
+/// A variant of the problem.
+#[derive(Debug)]
+pub(super) struct Variant {
+    /// What is written at each place that varies.
+    pub(super) values: Vec<Value>,
+    /// All overrides, as they are typed after `--set`.
+    pub(super) set: Vec<String>,
+    /// Of the problem that it asks for; of the overrides where that is refused.
+    pub(super) identity: Identity,
+    /// Why its problem is refused.
+    pub(super) refused: Option<String>,
+}
+
+/// Reads a sweep and the problems of all its variants.
+///
+/// # Errors
+/// The sweep is wrong, or the problem of every variant is.
+pub(super) fn read_sweep(path: &Path) -> Result<Sweep, SceneError> {
+    let document = Document::read(path)?;
+    let spec: SweepSpec = document.parse()?;
+    let scope = Scope::of(&document);
+    let problem = scope
+        .key("problem")
+        .file(&spec.problem, "the path of a problem file")?;
+    let (places, rows) = match &spec.table {
+        None => varied(&spec, &scope.key("vary"))?,
+        Some(table) => of_table(&spec, table, &scope)?,
+    };
+    let place_of = |place: &str| match &spec.table {
+        None => scope.key("vary").key(place),
+        Some(_) => scope.key("table"),
+    };
+    let mut fixed = Changes::default();
+    fixed.extend(&spec.set, &scope.key("set"))?;
+    let mut first_error = None;
+    let mut run_at_once = true;
+    let mut variants = Vec::with_capacity(rows.len());
+    for values in rows {
+        let mut changes = fixed.clone();
+        for (place, value) in places.iter().zip(&values) {
+            changes.push(place, value, place_of(place))?;
+        }
+        let (identity, refused) = match read_problem(&problem, &changes.words) {
+            Ok(loaded) => {
+                run_at_once &= runs_at_once(&loaded);
+                (Identity::of_problem(&loaded), None)
+            }
+            Err(error) => {
+                let told = error.to_string();
+                first_error.get_or_insert_with(|| changes.at_fault(error, &problem));
+                (Identity::of_words(&changes.words), Some(told))
+            }
+        };
+        variants.push(Variant {
+            values,
+            set: changes.words,
+            identity,
+            refused,
+        });
+    }
+    match first_error {
+        Some(error) if variants.iter().all(|one| one.refused.is_some()) => Err(error),
+        _ => Ok(Sweep {
+            title: spec.title.unwrap_or_else(|| name(path)),
+            problem,
+            places,
+            variants,
+            run_at_once,
+        }),
+    }
+}
+
+/// Places and values of what is written under `vary`.
+fn varied(
+    spec: &SweepSpec,
+    scope: &Scope<'_>,
+) -> Result<(Vec<String>, Vec<Vec<Value>>), SceneError> {
+    if spec.vary.is_empty() {
+        let expected = "places with values, or a \"table\" beside \"problem\"";
+        return Err(scope.wrong("nothing that varies", expected));
+    }
+    let read: BTreeMap<&String, Values> = spec
+        .vary
+        .iter()
+        .map(|(place, written)| Ok((place, Values::of(written, &scope.key(place))?)))
+        .collect::<Result<_, SceneError>>()?;
+    let lists = || -> Result<Vec<Vec<Value>>, SceneError> {
+        let each = read.iter();
+        each.map(|(place, values)| values.all(&scope.key(place)))
+            .collect()
+    };
+    let limited = |count: Option<usize>| match count {
+        Some(count) if (1..=MOST).contains(&count) => Ok(()),
+        _ => {
+            let found = count.map_or("more variants than can be counted".to_owned(), |n| {
+                format!("{n} variants")
+            });
+            Err(scope.wrong(found, format!("1 to {MOST} variants")))
+        }
+    };
+    let rows = match spec.combine {
+        CombineSpec::Grid => {
+            let lists = lists()?;
+            let count = lists
+                .iter()
+                .try_fold(1_usize, |n, list| n.checked_mul(list.len()));
+            limited(count)?;
+            grid(&lists)
+        }
+        CombineSpec::Together => {
+            let lists = lists()?;
+            let first = lists[0].len();
+            for (place, list) in read.keys().zip(&lists) {
+                if list.len() != first {
+                    let found = format!("{} values", list.len());
+                    let expected = format!("{first}, as in the first list");
+                    return Err(scope.key(place).wrong(found, expected));
+                }
+            }
+            limited(Some(first))?;
+            let row = |i: usize| lists.iter().map(|list| list[i].clone()).collect();
+            (0..first).map(row).collect()
+        }
+        CombineSpec::Random(asked) => {
+            limited(Some(asked.count))?;
+            let mut random = Random::new(asked.seed);
+            let mut row = || read.values().map(|one| one.draw(&mut random)).collect();
+            (0..asked.count).map(|_| row()).collect()
+        }
+    };
+    Ok((spec.vary.keys().cloned().collect(), rows))
+}
+
+/// Each value of each list with each of all others; the last list runs fastest.
+fn grid(lists: &[Vec<Value>]) -> Vec<Vec<Value>> {
+    lists.iter().fold(vec![Vec::new()], |rows, list| {
+        let extended = rows.iter().flat_map(|row| {
+            list.iter()
+                .map(|value| row.iter().chain([value]).cloned().collect())
+        });
+        extended.collect()
+    })
+}
+
+/// Places and values of a CSV file.
+fn of_table(
+    spec: &SweepSpec,
+    table: &str,
+    scope: &Scope<'_>,
+) -> Result<(Vec<String>, Vec<Vec<Value>>), SceneError> {
+    if !spec.vary.is_empty() {
+        let place = scope.key("vary");
+        return Err(place.wrong("places with values", "either \"vary\" or \"table\""));
+    }
+    let scope = scope.key("table");
+    let columns = Columns::read(table, &scope)?;
+    let (headers, rows) = columns.written();
+    if rows.is_empty() || rows.len() > MOST {
+        let found = format!("{} lines below the headers", rows.len());
+        return Err(scope.wrong(found, format!("1 to {MOST} variants")));
+    }
+    let value = |cell: &str| serde_json::from_str(cell).unwrap_or_else(|_| cell.into());
+    let row = |record: &csv::StringRecord| record.iter().map(value).collect();
+    Ok((
+        headers.iter().map(str::to_owned).collect(),
+        rows.iter().map(row).collect(),
+    ))
+}
+
+/// Whether the problem may be solved beside others in one process.
+fn runs_at_once(loaded: &Loaded) -> bool {
+    match &loaded.task {
+        Task::Control(control) => Options {
+            linear_solver: control.solver.linear_solver,
+            extra: control.solver.ipopt.clone(),
+            ..Options::default()
+        }
+        .run_at_once(),
+        Task::Simulate(_) | Task::Equilibrium(_) => true,
+    }
+}
+
+fn name(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
+}
