@@ -15,5 +15,8 @@ mod kkt;
 mod linear_solver;
 mod matrices;
 mod precision;
+mod random_systems;
+mod recorded;
+mod recorder;
 mod sparse;
 mod stopped;
