@@ -111,6 +111,7 @@ def main(wheel: Path, folder: Path) -> None:
     size = made.stat().st_size
     print(f"{made}: {size / 1e6:.1f} MB, {len(grafted)} libraries, {len(libraries)} packages of Debian")
     if size > LARGEST:
+        made.unlink()
         sys.exit(f"the wheel is larger than {LARGEST / 1e6:.0f} MB")
 
 
