@@ -14,7 +14,7 @@ impl Precision {
     /// that each iteration leaves.
     pub(crate) fn tolerated_loss(self) -> f64 {
         match self {
-            Self::Single => 1e-2,
+            Self::Single => 0.2,
             Self::Double => 1e-6,
         }
     }
