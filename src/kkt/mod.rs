@@ -18,7 +18,6 @@
 //! | `numeric`, `solve`, `scales` | factors, solutions, equilibration |
 //! | `groups`, `condense`, `condensed`, `products`, `block_lu`, `substitute` | unknowns that equations determine, eliminated before all others |
 //! | `solver` | when to scale, how strictly to pivot, whether the factors are good |
-//! | `trial` | how good factors are |
 //! | `progress` | whether a long factorisation is to go on |
 //!
 //! After the first matrix nothing is allocated, unless more pivots are delayed than ever before.
@@ -44,7 +43,6 @@ mod solve;
 mod solver;
 mod substitute;
 mod tree;
-mod trial;
 mod update;
 
 pub use inertia::Inertia;

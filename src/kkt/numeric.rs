@@ -110,19 +110,6 @@ impl Factors {
         Ok(Some(outcome))
     }
 
-    /// The inertia with the smallest pivot, where it stands alone, counted as zero.
-    pub(super) fn with_zero(&self, inertia: Inertia) -> Inertia {
-        let smallest = self
-            .pivots
-            .iter()
-            .max_by(|a, b| a[0].abs().total_cmp(&b[0].abs()));
-        let is_negative = smallest.is_some_and(|pivot| pivot[0] < 0.0 && pivot[1] == 0.0);
-        Inertia {
-            negative: inertia.negative - usize::from(is_negative),
-            zero: inertia.zero + 1,
-        }
-    }
-
     /// A front of one column and no children, without making it; `None` if its diagonal is no pivot.
     fn leaf(
         &mut self,

@@ -2,13 +2,12 @@
 //!
 //! * Cheap systems are factored as they are, with the weakest rule for pivots. If many pivots are delayed, or one seems to be zero,
 //!   the matrix is equilibrated and factored again, and these scales are kept for a while. Expensive ones are equilibrated always.
-//! * After each factorisation a system is solved. Where its backward error is great, or a part of the right-hand side is left, signs of
-//!   eigenvalues may be wrong, and the matrix is factored again under a stricter rule.
+//! * After each factorisation a system is solved and its backward error looked at. Where that is great, signs of eigenvalues may be
+//!   wrong, and the matrix is factored again under a stricter rule.
 //! * Where equations determine unknowns cheaply the system is condensed; one whose equations depend on each other or have a diagonal that they do
 //!   not bear, or that grows along the horizon, is factored as it is.
 //! * Long work asks now and then whether it is to stop; there are no factors then.
-//! * Zero pivots are counted in an equilibrated matrix under the strictest rule. Where there are none and yet a part of the right-hand side is left the
-//!   matrix is singular too: the smallest pivot is an error of rounding.
+//! * Zero pivots are counted in an equilibrated matrix under the strictest rule.
 
 use super::condensed::Condensed;
 use super::inertia::Inertia;
@@ -18,7 +17,6 @@ use super::plan::Plan;
 use super::progress::{Progress, Stopped};
 use super::scales::Scales;
 use super::solve::solve;
-use super::trial::{Quality, Trial};
 
 /// Threshold of pivots for each [`Care`].
 const THRESHOLDS: [f64; 5] = [0.1, 1e-8, 1e-4, 1e-2, 0.1];
@@ -32,8 +30,6 @@ const KEPT: usize = 4;
 const EXPENSIVE: f64 = 200.0;
 /// Backward error that calls for a stricter rule.
 const ERROR: f64 = 1e-3;
-/// Part of a right-hand side that is left by a singular matrix; regular ones of horizons leave less than a hundredth.
-const LEFT: f64 = 0.1;
 
 /// What a solver has done.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,7 +44,7 @@ pub struct Statistics {
     pub condensed: usize,
     /// Times the scales were found anew.
     pub equilibrations: usize,
-    /// Factorisations that were repeated under a stricter rule because of what they left of a system.
+    /// Factorisations that were repeated under a stricter rule because of their backward error.
     pub repeated: usize,
     /// Largest backward error of factors that were used.
     pub backward_error: f64,
@@ -79,7 +75,7 @@ impl Care {
 enum Doubt {
     /// What is not condensed: equations with a diagonal, dependent ones, growth along the horizon.
     Structure,
-    /// Many delays, a great backward error, or a part of a right-hand side that is left.
+    /// Many delays or a great backward error.
     Growth,
     /// Zero pivots.
     Zeros,
@@ -104,7 +100,9 @@ pub struct Solver {
     entries: Vec<f64>,
     scaled: Vec<f64>,
     work: Vec<f64>,
-    trial: Trial,
+    solution: Vec<f64>,
+    /// Residual, and the sum of the magnitudes of its terms.
+    residual: Vec<[f64; 2]>,
     statistics: Statistics,
 }
 
@@ -127,7 +125,8 @@ impl Solver {
             entries: Vec::new(),
             scaled: Vec::new(),
             work: Vec::new(),
-            trial: Trial::new(n),
+            solution: vec![0.0; n],
+            residual: vec![[0.0; 2]; n],
             statistics: Statistics::default(),
         }
     }
@@ -239,18 +238,12 @@ impl Solver {
                 _ => Err(Doubt::Zeros),
             };
         }
-        let quality = self.quality();
-        let is_left = quality.left > LEFT;
-        if self.care < Care::Strict && (is_left || quality.backward_error > ERROR) {
+        let error = self.backward_error();
+        if error > ERROR && self.care < Care::Strict {
             self.statistics.repeated += 1;
             return Err(Doubt::Growth);
         }
-        if is_left {
-            let inertia = self.factors.with_zero(outcome.inertia);
-            return Ok(Outcome { inertia, ..outcome });
-        }
-        let error = &mut self.statistics.backward_error;
-        *error = error.max(quality.backward_error);
+        self.statistics.backward_error = self.statistics.backward_error.max(error);
         Ok(outcome)
     }
 
@@ -331,13 +324,34 @@ impl Solver {
         }
     }
 
-    /// How well the factors solve a system.
-    fn quality(&mut self) -> Quality {
-        let mut trial = std::mem::take(&mut self.trial);
-        self.substitute(trial.begin(self.plan.pattern(), &self.entries));
-        let quality = trial.end(self.plan.pattern(), &self.entries);
-        self.trial = trial;
-        quality
+    /// The smallest relative change of entries with which a solution for `b = (1, −1, 1, …)` is exact (Oettli and Prager, 1964):
+    /// the greatest of `|b − A x| / (|A| |x| + |b|)`.
+    fn backward_error(&mut self) -> f64 {
+        let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let mut x = std::mem::take(&mut self.solution);
+        x.iter_mut().enumerate().for_each(|(i, x)| *x = sign(i));
+        self.substitute(&mut x);
+        let sums = &mut self.residual;
+        sums.iter_mut()
+            .enumerate()
+            .for_each(|(i, sum)| *sum = [sign(i), 1.0]);
+        let mut add = |row: u32, term: f64| {
+            let [residual, magnitude] = &mut sums[row as usize];
+            *residual -= term;
+            *magnitude += term.abs();
+        };
+        let (rows, cols) = self.plan.pattern();
+        for ((&row, &col), &entry) in rows.iter().zip(cols).zip(&self.entries) {
+            add(row, entry * x[col as usize]);
+            if row != col {
+                add(col, entry * x[row as usize]);
+            }
+        }
+        self.solution = x;
+        let errors = self.residual.iter().map(|[r, m]| r.abs() / m);
+        let is_known = errors.clone().all(f64::is_finite);
+        let greatest = errors.fold(0.0, f64::max);
+        if is_known { greatest } else { f64::INFINITY }
     }
 }
 
