@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::app::{
-    Batch, CommandError, CommandInput, CommandOutput, Progress, RunEnd, RunIn, make_folder,
+    Batch, CommandError, CommandInput, CommandOutput, Progress, RunEnd, RunIn, make_folder, run_all,
 };
 use crate::ipopt;
 use crate::ipopt::interrupt;
@@ -111,7 +111,7 @@ fn solve<'a>(
     let progress = Progress::of_runs(request.progress, "variant", todo.len());
     let mut counts = [0, 0];
     let mut unwritten = None;
-    batch.run(&mut |index, end| {
+    run_all(&batch, &mut |index, end| {
         let kept = Kept::of(todo[index], &end, &folder(todo[index]));
         if !kept.is_unfinished() {
             unwritten = kept.write(&folder(todo[index])).err();

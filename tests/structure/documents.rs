@@ -54,7 +54,7 @@ fn links_lead_to_files() {
 
 #[test]
 fn sources_that_documents_name_exist() {
-    let files: BTreeSet<String> = ["src", "tests", "benches", "examples"]
+    let files: BTreeSet<String> = ["src", "tests", "benches", "examples", "python/src"]
         .into_iter()
         .filter(|folder| root().join(folder).exists())
         .flat_map(|folder| {

@@ -6,8 +6,9 @@ use std::process::ExitStatus;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use super::end::{RunEnd, Said};
 use super::launch::{Running, launch};
-use super::{Batch, RunEnd, Said};
+use super::plan::Batch;
 use crate::app::error::CommandError;
 use crate::ipopt::interrupt;
 use crate::report::atomic::WriteError;

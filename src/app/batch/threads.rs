@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use super::{Batch, RunEnd, Said};
+use super::end::{RunEnd, Said};
+use super::plan::Batch;
 use crate::app::error::CommandError;
 use crate::app::request::CommandInput;
 use crate::app::task;

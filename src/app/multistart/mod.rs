@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use crate::app::batch::{Batch, RunIn};
+use crate::app::batch::{Batch, RunIn, run_all};
 use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
 use crate::app::progress::Progress;
@@ -106,7 +106,7 @@ pub fn solve_from_starts(
     let progress = Progress::of_runs(request.progress, "start", plan.len());
     let mut ended: Vec<Ended> = Vec::new();
     let mut refused = None;
-    batch.run(&mut |index, end| {
+    run_all(&batch, &mut |index, end| {
         match Ended::of(plan[index], end, &folder) {
             Ok(one) => ended.push(one),
             Err(error) => refused = refused.take().or(Some(error)),
