@@ -74,6 +74,7 @@ check: install-deps
 bench: install-deps
 	@$(CARGO) bench --locked --bench transcription --bench step
 	@$(CARGO) bench --locked --bench solve -- --write
+	@$(CARGO) bench --locked --bench kkt -- --write
 	@$(CARGO) bench --locked --bench block -- 8 16 --write
 
 studies: build
