@@ -15,7 +15,7 @@ fn cube(shift: f64, is_definite: bool) -> Matrix {
         entries: Vec::new(),
         values: Vec::new(),
     };
-    let sign = |i: usize| match is_definite || i % 5 != 0 {
+    let sign = |i: usize| match is_definite || !i.is_multiple_of(5) {
         true => 1.0,
         false => -1.0,
     };
