@@ -41,7 +41,7 @@ mod unfinished;
 mod words;
 
 pub use batch::RunIn;
-pub(crate) use batch::{Batch, RunEnd, Said, run_all};
+pub(crate) use batch::{Batch, RunEnd, Said, run_all, task_runs_at_once};
 pub use blocks::{BlockSize, BlockSizes};
 pub use check::check;
 pub use error::CommandError;

@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::control::problem::Task;
+use crate::app::task_runs_at_once;
 use crate::files::changes::Changes;
 use crate::files::sweep::{CombineSpec, SweepSpec};
-use crate::files::{Columns, Document, Loaded, SceneError, Scope, read_problem};
-use crate::ipopt::Options;
+use crate::files::{Columns, Document, SceneError, Scope, read_problem};
 use crate::math::random::Random;
 use crate::sweep::identity::Identity;
 use crate::sweep::values::Values;
@@ -74,7 +73,7 @@ pub(super) fn read_sweep(path: &Path) -> Result<Sweep, SceneError> {
         }
         let (identity, refused) = match read_problem(&problem, &changes.words) {
             Ok(loaded) => {
-                run_at_once &= runs_at_once(&loaded);
+                run_at_once &= task_runs_at_once(&loaded.task);
                 (Identity::of_problem(&loaded), None)
             }
             Err(error) => {
@@ -197,19 +196,6 @@ fn of_table(
         headers.iter().map(str::to_owned).collect(),
         rows.iter().map(row).collect(),
     ))
-}
-
-/// Whether the problem may be solved beside others in one process.
-fn runs_at_once(loaded: &Loaded) -> bool {
-    match &loaded.task {
-        Task::Control(control) => Options {
-            linear_solver: control.solver.linear_solver,
-            extra: control.solver.ipopt.clone(),
-            ..Options::default()
-        }
-        .run_at_once(),
-        Task::Simulate(_) | Task::Equilibrium(_) => true,
-    }
 }
 
 fn name(path: &Path) -> String {

@@ -28,6 +28,22 @@ pub(crate) struct Horizon {
 }
 
 impl System {
+    /// One front: a full matrix, whose entries at row and column are asked row by row.
+    pub(crate) fn full(order: usize, mut entry: impl FnMut(usize, usize) -> f64) -> Self {
+        let mut system = Self {
+            rows: Vec::new(),
+            cols: Vec::new(),
+            entries: Vec::new(),
+            unknowns: vec![Unknown::Variable(0); order],
+        };
+        for i in 0..order {
+            for j in 0..=i {
+                system.push(i, j, entry(i, j));
+            }
+        }
+        system
+    }
+
     pub(crate) fn order(&self) -> usize {
         self.unknowns.len()
     }

@@ -156,18 +156,10 @@ fn inertia_survives_bad_scales() {
 fn large_fronts_are_exact() {
     let mut random = Random(5);
     for order in [1, 2, 7, 31, 64, 65, 133, 200] {
-        let mut system = System {
-            rows: Vec::new(),
-            cols: Vec::new(),
-            entries: Vec::new(),
-            unknowns: vec![Unknown::Variable(0); order],
-        };
-        for i in 0..order {
-            for j in 0..=i {
-                let value = random.number();
-                system.push(i, j, if i == j { 0.01 * value } else { value });
-            }
-        }
+        let system = System::full(order, |i, j| {
+            let value = random.number();
+            if i == j { 0.01 * value } else { value }
+        });
         let expected = system.inertia();
         let mut solver = solver(&system, Some(&system.unknowns));
         assert_eq!(solver.factor(&system.entries), expected);

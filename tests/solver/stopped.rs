@@ -5,7 +5,7 @@ use crate::horizon::{Horizon, System};
 use crate::ipopt::from;
 use crate::matrices::Random;
 use proboscis::ipopt::{Iteration, Options, Solver, Status};
-use proboscis::kkt::{Plan, Solver as Factors, Stopped, Unknown};
+use proboscis::kkt::{Plan, Solver as Factors, Stopped};
 use std::cell::{Cell, RefCell};
 use std::ops::ControlFlow;
 use std::rc::Rc;
@@ -31,22 +31,6 @@ const LONG: Horizon = Horizon {
     has_border: false,
     own: 260.0,
 };
-
-/// One front.
-fn dense(order: usize, random: &mut Random) -> System {
-    let mut system = System {
-        rows: Vec::new(),
-        cols: Vec::new(),
-        entries: Vec::new(),
-        unknowns: vec![Unknown::Variable(0); order],
-    };
-    for i in 0..order {
-        for j in 0..=i {
-            system.push(i, j, random.number());
-        }
-    }
-    system
-}
 
 fn factors(system: &System) -> Factors {
     let unknowns = Some(system.unknowns.as_slice());
@@ -78,7 +62,10 @@ fn questions(system: &System) -> usize {
 fn a_factorisation_stops_at_any_question_and_leaves_no_trace() {
     let mut random = Random(31);
     let condensed = System::of_horizon(LONG, 1.0, &mut random);
-    for (system, is_condensed) in [(condensed, true), (dense(700, &mut random), false)] {
+    for (system, is_condensed) in [
+        (condensed, true),
+        (System::full(700, |_, _| random.number()), false),
+    ] {
         let mut fresh = factors(&system);
         let inertia = fresh.factor(&system.entries);
         assert!(inertia.negative > 0 && inertia.zero == 0);

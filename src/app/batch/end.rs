@@ -2,6 +2,9 @@
 
 use serde::Serialize;
 
+use crate::control::problem::Task;
+use crate::ipopt::Options;
+
 /// Where solves of a batch run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -10,6 +13,19 @@ pub enum RunIn {
     Threads,
     /// Each in a process of its own.
     Processes,
+}
+
+/// Whether a task may be done beside others in one process.
+pub(crate) fn task_runs_at_once(task: &Task) -> bool {
+    match task {
+        Task::Control(control) => Options {
+            linear_solver: control.solver.linear_solver,
+            extra: control.solver.ipopt.clone(),
+            ..Options::default()
+        }
+        .run_at_once(),
+        Task::Simulate(_) | Task::Equilibrium(_) => true,
+    }
 }
 
 /// What a solve says when it has ended.

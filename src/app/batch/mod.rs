@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 
 use crate::app::error::CommandError;
 pub use end::RunIn;
-pub(crate) use end::{RunEnd, Said};
+pub(crate) use end::{RunEnd, Said, task_runs_at_once};
 pub(crate) use plan::Batch;
 
 /// Runs all of a batch; `told` hears how each ended, in the thread that calls, and may let no other one begin.

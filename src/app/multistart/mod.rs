@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use crate::app::batch::{Batch, RunIn, run_all};
+use crate::app::batch::{Batch, RunIn, run_all, task_runs_at_once};
 use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
 use crate::app::progress::Progress;
@@ -20,7 +20,6 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::words::key;
 use crate::control::problem::Task;
 use crate::files::{is_standard_input, read_problem};
-use crate::ipopt::Options;
 use crate::workflow::memory;
 use crate::workflow::resolve::resolve;
 use ended::{Ended, best, number_optima};
@@ -66,12 +65,7 @@ pub fn solve_from_starts(
     };
     memory::of_elements(&loaded.system).map_err(CommandError::of(&request.input))?;
     resolve(&loaded.system, control).map_err(CommandError::of(&request.input))?;
-    let options = Options {
-        linear_solver: control.solver.linear_solver,
-        extra: control.solver.ipopt.clone(),
-        ..Options::default()
-    };
-    let run_in = match options.run_at_once() {
+    let run_in = match task_runs_at_once(&loaded.task) {
         true => wanted,
         false => RunIn::Processes,
     };
