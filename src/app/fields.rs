@@ -4,15 +4,13 @@
 //! first interval. So do velocities, the mean ones of that interval, and with them the viscous part of the stress. What
 //! else an element shows is taken at the places of the instant, as a mean over its reference volume.
 
-use std::fs;
-use std::path::Path;
-
 use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::element::{Fields, Viscosity};
 use crate::math::{Matrix, Vector};
 use crate::model::{Model, SolidBlock};
 use crate::report::atomic::WriteError;
+use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::paraview::{Field, Series, UnstructuredGrid};
 
@@ -23,7 +21,7 @@ const FOLDER: &str = "fields";
 
 /// Writes the fields of a motion instant by instant; the number of instants written, zero where nothing is elastic.
 pub(super) fn write(
-    folder: &Path,
+    files: &mut FileSet,
     model: &Model,
     history: &DiscreteTrajectory,
     origin: &Origin,
@@ -32,15 +30,18 @@ pub(super) fn write(
         return Ok(0);
     }
     let instants = spread(history.z.len(), MOST);
-    let mut series = Series::build(folder, "trajectory", origin)?.within(FOLDER)?;
+    let mut series = Series::new("trajectory", origin).within(FOLDER, files)?;
     let mut states = SolidStates::new(model, history);
     for &k in &instants {
         let blocks: Vec<Block<'_>> = states.at(k);
         let grids: Vec<UnstructuredGrid<'_>> = blocks.iter().map(Block::grid).collect();
-        series.add(history.times[k] / 1e3, &grids)?;
+        series.add(history.times[k] / 1e3, &grids, files)?;
     }
-    series.finish()?;
-    remove_older(&folder.join(FOLDER), instants.len());
+    series.finish(files)?;
+    // Those of a longer motion that stood here before.
+    for number in instants.len()..=MOST {
+        files.remove(format!("{FOLDER}/{number:04}.vtu"));
+    }
     Ok(instants.len())
 }
 
@@ -74,13 +75,6 @@ fn spread(count: usize, most: usize) -> Vec<usize> {
     }
     let place = |i: usize| (i * (count - 1) + (most - 1) / 2) / (most - 1);
     (0..most).map(place).collect()
-}
-
-/// Files of a longer motion that stood here before.
-fn remove_older(folder: &Path, count: usize) {
-    for number in count..=MOST {
-        fs::remove_file(folder.join(format!("{number:04}.vtu"))).ok();
-    }
 }
 
 /// The instants of a motion, one at a time.

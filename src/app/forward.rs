@@ -21,6 +21,7 @@ use crate::dynamics::{
 };
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
+use crate::report::file_set::FileSet;
 use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::workflow::domain;
@@ -105,6 +106,7 @@ pub(super) fn simulation(
     }
     make_folder(&folder)?;
     phase("writing");
+    let writing = Instant::now();
     let plan = Plan::of(&model, None, MEASURED);
     let status = match (&failure, stopped) {
         (Some(_), _) => "step_failed",
@@ -113,8 +115,9 @@ pub(super) fn simulation(
     };
 
     let kept = solved(&model, &history, None);
+    let mut files = FileSet::of(&folder);
     if kept.intervals() > 0 {
-        solution_file::write(&folder.join("solution.json"), &model, &kept)?;
+        solution_file::add(&mut files, &model, &kept)?;
     }
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = failure.as_ref().map(ToString::to_string);
@@ -127,7 +130,7 @@ pub(super) fn simulation(
     let mut observed = observations(&model, &history);
     summary.domain = domain::told(&out_of_domain(&model, &history));
     let origin = request.origin(false);
-    let written = fields::write(&folder, &model, &history, &origin)?;
+    let written = fields::write(&mut files, &model, &history, &origin)?;
     summary.blocks = BlockSizes::of(&model).map(|b| b.after(&model, &observed, written));
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),
@@ -152,7 +155,6 @@ pub(super) fn simulation(
     summary.notes.extend(steps::told(neglected, &history, task));
     summary.notes.extend(steps::unbalanced(&history));
     notes.extend(summary.notes.iter().cloned());
-    summary.write(&folder)?;
     let method = match task.tolerance {
         Some(tolerance) => format!(
             "{}, steps by a tolerance of {tolerance:e} (unequal steps keep momentum maps, not the energy over long times)",
@@ -199,7 +201,9 @@ pub(super) fn simulation(
         title: "Simulation",
         summary: &rows,
     };
-    write_run(&folder, &run)?;
+    write_run(&mut files, &run)?;
+    summary.seconds.wrote(began, writing);
+    summary.write(files)?;
     unfinished.done();
     let mut is_solved = status == "simulated";
     let mut word = match is_solved {

@@ -20,10 +20,11 @@ use crate::dynamics::{
 use crate::ipopt::{Status, interrupt};
 use crate::model::{Model, Role, System};
 use crate::report::axes::{Axis, Extent};
+use crate::report::file_set::FileSet;
 use crate::report::lines::{LinePlot, Mark, Series};
 use crate::report::origin::Origin;
 use crate::report::skins::Skins;
-use crate::report::{Run, atomic, style, write_still};
+use crate::report::{Run, style, write_still};
 use crate::workflow::WorkflowError;
 use crate::workflow::domain;
 use crate::workflow::effects::Plan;
@@ -88,10 +89,11 @@ pub(super) fn follow(
         title: "Path of equilibria",
         summary: &rows,
     };
-    write_still(&folder, "path.csv", &run)?;
+    let mut files = FileSet::of(&folder);
+    write_still(&mut files, "path.csv", &run)?;
     let svg = figure(&model, &stops, &history, &origin);
-    atomic::write(&folder.join("path.svg"), svg.as_bytes())?;
-    fields::write(&folder, &model, &history, &origin)?;
+    files.add("path.svg", svg.as_bytes())?;
+    fields::write(&mut files, &model, &history, &origin)?;
     let outside = domain::told(&out_of_domain(&model, &history));
     let notes = path.lost.iter().map(|loss| {
         format!(
@@ -127,7 +129,7 @@ pub(super) fn follow(
         setup,
         ..Seconds::default()
     };
-    summary.write(&folder)?;
+    summary.write(files)?;
     Ok(told)
 }
 

@@ -23,6 +23,7 @@ use crate::dynamics::{
 use crate::files::{driven_voltages, read_problem, read_system};
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
+use crate::report::file_set::FileSet;
 use crate::report::skins::Skins;
 use crate::report::{Run, write_still};
 use crate::workflow::WorkflowError;
@@ -119,7 +120,8 @@ pub(super) fn at(
     let folder = request.folder();
     make_folder(&folder)?;
     let origin = request.origin(false);
-    let written = fields::write(&folder, &model, &state, &origin)?;
+    let mut files = FileSet::of(&folder);
+    let written = fields::write(&mut files, &model, &state, &origin)?;
     let status = failure.map_or("at_rest", status);
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = failure.map(|loss| lost(&rest, loss, &folder));
@@ -147,7 +149,7 @@ pub(super) fn at(
         },
         summary: &rows(&rest, status),
     };
-    write_still(&folder, "equilibrium.csv", &run)?;
+    write_still(&mut files, "equilibrium.csv", &run)?;
     summary.notes.extend(domain::note(&summary.domain, false));
     let notes = summary.message.iter().chain(&summary.notes);
     let notes = notes.cloned().collect();
@@ -164,6 +166,6 @@ pub(super) fn at(
         },
     };
     summary.rest = Some(rest);
-    summary.write(&folder)?;
+    summary.write(files)?;
     Ok(told)
 }

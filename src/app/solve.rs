@@ -25,6 +25,7 @@ use crate::ipopt::{Status, interrupt};
 use crate::math::significant;
 use crate::model::System;
 use crate::report::atomic::WriteError;
+use crate::report::file_set::FileSet;
 use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::workflow::accuracy::{Accuracy, Refined};
@@ -176,8 +177,9 @@ pub(super) fn control(
         constraints: seconds.constraints,
         jacobian: seconds.jacobian,
         hessian: seconds.hessian,
+        ..Seconds::default()
     };
-    write_files(request, &folder, (control, &optimum), &mut summary)?;
+    write_files(request, &folder, (control, &optimum), &mut summary, began)?;
     unfinished.done();
     Ok(told(&summary, violated, &folder))
 }
@@ -234,18 +236,21 @@ fn write_files(
     folder: &Path,
     (control, optimum): (&Control, &Optimum),
     summary: &mut Summary,
+    began: Instant,
 ) -> Result<(), WriteError> {
+    let writing = Instant::now();
     let Optimum {
         model,
         boundary,
         motion: kept,
         ..
     } = optimum;
-    solution_file::write(&folder.join("solution.json"), model, kept)?;
+    let mut files = FileSet::of(folder);
+    solution_file::add(&mut files, model, kept)?;
     let history = history(model, kept);
     let mut observed = observations(model, &history);
     let origin = request.origin(true);
-    let written = fields::write(folder, model, &history, &origin)?;
+    let written = fields::write(&mut files, model, &history, &origin)?;
     summary.blocks = BlockSizes::of(model).map(|b| b.after(model, &observed, written));
     summary.domain = domain::told(&out_of_domain(model, &history));
     summary.notes.extend(domain::note(&summary.domain, true));
@@ -258,7 +263,6 @@ fn write_files(
     summary
         .notes
         .extend(tracking_words::told(&summary.tracking));
-    summary.write(folder)?;
     let is_solved = summary.message.is_none();
     let compared = is_solved
         .then(|| under_constant_voltages(model, boundary, kept, COMPARED))
@@ -282,7 +286,9 @@ fn write_files(
         title: "Optimal control",
         summary: &rows,
     };
-    write_run(folder, &run).map(|_| ())
+    write_run(&mut files, &run)?;
+    summary.seconds.wrote(began, writing);
+    summary.write(files)
 }
 
 /// Rows of the table of the page.

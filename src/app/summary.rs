@@ -1,7 +1,7 @@
 //! `summary.json`: what was asked, how it ended, how large it was and how long it took.
 
 use std::fs;
-use std::path::Path;
+use std::time::Instant;
 
 use serde::Serialize;
 
@@ -18,7 +18,8 @@ use crate::files::lay_out;
 use crate::ipopt::{self, LinearReport};
 use crate::math::significant;
 use crate::model::FoundParameter;
-use crate::report::atomic::{self, WriteError};
+use crate::report::atomic::WriteError;
+use crate::report::file_set::FileSet;
 use crate::workflow::Tracked;
 use crate::workflow::accuracy::Accuracy;
 use crate::workflow::domain::Outside;
@@ -302,8 +303,10 @@ impl Simulation {
 /// Wall time in s.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(super) struct Seconds {
-    /// From reading to writing.
+    /// From reading to the last file but the summary.
     pub(super) total: f64,
+    /// Of these in what is made for people and written: tables, figures, page.
+    pub(super) writing: f64,
     /// Before the solver or the first step.
     pub(super) setup: f64,
     /// In Ipopt without the callbacks, or in the steps of a simulation.
@@ -313,6 +316,14 @@ pub(super) struct Seconds {
     pub(super) constraints: f64,
     pub(super) jacobian: f64,
     pub(super) hessian: f64,
+}
+
+impl Seconds {
+    /// The files are written, since `writing`; the run began at `began`.
+    pub(super) fn wrote(&mut self, began: Instant, writing: Instant) {
+        self.total = began.elapsed().as_secs_f64();
+        self.writing = writing.elapsed().as_secs_f64();
+    }
 }
 
 /// Versions that the result depends on.
@@ -370,9 +381,10 @@ impl Summary {
         }
     }
 
-    /// Writes it as `summary.json` into a folder that exists.
-    pub(super) fn write(&self, folder: &Path) -> Result<(), WriteError> {
+    /// Writes it as `summary.json`, the last file of a result.
+    pub(super) fn write(&self, mut files: FileSet) -> Result<(), WriteError> {
         let text = serde_json::to_string(self).expect("numbers and names are JSON");
-        atomic::write(&folder.join("summary.json"), lay_out(&text).as_bytes())
+        files.add("summary.json", lay_out(&text).as_bytes())?;
+        files.finish()
     }
 }

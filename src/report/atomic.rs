@@ -6,6 +6,8 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use tempfile::NamedTempFile;
+
 /// End of the name of a file that is being written: `.summary.json.Xy3fA9.partial`.
 const PARTIAL: &str = ".partial";
 /// A partial file that nobody wrote to for so long was left by a run that was killed.
@@ -37,10 +39,23 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
 }
 
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let folder = match path.parent() {
+    let file = partial(path, bytes)?;
+    file.as_file().sync_all()?;
+    file.persist(path).map_err(|failure| failure.error)?;
+    sync_folder(folder(path));
+    Ok(())
+}
+
+/// The folder of a file.
+pub(super) fn folder(path: &Path) -> &Path {
+    match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
-    };
+    }
+}
+
+/// Writes `bytes` to a partial file in the folder of `path`.
+pub(super) fn partial(path: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
     let mut hidden = OsString::from(".");
     hidden.push(path.file_name().unwrap_or_default());
     hidden.push(".");
@@ -52,15 +67,16 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         // As for any new file: the umask of the process narrows this down.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder)?;
+    let mut file = builder.tempfile_in(folder(path))?;
     file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    file.persist(path).map_err(|failure| failure.error)?;
-    // The name is durable once the folder is; where folders cannot be synchronised it follows later.
+    Ok(file)
+}
+
+/// A name is durable once the folder is; where folders cannot be synchronised it follows later.
+pub(super) fn sync_folder(folder: &Path) {
     if let Ok(folder) = File::open(folder) {
         folder.sync_all().ok();
     }
-    Ok(())
 }
 
 /// Removes partial files that killed runs left in a folder more than ten minutes ago; younger ones may still be written.

@@ -5,6 +5,7 @@ pub mod axes;
 pub mod body;
 pub mod canvas;
 pub mod colour_bar;
+pub mod file_set;
 pub mod joints;
 pub mod legend;
 pub mod lines;
@@ -28,31 +29,21 @@ pub mod voltages;
 
 pub use run::Run;
 
-use std::path::{Path, PathBuf};
-
 use crate::report::atomic::WriteError;
+use crate::report::file_set::FileSet;
 
-/// Writes tables, figures and page into a folder, which is made where it is missing; the files written, in order.
+/// Writes tables, figures and page.
 ///
 /// A figure of what does not exist (voltages of no muscles, energies that were not observed) is not written.
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write_run(folder: &Path, run: &Run<'_>) -> Result<Vec<PathBuf>, WriteError> {
-    std::fs::create_dir_all(folder).map_err(|cause| WriteError {
-        path: folder.to_owned(),
-        cause,
-    })?;
+pub fn write_run(files: &mut FileSet, run: &Run<'_>) -> Result<(), WriteError> {
     // The page takes twice as long as all other files.
-    let (page, mut files) = rayon::join(|| page::html(run), || tables_and_figures(run));
-    files.push(("report.html", page));
-
-    let written = files.into_iter().map(|(name, text)| {
-        let path = folder.join(name);
-        atomic::write(&path, text.as_bytes())?;
-        Ok(path)
-    });
-    written.collect()
+    let (page, mut texts) = rayon::join(|| page::html(run), || tables_and_figures(run));
+    texts.push(("report.html", page));
+    let mut texts = texts.into_iter();
+    texts.try_for_each(|(name, text)| files.add(name, text.as_bytes()))
 }
 
 /// Names and texts of all files but the page.
@@ -110,20 +101,14 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
     files
 }
 
-/// Writes table, figure and page of a state of rest, a motion of one instant, into a folder that exists.
+/// Writes table, figure and page of a state of rest, a motion of one instant.
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write_still(folder: &Path, table: &str, run: &Run<'_>) -> Result<(), WriteError> {
+pub fn write_still(files: &mut FileSet, table: &str, run: &Run<'_>) -> Result<(), WriteError> {
     let csv = table::trajectory_csv(run.observations, run.origin);
     let svg = pose::svg(run.system, run.trajectory, run.skins, run.held, run.origin);
-    let page = page::html(run);
-    for (name, text) in [
-        (table, csv),
-        ("configuration.svg", svg),
-        ("report.html", page),
-    ] {
-        atomic::write(&folder.join(name), text.as_bytes())?;
-    }
-    Ok(())
+    files.add(table, csv.as_bytes())?;
+    files.add("configuration.svg", svg.as_bytes())?;
+    files.add("report.html", page::html(run).as_bytes())
 }

@@ -8,9 +8,9 @@ use base64::engine::general_purpose::STANDARD;
 use nalgebra::Vector3;
 use std::borrow::Cow;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
 
 use crate::report::atomic::{self, WriteError};
+use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 
 /// Number of a trilinear hexahedron in VTK.
@@ -102,7 +102,6 @@ pub fn pvd(instants: &[(f64, String)], origin: &Origin) -> String {
 /// With a folder for the instants they are `folder/0000.vtu`, `folder/0001.vtu`, …
 #[derive(Clone, Debug)]
 pub struct Series<'a> {
-    folder: PathBuf,
     name: String,
     /// Folder of the instants within `folder`.
     within: Option<String>,
@@ -111,30 +110,22 @@ pub struct Series<'a> {
 }
 
 impl<'a> Series<'a> {
-    /// An empty series in a folder, which is made where it is missing.
-    ///
-    /// # Errors
-    /// The folder cannot be made.
-    pub fn build(folder: &Path, name: &str, origin: &'a Origin) -> Result<Self, WriteError> {
-        std::fs::create_dir_all(folder).map_err(|cause| WriteError {
-            path: folder.to_owned(),
-            cause,
-        })?;
-        Ok(Self {
-            folder: folder.to_owned(),
+    /// An empty series.
+    pub fn new(name: &str, origin: &'a Origin) -> Self {
+        Self {
             name: name.to_owned(),
             within: None,
             origin,
             instants: Vec::new(),
-        })
+        }
     }
 
     /// The same with the instants in a folder of their own, which is made where it is missing.
     ///
     /// # Errors
     /// The folder cannot be made.
-    pub fn within(self, folder: &str) -> Result<Self, WriteError> {
-        let path = self.folder.join(folder);
+    pub fn within(self, folder: &str, files: &FileSet) -> Result<Self, WriteError> {
+        let path = files.folder().join(folder);
         if let Err(cause) = std::fs::create_dir_all(&path) {
             return Err(WriteError { path, cause });
         }
@@ -145,7 +136,7 @@ impl<'a> Series<'a> {
         })
     }
 
-    /// Writes the solids at a time in s as the next file; its path.
+    /// Writes the solids at a time in s as the next file.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -153,26 +144,25 @@ impl<'a> Series<'a> {
         &mut self,
         time: f64,
         grids: &[UnstructuredGrid<'_>],
-    ) -> Result<PathBuf, WriteError> {
+        files: &mut FileSet,
+    ) -> Result<(), WriteError> {
         let number = self.instants.len();
         let file = match &self.within {
             Some(folder) => format!("{folder}/{number:04}.vtu"),
             None => format!("{}_{number:04}.vtu", self.name),
         };
-        let path = self.folder.join(&file);
-        atomic::write(&path, &vtu(grids, self.origin))?;
+        files.add(&file, &vtu(grids, self.origin))?;
         self.instants.push((time, file));
-        Ok(path)
+        Ok(())
     }
 
-    /// Writes the list of the instants so far; its path.
+    /// Writes the list of the instants so far.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn finish(&self) -> Result<PathBuf, WriteError> {
-        let path = self.folder.join(format!("{}.pvd", self.name));
-        atomic::write(&path, pvd(&self.instants, self.origin).as_bytes())?;
-        Ok(path)
+    pub fn finish(&self, files: &mut FileSet) -> Result<(), WriteError> {
+        let name = format!("{}.pvd", self.name);
+        files.add(name, pvd(&self.instants, self.origin).as_bytes())
     }
 }
 

@@ -26,3 +26,4 @@ mod sweep;
 mod told;
 mod warm_starts;
 mod whole_files;
+mod written_files;

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 use proboscis::mesh::grid::Grid as Planes;
+use proboscis::report::file_set::FileSet;
 use proboscis::report::origin::Origin;
 use proboscis::report::paraview::{Field, Series, UnstructuredGrid, pvd, vtu};
 use proptest::prelude::*;
@@ -204,20 +205,23 @@ fn a_series_lists_what_it_wrote() {
         ..UnstructuredGrid::default()
     }];
     let origin = origin();
-    let mut series = Series::build(&folder, "trajectory", &origin).unwrap();
+    fs::create_dir_all(&folder).unwrap();
+    let mut files = FileSet::of(&folder);
+    let mut series = Series::new("trajectory", &origin);
     let times = [0.0, 1e-3, 0.1 + 0.2];
     for time in times {
-        let path = series.add(time, &grids).unwrap();
-        assert_eq!(fs::read(path).unwrap(), vtu(&grids, &origin));
+        series.add(time, &grids, &mut files).unwrap();
     }
-    let list = fs::read_to_string(series.finish().unwrap()).unwrap();
+    series.finish(&mut files).unwrap();
+    files.finish().unwrap();
+    let list = fs::read_to_string(folder.join("trajectory.pvd")).unwrap();
     let sets = between(&list, "<DataSet", "/>");
     assert_eq!(sets.len(), times.len());
     for (set, time) in sets.iter().zip(times) {
         assert_eq!(attribute(set, "timestep").parse(), Ok(time));
-        assert!(folder.join(attribute(set, "file")).is_file());
+        let path = folder.join(attribute(set, "file"));
+        assert_eq!(fs::read(path).unwrap(), vtu(&grids, &origin));
     }
-    assert!(folder.join("trajectory.pvd").is_file());
 }
 
 #[test]

@@ -7,10 +7,11 @@ use nalgebra::Vector3;
 use proboscis::dynamics::trajectory::{Column, Observations, Trajectory};
 use proboscis::model::system::{JointKind, Shape, System};
 use proboscis::report::axes::{Axis, Extent};
+use proboscis::report::file_set::FileSet;
 use proboscis::report::lines::{LinePlot, Mark, Series};
 use proboscis::report::origin::Origin;
 use proboscis::report::skins::Skins;
-use proboscis::report::{Run, atomic, markup, pose, style, table, tip_path, voltages, write_run};
+use proboscis::report::{Run, markup, pose, style, table, tip_path, voltages, write_run};
 
 fn origin() -> Origin {
     Origin {
@@ -251,31 +252,6 @@ fn ticks_are_round_numbers_within_the_range() {
 }
 
 #[test]
-fn a_failed_write_leaves_the_old_file_and_nothing_else() {
-    let folder = tempfile::tempdir().unwrap();
-    let entries = || fs::read_dir(folder.path()).unwrap().count();
-    let path = folder.path().join("table.csv");
-    atomic::write(&path, b"old").unwrap();
-    atomic::write(&path, b"new").unwrap();
-    assert_eq!(fs::read(&path).unwrap(), b"new");
-    assert_eq!(entries(), 1);
-
-    // The name is taken by a folder that is not empty: the last step fails.
-    let taken = folder.path().join("taken");
-    fs::create_dir(&taken).unwrap();
-    fs::write(taken.join("old"), "old").unwrap();
-    let failure = atomic::write(&taken, b"new").unwrap_err();
-    assert_eq!(entries(), 2);
-    assert_eq!(fs::read(taken.join("old")).unwrap(), b"old");
-    let message = failure.to_string();
-    assert!(message.contains("taken") && message.contains(&failure.cause.to_string()));
-
-    let nowhere = folder.path().join("missing").join("table.csv");
-    assert!(atomic::write(&nowhere, b"new").is_err());
-    assert_eq!(entries(), 2);
-}
-
-#[test]
 fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
     let (mut system, trajectory) = swing();
     system.name = "<script>alert(1)</script> & co".to_owned();
@@ -304,12 +280,18 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
     };
     let folder = tempfile::tempdir().unwrap();
     let inner = folder.path().join("results").join("swing");
-    let files = write_run(&inner, &run).unwrap();
-    let names: Vec<_> = files
-        .iter()
-        .map(|path| path.file_name().unwrap().to_str().unwrap())
+    fs::create_dir_all(&inner).unwrap();
+    let mut set = FileSet::of(&inner);
+    write_run(&mut set, &run).unwrap();
+    // None has its name before all are finished.
+    assert!(!inner.join("trajectory.csv").exists());
+    set.finish().unwrap();
+    let mut names: Vec<String> = fs::read_dir(&inner)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
-    let expected = [
+    names.sort();
+    let mut expected = [
         "trajectory.csv",
         "controls.csv",
         "configuration.svg",
@@ -321,6 +303,7 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
         "tracking.svg",
         "report.html",
     ];
+    expected.sort_unstable();
     assert_eq!(names, expected);
     let table = fs::read_to_string(inner.join("tracking.csv")).unwrap();
     let mut lines = table.lines().skip(1);
@@ -337,8 +320,8 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
         assert_eq!(cells[8], trajectory.joints[k][1]);
     }
     assert_eq!(table.lines().count(), 2 + trajectory.times.len());
-    for path in &files {
-        let text = fs::read_to_string(path).unwrap();
+    for path in names.iter().map(|name| inner.join(name)) {
+        let text = fs::read_to_string(&path).unwrap();
         if path.extension().is_some_and(|e| e == "svg") {
             assert_well_formed(&text);
             assert!(text.contains("Ipopt 3.14"));

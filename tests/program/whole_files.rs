@@ -70,12 +70,23 @@ fn is_partial(path: &Path) -> bool {
     name.starts_with('.') && name.ends_with(".partial")
 }
 
-/// Checks that each file is complete; `intervals` are those of the runs that may have written it.
+/// Checks that each file is complete, and where there is a summary that all are of its run; `intervals` are those of the runs that may have
+/// written them.
 fn check_whole(folder: &Path, intervals: &[usize]) -> usize {
     let all: Vec<PathBuf> = files(folder)
         .into_iter()
         .filter(|f| !is_partial(f))
         .collect();
+    let summary = fs::read_to_string(folder.join("summary.json")).ok();
+    let summary: Option<Value> = summary.map(|text| serde_json::from_str(&text).unwrap());
+    let of_summary = summary.map(|summary| {
+        let count = summary.get("intervals").or(summary.get("steps"));
+        [count.unwrap().as_u64().unwrap() as usize]
+    });
+    let intervals = of_summary.as_ref().map_or(intervals, |count| {
+        assert!(intervals.contains(&count[0]), "{count:?}");
+        count
+    });
     for path in &all {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         let text = fs::read_to_string(path).unwrap();
@@ -147,7 +158,10 @@ fn kill(runs: [Run; 2], intervals: [usize; 2], trials: usize, seed: u64) -> (Tem
         std::thread::sleep(life.mul_f64(random.between(0.0, 1.2)));
         child.kill().unwrap();
         killed += usize::from(child.wait().unwrap().code().is_none());
-        assert_eq!(check_whole(&out, &intervals), complete, "trial {trial}");
+        let whole = check_whole(&out, &intervals);
+        // A summary is gone while the files of another run take their names.
+        let unnamed = usize::from(!out.join("summary.json").exists());
+        assert_eq!(whole + unnamed, complete, "trial {trial}");
     }
     (folder, killed)
 }
@@ -226,6 +240,8 @@ fn where_a_file_cannot_be_written_all_others_stay_whole() {
         assert!(files(&out).iter().all(|file| !is_partial(file)), "{blocks}");
     }
     assert!(told.len() > 2, "different files fail: {told:?}");
+    // Nothing of the finer grid has taken a name.
+    check_whole(&out, &[20]);
     let output = limited(&finer, folder.path(), 1_000_000);
     assert_eq!(output.status.code(), Some(0));
     assert_eq!(check_whole(&out, &[24]), complete);

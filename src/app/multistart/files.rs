@@ -9,9 +9,11 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::files::{lay_out, printable};
 use crate::ipopt::interrupt;
 use crate::report::atomic::{self, WriteError};
+use crate::report::file_set::FileSet;
 use crate::report::table::{aligned, cells_csv};
 use serde::Serialize;
-use std::fs::{self};
+use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// The section `starts` of `summary.json`.
@@ -144,35 +146,43 @@ fn cells(ended: &[Ended]) -> Vec<Vec<String>> {
 
 /// Copies the files of a start, its summary last and with the table of all.
 pub(super) fn copy(from: &Path, to: &Path, section: &Section<'_>) -> Result<(), WriteError> {
+    let mut files = FileSet::of(to);
+    copy_folder(from, "", to, &mut files)?;
+    let path = from.join("summary.json");
+    let summary = match fs::read_to_string(&path) {
+        Err(cause) if cause.kind() == ErrorKind::NotFound => "{}".to_owned(),
+        read => read.map_err(|cause| WriteError { path, cause })?,
+    };
+    files.add("summary.json", with_section(&summary, section).as_bytes())?;
+    files.finish()
+}
+
+/// Copies all files of a folder but the summary, and those of its folders.
+fn copy_folder(
+    from: &Path,
+    within: &str,
+    to: &Path,
+    files: &mut FileSet,
+) -> Result<(), WriteError> {
     let failed = |path: &Path| {
         let path = path.to_owned();
         move |cause| WriteError { path, cause }
     };
-    let mut summary = None;
     for entry in fs::read_dir(from).map_err(failed(from))? {
         let path = entry.map_err(failed(from))?.path();
         let Some(name) = path.file_name() else {
             continue;
         };
+        let name = Path::new(within).join(name);
         if path.is_dir() {
-            make_folder(&to.join(name))?;
-            for entry in fs::read_dir(&path).map_err(failed(&path))? {
-                let file = entry.map_err(failed(&path))?;
-                let bytes = fs::read(file.path()).map_err(failed(&file.path()))?;
-                atomic::write(&to.join(name).join(file.file_name()), &bytes)?;
-            }
-        } else if name == "summary.json" {
-            summary = Some(fs::read_to_string(&path).map_err(failed(&path))?);
-        } else {
+            make_folder(&to.join(&name))?;
+            copy_folder(&path, &name.to_string_lossy(), to, files)?;
+        } else if name != Path::new("summary.json") {
             let bytes = fs::read(&path).map_err(failed(&path))?;
-            atomic::write(&to.join(name), &bytes)?;
+            files.add(name, &bytes)?;
         }
     }
-    let summary = summary.unwrap_or_else(|| "{}".to_owned());
-    atomic::write(
-        &to.join("summary.json"),
-        with_section(&summary, section).as_bytes(),
-    )
+    Ok(())
 }
 
 /// A summary with the section of the starts at its end.
