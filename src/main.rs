@@ -20,6 +20,7 @@ const NAME: &str = "proboscis";
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    app::end_with_parent();
     tracing_subscriber::fmt()
         .with_writer(io::stderr)
         .with_env_filter(events(arguments.verbose))

@@ -40,8 +40,8 @@ mod tracking_words;
 mod unfinished;
 mod words;
 
-pub use batch::RunIn;
 pub(crate) use batch::{Batch, RunEnd, Said, run_all, task_runs_at_once};
+pub use batch::{RunIn, end_with_parent};
 pub use blocks::{BlockSize, BlockSizes};
 pub use check::check;
 pub use error::CommandError;

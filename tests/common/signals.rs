@@ -28,3 +28,8 @@ pub(crate) fn interrupt_group(leader: &Child) {
 pub(crate) fn group_runs(leader: &Child) -> bool {
     killpg(pid(leader), None).is_ok()
 }
+
+/// Ends all processes of the group that a program led.
+pub(crate) fn kill_group(leader: &Child) {
+    killpg(pid(leader), Signal::SIGKILL).expect("the group runs");
+}

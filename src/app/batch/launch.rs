@@ -6,6 +6,7 @@ use std::io;
 use std::process::{Child, Command, Stdio};
 use std::time::Instant;
 
+use super::parent::bind;
 use crate::app::progress::ProgressDisplay;
 use crate::app::request::CommandInput;
 
@@ -50,9 +51,8 @@ fn words(request: &CommandInput) -> Vec<OsString> {
 /// Starts the process of a solve.
 pub(super) fn launch(command: &CommandInput, index: usize) -> io::Result<Running> {
     let told = tempfile::tempfile()?;
-    let child = Command::new(std::env::current_exe()?)
+    let child = bind(&mut Command::new(std::env::current_exe()?))
         .args(words(command))
-        .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(told.try_clone()?)
         .spawn()?;

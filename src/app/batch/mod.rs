@@ -1,10 +1,11 @@
 //! Several solves at once, as many as there are cores: the starts of a problem, or the variants of a sweep.
 //!
 //! - `plan`: what is to be solved; `end`: how a solve ends; `launch`: a solve as it is typed, and a process of it.
-//! - `threads`, `processes`: where they run.
+//! - `threads`, `processes`: where they run; `parent`: with whom a process ends.
 
 mod end;
 mod launch;
+mod parent;
 mod plan;
 mod processes;
 mod threads;
@@ -14,6 +15,7 @@ use std::ops::ControlFlow;
 use crate::app::error::CommandError;
 pub use end::RunIn;
 pub(crate) use end::{RunEnd, Said, task_runs_at_once};
+pub use parent::end_with_parent;
 pub(crate) use plan::Batch;
 
 /// Runs all of a batch; `told` hears how each ended, in the thread that calls, and may let no other one begin.
