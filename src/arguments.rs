@@ -177,9 +177,9 @@ pub(crate) struct Sweep {
     /// Solve each n-th variant from the i-th one, as one of n machines; the table has all that are in the folder.
     #[arg(long, value_name = "i/n", default_value = "1/1")]
     shard: Shard,
-    /// Solve each variant in a process of its own, in place of threads.
-    #[arg(long)]
-    processes: bool,
+    /// Where variants are solved.
+    #[arg(long, value_name = "ENGINE", default_value = "threads")]
+    engine: Engine,
     /// Stop after so many seconds.
     #[arg(long, value_name = "S", value_parser = seconds)]
     max_seconds: Option<f64>,
@@ -195,9 +195,30 @@ impl Sweep {
             input: self.sweep,
             output: self.output,
             shard: self.shard,
-            run_in: run_in(self.processes),
+            run_in: self.engine.run_in(),
             max_seconds: self.max_seconds,
             progress: shown(self.quiet),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Engine {
+    /// In threads of this process; in processes where MUMPS solves the linear systems of a control problem.
+    Threads,
+    /// Each in a process of its own.
+    Processes,
+    /// Each as a task of the HyperQueue server that runs, on whatever workers it has.
+    #[value(name = "hyperqueue")]
+    HyperQueue,
+}
+
+impl Engine {
+    const fn run_in(self) -> RunIn {
+        match self {
+            Self::Threads => RunIn::Threads,
+            Self::Processes => RunIn::Processes,
+            Self::HyperQueue => RunIn::HyperQueue,
         }
     }
 }

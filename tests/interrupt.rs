@@ -114,7 +114,7 @@ mod killed {
                 "2",
                 "--processes",
             ][..],
-            &["sweep", "sweep.json", "--processes"],
+            &["sweep", "sweep.json", "--engine", "processes"],
         ];
         for arguments in commands {
             let mut program = Command::new(env!("CARGO_BIN_EXE_proboscis"))

@@ -70,6 +70,9 @@ pub enum CommandError {
         /// What the operating system said.
         cause: io::Error,
     },
+    /// What hands solves to other machines stopped to answer.
+    #[error("HyperQueue: {0}; the same command goes on")]
+    Engine(String),
     /// A file could not be written.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -83,6 +86,7 @@ impl CommandError {
             Self::Write(_)
             | Self::Unreadable { .. }
             | Self::Stopped(_)
+            | Self::Engine(_)
             | Self::NoEquilibrium { .. } => 1,
             _ => 2,
         }

@@ -40,7 +40,7 @@ mod tracking_words;
 mod unfinished;
 mod words;
 
-pub(crate) use batch::{Batch, RunEnd, Said, run_all, task_runs_at_once};
+pub(crate) use batch::{Batch, RunEnd, Said, check_run_in, run_all, task_runs_at_once};
 pub use batch::{RunIn, end_with_parent};
 pub use blocks::{BlockSize, BlockSizes};
 pub use check::check;

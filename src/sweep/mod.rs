@@ -19,7 +19,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::app::{
-    Batch, CommandError, CommandInput, CommandOutput, Progress, RunEnd, RunIn, make_folder, run_all,
+    Batch, CommandError, CommandInput, CommandOutput, Progress, RunEnd, check_run_in, make_folder,
+    run_all,
 };
 use crate::ipopt;
 use crate::ipopt::interrupt;
@@ -39,6 +40,7 @@ const VARIANTS: &str = "variants";
 pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
     let began = Instant::now();
     let sweep = read_sweep(&request.input)?;
+    check_run_in(request.run_in)?;
     let folder = request.folder();
     make_folder(&folder)?;
     let of = |variant: &Variant| folder.join(VARIANTS).join(variant.identity.as_str());
@@ -98,13 +100,12 @@ fn solve<'a>(
         wanted: None,
         progress: request.progress,
     };
+    let results = request.folder();
     let runs: Vec<CommandInput> = todo.iter().map(run).collect();
     let batch = Batch {
         runs: &runs,
-        run_in: match sweep.run_at_once {
-            true => request.run_in,
-            false => RunIn::Processes,
-        },
+        run_in: request.run_in.of_tasks(sweep.run_at_once),
+        folder: &results,
         max_seconds: request.max_seconds,
         began,
     };

@@ -134,7 +134,14 @@ fn machines_share_a_sweep() {
     );
     let (status, out, _) = run(
         folder,
-        &["sweep", "sweep.json", "--shard", "2/2", "--processes"],
+        &[
+            "sweep",
+            "sweep.json",
+            "--shard",
+            "2/2",
+            "--engine",
+            "processes",
+        ],
     );
     assert!(
         status == 0 && out.contains("3 not_started, 2 solved"),

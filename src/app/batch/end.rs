@@ -13,6 +13,19 @@ pub enum RunIn {
     Threads,
     /// Each in a process of its own.
     Processes,
+    /// Each as a task of a HyperQueue server.
+    #[serde(rename = "hyperqueue")]
+    HyperQueue,
+}
+
+impl RunIn {
+    /// The same for solves that may be done beside others in one process or not.
+    pub(crate) fn of_tasks(self, run_at_once: bool) -> Self {
+        match self {
+            Self::Threads if !run_at_once => Self::Processes,
+            other => other,
+        }
+    }
 }
 
 /// Whether a task may be done beside others in one process.
@@ -41,6 +54,18 @@ pub(crate) enum Said {
     Failed(String),
     /// The input is wrong.
     Refused(String),
+}
+
+/// What a process said that ended with a status and wrote words to standard error; none where a signal ended it.
+pub(super) fn of_status(status: Option<i32>, words: &str) -> Said {
+    let words = words.trim_end();
+    let words = words.strip_prefix("error: ").unwrap_or(words).to_owned();
+    match status {
+        Some(0) => Said::Solved,
+        Some(1) => Said::Unsolved(words),
+        Some(2) => Said::Refused(words),
+        _ => Said::Failed(words),
+    }
 }
 
 /// The end of a solve.

@@ -31,7 +31,7 @@ pub(super) fn as_typed(request: CommandInput) -> CommandInput {
 }
 
 /// What one types for a solve.
-fn words(request: &CommandInput) -> Vec<OsString> {
+pub(super) fn words(request: &CommandInput) -> Vec<OsString> {
     let mut words: Vec<OsString> = vec!["solve".into(), request.input.clone().into()];
     let mut option = |name: &str, value: OsString| words.extend([name.into(), value]);
     for change in &request.set {

@@ -1,9 +1,10 @@
 //! Several solves at once, as many as there are cores: the starts of a problem, or the variants of a sweep.
 //!
 //! - `plan`: what is to be solved; `end`: how a solve ends; `launch`: a solve as it is typed, and a process of it.
-//! - `threads`, `processes`: where they run; `parent`: with whom a process ends.
+//! - `threads`, `processes`, `hyperqueue`: where they run; `parent`: with whom a process ends.
 
 mod end;
+mod hyperqueue;
 mod launch;
 mod parent;
 mod plan;
@@ -32,5 +33,17 @@ pub(crate) fn run_all(
             Ok(())
         }
         RunIn::Processes => processes::run_all(batch, told),
+        RunIn::HyperQueue => hyperqueue::run_all(batch, told),
+    }
+}
+
+/// Whether solves can run there.
+///
+/// # Errors
+/// What they need is missing.
+pub(crate) fn check_run_in(run_in: RunIn) -> Result<(), CommandError> {
+    match run_in {
+        RunIn::Threads | RunIn::Processes => Ok(()),
+        RunIn::HyperQueue => hyperqueue::check(),
     }
 }

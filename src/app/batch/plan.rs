@@ -1,5 +1,6 @@
 //! What is to be solved, and when another solve may begin.
 
+use std::path::Path;
 use std::time::Instant;
 
 use super::end::RunIn;
@@ -14,6 +15,8 @@ pub(crate) struct Batch<'a> {
     pub(crate) runs: &'a [CommandInput],
     /// Where.
     pub(crate) run_in: RunIn,
+    /// Folder of all results.
+    pub(crate) folder: &'a Path,
     /// Seconds that all of them may take together.
     pub(crate) max_seconds: Option<f64>,
     /// When the command began.
@@ -23,14 +26,22 @@ pub(crate) struct Batch<'a> {
 impl Batch<'_> {
     /// A solve in the time that is left; none after Ctrl-C or at the end of that time.
     pub(super) fn command(&self, run: &CommandInput) -> Option<CommandInput> {
-        let spent = self.began.elapsed().as_secs_f64();
-        let left = self.max_seconds.map(|limit| limit - spent);
-        let may_start = !interrupt::requested() && left.is_none_or(|left| left > 0.0);
-        may_start.then(|| {
+        self.may_go_on().then(|| {
             as_typed(CommandInput {
-                max_seconds: left,
+                max_seconds: self.left(),
                 ..run.clone()
             })
         })
+    }
+
+    /// Whether there is time left and Ctrl-C was not pressed.
+    pub(super) fn may_go_on(&self) -> bool {
+        !interrupt::requested() && self.left().is_none_or(|left| left > 0.0)
+    }
+
+    /// Seconds that are left.
+    fn left(&self) -> Option<f64> {
+        let spent = self.began.elapsed().as_secs_f64();
+        self.max_seconds.map(|limit| limit - spent)
     }
 }

@@ -6,7 +6,7 @@ use std::process::ExitStatus;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::end::{RunEnd, Said};
+use super::end::{RunEnd, Said, of_status};
 use super::launch::{Running, launch};
 use super::plan::Batch;
 use crate::app::error::CommandError;
@@ -94,12 +94,5 @@ fn said(done: &mut Running, status: ExitStatus) -> Said {
     let mut told = String::new();
     done.told.rewind().ok();
     done.told.read_to_string(&mut told).ok();
-    let told = told.trim_end();
-    let told = told.strip_prefix("error: ").unwrap_or(told).to_owned();
-    match status.code() {
-        Some(0) => Said::Solved,
-        Some(1) => Said::Unsolved(told),
-        Some(2) => Said::Refused(told),
-        _ => Said::Failed(told),
-    }
+    of_status(status.code(), &told)
 }

@@ -65,10 +65,7 @@ pub fn solve_from_starts(
     };
     memory::of_elements(&loaded.system).map_err(CommandError::of(&request.input))?;
     resolve(&loaded.system, control).map_err(CommandError::of(&request.input))?;
-    let run_in = match task_runs_at_once(&loaded.task) {
-        true => wanted,
-        false => RunIn::Processes,
-    };
+    let run_in = wanted.of_tasks(task_runs_at_once(&loaded.task));
     if run_in == RunIn::Processes && is_standard_input(&request.input) {
         return Err(CommandError::Option {
             option: "--starts",
@@ -94,6 +91,7 @@ pub fn solve_from_starts(
     let batch = Batch {
         runs: &runs,
         run_in,
+        folder: &folder,
         max_seconds: request.max_seconds,
         began,
     };
