@@ -1,7 +1,9 @@
-//! Finds Ipopt and the MUMPS it was linked with, translates the few declarations of their C headers that `src/ipopt/ffi.rs`
+//! Finds Ipopt, the MUMPS it was linked with and the code of pages, translates the few declarations of their C headers that `src/ipopt/ffi.rs`
 //! and `src/sparse/mumps/ffi.rs` call, and notes the versions that results name.
 
 use std::env;
+use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -22,8 +24,22 @@ const MUMPS_HEADERS: [&str; 3] = [
     "/usr/local/include/mumps",
 ];
 
+/// Where files of JavaScript may stand besides the places of the system.
+const JAVASCRIPT: &str = "PROBOSCIS_JAVASCRIPT";
+/// The code that pages carry, below the folders of [`JAVASCRIPT_FOLDERS`].
+const CODE: [&str; 2] = ["three/three.min.js", "chart.js/chart.min.js"];
+/// Where Debian installs it.
+const JAVASCRIPT_FOLDERS: [&str; 2] = ["/usr/share/javascript", "/usr/local/share/javascript"];
+/// What is told when the code of pages is missing.
+const INSTALL_JAVASCRIPT: &str = "proboscis puts three.js and Chart.js into the pages that it writes: \
+    install libjs-three and libjs-chart.js (Debian, Ubuntu), or take three@0.111 and chart.js@3.9 from npm \
+    and let PROBOSCIS_JAVASCRIPT name the folder that has them as";
+
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
+    if env::var_os("CARGO_FEATURE_REPORT").is_some() {
+        pack_code();
+    }
     println!("cargo::rerun-if-env-changed=PKG_CONFIG_PATH");
 
     // Only the shared libraries are linked: what they need themselves (LAPACK, Fortran) is their own affair,
@@ -66,6 +82,31 @@ fn main() {
         "mumps.rs",
         INSTALL_MUMPS,
     );
+}
+
+/// Packs the code of pages for `src/report/page/code.rs`.
+fn pack_code() {
+    println!("cargo::rerun-if-env-changed={JAVASCRIPT}");
+    let named = env::var_os(JAVASCRIPT).map(PathBuf::from);
+    let folders = named
+        .into_iter()
+        .chain(JAVASCRIPT_FOLDERS.map(PathBuf::from));
+    let folders: Vec<PathBuf> = folders.collect();
+    for file in CODE {
+        let place = folders.iter().map(|folder| folder.join(file));
+        let Some(path) = place.into_iter().find(|path| path.is_file()) else {
+            println!("cargo::error={INSTALL_JAVASCRIPT} {}", CODE.join(" and "));
+            return;
+        };
+        println!("cargo::rerun-if-changed={}", path.display());
+        let code = fs::read(&path).expect("a file that is there can be read");
+        let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+        packed.write_all(&code).expect("memory can be written");
+        let packed = packed.finish().expect("memory can be written");
+        let name = path.file_name().expect("the path of a file has a name");
+        let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+        fs::write(out.join(name).with_extension("js.gz"), packed).expect("OUT_DIR can be written");
+    }
 }
 
 /// Names of the files of a shared library.

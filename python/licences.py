@@ -1,6 +1,6 @@
 """Puts licences and a list of all libraries into a wheel whose shared libraries were grafted: `licences.py WHEEL FOLDER`.
 
-The libraries come from Debian's packages; maturin lists the crates that the native part is linked of. A part without a licence, a wheel without OpenBLAS (with the reference
+The libraries and the code of pages come from Debian's packages; maturin lists the crates that the native part is linked of. A part without a licence, a wheel without OpenBLAS (with the reference
 BLAS MUMPS takes three to five times as long), or one that is too large ends it.
 """
 
@@ -43,6 +43,11 @@ def packages(grafted: list[str]) -> dict[str, str]:
     return found
 
 
+def embedded() -> dict[str, str]:
+    """Versions of the Debian packages whose code the program puts into pages."""
+    return {name: told("dpkg-query", "-W", "-f", "${Version}", name) for name in ("libjs-three", "libjs-chart.js")}
+
+
 def crates() -> Iterator[tuple[str, str]]:
     """Names of the crates that are linked in, and the texts of their licences."""
     manifest = HERE / "Cargo.toml"
@@ -79,7 +84,7 @@ def main(wheel: Path, folder: Path) -> None:
         (licences / "debian").mkdir(parents=True)
         component = {"type": "library", "bom-ref": "proboscis", "name": "proboscis", "version": info.name.split("-")[1].removesuffix(".dist")}
         libraries: list[dict[str, Any]] = []
-        for name, version in sorted(packages(grafted).items()):
+        for name, version in sorted((packages(grafted) | embedded()).items()):
             (licences / "debian" / f"{name}.txt").write_bytes(Path("/usr/share/doc", name, "copyright").read_bytes())
             purl = f"pkg:deb/debian/{name}@{quote(version, safe='')}"
             libraries.append({"type": "library", "bom-ref": purl, "name": name, "version": version, "purl": purl})

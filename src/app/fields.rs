@@ -60,7 +60,7 @@ pub(super) fn largest_nominal_field(
         );
         let elements = (0..continuum.shapes.len()).filter(|&e| continuum.is_dielectric[e]);
         let field = move |e: usize| {
-            let fields = fields(continuum, e, &places, &potentials);
+            let fields = continuum.fields(e, &places, &potentials);
             fields.reference_electric_field.norm() * 1e3
         };
         elements.map(field).collect::<Vec<_>>()
@@ -203,7 +203,7 @@ fn cells(
 ) -> Vec<Field<'static>> {
     let count = continuum.shapes.len();
     let mut all: Vec<Fields> = (0..count)
-        .map(|e| fields(continuum, e, places, potentials))
+        .map(|e| continuum.fields(e, places, potentials))
         .collect();
     if let Some(velocities) = velocities {
         for (e, fields) in all.iter_mut().enumerate() {
@@ -248,18 +248,6 @@ fn cells(
         ),
         field("block", 1, (0..count).map(|_| number as f64)),
     ]
-}
-
-/// Fields of an element without its viscosity.
-fn fields(continuum: &SolidBlock, e: usize, places: &[Vector], potentials: &[f64]) -> Fields {
-    let (shape, nodes) = (&continuum.shapes[e], continuum.solid.mesh.hexahedra[e]);
-    let x = nodes.map(|n| places[n]);
-    if continuum.is_dielectric[e] {
-        let phi = nodes.map(|n| potentials[n]);
-        continuum.dielectric(e).fields(shape, &x, &phi)
-    } else {
-        continuum.passive(e).fields(shape, &x, &())
-    }
 }
 
 fn field(

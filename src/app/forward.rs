@@ -9,6 +9,7 @@ use crate::app::error::CommandError;
 use crate::app::exchanged::Exchanged;
 use crate::app::fields;
 use crate::app::folder::make_folder;
+use crate::app::page;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::solution_file;
@@ -34,7 +35,7 @@ use crate::workflow::steps;
 
 /// Simulates and writes the folder; a motion that ends early is kept as far as it went.
 pub(super) fn simulation(
-    request: &CommandInput,
+    (request, asked): (&CommandInput, &[(String, String)]),
     system: &System,
     task: &Simulation,
     began: Instant,
@@ -188,6 +189,8 @@ pub(super) fn simulation(
         );
         ("sum of the local errors of the steps".to_owned(), words)
     }));
+    let mut told = page::told("Simulation", &summary, asked);
+    told.rows = rows;
     let run = Run {
         system,
         trajectory: &motion,
@@ -198,8 +201,8 @@ pub(super) fn simulation(
         held: None,
         tracked: &[],
         origin: &origin,
-        title: "Simulation",
-        summary: &rows,
+        goal: None,
+        told: &told,
     };
     write_run(&mut files, &run)?;
     summary.seconds.wrote(began, writing);

@@ -5,7 +5,7 @@
 //! - `inspect`, `sparsity`, `check`, `templates`: the other commands; `program`: what is asked from other languages in place of files.
 //! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
 //! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`: what is told of a result.
-//! - `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `progress`, `request`, `error`: what commands share.
+//! - `page`, `solve_page`: what the page tells; `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `progress`, `request`, `error`: what commands share.
 
 mod accuracy_table;
 mod batch;
@@ -21,6 +21,7 @@ mod followed;
 mod forward;
 mod inspect;
 mod multistart;
+mod page;
 mod path;
 mod program;
 mod progress;
@@ -31,6 +32,7 @@ mod rest_refused;
 mod rest_words;
 mod solution_file;
 mod solve;
+mod solve_page;
 mod solve_words;
 mod sparsity;
 mod summary;

@@ -6,6 +6,7 @@ use crate::app::error::CommandError;
 use crate::app::fields;
 use crate::app::folder::make_folder;
 use crate::app::followed::Followed;
+use crate::app::page;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::rest_observed::at_rest;
 use crate::app::rest_refused::refused;
@@ -22,7 +23,6 @@ use crate::model::{Model, Role, System};
 use crate::report::axes::{Axis, Extent};
 use crate::report::file_set::FileSet;
 use crate::report::lines::{LinePlot, Mark, Series};
-use crate::report::origin::Origin;
 use crate::report::skins::Skins;
 use crate::report::{Run, style, write_still};
 use crate::workflow::WorkflowError;
@@ -33,7 +33,7 @@ use crate::workflow::phase::phase;
 /// Follows the path for `points` equilibria and writes `path.csv`, `path.svg`, the fields, and figure and page of the last
 /// equilibrium before stability is lost, or of the last one.
 pub(super) fn follow(
-    request: &CommandInput,
+    (request, asked): (&CommandInput, &[(String, String)]),
     system: &System,
     task: &AtRest,
     points: usize,
@@ -76,23 +76,9 @@ pub(super) fn follow(
     let shown_state = single_instant(&history, shown + 1);
     let motion = Trajectory::from_history(&model, &shown_state);
     let rows = path.rows(stops[shown].fraction);
-    let run = Run {
-        system: &model.system,
-        trajectory: &motion,
-        skins: &Skins::new(&model, &shown_state),
-        name: "rest",
-        observations: &observed,
-        comparison: None,
-        held: Some(&motion.voltages[0]),
-        tracked: &[],
-        origin: &origin,
-        title: "Path of equilibria",
-        summary: &rows,
-    };
     let mut files = FileSet::of(&folder);
-    write_still(&mut files, "path.csv", &run)?;
-    let svg = figure(&model, &stops, &history, &origin);
-    files.add("path.svg", svg.as_bytes())?;
+    let plot = figure(&model, &stops, &history);
+    files.add("path.svg", plot.svg(&origin).as_bytes())?;
     fields::write(&mut files, &model, &history, &origin)?;
     let outside = domain::told(&out_of_domain(&model, &history));
     let notes = path.lost.iter().map(|loss| {
@@ -129,6 +115,23 @@ pub(super) fn follow(
         setup,
         ..Seconds::default()
     };
+    let mut said = page::told("Path of equilibria", &summary, asked);
+    said.rows = rows;
+    said.plots.push(("Path".to_owned(), plot));
+    let run = Run {
+        system: &model.system,
+        trajectory: &motion,
+        skins: &Skins::new(&model, &shown_state),
+        name: "rest",
+        observations: &observed,
+        comparison: None,
+        held: Some(&motion.voltages[0]),
+        tracked: &[],
+        origin: &origin,
+        goal: None,
+        told: &said,
+    };
+    write_still(&mut files, "path.csv", &run)?;
     summary.write(files)?;
     Ok(told)
 }
@@ -202,12 +205,7 @@ fn observed(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory) -> 
 
 /// `path.svg`: fraction of the voltages over the distance of each marker from rest, or of the coordinate that moves most; where stability is
 /// lost it is marked.
-fn figure(
-    model: &Model,
-    stops: &[Stop<'_>],
-    history: &DiscreteTrajectory,
-    origin: &Origin,
-) -> String {
+fn figure(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory) -> LinePlot {
     let marks = Trajectory::from_history(model, history).marks;
     let reference = &model.coordinates_at(&vec![0.0; model.gauges.len()]);
     let distance = |m: usize, k: usize| (marks[k + 1][m] - marks[0][m]).norm();
@@ -244,5 +242,4 @@ fn figure(
         Axis::linear("fraction of the voltages", Extent::FromZero),
         series,
     )
-    .svg(origin)
 }

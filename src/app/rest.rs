@@ -6,6 +6,7 @@ use crate::app::blocks::BlockSizes;
 use crate::app::error::CommandError;
 use crate::app::fields;
 use crate::app::folder::make_folder;
+use crate::app::page;
 use crate::app::path;
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
@@ -53,12 +54,17 @@ pub fn equilibrium_of_file(
             coordinates: None,
             path: None,
         };
-        return at(request, &system, &task, began);
+        return at((request, &[]), &system, &task, began);
     }
     let loaded = read_problem(&request.input, &request.set)?;
     memory::of_elements(&loaded.system).map_err(CommandError::of(&request.input))?;
     match &loaded.task {
-        Task::Equilibrium(task) => at(request, &loaded.system, task, began),
+        Task::Equilibrium(task) => at(
+            (request, &page::asked(&loaded)),
+            &loaded.system,
+            task,
+            began,
+        ),
         other => Err(CommandError::Problem {
             file: request.input.clone(),
             place: key(other).to_owned(),
@@ -70,7 +76,7 @@ pub fn equilibrium_of_file(
 /// Finds the equilibrium under voltages, or follows the path there, and writes the folder; where it is lost on the way there,
 /// the last one is kept.
 pub(super) fn at(
-    request: &CommandInput,
+    (request, asked): (&CommandInput, &[(String, String)]),
     system: &System,
     task: &AtRest,
     began: Instant,
@@ -78,7 +84,7 @@ pub(super) fn at(
     let left = |seconds| seconds - began.elapsed().as_secs_f64();
     let watch = interrupt::watch(request.max_seconds.map(left));
     if let Some(points) = task.path {
-        return path::follow(request, system, task, points, began);
+        return path::follow((request, asked), system, task, points, began);
     }
     let wrong =
         |error| CommandError::of(&request.input)(WorkflowError::boundary("equilibrium", &error));
@@ -133,23 +139,6 @@ pub(super) fn at(
         setup,
         ..Seconds::default()
     };
-    let run = Run {
-        system: &model.system,
-        trajectory: &motion,
-        skins: &Skins::new(&model, &state),
-        name: "rest",
-        observations: &observed,
-        comparison: None,
-        held: Some(&motion.voltages[0]),
-        tracked: &[],
-        origin: &origin,
-        title: match failure {
-            None => "Static equilibrium",
-            Some(_) => "The last equilibrium",
-        },
-        summary: &rows(&rest, status),
-    };
-    write_still(&mut files, "equilibrium.csv", &run)?;
     summary.notes.extend(domain::note(&summary.domain, false));
     let notes = summary.message.iter().chain(&summary.notes);
     let notes = notes.cloned().collect();
@@ -165,7 +154,28 @@ pub(super) fn at(
             notes,
         },
     };
+    let rows = rows(&rest, status);
     summary.rest = Some(rest);
+    let title = match failure {
+        None => "Static equilibrium",
+        Some(_) => "The last equilibrium",
+    };
+    let mut said = page::told(title, &summary, asked);
+    said.rows = rows;
+    let run = Run {
+        system: &model.system,
+        trajectory: &motion,
+        skins: &Skins::new(&model, &state),
+        name: "rest",
+        observations: &observed,
+        comparison: None,
+        held: Some(&motion.voltages[0]),
+        tracked: &[],
+        origin: &origin,
+        goal: None,
+        told: &said,
+    };
+    write_still(&mut files, "equilibrium.csv", &run)?;
     summary.write(files)?;
     Ok(told)
 }

@@ -9,9 +9,11 @@ use crate::app::error::CommandError;
 use crate::app::exchanged::Exchanged;
 use crate::app::fields;
 use crate::app::folder::make_folder;
+use crate::app::page;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::solution_file;
+use crate::app::solve_page::{convergence, describe, goal, rows};
 use crate::app::solve_words::{meaning, redundancy, restarted, stretched, unresolved};
 use crate::app::summary::{
     Evaluations, LinearSystems, MEASURED, PerInterval, Program, Seconds, SoughtValue, Summary,
@@ -22,7 +24,6 @@ use crate::app::words::counted;
 use crate::control::problem::{Control, Hold};
 use crate::dynamics::{EnergyExchange, observations, out_of_domain};
 use crate::ipopt::{Status, interrupt};
-use crate::math::significant;
 use crate::model::System;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
@@ -46,7 +47,7 @@ use crate::workflow::violations::Violation;
 const COMPARED: usize = 3;
 /// Solves a control problem and writes its folder, solved or not.
 pub(super) fn control(
-    request: &CommandInput,
+    (request, asked): (&CommandInput, &[(String, String)]),
     system: &System,
     control: &Control,
     began: Instant,
@@ -179,6 +180,7 @@ pub(super) fn control(
         hessian: seconds.hessian,
         ..Seconds::default()
     };
+    let request = (request, asked);
     write_files(request, &folder, (control, &optimum), &mut summary, began)?;
     unfinished.done();
     Ok(told(&summary, violated, &folder))
@@ -232,7 +234,7 @@ fn find(
 }
 
 fn write_files(
-    request: &CommandInput,
+    (request, asked): (&CommandInput, &[(String, String)]),
     folder: &Path,
     (control, optimum): (&Control, &Optimum),
     summary: &mut Summary,
@@ -268,7 +270,10 @@ fn write_files(
         .then(|| under_constant_voltages(model, boundary, kept, COMPARED))
         .flatten()
         .map(|(history, _)| trajectory(model, &solved(model, &history, None)));
-    let rows = rows(summary);
+    let goal = goal(model, boundary);
+    let mut told = page::told("Optimal control", summary, asked);
+    told.rows = rows(summary);
+    told.plots.push(convergence(&optimum.solution.iterations));
     let run = Run {
         system: &model.system,
         trajectory: &motion,
@@ -283,71 +288,12 @@ fn write_files(
         held: boundary.rest[1].as_deref().filter(|_| is_solved),
         tracked: &summary.tracking,
         origin: &origin,
-        title: "Optimal control",
-        summary: &rows,
+        goal: goal.as_deref(),
+        told: &told,
     };
     write_run(&mut files, &run)?;
     summary.seconds.wrote(began, writing);
     summary.write(files)
-}
-
-/// Rows of the table of the page.
-fn rows(summary: &Summary) -> Vec<(String, String)> {
-    let mut rows = vec![("status".to_owned(), summary.status.clone())];
-    let mut row = |key: &str, value: String| rows.push((key.to_owned(), value));
-    if let Some(program) = &summary.program {
-        row("objective", format!("{:.9}", program.objective));
-        row("iterations", program.iterations.to_string());
-        row("duration", format!("{:.6} s", program.duration));
-        row("intervals", program.intervals.to_string());
-        for parameter in &program.parameters {
-            row(&parameter.name, parameter.told());
-        }
-        row("coordinates", summary.coordinates.to_owned());
-        row("variables", program.variables.to_string());
-        row("constraints", program.constraints.to_string());
-        row("time", format!("{:.3} s", summary.seconds.total));
-        for (key, value) in summary.energies.iter().flat_map(Exchanged::rows) {
-            row(&key, value);
-        }
-        for (name, error) in summary.accuracy.iter().flat_map(|a| &a.estimate) {
-            row(&format!("estimated error, {name}"), format!("{error:.1e}"));
-        }
-        if let Some(r) = &program.resimulation {
-            let of = |d: &crate::workflow::distance::Distance| {
-                format!("{:.1e} rad, {:.1e} m", d.angle, d.length)
-            };
-            row("deviation when simulated forward", of(&r.deviation));
-            if let (Some(drift), Some(held)) = (&r.drift, r.held) {
-                row(&format!("drift when held for {held} s"), of(drift));
-            }
-        }
-        for (key, value) in summary.tracking.iter().map(tracking_words::row) {
-            row(&key, value);
-        }
-        for violation in &program.violations {
-            row("violated", describe(violation));
-        }
-    }
-    rows
-}
-
-/// A violated row in words.
-fn describe(violation: &Violation) -> String {
-    match (violation.violation, violation.scaled) {
-        (Some(distance), Some(scaled)) => {
-            let unit = match violation.unit {
-                "" => String::new(),
-                unit => format!(" {unit}"),
-            };
-            format!(
-                "{}: violated by {}{unit} ({scaled:.1e} as the solver measures it)",
-                violation.row,
-                significant(distance, 4)
-            )
-        }
-        _ => format!("{}: has no value there", violation.row),
-    }
 }
 
 fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> CommandOutput {

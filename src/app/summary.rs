@@ -383,8 +383,12 @@ impl Summary {
 
     /// Writes it as `summary.json`, the last file of a result.
     pub(super) fn write(&self, mut files: FileSet) -> Result<(), WriteError> {
-        let text = serde_json::to_string(self).expect("numbers and names are JSON");
-        files.add("summary.json", lay_out(&text).as_bytes())?;
+        files.add("summary.json", self.text().as_bytes())?;
         files.finish()
+    }
+
+    /// Its text.
+    pub(super) fn text(&self) -> String {
+        lay_out(&serde_json::to_string(self).expect("numbers and names are JSON"))
     }
 }

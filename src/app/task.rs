@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use crate::app::error::CommandError;
 use crate::app::forward;
+use crate::app::page::asked;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::rest;
@@ -39,14 +40,13 @@ pub fn run_observed(
     phase("reading");
     let loaded = read(&request.input, text, &request.set)?;
     refuse_unused(request, &loaded.task)?;
+    let told = (request, &asked(&loaded)[..]);
     match loaded.task {
-        Task::Control(control) => {
-            solve::control(request, &loaded.system, &control, began, observer)
-        }
+        Task::Control(control) => solve::control(told, &loaded.system, &control, began, observer),
         Task::Simulate(simulation) => {
-            forward::simulation(request, &loaded.system, &simulation, began, observer)
+            forward::simulation(told, &loaded.system, &simulation, began, observer)
         }
-        Task::Equilibrium(task) => rest::at(request, &loaded.system, &task, began),
+        Task::Equilibrium(task) => rest::at(told, &loaded.system, &task, began),
     }
 }
 

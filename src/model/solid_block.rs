@@ -1,6 +1,6 @@
 //! An elastic block as the model sees it: vectors and potentials of its nodes, laws of its elements, charges of its electrodes.
 
-use crate::element::{Dielectric, Elastomer, ElementGeometry, Local, Passive, Volume};
+use crate::element::{Dielectric, Elastomer, ElementGeometry, Fields, Local, Passive, Volume};
 use crate::functional::ScalarArg;
 use crate::math::Vector;
 use crate::model::system::{ElectricConstants, Electrode, ElementKind, Material, Potential, Solid};
@@ -93,6 +93,18 @@ impl SolidBlock {
     /// Places of the nodes at vectors x.
     pub fn places(&self, x: &[Vector]) -> Vec<Vector> {
         self.vectors.iter().map(|&v| x[v]).collect()
+    }
+
+    /// Fields of an element without its viscosity, with the nodes at `places` in mm under `potentials` in V.
+    pub fn fields(&self, element: usize, places: &[Vector], potentials: &[f64]) -> Fields {
+        let nodes = self.solid.mesh.hexahedra[element];
+        let (shape, x) = (&self.shapes[element], nodes.map(|n| places[n]));
+        if self.is_dielectric[element] {
+            let phi = nodes.map(|n| potentials[n]);
+            self.dielectric(element).fields(shape, &x, &phi)
+        } else {
+            self.passive(element).fields(shape, &x, &())
+        }
     }
 
     /// Block and electrode of the electrodes that no voltage drives.

@@ -59,21 +59,27 @@ pub fn charges(trajectory: &Trajectory, observations: &Observations) -> Vec<Seri
         .collect()
 }
 
-/// `charge.svg`: the charges over time in s, in the unit that suits the largest.
-pub fn charge_svg(mut charges: Vec<Series>, origin: &Origin) -> String {
+/// The charges in the unit that suits the largest, and the label of their axis.
+pub(super) fn scaled_charges(mut charges: Vec<Series>) -> (&'static str, Vec<Series>) {
     let values = charges.iter().flat_map(|series| &series.points);
     let largest = values.map(|p| p[1].abs()).filter(|q| q.is_finite());
-    let (unit, factor) = match largest.fold(0.0, f64::max) {
-        q if q >= 1.0 => ("mC", 1.0),
-        q if q >= 1e-3 => ("µC", 1e3),
-        q if q >= 1e-6 => ("nC", 1e6),
-        _ => ("pC", 1e9),
+    let (label, factor) = match largest.fold(0.0, f64::max) {
+        q if q >= 1.0 => ("charge [mC]", 1.0),
+        q if q >= 1e-3 => ("charge [µC]", 1e3),
+        q if q >= 1e-6 => ("charge [nC]", 1e6),
+        _ => ("charge [pC]", 1e9),
     };
     let points = charges.iter_mut().flat_map(|series| &mut series.points);
     points.for_each(|p| p[1] *= factor);
+    (label, charges)
+}
+
+/// `charge.svg`: the charges over time in s.
+pub fn charge_svg(charges: Vec<Series>, origin: &Origin) -> String {
+    let (label, charges) = scaled_charges(charges);
     LinePlot::new(
         Axis::linear("time [s]", Extent::Tight),
-        Axis::linear(format!("charge [{unit}]"), Extent::Padded),
+        Axis::linear(label, Extent::Padded),
         charges,
     )
     .svg(origin)
@@ -94,7 +100,7 @@ pub fn energies(trajectory: &Trajectory, observations: &Observations) -> Vec<Ser
 }
 
 /// Whether a column is an energy of the system, not of one of many sources.
-fn is_energy(name: &str) -> bool {
+pub(super) fn is_energy(name: &str) -> bool {
     let is_of_one = ["_electrical_energy", "_mechanical_work"].map(|end| name.ends_with(end));
     (name.contains("energy") && is_of_one == [false; 2]) || name == "mechanical_work"
 }

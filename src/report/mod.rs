@@ -1,5 +1,4 @@
 //! What a run leaves behind: tables, figures and a page.
-pub mod animation;
 pub mod atomic;
 pub mod axes;
 pub mod body;
@@ -13,7 +12,6 @@ pub mod markup;
 pub mod origin;
 pub mod page;
 pub mod paraview;
-pub mod plotly;
 pub mod pose;
 mod run;
 pub mod skin;
@@ -27,7 +25,7 @@ pub mod tracking;
 pub mod view;
 pub mod voltages;
 
-pub use run::Run;
+pub use run::{Run, Told};
 
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;

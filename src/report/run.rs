@@ -1,7 +1,9 @@
 //! What a report is made of.
 
 use crate::dynamics::trajectory::{Observations, Trajectory};
+use crate::kinematics::Pose;
 use crate::model::system::System;
+use crate::report::lines::LinePlot;
 use crate::report::origin::Origin;
 use crate::report::skins::Skins;
 use crate::workflow::Tracked;
@@ -27,8 +29,27 @@ pub struct Run<'a> {
     pub tracked: &'a [Tracked],
     /// Where the results come from.
     pub origin: &'a Origin,
+    /// Poses of the bodies where the motion was to end, where they are known.
+    pub goal: Option<&'a [Pose]>,
+    /// What the page says of it.
+    pub told: &'a Told,
+}
+
+/// What a page says of a run in words, and what it shows besides the motion.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Told {
     /// Title of the page.
-    pub title: &'a str,
-    /// Rows of the page's table.
-    pub summary: &'a [(String, String)],
+    pub title: String,
+    /// Whether the question has an answer.
+    pub is_solved: bool,
+    /// How it ended, in a few words.
+    pub answer: String,
+    /// What else there is to say: reasons, warnings.
+    pub notes: Vec<String>,
+    /// Rows of the table beside the motion.
+    pub rows: Vec<(String, String)>,
+    /// Titles and plots of what is no function of time.
+    pub plots: Vec<(String, LinePlot)>,
+    /// Names and texts of what was asked and answered: `summary.json`, problem, scene.
+    pub documents: Vec<(String, String)>,
 }

@@ -1,6 +1,6 @@
 //! Surfaces of elastic blocks at the instants that pictures show.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use nalgebra::Vector3;
 
@@ -9,17 +9,19 @@ use crate::model::system::Fidelity;
 use crate::model::{Model, SolidBlock};
 
 /// Most instants that an animation shows.
-const FRAMES: usize = 80;
+const FRAMES: usize = 200;
 /// Fewest of them, however large the surfaces are.
 const LEAST: usize = 6;
 /// Places that all instants together may have, so that pages stay small.
-const PLACES: usize = 200_000;
+const PLACES: usize = 40_000;
 /// Cosine of the angle between faces from which on their common edge is drawn strong.
 const SHARP: f64 = 0.8;
 
 /// The surface of a block, or of a muscle of finite elements.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Skin {
+    /// Name of the block or the muscle.
+    pub name: String,
     /// The muscle, by its index in the system; `None` for a block of the scene.
     pub muscle: Option<usize>,
     /// Whether potentials reach it.
@@ -34,6 +36,10 @@ pub struct Skin {
     pub places: Vec<Vec<Vector3<f64>>>,
     /// Amount of the potential at the corners in V, per instant shown: that of the interval that ends there.
     pub potentials: Vec<Vec<f64>>,
+    /// Amount of the true electric field at the corners in V/mm, per instant shown: a mean over the elements around.
+    pub fields: Vec<Vec<f64>>,
+    /// Von Mises stress at the corners in N/mm² without that of viscosity, per instant shown: a mean over the elements around.
+    pub von_mises: Vec<Vec<f64>>,
 }
 
 /// Surfaces of all blocks.
@@ -90,6 +96,7 @@ impl Skins {
             for (continuum, (skin, nodes)) in model.solids.iter().zip(&mut parts) {
                 let vectors = nodes.iter().map(|&n| instant.x[continuum.vectors[n]]);
                 skin.places.push(vectors.collect());
+                skin.observe(continuum, nodes, &instant.x, scalars);
                 let potentials = match skin.muscle {
                     Some(muscle) => {
                         let s = model.variables.voltage(muscle);
@@ -139,6 +146,7 @@ impl Skin {
         let quads: Vec<_> = boundary.iter().map(|quad| quad.map(&mut number)).collect();
         let reference: Vec<_> = nodes.iter().map(|&node| mesh.nodes[node]).collect();
         let skin = Self {
+            name: continuum.solid.name.clone(),
             muscle,
             is_charged: continuum.terminals.iter().any(Option::is_some),
             sharp: sharp(&quads, &reference),
@@ -147,6 +155,34 @@ impl Skin {
             ..Self::default()
         };
         (skin, nodes)
+    }
+
+    /// Adds fields and stresses of an instant at the nodes that the corners are.
+    fn observe(
+        &mut self,
+        continuum: &SolidBlock,
+        nodes: &[usize],
+        x: &[Vector3<f64>],
+        scalars: &[f64],
+    ) {
+        let (places, potentials) = (continuum.places(x), continuum.potentials(scalars));
+        let mut sums = vec![[0.0; 3]; places.len()];
+        let at_surface = nodes.iter().copied().collect::<HashSet<_>>();
+        for (e, corners) in continuum.solid.mesh.hexahedra.iter().enumerate() {
+            if !corners.iter().any(|node| at_surface.contains(node)) {
+                continue;
+            }
+            let fields = continuum.fields(e, &places, &potentials);
+            let values = [1.0, fields.electric_field.norm(), fields.von_mises()];
+            for &node in corners {
+                for (sum, value) in sums[node].iter_mut().zip(values) {
+                    *sum += value;
+                }
+            }
+        }
+        let mean = |i: usize| nodes.iter().map(|&n| sums[n][i] / sums[n][0]).collect();
+        self.fields.push(mean(1));
+        self.von_mises.push(mean(2));
     }
 }
 

@@ -41,6 +41,18 @@ pub fn svg(
     tracked: &[Tracked],
     origin: &Origin,
 ) -> String {
+    let all = trajectories.iter().flat_map(|(_, one)| &one.marks);
+    let plane = plane(all.flatten());
+    plot(system, trajectories, tracked, plane).svg(origin)
+}
+
+/// The paths in the plane of two axes, horizontal first.
+pub(super) fn plot(
+    system: &System,
+    trajectories: &[(&str, &Trajectory)],
+    tracked: &[Tracked],
+    [horizontal, vertical]: [usize; 2],
+) -> LinePlot {
     let paths: Vec<_> = trajectories
         .iter()
         .map(|(name, trajectory)| {
@@ -49,7 +61,6 @@ pub fn svg(
             (name, paths)
         })
         .collect();
-    let [horizontal, vertical] = plane(paths.iter().flat_map(|(_, paths)| paths.iter().flatten()));
     let flat = |p: &Vector3<f64>| [p[horizontal], p[vertical]];
     let mut series = Vec::new();
     let (mut starts, mut ends) = (Vec::new(), Vec::new());
@@ -92,10 +103,9 @@ pub fn svg(
         );
     }
     let axis = |i: usize| Axis::linear(format!("{} [mm]", ["x", "y", "z"][i]), Extent::Padded);
-    let plot = LinePlot {
+    LinePlot {
         aspect: Aspect::Equal,
         frame: [400.0, 300.0],
         ..LinePlot::new(axis(horizontal), axis(vertical), series)
-    };
-    plot.svg(origin)
+    }
 }

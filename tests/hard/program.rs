@@ -178,8 +178,11 @@ fn check_folder(folder: &Path, is_answer: bool) {
             "json" => check_json(&serde_json::from_str(&text).unwrap(), place),
             "csv" => check_csv(&text, place, is_answer),
             "vtu" => check_arrays(&text, place),
-            // The library in front of the data names all numbers there are.
-            "html" => check_words(text.split("Plotly.newPlot(\"").skip(1), place),
+            // The code of the page names what is no number.
+            "html" => {
+                let data = text.split("id=\"data\">").nth(1).unwrap();
+                check_words(data.split("</script>").take(1), place);
+            }
             _ => check_words([text.as_str()].into_iter(), place),
         }
         seen += 1;

@@ -314,7 +314,7 @@ fn pictures_show_blocks() {
     assert!(svg.contains("voltage [kV]") && svg.contains("path of corner"));
     assert!(!svg.contains("NaN"));
     let page = text("report.html");
-    assert!(page.contains("\"name\":\"blocks\"") && !page.contains("passive blocks"));
+    assert!(page.contains("\"kind\":\"block\"") && page.contains("\"field\":"));
     assert!(text("charge.svg").contains("cube top"));
     assert!(text("energy.svg").contains("block electroelasticity"));
 }

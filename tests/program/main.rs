@@ -11,6 +11,7 @@ mod fields;
 mod kept;
 mod killed;
 mod observed;
+mod page;
 mod paraview;
 mod refusals;
 mod report;

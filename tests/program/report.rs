@@ -11,7 +11,7 @@ use proboscis::report::file_set::FileSet;
 use proboscis::report::lines::{LinePlot, Mark, Series};
 use proboscis::report::origin::Origin;
 use proboscis::report::skins::Skins;
-use proboscis::report::{Run, markup, pose, style, table, tip_path, voltages, write_run};
+use proboscis::report::{Run, Told, markup, pose, style, table, tip_path, voltages, write_run};
 
 fn origin() -> Origin {
     Origin {
@@ -59,7 +59,7 @@ fn polylines(svg: &str, colour: style::Colour) -> usize {
         .count()
 }
 
-fn swing() -> (System, Trajectory) {
+pub(crate) fn swing() -> (System, Trajectory) {
     let system = crate::common::trunk::system(6);
     let trajectory = crate::common::trunk::swing(&system, 20);
     (system, trajectory)
@@ -275,8 +275,12 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
         held: None,
         tracked: &tracked,
         origin: &origin(),
-        title: "A <title>",
-        summary: &[("status".to_owned(), "a < b".to_owned())],
+        goal: None,
+        told: &Told {
+            title: "A <title>".to_owned(),
+            rows: vec![("status".to_owned(), "a < b".to_owned())],
+            ..Told::default()
+        },
     };
     let folder = tempfile::tempdir().unwrap();
     let inner = folder.path().join("results").join("swing");
@@ -328,10 +332,11 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
         }
     }
     let html = fs::read_to_string(inner.join("report.html")).unwrap();
-    assert!(html.contains("&lt;script&gt;alert(1)&lt;/script&gt; &amp; co"));
-    assert!(html.contains("<td>a &lt; b</td>") && html.contains("A &lt;title&gt;"));
+    assert!(html.contains(
+        "<title>&lt;script&gt;alert(1)&lt;/script&gt; &amp; co: A &lt;title&gt;</title>"
+    ));
     assert!(!html.contains("<b>muscle") && !html.contains("alert(1)</script>"));
-    assert!(!html.contains("<script src="), "the page needs no network");
+    assert!(html.contains("\"rows\":[[\"status\",\"a \\u003c b\"]]"));
     assert_eq!(markup::escape("\"'"), "&quot;&#39;");
 }
 

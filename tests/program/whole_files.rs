@@ -227,7 +227,7 @@ fn where_a_file_cannot_be_written_all_others_stay_whole() {
     let complete = check_whole(&out, &[20]);
     let finer = Run::new("solve", "pair", &["control.intervals=24"]);
     let mut told = BTreeSet::new();
-    for blocks in [0, 1, 2, 4, 8, 12, 16, 24, 32, 64, 128, 1000] {
+    for blocks in [0, 1, 2, 4, 8, 12, 16, 24, 32, 64, 128, 500] {
         let output = limited(&finer, folder.path(), blocks);
         let err = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(1), "{blocks}: {err}");

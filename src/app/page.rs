@@ -1,0 +1,36 @@
+//! What every page tells: how it ended, what else there is to say, what was asked.
+
+use serde_json::Value;
+
+use crate::app::summary::Summary;
+use crate::files::{Loaded, lay_out};
+use crate::report::Told;
+
+/// Names and texts of problem and scene as they were read, overrides applied.
+pub(super) fn asked(loaded: &Loaded) -> Vec<(String, String)> {
+    let text = |value: &Value| lay_out(&value.to_string());
+    let mut documents = vec![("Problem".to_owned(), text(&loaded.problem))];
+    if loaded.scene_path.is_some() {
+        documents.push(("Scene".to_owned(), text(&loaded.scene)));
+    }
+    documents
+}
+
+/// What a summary says, before rows and plots; `asked` are the texts of problem and scene.
+pub(super) fn told(title: &str, summary: &Summary, asked: &[(String, String)]) -> Told {
+    let mut documents = vec![("Summary".to_owned(), summary.text())];
+    documents.extend_from_slice(asked);
+    Told {
+        title: title.to_owned(),
+        is_solved: summary.message.is_none(),
+        answer: summary.status.replace('_', " "),
+        notes: summary
+            .message
+            .iter()
+            .chain(&summary.notes)
+            .cloned()
+            .collect(),
+        documents,
+        ..Told::default()
+    }
+}

@@ -1,0 +1,117 @@
+//! What the page tells of a control problem: rows of its table, the way of the solver, the goal.
+
+use crate::app::exchanged::Exchanged;
+use crate::app::summary::Summary;
+use crate::app::tracking_words;
+use crate::control::BoundaryConditions;
+use crate::ipopt::Iteration;
+use crate::kinematics::Pose;
+use crate::math::significant;
+use crate::model::Model;
+use crate::report::axes::{Axis, Extent};
+use crate::report::lines::{LinePlot, Series};
+use crate::report::style;
+use crate::workflow::violations::Violation;
+
+/// Rows of the table of the page.
+pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
+    let mut rows = vec![("status".to_owned(), summary.status.clone())];
+    let mut row = |key: &str, value: String| rows.push((key.to_owned(), value));
+    if let Some(program) = &summary.program {
+        row("objective", format!("{:.9}", program.objective));
+        row("iterations", program.iterations.to_string());
+        row("duration", format!("{:.6} s", program.duration));
+        row("intervals", program.intervals.to_string());
+        for parameter in &program.parameters {
+            row(&parameter.name, parameter.told());
+        }
+        row("coordinates", summary.coordinates.to_owned());
+        row("variables", program.variables.to_string());
+        row("constraints", program.constraints.to_string());
+        row("time", format!("{:.3} s", summary.seconds.total));
+        for (key, value) in summary.energies.iter().flat_map(Exchanged::rows) {
+            row(&key, value);
+        }
+        for (name, error) in summary.accuracy.iter().flat_map(|a| &a.estimate) {
+            row(&format!("estimated error, {name}"), format!("{error:.1e}"));
+        }
+        if let Some(r) = &program.resimulation {
+            let of = |d: &crate::workflow::distance::Distance| {
+                format!("{:.1e} rad, {:.1e} m", d.angle, d.length)
+            };
+            row("deviation when simulated forward", of(&r.deviation));
+            if let (Some(drift), Some(held)) = (&r.drift, r.held) {
+                row(&format!("drift when held for {held} s"), of(drift));
+            }
+        }
+        for (key, value) in summary.tracking.iter().map(tracking_words::row) {
+            row(&key, value);
+        }
+        for violation in &program.violations {
+            row("violated", describe(violation));
+        }
+    }
+    rows
+}
+
+/// A violated row in words.
+pub(super) fn describe(violation: &Violation) -> String {
+    match (violation.violation, violation.scaled) {
+        (Some(distance), Some(scaled)) => {
+            let unit = match violation.unit {
+                "" => String::new(),
+                unit => format!(" {unit}"),
+            };
+            format!(
+                "{}: violated by {}{unit} ({scaled:.1e} as the solver measures it)",
+                violation.row,
+                significant(distance, 4)
+            )
+        }
+        _ => format!("{}: has no value there", violation.row),
+    }
+}
+
+/// Title and plot of the iterations of the solver.
+pub(super) fn convergence(iterations: &[Iteration]) -> (String, LinePlot) {
+    let curve = |i: usize, name: &str, value: &dyn Fn(&Iteration) -> f64| {
+        let points = iterations.iter().enumerate();
+        let points = points.map(|(k, iteration)| [k as f64, value(iteration)]);
+        Series::curve(name, points.collect(), style::hue(i))
+    };
+    let series = vec![
+        curve(0, "violation of equations and limits", &|one| {
+            one.primal_infeasibility
+        }),
+        curve(1, "gradient of the Lagrangian", &|one| {
+            one.dual_infeasibility
+        }),
+        curve(2, "barrier parameter", &|one| one.mu),
+        curve(3, "greatest step", &|one| one.step_norm),
+    ];
+    let plot = LinePlot::new(
+        Axis::linear("iteration", Extent::Tight),
+        Axis::log("as the solver measures it"),
+        series,
+    );
+    ("Convergence".to_owned(), plot)
+}
+
+/// Poses of the bodies at the end that is asked for, where it is given as a whole.
+pub(super) fn goal(model: &Model, boundary: &BoundaryConditions) -> Option<Vec<Pose>> {
+    let goal = &boundary.goal;
+    let z = match &goal.rest {
+        Some(rest) => rest.z.clone(),
+        None => goal
+            .coordinates
+            .iter()
+            .copied()
+            .collect::<Option<Vec<f64>>>()?,
+    };
+    let mut instant = model.action.motion.instant();
+    (z.len() == instant.z.len()).then(|| {
+        instant.z.copy_from_slice(&z);
+        model.action.motion.place(&mut instant);
+        model.poses(&instant)
+    })
+}

@@ -1,0 +1,56 @@
+// The answer in words, tables of what the run consists of, and the texts it was made from.
+
+function answer(data, holder) {
+  const verdict = element("p", { id: "verdict", class: data.isSolved ? "good" : "bad" }, `${data.isSolved ? "✓" : "✗"} ${data.answer}`);
+  holder.append(verdict);
+  if (data.notes.length) {
+    const notes = data.notes.map((note) => element("li", {}, note));
+    holder.append(element("ul", { class: `notes ${data.isSolved ? "" : "bad"}` }, ...notes));
+  }
+  const rows = data.rows.filter(([name]) => name !== "status").map(([name, value]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, value)));
+  holder.append(element("table", {}, element("tbody", {}, ...rows)));
+  if (data.command) {
+    const copy = element("button", { id: "copy" }, "Copy");
+    copy.addEventListener("click", () => navigator.clipboard?.writeText(data.command).then(() => { copy.textContent = "Copied"; }));
+    holder.append(element("h2", {}, "Again"), element("p", {}, element("code", {}, data.command), " ", copy));
+  }
+}
+
+/** A table with a header; columns of numbers to the right. */
+function table(header, rows) {
+  const isNumber = header.map((_, i) => rows.every((row) => typeof row[i] === "number"));
+  const cell = (kind) => (value, i) => {
+    const attributes = kind === "th" ? { scope: "col", class: isNumber[i] ? "number" : null } : { class: isNumber[i] ? "number" : null };
+    return element(kind, attributes, typeof value === "number" ? short(value, 6) : value ?? "");
+  };
+  const head = element("thead", {}, element("tr", {}, ...header.map(cell("th"))));
+  const body = element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map(cell("td")))));
+  return element("div", { class: "wide", tabindex: 0, role: "region", "aria-label": header[0] }, element("table", {}, head, body));
+}
+
+/** Effects, sizes and seconds of `summary.json`, then all texts. */
+function tables(data, holder) {
+  const text = data.documents.find((document) => document.name === "Summary")?.text;
+  const summary = text ? JSON.parse(text) : {};
+  const fold = (title, ...children) => holder.append(element("details", {}, element("summary", {}, title), ...children));
+  if (summary.effects?.length) {
+    const columns = ["name", "kind", "why", "elements", "unknowns", "equations", "nonzeros", "microseconds"];
+    const header = ["effect", "kind", "called for by", "elements", "unknowns", "equations", "pairs coupled", "µs"];
+    const absent = (summary.absent || []).map(({ name, why }) => [name, why]);
+    fold("Plan of effects", table(header, summary.effects.map((effect) => columns.map((column) => effect[column]))),
+      ...(absent.length ? [element("h3", {}, "What is not called for"), table(["effect", "why"], absent)] : []));
+  }
+  const plain = (value) => typeof value === "number" || typeof value === "string";
+  const listed = (object, before = "") => Object.entries(object).flatMap(([name, value]) => {
+    const label = `${before}${name.replaceAll("_", " ")}`;
+    if (plain(value)) return [[label, value]];
+    return value && typeof value === "object" && !Array.isArray(value) ? listed(value, `${label}, `) : [];
+  });
+  const sizes = ["intervals", "variables", "constraints", "jacobian_nonzeros", "hessian_nonzeros", "steps", "newton_iterations", "halved_steps", "factorisations", "linear_solver", "evaluations", "iterations", "blocks"];
+  const found = sizes.filter((name) => summary[name] !== undefined).flatMap((name) => listed({ [name]: summary[name] }));
+  if (found.length) fold("Sizes", table(["size", "number"], found));
+  if (summary.seconds) fold("Seconds", table(["part", "s"], listed(summary.seconds)));
+  for (const { name, text: shown } of data.documents) {
+    fold(name, element("pre", { tabindex: 0, role: "region", "aria-label": name }, shown));
+  }
+}

@@ -1,0 +1,47 @@
+//! The code that a page carries: three.js and Chart.js, packed, and its own.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+
+/// A library: the name of its element, and its code, packed by gzip.
+pub(super) const LIBRARIES: [(&str, &[u8]); 2] = [
+    (
+        "three",
+        include_bytes!(concat!(env!("OUT_DIR"), "/three.min.js.gz")),
+    ),
+    (
+        "chart",
+        include_bytes!(concat!(env!("OUT_DIR"), "/chart.min.js.gz")),
+    ),
+];
+
+/// The page around everything, with places `{{name}}` for what differs.
+pub(super) const FRAME: &str = include_str!("page.html");
+/// How it looks.
+pub(super) const SHEET: &str = include_str!("page.css");
+/// The modules of the page in the order in which they need each other.
+const MODULES: [&str; 9] = [
+    include_str!("read.js"),
+    include_str!("theme.js"),
+    include_str!("clock.js"),
+    include_str!("camera.js"),
+    include_str!("parts.js"),
+    include_str!("scene.js"),
+    include_str!("charts.js"),
+    include_str!("answer.js"),
+    include_str!("start.js"),
+];
+
+/// The page's own code: one function around all modules.
+pub(super) fn script() -> String {
+    format!("(() => {{\n\"use strict\";\n{}}})();\n", MODULES.concat())
+}
+
+/// The elements of the libraries, which the page unpacks.
+pub(super) fn libraries() -> String {
+    let element = |(name, code): (&str, &[u8])| {
+        let text = STANDARD.encode(code);
+        format!("<script type=\"application/gzip\" id=\"library-{name}\">{text}</script>\n")
+    };
+    LIBRARIES.map(element).concat()
+}

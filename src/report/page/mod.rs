@@ -1,0 +1,68 @@
+//! `report.html`: one page that needs nothing else, with the motion in space, its curves, and what is told of them.
+//!
+//! The page is written here as data and drawn in the browser: `page.html` and `page.css` are its frame, the modules `*.js` its
+//! code, which stands on three.js and Chart.js.
+
+mod charts;
+mod code;
+mod numbers;
+mod scene;
+
+use serde_json::{Value, json};
+
+use crate::report::Run;
+use crate::report::markup::escape;
+
+/// The page of a run.
+pub fn html(run: &Run<'_>) -> String {
+    let told = run.told;
+    let documents = told.documents.iter();
+    let documents = documents.map(|(name, text)| json!({ "name": name, "text": text }));
+    let data = json!({
+        "title": told.title,
+        "system": run.system.name,
+        "isSolved": told.is_solved,
+        "answer": told.answer,
+        "notes": told.notes,
+        "rows": told.rows,
+        "command": run.origin.command,
+        "scene": scene::scene(run),
+        "charts": charts::charts(run),
+        "documents": documents.collect::<Vec<_>>(),
+    });
+    page(
+        &format!("{}: {}", run.system.name, told.title),
+        &run.origin.line(),
+        &data,
+    )
+}
+
+/// A page with its title, the line of its origin, and what it shows.
+fn page(title: &str, origin: &str, data: &Value) -> String {
+    // In JSON such a sign stands in texts only; there it must not end the script.
+    let data = data.to_string().replace('<', "\\u003c");
+    filled(
+        code::FRAME,
+        &[
+            ("title", &escape(title)),
+            ("origin", &escape(origin)),
+            ("sheet", code::SHEET),
+            ("data", &data),
+            ("libraries", &code::libraries()),
+            ("script", &code::script()),
+        ],
+    )
+}
+
+/// A text with its places `{{name}}` filled.
+fn filled(frame: &str, parts: &[(&str, &str)]) -> String {
+    let mut pieces = frame.split("{{");
+    let mut text = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        let (name, rest) = piece.split_once("}}").unwrap_or((piece, ""));
+        let part = parts.iter().find(|(other, _)| *other == name);
+        text.push_str(part.map_or("", |(_, part)| part));
+        text.push_str(rest);
+    }
+    text
+}

@@ -1,0 +1,43 @@
+// What the page was given: numbers in base64, libraries that are packed, elements by their names.
+
+/** Numbers in single precision. */
+const numbers = (text) => new Float32Array(bytes(text).buffer);
+
+/** Indices. */
+const indices = (text) => new Uint32Array(bytes(text).buffer);
+
+function bytes(text) {
+  const read = atob(text);
+  const found = new Uint8Array(read.length);
+  for (let i = 0; i < read.length; i++) found[i] = read.charCodeAt(i);
+  return found;
+}
+
+/** Runs a library that is packed in the element of its name. */
+async function unpack(name) {
+  const packed = new Blob([bytes(document.getElementById(`library-${name}`).textContent)]);
+  const code = await new Response(packed.stream().pipeThrough(new DecompressionStream("gzip"))).text();
+  const script = document.createElement("script");
+  script.textContent = code;
+  document.head.append(script);
+}
+
+/** A new element with its attributes and what it holds. */
+function element(kind, attributes = {}, ...children) {
+  const made = document.createElement(kind);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
+    else if (value !== null && value !== undefined) made.setAttribute(name, value);
+  }
+  made.append(...children);
+  return made;
+}
+
+/** A number with so many significant digits, short. */
+function short(value, digits = 4) {
+  if (!Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e6 || size < 1e-4) return value.toExponential(Math.max(0, digits - 2)).replace(/\.?0+e/, "e");
+  return String(Number(value.toPrecision(digits)));
+}

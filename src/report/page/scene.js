@@ -1,0 +1,315 @@
+// The robot in space: parts, paths, goal, and what the reader asks for besides.
+
+/** Quantities that colour parts: what they are called, their units, whether their scale begins at zero. */
+const QUANTITIES = {
+  voltage: { name: "voltage", unit: "kV", zero: true },
+  stretch: { name: "stretch", unit: "", zero: false },
+  field: { name: "true electric field", unit: "MV/m", zero: true },
+  stress: { name: "von Mises stress", unit: "kPa", zero: true },
+  displacement: { name: "displacement", unit: "mm", zero: true },
+};
+/** Poses of a still of the motion. */
+const SNAPSHOTS = 6;
+
+class Scene {
+  constructor(data, holder) {
+    Object.assign(this, { data, holder, times: numbers(data.times), root: new THREE.Scene() });
+    this.canvas = element("canvas", { tabindex: 0, role: "application", "aria-label": "The robot in space. Arrow keys turn it, plus and minus enlarge it, zero shows all of it." });
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+    holder.append(this.canvas);
+    this.parts = data.parts.map((part) => (part.kind === "block" ? new Block(part) : new Solid(part)));
+    this.root.add(...this.parts.map((part) => part.object));
+    this.markers = data.markers.map((marker) => ({
+      ...marker, times: numbers(marker.times), path: numbers(marker.path),
+      compared: marker.compared && numbers(marker.compared), followed: marker.followed && numbers(marker.followed),
+    }));
+    const points = this.extent();
+    this.camera = new Camera(points, data.toward, () => this.draw());
+    this.size = 2 * Math.hypot(...this.camera.half);
+    this.light();
+    this.groups = { paths: this.paths(), joints: this.joints(), axes: this.jointAxes(), frames: this.frames(), goal: this.goal(), snapshots: new THREE.Group() };
+    this.ties();
+    for (const group of Object.values(this.groups)) if (group) this.root.add(group);
+    for (const name of ["axes", "frames", "goal", "snapshots"]) if (this.groups[name]) this.groups[name].visible = false;
+    this.movers.forEach((mover) => mover([0, 0]));
+    steer(this.camera, this.canvas);
+    new ResizeObserver(() => this.resize()).observe(holder);
+    this.resize();
+    this.ranges = this.scales();
+    this.quantity = Object.keys(this.ranges)[0];
+    this.set(this.times[0]);
+  }
+
+  /** What moves besides the parts. */
+  movers = [];
+
+  /** Places that the picture has to hold: parts at all instants, paths of markers. */
+  extent() {
+    const all = [];
+    const push = (values) => { for (const value of values) if (Number.isFinite(value)) all.push(value); };
+    for (let k = 0; k < this.times.length; k++) for (const part of this.parts) push(part.extent(k));
+    for (const marker of this.markers) push(marker.path);
+    for (const tie of this.data.ties) push(numbers(tie.places));
+    return new Float32Array(all);
+  }
+
+  light() {
+    const from = (x, y, z, strength) => {
+      const light = new THREE.DirectionalLight(0xffffff, strength);
+      light.position.set(x, y, z);
+      this.camera.three.add(light);
+    };
+    this.root.add(this.camera.three, new THREE.AmbientLight(0xffffff, 0.62));
+    from(-0.7, 0.9, 1, 0.42);
+    from(0.8, -0.3, 0.6, 0.14);
+  }
+
+  /** A tube through places. */
+  tube(values, colour, width, opacity = 1) {
+    const points = [];
+    const stride = Math.max(1, Math.floor(values.length / 3 / 300));
+    for (let i = 0; i < values.length; i += 3 * stride) {
+      const point = new THREE.Vector3().fromArray(values, i);
+      if (!points.length || point.distanceTo(points[points.length - 1]) > 1e-5 * this.size) points.push(point);
+    }
+    points.push(new THREE.Vector3().fromArray(values, values.length - 3));
+    if (points.length < 3) return new THREE.Group();
+    const curve = new THREE.CatmullRomCurve3(points);
+    const geometry = new THREE.TubeBufferGeometry(curve, Math.min(600, 2 * points.length), width * this.size, 6);
+    return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: colour, transparent: opacity < 1, opacity }));
+  }
+
+  ball(colour, radius) {
+    return new THREE.Mesh(new THREE.SphereBufferGeometry(radius * this.size, 16, 12), new THREE.MeshPhongMaterial({ color: colour }));
+  }
+
+  paths() {
+    const group = new THREE.Group();
+    for (const marker of this.markers) {
+      if (marker.compared) group.add(this.tube(marker.compared, "#8a9098", 0.0011, 0.8));
+      if (marker.followed) group.add(this.tube(marker.followed, "#8a9098", 0.0016));
+      group.add(this.tube(marker.path, marker.colour, 0.0022));
+      const ball = this.ball(marker.colour, 0.008);
+      group.add(ball);
+      this.movers.push((_, time) => {
+        const at = marker.times.length > 1 ? place(marker.times, time ?? marker.times[0]) : [0, 0];
+        ball.position.fromArray(between(marker.path, 3, at, [0, 0, 0]));
+      });
+    }
+    return group;
+  }
+
+  /** Lines whose ends move: `ends(at)` gives their places. */
+  moving(count, colour, ends) {
+    const places = new THREE.BufferAttribute(new Float32Array(6 * count), 3);
+    const lines = new THREE.LineSegments(new THREE.BufferGeometry().setAttribute("position", places), line(colour, 1));
+    lines.frustumCulled = false;
+    this.movers.push((at) => {
+      ends(at, places.array);
+      places.needsUpdate = true;
+    });
+    return lines;
+  }
+
+  ties() {
+    for (const tie of this.data.ties) {
+      const all = numbers(tie.places);
+      const now = new Float32Array(3 * tie.count);
+      const lines = this.moving(tie.count - 1, "#a06a35", (at, into) => {
+        between(all, now.length, at, now);
+        for (let i = 0; i + 1 < tie.count; i++) into.set(now.subarray(3 * i, 3 * i + 6), 6 * i);
+      });
+      this.root.add(lines);
+    }
+  }
+
+  joints() {
+    const group = new THREE.Group();
+    const bodies = this.parts.filter((part) => part.part.kind === "body");
+    for (const joint of this.data.joints) {
+      const all = numbers(joint.places);
+      const ball = this.ball("#e9edf2", 0.007);
+      group.add(ball);
+      this.movers.push((at) => ball.position.fromArray(between(all, 3, at, [0, 0, 0])));
+      for (const b of joint.bodies.filter((body) => body !== null)) {
+        group.add(this.moving(1, "#55606c", (at, into) => {
+          into.set(between(all, 3, at, [0, 0, 0]), 0);
+          into.set(between(bodies[b].motion, 12, at, new Array(12)).slice(9), 3);
+        }));
+      }
+    }
+    return group;
+  }
+
+  jointAxes() {
+    const joints = this.data.joints.filter((joint) => joint.axis);
+    if (!joints.length) return null;
+    const group = new THREE.Group();
+    for (const joint of joints) {
+      const [all, axis] = [numbers(joint.places), numbers(joint.axis)];
+      group.add(this.moving(1, "#d55e00", (at, into) => {
+        const [a, b] = [between(all, 3, at, [0, 0, 0]), between(axis, 3, at, [0, 0, 0])];
+        const way = new THREE.Vector3(b[0] - a[0], b[1] - a[1], b[2] - a[2]).setLength(0.08 * this.size);
+        into.set([0, 1, 2].map((i) => a[i] - way.getComponent(i)).concat([0, 1, 2].map((i) => a[i] + way.getComponent(i))));
+      }));
+    }
+    return group;
+  }
+
+  /** Directors of the bodies: red, green and blue. */
+  frames() {
+    const bodies = this.parts.filter((part) => part.part.kind === "body");
+    if (!bodies.length) return null;
+    const group = new THREE.Group();
+    for (const body of bodies) {
+      ["#d02f2f", "#2c9a3f", "#2f6fd0"].forEach((colour, i) => {
+        group.add(this.moving(1, colour, (at, into) => {
+          const m = between(body.motion, 12, at, new Array(12));
+          into.set([0, 1, 2].flatMap((a) => m[9 + a]).concat([0, 1, 2].map((a) => m[9 + a] + 0.07 * this.size * m[3 * i + a])));
+        }));
+      });
+    }
+    return group;
+  }
+
+  goal() {
+    if (!this.data.goal) return null;
+    const all = numbers(this.data.goal);
+    const group = new THREE.Group();
+    this.parts.filter((part) => part.part.kind === "body").forEach((body, b) => {
+      const ghost = body.copy([0, 0], 0.55);
+      body.matrix(all.subarray(12 * b, 12 * b + 12), ghost.matrix);
+      ghost.children.forEach((child) => child.material.color.set("#009e73"));
+      group.add(ghost);
+    });
+    return group;
+  }
+
+  /** Poses of the motion at equal distances of time, made when they are asked for first. */
+  snapshots() {
+    const group = this.groups.snapshots;
+    if (group.children.length) return;
+    const [first, last] = [this.times[0], this.times[this.times.length - 1]];
+    for (let i = 0; i < SNAPSHOTS; i++) {
+      const at = place(this.times, first + ((last - first) * i) / (SNAPSHOTS - 1));
+      for (const part of this.parts) {
+        part.colour(this.quantity, at, this.scale());
+        group.add(part.copy(at, 0.5));
+      }
+    }
+    this.set(this.time);
+  }
+
+  show(name, on) {
+    if (name === "snapshots" && on) this.snapshots();
+    this.groups[name].visible = on;
+    this.draw();
+  }
+
+  /** Least and greatest value of each quantity that some part has. */
+  scales() {
+    const ranges = {};
+    for (const [name, { zero }] of Object.entries(QUANTITIES)) {
+      let [low, high] = [Infinity, -Infinity];
+      for (const part of this.parts) for (const v of part.values[name] || []) {
+        if (v < low) low = v;
+        if (v > high) high = v;
+      }
+      if (!(high >= low)) continue;
+      if (name === "voltage") [low, high] = [0, this.data.voltage];
+      if (zero) low = 0;
+      if (high - low < 1e-9 * Math.max(1, Math.abs(high))) high = low + 1e-3 * Math.max(1, Math.abs(low));
+      ranges[name] = [low, high];
+    }
+    return ranges;
+  }
+
+  scale() {
+    const [low, high] = this.ranges[this.quantity] || [0, 1];
+    return (value) => mapped((value - low) / (high - low));
+  }
+
+  paint(quantity) {
+    this.quantity = quantity;
+    this.groups.snapshots.children.splice(0);
+    if (this.groups.snapshots.visible) this.snapshots();
+    this.set(this.time);
+  }
+
+  set(time) {
+    this.time = time;
+    const at = place(this.times, time);
+    const scale = this.scale();
+    for (const part of this.parts) {
+      part.move(at);
+      part.colour(this.quantity, at, scale);
+    }
+    for (const mover of this.movers) mover(at, time);
+    this.draw();
+  }
+
+  resize() {
+    const [width, height] = [this.holder.clientWidth, this.holder.clientHeight];
+    if (!width || !height) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.resize(width / height);
+  }
+
+  /** Draws with the next picture of the browser. */
+  draw() {
+    if (this.asked || !this.renderer) return;
+    this.asked = true;
+    requestAnimationFrame(() => {
+      this.asked = false;
+      this.renderer.render(this.root, this.camera.three);
+    });
+  }
+}
+
+/** What the reader chooses: view, colours, what is shown besides. */
+function options(scene, bar, holder) {
+  const choice = (label, id, entries, chosen) => {
+    const select = element("select", { id, "aria-label": label }, ...entries.map(([value, name]) => element("option", { value }, name)));
+    select.addEventListener("change", () => chosen(select.value));
+    bar.append(element("label", {}, label.toLowerCase(), select));
+  };
+  const names = Object.keys(scene.ranges);
+  if (names.length) {
+    const scale = element("div", { id: "scale" });
+    holder.append(scale);
+    const told = () => {
+      const { name, unit } = QUANTITIES[scene.quantity];
+      const [low, high] = scene.ranges[scene.quantity];
+      const strip = element("canvas", { width: 150, height: 1, "aria-hidden": true });
+      const pen = strip.getContext("2d");
+      for (let i = 0; i < 150; i++) {
+        pen.fillStyle = `rgb(${mapped(i / 149).map((c) => Math.round(255 * c)).join(",")})`;
+        pen.fillRect(i, 0, 1, 1);
+      }
+      const ends = element("div", { class: "ends" }, element("span", {}, short(low, 3)), element("span", {}, short(high, 3)));
+      scale.replaceChildren(element("div", {}, unit ? `${name} [${unit}]` : name), strip, ends);
+    };
+    choice("Colour", "colour", names.map((name) => [name, QUANTITIES[name].name]), (name) => {
+      scene.paint(name);
+      told();
+    });
+    told();
+  }
+  choice("View", "viewpoint", [["auto", "auto"], ["front", "front"], ["side", "side"], ["top", "top"]], (name) => scene.camera.look(name));
+  const labels = { paths: scene.times.length > 1 ? "Paths" : "Markers", goal: "Goal", frames: "Frames", axes: "Joint axes", snapshots: "Snapshots" };
+  for (const [name, label] of Object.entries(labels)) {
+    const group = scene.groups[name];
+    if (!group || (name === "paths" && !group.children.length) || (name === "snapshots" && scene.times.length < 3)) continue;
+    const button = element("button", { id: `show-${name}`, "aria-pressed": group.visible }, label);
+    button.addEventListener("click", () => {
+      scene.show(name, !group.visible);
+      button.setAttribute("aria-pressed", group.visible);
+    });
+    bar.append(button);
+  }
+  if (scene.markers.length > 0 && scene.markers.length <= 12) {
+    const entries = scene.markers.map((marker) => element("li", { style: `--c:${marker.colour}` }, marker.name));
+    holder.append(element("ul", { id: "legend", "aria-label": "Markers" }, ...entries));
+  }
+}

@@ -1,0 +1,254 @@
+//! What moves on a page: bodies and lumped muscles as solids that are moved, elastic blocks as surfaces whose corners move.
+
+use nalgebra::Vector3;
+use serde_json::{Value, json};
+
+use crate::kinematics::Pose;
+use crate::model::system::{Attachment, Joint, JointKind, Marker};
+use crate::report::Run;
+use crate::report::page::numbers::{indices, numbers, places};
+use crate::report::pose::{ANGLES, lumped};
+use crate::report::skins::{Skin, shown};
+use crate::report::solids::{Prism, SurfaceMesh};
+use crate::report::style;
+use crate::report::ties;
+use crate::report::view::View;
+
+/// Length in mm of the axis that tells the direction of a joint.
+const AXIS: f64 = 1.0;
+/// Most points of the path of a marker.
+const POINTS: usize = 2000;
+
+/// The scene of a run at the instants shown.
+pub(super) fn scene(run: &Run<'_>) -> Value {
+    let times = &run.trajectory.times;
+    let instants = match run.skins.list.is_empty() {
+        true => shown(times, 0),
+        false => run.skins.instants.clone(),
+    };
+    let stage = Stage {
+        run,
+        instants: &instants,
+    };
+    let mut parts = stage.bodies();
+    parts.extend(stage.muscles());
+    parts.extend(run.skins.list.iter().map(|skin| stage.block(skin)));
+    let (view, goal) = (View::axonometric(ANGLES[0], ANGLES[1]), run.goal);
+    let highest = vec![run.skins.highest()];
+    let scale = style::voltage_scale(run.trajectory.voltages.iter().chain([&highest]));
+    json!({
+        "times": numbers(instants.iter().map(|&k| times[k] / 1e3)),
+        "toward": view.toward.as_slice(),
+        "voltage": scale / 1e3,
+        "parts": parts,
+        "ties": stage.ties(),
+        "joints": stage.joints(),
+        "markers": stage.markers(),
+        "goal": goal.map(|poses| numbers(poses.iter().flat_map(moved))),
+    })
+}
+
+/// Columns of the motion of a body: directors and centre.
+fn moved(pose: &Pose) -> impl Iterator<Item = f64> {
+    let columns: [Vector3<f64>; 3] = [0, 1, 2].map(|i| pose.directors.column(i).into_owned());
+    columns
+        .into_iter()
+        .chain([pose.centre])
+        .flat_map(|column| [column.x, column.y, column.z])
+}
+
+struct Stage<'a> {
+    run: &'a Run<'a>,
+    /// The instants shown.
+    instants: &'a [usize],
+}
+
+impl Stage<'_> {
+    fn bodies(&self) -> Vec<Value> {
+        let bodies = self.run.system.bodies.iter().enumerate();
+        let part = bodies.map(|(b, body)| {
+            let mut mesh = SurfaceMesh::default();
+            mesh.add_body(&body.shape, &Pose::GROUND);
+            let poses = self.instants.iter();
+            let motion = poses.flat_map(|&k| moved(&self.run.trajectory.poses[k][b]));
+            json!({
+                "kind": "body",
+                "name": body.name,
+                "vertices": places(&mesh.vertices),
+                "triangles": indices(mesh.triangles.iter().flatten().copied()),
+                "motion": numbers(motion),
+            })
+        });
+        part.collect()
+    }
+
+    /// Cubes from −1 to 1 that are moved to the prisms of the muscles.
+    fn muscles(&self) -> Vec<Value> {
+        let (system, trajectory) = (self.run.system, self.run.trajectory);
+        let part = |i: usize| {
+            let muscle = &system.muscles[i];
+            let prisms = self.instants.iter();
+            let motion = prisms.flat_map(|&k| {
+                let prism = Prism::muscle(system, trajectory, k, i);
+                let columns = prism.halves.into_iter().chain([prism.centre]);
+                columns.flat_map(|column| [column.x, column.y, column.z])
+            });
+            let rest = (muscle.to.at - muscle.from.at).norm();
+            let stretch = |&k: &usize| {
+                let ends = [&muscle.from, &muscle.to].map(|p| trajectory.point(k, p, system));
+                (ends[1] - ends[0]).norm() / rest
+            };
+            // kV, and kV/mm, which is MV/m.
+            let voltage = |&k: &usize| self.voltage(k, i).abs() / 1e3;
+            let field = |k: &usize| voltage(k) / (muscle.layer_thickness * stretch(k));
+            let mut quantities = json!({ "stretch": numbers(self.instants.iter().map(stretch)) });
+            if muscle.material.electric.is_some() {
+                quantities["voltage"] = numbers(self.instants.iter().map(voltage));
+                quantities["field"] = numbers(self.instants.iter().map(field));
+            }
+            json!({
+                "kind": "muscle",
+                "name": muscle.name,
+                "motion": numbers(motion),
+                "quantities": quantities,
+            })
+        };
+        lumped(system).map(part).collect()
+    }
+
+    /// Voltage in V of a source in the interval that ends at an instant.
+    fn voltage(&self, k: usize, source: usize) -> f64 {
+        let voltages = self.run.trajectory.voltages.get(k.saturating_sub(1));
+        voltages.map_or(0.0, |v| v[source])
+    }
+
+    fn block(&self, skin: &Skin) -> Value {
+        let all = |values: &[Vec<f64>], factor: f64| {
+            numbers(values.iter().flatten().map(|value| factor * value))
+        };
+        let mut quantities = json!({ "stress": all(&skin.von_mises, 1e3) });
+        if skin.is_charged {
+            quantities["voltage"] = all(&skin.potentials, 1e-3);
+            quantities["field"] = all(&skin.fields, 1e-3);
+        }
+        let triangles = skin
+            .quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]);
+        let edges = |is_sharp: bool| {
+            let sides = skin
+                .quads
+                .iter()
+                .zip(&skin.sharp)
+                .flat_map(move |(quad, sharp)| {
+                    (0..4).filter_map(move |i| {
+                        let (a, b) = (quad[i], quad[(i + 1) % 4]);
+                        // Two faces share an inner edge.
+                        (sharp[i] == is_sharp && (is_sharp || a < b)).then_some([a, b])
+                    })
+                });
+            indices(sides.flatten())
+        };
+        json!({
+            "kind": "block",
+            "name": skin.name,
+            "vertices": places(&skin.reference),
+            "triangles": indices(triangles),
+            "edges": edges(true),
+            "inner": edges(false),
+            "places": places(skin.places.iter().flatten()),
+            "quantities": quantities,
+        })
+    }
+
+    fn ties(&self) -> Vec<Value> {
+        let (system, trajectory) = (self.run.system, self.run.trajectory);
+        let mut all: Vec<Vec<Vec<Vector3<f64>>>> = Vec::new();
+        for &k in self.instants {
+            let lines = ties::lines(system, trajectory, k);
+            all.resize(lines.len(), Vec::new());
+            all.iter_mut()
+                .zip(lines)
+                .for_each(|(all, line)| all.push(line));
+        }
+        let line = |lines: &Vec<Vec<Vector3<f64>>>| {
+            let most = lines.iter().map(Vec::len).max().unwrap_or(0);
+            // A line of fewer points stays at its last one.
+            let points = lines.iter().flat_map(|line| {
+                (0..most).filter_map(|i| line.get(i.min(line.len().saturating_sub(1))))
+            });
+            json!({ "count": most, "places": places(points) })
+        };
+        all.iter().map(line).collect()
+    }
+
+    /// Place of each joint, and of a point along its axis.
+    fn joints(&self) -> Vec<Value> {
+        let (system, trajectory) = (self.run.system, self.run.trajectory);
+        let joint = |joint: &Joint| {
+            let axis = match joint.kind {
+                JointKind::Revolute { axis } | JointKind::Prismatic { axis } => Some(axis),
+                JointKind::Spherical | JointKind::Floating | JointKind::Fixed => None,
+            };
+            let at = |shift: Vector3<f64>| {
+                let point = Attachment {
+                    body: Some(joint.child),
+                    at: joint.at + shift,
+                };
+                let instants = self.instants.iter();
+                let found = instants.map(move |&k| trajectory.point(k, &point, system));
+                places(&found.collect::<Vec<_>>())
+            };
+            json!({
+                "name": joint.name,
+                "places": at(Vector3::zeros()),
+                "axis": axis.map(|axis| at(AXIS * axis)),
+                "bodies": [joint.parent, Some(joint.child)],
+            })
+        };
+        system.joints.iter().map(joint).collect()
+    }
+
+    /// Paths of the markers, beside those that they were to follow and those of the motion that is compared.
+    fn markers(&self) -> Vec<Value> {
+        let (system, motion) = (self.run.system, self.run.trajectory);
+        let kept = chosen(motion.times.len());
+        let marker = |(m, marker): (usize, &Marker)| {
+            let compared = self.run.comparison.map(|(_, other)| {
+                let path = other.path(m);
+                places(chosen(path.len()).map(|k| &path[k]))
+            });
+            let path = motion.path(m);
+            let mut tracked = self.run.tracked.iter();
+            let tracked = tracked.find(|one| one.kind == "marker" && one.name == marker.name);
+            let followed = tracked.map(|one| {
+                let place = |k: usize| {
+                    let mut place = path[k];
+                    for along in &one.paths {
+                        if let Some(axis) = along.axis {
+                            place[axis] = along.reference[k];
+                        }
+                    }
+                    place
+                };
+                places(&kept.clone().map(place).collect::<Vec<_>>())
+            });
+            json!({
+                "name": marker.name,
+                "colour": style::hue(m).hex(),
+                "times": numbers(kept.clone().map(|k| motion.times[k] / 1e3)),
+                "path": places(kept.clone().map(|k| &path[k])),
+                "compared": compared,
+                "followed": followed,
+            })
+        };
+        system.markers.iter().enumerate().map(marker).collect()
+    }
+}
+
+/// Of many points of a path so many as can be seen, the first and the last among them.
+fn chosen(count: usize) -> impl Iterator<Item = usize> + Clone {
+    let last = count.saturating_sub(1);
+    let most = last.min(POINTS);
+    (0..=most).map(move |i| (i * last) / most.max(1))
+}

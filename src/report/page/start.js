@@ -1,0 +1,35 @@
+// Puts the page together.
+
+async function start() {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  document.getElementById("system").textContent = data.system;
+  document.getElementById("kind").textContent = data.title;
+  answer(data, document.getElementById("answer"));
+  tables(data, document.getElementById("tables"));
+  await unpack("three");
+  await unpack("chart");
+  Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
+  const view = document.getElementById("view");
+  const times = numbers(data.scene.times);
+  const moves = times.length > 1;
+  const clock = new Clock(times[0], times[times.length - 1]);
+  const page = { clock };
+  try {
+    page.scene = new Scene(data.scene, view);
+    options(page.scene, document.getElementById("options"), view);
+    clock.listen((time) => page.scene.set(time));
+  } catch (error) {
+    view.replaceChildren(element("p", { id: "failure" }, `The robot cannot be drawn here: ${error.message}. configuration.svg shows it.`));
+  }
+  if (moves) player(clock, document.getElementById("player"));
+  page.charts = new Charts(data.charts, document.getElementById("charts"), clock);
+  dark.addEventListener("change", () => page.scene?.draw());
+  // The end of the motion is what was asked for.
+  clock.set(clock.last);
+  window.proboscis = page;
+}
+
+start().catch((error) => {
+  console.error(error);
+  document.querySelector("main").prepend(element("p", { id: "failure" }, `This page could not be drawn: ${error.message}`));
+});
