@@ -1,5 +1,6 @@
 //! The path of equilibria under growing voltages, followed by arc length past the points where stability is lost.
 
+use std::ops::RangeInclusive;
 use std::time::Instant;
 
 use crate::app::error::CommandError;
@@ -24,6 +25,7 @@ use crate::report::axes::{Axis, Extent};
 use crate::report::file_set::FileSet;
 use crate::report::lines::{LinePlot, Mark, Series};
 use crate::report::skins::Skins;
+use crate::report::style::Dash;
 use crate::report::{Run, style, write_still};
 use crate::workflow::WorkflowError;
 use crate::workflow::domain;
@@ -203,6 +205,20 @@ fn observed(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory) -> 
     Observations { columns }
 }
 
+/// Parts of a path along which equilibria are stable, or are not, or it is not known; each begins at the end of the one before.
+fn branches(stops: &[Stop<'_>]) -> Vec<(Option<bool>, RangeInclusive<usize>)> {
+    let is_stable = |k: usize| stops[k].rest.is_stable();
+    let mut found = Vec::new();
+    let mut from = 0;
+    for to in 1..=stops.len() {
+        if to == stops.len() || is_stable(to) != is_stable(to - 1) {
+            found.push((is_stable(to - 1), from..=to - 1));
+            from = to - 1;
+        }
+    }
+    found
+}
+
 /// `path.svg`: fraction of the voltages over the distance of each marker from rest, or of the coordinate that moves most; where stability is
 /// lost it is marked.
 fn figure(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory) -> LinePlot {
@@ -212,8 +228,24 @@ fn figure(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory) -> Li
     let mut series = Vec::new();
     let mut curve = |name: &str, m: usize, distance: &dyn Fn(usize) -> f64| {
         let place = |k: usize| [distance(k), stops[k].fraction];
-        let points = (0..stops.len()).map(place).collect();
-        series.push(Series::curve(name, points, style::hue(m)).marked(Mark::Disc));
+        let mut named = Vec::new();
+        for (is_stable, stretch) in branches(stops) {
+            let points = stretch.map(place).collect();
+            let (dash, name) = match is_stable {
+                Some(true) => (Dash::Solid, name.to_owned()),
+                Some(false) => (Dash::Dashed, format!("{name}, unstable")),
+                None => (Dash::Dashed, format!("{name}, stability not known")),
+            };
+            // The legend has each once.
+            let is_new = !named.contains(&is_stable);
+            named.push(is_stable);
+            let curve = Series::curve(
+                if is_new { name } else { String::new() },
+                points,
+                style::hue(m),
+            );
+            series.push(curve.marked(Mark::Disc).dashed(dash));
+        }
         let lost = (0..stops.len()).filter(|&k| stops[k].lost.is_some());
         let (points, labels): (Vec<_>, Vec<_>) = lost
             .map(|k| {
