@@ -12,7 +12,7 @@ MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight
 
 FUZZ_SECONDS := 600
 
-.PHONY: help trunk blocks gallery build test test-python wheel docs fuzz check bench studies install-deps try-fresh clean
+.PHONY: help trunk blocks gallery build test test-python test-browser wheel docs fuzz check bench studies install-deps try-fresh clean
 
 help:
 	@echo 'make trunk         solve the elephant trunk, let it swing under constant voltages, and say where the pictures are'
@@ -20,6 +20,7 @@ help:
 	@echo 'make gallery       rewrite the results that the README shows, $(GALLERY)'
 	@echo 'make test          run the tests'
 	@echo 'make test-python   build and test the Python package, in an environment of its own (Python 3.10 or later with venv)'
+	@echo 'make test-browser  pages in a real Chromium; pictures of them in target/browser'
 	@echo 'make wheel         build the wheel that needs no package of the system, in target/wheels'
 	@echo 'make docs          pages of the Python package, in target/python/docs'
 	@echo 'make fuzz          look for files that the reader does not survive, for FUZZ_SECONDS=$(FUZZ_SECONDS)'
@@ -52,6 +53,10 @@ test: install-deps
 
 test-python: install-deps
 	@python/test
+
+test-browser:
+	@.ci/install --browser
+	@tests/browser/run
 
 wheel: install-deps
 	@python/wheel

@@ -1,0 +1,205 @@
+// Pages in a real Chromium: `node check.js BINARY FOLDER` runs problems with the program, opens their pages on a laptop and a phone, in light
+// and dark, and writes screenshots to the folder.
+
+import { execFileSync } from "node:child_process";
+import { createRequire } from "node:module";
+import { mkdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const [binary, folder] = process.argv.slice(2);
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+/** Problems, and what their pages show. */
+const RUNS = [
+  { name: "elephant_trunk", command: "solve", moves: true, parts: 18, charts: ["Voltages", "Joints", "Energies", "Convergence"], megabytes: 1.5 },
+  { name: "fe_trunk", command: "simulate", moves: true, parts: 18, charts: ["Voltages", "Stretches", "Charges"], megabytes: 3 },
+  { name: "bending_actuator", command: "solve", moves: false, parts: 1, charts: [], megabytes: 1 },
+  { name: "pull_in", command: "solve", moves: false, parts: 1, charts: ["Path"], megabytes: 1 },
+];
+const SCREENS = [
+  { name: "laptop", width: 1400, height: 900, scheme: "light" },
+  { name: "phone", width: 400, height: 800, scheme: "dark" },
+  { name: "laptop-dark", width: 1400, height: 900, scheme: "dark", still: true },
+  { name: "phone-light", width: 400, height: 800, scheme: "light", still: true },
+];
+
+let [passed, failed] = [0, 0];
+function expect(is, what) {
+  if (is) passed += 1;
+  else {
+    failed += 1;
+    console.error(`browser: ${what}`);
+  }
+}
+
+/** Least and greatest place of all that is drawn of the robot, in px of the canvas, at some instants; taken from the triangles, not from the camera's own box. */
+function drawn() {
+  const { scene, clock } = window.proboscis;
+  const three = scene.camera.three;
+  const [width, height] = [scene.canvas.clientWidth, scene.canvas.clientHeight];
+  const found = [];
+  const before = clock.time;
+  for (let i = 0; i <= 40; i++) {
+    clock.set(clock.first + ((clock.last - clock.first) * i) / 40);
+    scene.root.updateMatrixWorld(true);
+    const box = [Infinity, Infinity, -Infinity, -Infinity];
+    for (const part of scene.parts) {
+      part.object.traverse((object) => {
+        const position = object.isMesh && object.geometry.attributes.position;
+        for (let v = 0; position && v < position.count; v++) {
+          const at = new THREE.Vector3().fromBufferAttribute(position, v).applyMatrix4(object.matrixWorld).project(three);
+          const [x, y] = [((at.x + 1) / 2) * width, ((1 - at.y) / 2) * height];
+          box[0] = Math.min(box[0], x);
+          box[1] = Math.min(box[1], y);
+          box[2] = Math.max(box[2], x);
+          box[3] = Math.max(box[3], y);
+        }
+      });
+    }
+    found.push(box);
+  }
+  clock.set(before);
+  return { found, width, height };
+}
+
+async function look(browser, run, screen, file) {
+  const told = `${run.name} on ${screen.name}`;
+  const context = await browser.newContext({ viewport: screen, colorScheme: screen.scheme });
+  const page = await context.newPage();
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && expect(/GPU stall|swiftshader/i.test(message.text()), `${told}: ${message.text()}`));
+  page.on("pageerror", (error) => expect(false, `${told}: ${error.message}`));
+  page.on("request", (request) => expect(/^(file|data|blob):/.test(request.url()), `${told}: asks for ${request.url()}`));
+  await page.goto(pathToFileURL(file).href);
+  await page.waitForFunction(() => window.proboscis?.scene, null, { timeout: 60000 });
+  await page.waitForTimeout(150);
+  await page.screenshot({ path: join(folder, `${run.name}-${screen.name}.png`) });
+  if (!screen.still) {
+    await scene(page, run, told);
+    await controls(page, run, told);
+    await charts(page, run, told, screen);
+  }
+  await page.evaluate(axe);
+  const found = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+  for (const violation of found.violations) {
+    const place = violation.nodes[0].html.slice(0, 120);
+    expect(!["serious", "critical"].includes(violation.impact), `${told}: ${violation.id}, ${violation.help}: ${place}`);
+  }
+  expect(found.passes.length > 10, `${told}: axe checked nothing`);
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+  expect(wide <= 0, `${told}: ${wide} px wider than the screen`);
+  await context.close();
+}
+
+/** The robot is framed at every instant, and large. */
+async function scene(page, run, told) {
+  const parts = await page.evaluate(() => window.proboscis.scene.parts.length);
+  expect(parts === run.parts, `${told}: ${parts} parts`);
+  const { found, width, height } = await page.evaluate(drawn);
+  const inside = (box) => box[0] >= 0 && box[1] >= 0 && box[2] <= width && box[3] <= height;
+  expect(found.every(inside), `${told}: the robot leaves the picture, ${found.find((box) => !inside(box))} of ${width} × ${height}`);
+  const fills = Math.max(...found.map((box) => Math.max((box[2] - box[0]) / width, (box[3] - box[1]) / height)));
+  expect(fills > 0.5, `${told}: the robot fills ${fills} of the picture`);
+  const colours = await page.evaluate(() => {
+    const { renderer, root, camera } = window.proboscis.scene;
+    renderer.render(root, camera.three);
+    const copy = Object.assign(document.createElement("canvas"), { width: 80, height: 80 });
+    const pen = copy.getContext("2d");
+    pen.drawImage(renderer.domElement, 0, 0, 80, 80);
+    const data = pen.getImageData(0, 0, 80, 80).data;
+    return new Set(Array.from({ length: 6400 }, (_, i) => data.slice(4 * i, 4 * i + 4).join())).size;
+  });
+  expect(colours > 20, `${told}: the picture has ${colours} colours`);
+}
+
+/** The slider moves the scene and the cursors; the keyboard reaches all controls, which have names. */
+async function controls(page, run, told) {
+  const place = () => page.evaluate(() => {
+    const { parts } = window.proboscis.scene;
+    const last = parts[Math.min(5, parts.length - 1)];
+    return last.now ? Array.from(last.now).slice(0, 12).join() : "";
+  });
+  if (run.moves) {
+    const before = await place();
+    await page.locator("#time").fill("300");
+    expect((await place()) !== before, `${told}: the slider does not move the scene`);
+    const time = await page.evaluate(() => window.proboscis.clock.time / window.proboscis.clock.last);
+    expect(Math.abs(time - 0.3) < 1e-3, `${told}: the slider sets ${time}`);
+    await page.locator("#play").click();
+    await page.waitForTimeout(400);
+    const later = await page.evaluate(() => window.proboscis.clock.time / window.proboscis.clock.last);
+    expect(later > time, `${told}: it does not play`);
+    await page.locator("#play").click();
+  }
+  const painted = () => page.evaluate(() => {
+    const part = window.proboscis.scene.parts.find((one) => one.part.quantities);
+    return part.colours ? Array.from(part.colours).join() : part.material.color.getHexString();
+  });
+  const quantities = await page.locator("#colour option").evaluateAll((all) => all.map((one) => one.value));
+  const seen = new Set();
+  for (const quantity of quantities) {
+    await page.locator("#colour").selectOption(quantity);
+    seen.add(await painted());
+  }
+  expect(quantities.length >= 3 && seen.size > 1, `${told}: ${quantities} paint ${seen.size} ways`);
+  const controls = await page.evaluate(() => {
+    document.querySelectorAll("details").forEach((one) => { one.open = true; });
+    const all = [...document.querySelectorAll("button, select, input, summary, [tabindex='0']")];
+    all.forEach((one, i) => { one.dataset.control = i; });
+    document.activeElement?.blur();
+    return all.length;
+  });
+  const reached = new Set();
+  for (let i = 0; i < 2 * controls && reached.size < controls; i++) {
+    await page.keyboard.press("Tab");
+    const control = await page.evaluate(() => document.activeElement?.dataset?.control);
+    if (control !== undefined) reached.add(control);
+  }
+  expect(reached.size === controls, `${told}: the keyboard reaches ${reached.size} of ${controls} controls`);
+  const turned = await page.evaluate(() => {
+    const { scene: { canvas, camera } } = window.proboscis;
+    const before = camera.azimuth;
+    canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft" }));
+    const by = camera.azimuth - before;
+    camera.look("auto");
+    return by;
+  });
+  expect(turned !== 0, `${told}: keys do not turn the scene`);
+  await page.evaluate(() => document.querySelectorAll("details").forEach((one) => { one.open = false; }));
+}
+
+/** Charts are there, are drawn, stand below each other, and have the cursor at the time of the scene. */
+async function charts(page, run, told, screen) {
+  const titles = await page.locator("#charts h2").allTextContents();
+  for (const title of run.charts) expect(titles.includes(title), `${told}: no chart of ${title} among ${titles}`);
+  for (const plot of await page.locator(".plot").all()) {
+    await plot.scrollIntoViewIfNeeded();
+    await page.waitForTimeout(40);
+  }
+  const left = await page.evaluate(() => {
+    const areas = window.proboscis.charts.made.filter((one) => one.clock && one.chart).map((one) => [one.plot.getBoundingClientRect().left, one.chart.chartArea.left, one.cursor.style.display]);
+    return { edges: [...new Set(areas.map(([a, b]) => `${Math.round(a)} ${Math.round(b)}`))], cursors: areas.every((one) => one[2] === "block"), count: areas.length };
+  });
+  if (run.moves) {
+    expect(left.count > 3 && left.cursors, `${told}: ${left.count} charts follow the clock`);
+    if (screen.width < 600) expect(left.edges.length === 1, `${told}: time axes begin at ${left.edges}`);
+  }
+  const empty = await page.evaluate(() => window.proboscis.charts.made.filter((one) => !one.chart).length);
+  expect(empty === 0, `${told}: ${empty} charts are not drawn`);
+  await page.evaluate(() => window.scrollTo(0, 0));
+  await page.screenshot({ path: join(folder, `${run.name}-${screen.name}-all.png`), fullPage: true });
+}
+
+mkdirSync(folder, { recursive: true });
+const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || "/usr/bin/chromium", args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
+for (const run of RUNS) {
+  const results = join(folder, run.name);
+  execFileSync(binary, [run.command, `problems/${run.name}.json`, "-o", results, "--quiet"], { stdio: ["ignore", "ignore", "inherit"] });
+  const file = join(process.cwd(), results, "report.html");
+  const size = readFileSync(file).length / 1e6;
+  expect(size < run.megabytes, `${run.name}: a page of ${size} MB`);
+  for (const screen of SCREENS) await look(browser, run, screen, file);
+}
+await browser.close();
+console.log(`browser: ${passed} passed, ${failed} failed`);
+process.exit(failed ? 1 : 0);
