@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use clap_complete::Shell;
-use proboscis::app::{CommandInput, ProgressDisplay, RunIn};
+use proboscis::app::{CommandInput, PageWanted, ProgressDisplay, RunIn};
 use proboscis::study::StudyRequest;
 use proboscis::sweep::{Shard, SweepRequest};
 use proboscis::workflow::accuracy::AccuracyTarget;
@@ -72,6 +72,15 @@ pub(crate) enum Command {
     Study(Variants),
     /// Solve many variants of a problem; those that are solved already are not solved again.
     Sweep(Sweep),
+    /// Show results side by side on one page: curves over each other, a table of what differs.
+    Report {
+        /// Folders of results, two or more.
+        #[arg(required = true, num_args = 2.., value_name = "RESULT")]
+        results: Vec<PathBuf>,
+        /// Folder for the page.
+        #[arg(short, long, value_name = "DIR", default_value = "results/report")]
+        output: PathBuf,
+    },
     /// Print a scene without shorthand.
     Expand {
         /// The scene file.
@@ -253,6 +262,9 @@ pub(crate) struct Problem {
     /// Print the summary, as in summary.json, in place of words.
     #[arg(long)]
     json: bool,
+    /// Write no report.html.
+    #[arg(long)]
+    no_report: bool,
     /// Show no progress.
     #[arg(short, long, conflicts_with = "verbose")]
     quiet: bool,
@@ -300,6 +312,7 @@ impl Input {
             max_iterations: None,
             wanted: None,
             progress: ProgressDisplay::Never,
+            page: PageWanted::Written,
         }
     }
 }
@@ -315,13 +328,17 @@ impl Problem {
             output: self.output,
             max_seconds: self.max_seconds,
             progress: shown(self.quiet),
+            page: match self.no_report {
+                true => PageWanted::LeftOut,
+                false => PageWanted::Written,
+            },
             ..self.input.request()
         }
     }
 }
 
 /// The command as typed.
-fn typed() -> String {
+pub(crate) fn typed() -> String {
     let words = std::env::args_os().skip(1);
     let words = words.map(|word| word.to_string_lossy().into_owned());
     let command = ["proboscis".to_owned()].into_iter().chain(words);

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use arguments::{Arguments, Command, File, New, run_in};
+use arguments::{Arguments, Command, File, New, run_in, typed};
 use clap::{CommandFactory, Parser};
 use proboscis::app::{self, CommandError, CommandInput, CommandOutput, Template};
 use proboscis::files::printable;
@@ -107,6 +107,7 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
             interrupt::install();
             sweep(&variants.request())
         }
+        Command::Report { results, output } => app::compare(&typed(), &results, &output),
         Command::Expand { scene } => app::expand(&scene).map(text),
         Command::Schema { file } => {
             let (scene, problem) = app::schema();

@@ -5,7 +5,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-use proboscis::app::{CommandInput, CommandOutput, ProgressDisplay, Reached, run_observed};
+use proboscis::app::{CommandInput, CommandOutput, PageWanted, ProgressDisplay, Reached, run_observed};
 use proboscis::ipopt::interrupt::{self, StopRequest};
 use proboscis::workflow::accuracy::AccuracyTarget;
 use pyo3::exceptions::PyRuntimeError;
@@ -81,6 +81,7 @@ pub(crate) fn run(
             (None, false) => None,
         },
         progress: ProgressDisplay::Never,
+        page: PageWanted::Written,
     };
     let stop = StopRequest::default();
     let (tell, mut told) = mpsc::channel();

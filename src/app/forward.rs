@@ -202,7 +202,7 @@ pub(super) fn simulation(
         tracked: &[],
         origin: &origin,
         goal: None,
-        told: &told,
+        told: request.page.of(&told),
     };
     write_run(&mut files, &run)?;
     summary.seconds.wrote(began, writing);

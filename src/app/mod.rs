@@ -4,6 +4,7 @@
 //! - `batch`: several solves at once, in threads or processes; `multistart`: a control problem from several guesses.
 //! - `inspect`, `sparsity`, `check`, `templates`: the other commands; `program`: what is asked from other languages in place of files.
 //! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
+//! - `side_by_side`: several results on one page.
 //! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`: what is told of a result.
 //! - `page`, `solve_page`: what the page tells; `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `progress`, `request`, `error`: what commands share.
 
@@ -30,6 +31,7 @@ mod rest;
 mod rest_observed;
 mod rest_refused;
 mod rest_words;
+mod side_by_side;
 mod solution_file;
 mod solve;
 mod solve_page;
@@ -53,8 +55,9 @@ pub use multistart::solve_from_starts;
 pub use program::{check_text, with_program};
 pub(crate) use progress::{Progress, progress_bar};
 pub use progress::{ProgressDisplay, Reached};
-pub use request::{CommandInput, CommandOutput};
+pub use request::{CommandInput, CommandOutput, PageWanted};
 pub use rest::equilibrium_of_file;
+pub use side_by_side::compare;
 pub use summary::written_summary;
 pub use task::{run, run_observed};
 pub use templates::{Template, expand, new_files, schema, study_schema, sweep_schema, write_file};

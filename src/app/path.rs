@@ -131,7 +131,7 @@ pub(super) fn follow(
         tracked: &[],
         origin: &origin,
         goal: None,
-        told: &said,
+        told: request.page.of(&said),
     };
     write_still(&mut files, "path.csv", &run)?;
     summary.write(files)?;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use crate::app::progress::ProgressDisplay;
 use crate::files::is_standard_input;
+use crate::report::Told;
 use crate::report::origin::Origin;
 use crate::workflow::accuracy::AccuracyTarget;
 
@@ -27,6 +28,25 @@ pub struct CommandInput {
     pub wanted: Option<AccuracyTarget>,
     /// Whether progress is shown.
     pub progress: ProgressDisplay,
+    /// Whether `report.html` is written.
+    pub page: PageWanted,
+}
+
+/// Whether a page is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PageWanted {
+    /// With the other files.
+    #[default]
+    Written,
+    /// Nobody wants it.
+    LeftOut,
+}
+
+impl PageWanted {
+    /// What the page says, where it is written.
+    pub(super) fn of(self, told: &Told) -> Option<&Told> {
+        (self == Self::Written).then_some(told)
+    }
 }
 
 /// The answer of a command.

@@ -173,7 +173,7 @@ pub(super) fn at(
         tracked: &[],
         origin: &origin,
         goal: None,
-        told: &said,
+        told: request.page.of(&said),
     };
     write_still(&mut files, "equilibrium.csv", &run)?;
     summary.write(files)?;

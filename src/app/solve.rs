@@ -289,7 +289,7 @@ fn write_files(
         tracked: &summary.tracking,
         origin: &origin,
         goal: goal.as_deref(),
-        told: &told,
+        told: request.page.of(&told),
     };
     write_run(&mut files, &run)?;
     summary.seconds.wrote(began, writing);

@@ -30,7 +30,10 @@ pub use run::{Run, Told};
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 
-/// Writes tables, figures and page.
+/// Name of the page.
+const PAGE: &str = "report.html";
+
+/// Writes tables, figures and page; a page of an earlier run does not stay beside other results.
 ///
 /// A figure of what does not exist (voltages of no muscles, energies that were not observed) is not written.
 ///
@@ -38,8 +41,12 @@ use crate::report::file_set::FileSet;
 /// A file cannot be written.
 pub fn write_run(files: &mut FileSet, run: &Run<'_>) -> Result<(), WriteError> {
     // The page takes twice as long as all other files.
-    let (page, mut texts) = rayon::join(|| page::html(run), || tables_and_figures(run));
-    texts.push(("report.html", page));
+    let page = || run.told.map(|told| page::html(run, told));
+    let (page, mut texts) = rayon::join(page, || tables_and_figures(run));
+    match page {
+        Some(page) => texts.push((PAGE, page)),
+        None => files.remove(PAGE),
+    }
     let mut texts = texts.into_iter();
     texts.try_for_each(|(name, text)| files.add(name, text.as_bytes()))
 }
@@ -108,5 +115,9 @@ pub fn write_still(files: &mut FileSet, table: &str, run: &Run<'_>) -> Result<()
     let svg = pose::svg(run.system, run.trajectory, run.skins, run.held, run.origin);
     files.add(table, csv.as_bytes())?;
     files.add("configuration.svg", svg.as_bytes())?;
-    files.add("report.html", page::html(run).as_bytes())
+    match run.told {
+        Some(told) => files.add(PAGE, page::html(run, told).as_bytes())?,
+        None => files.remove(PAGE),
+    }
+    Ok(())
 }

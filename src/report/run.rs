@@ -31,8 +31,8 @@ pub struct Run<'a> {
     pub origin: &'a Origin,
     /// Poses of the bodies where the motion was to end, where they are known.
     pub goal: Option<&'a [Pose]>,
-    /// What the page says of it.
-    pub told: &'a Told,
+    /// What the page says of it; none where no page is wanted.
+    pub told: Option<&'a Told>,
 }
 
 /// What a page says of a run in words, and what it shows besides the motion.

@@ -2,7 +2,6 @@
 
 use crate::report::axes::Axis;
 use crate::report::lines::{LinePlot, Mark, Series};
-use crate::report::origin::Origin;
 use crate::report::style;
 use crate::study::compare::Judged;
 use crate::study::read::Study;
@@ -11,12 +10,7 @@ use crate::study::schedule::Results;
 /// The diagram of one measure; none where no error is above zero.
 ///
 /// The legend names the order that is observed; the first and the last point of a curve are labelled with what is refined.
-pub(super) fn svg(
-    study: &Study,
-    results: &Results<'_>,
-    judged: &Judged,
-    origin: &Origin,
-) -> Option<String> {
+pub(super) fn plot(study: &Study, results: &Results<'_>, judged: &Judged) -> Option<LinePlot> {
     let mut series = Vec::new();
     for (m, (method, points)) in study.methods.iter().zip(&results.methods).enumerate() {
         let drawn = points.iter().enumerate().filter_map(|(k, done)| {
@@ -44,13 +38,12 @@ pub(super) fn svg(
         return None;
     }
     let unit = judged.measure.unit().suffix();
-    let plot = LinePlot {
+    Some(LinePlot {
         frame: [400.0, 290.0],
         ..LinePlot::new(
             Axis::log("median time of a solution [s]"),
             Axis::log(format!("{}{unit}", judged.measure.label())),
             series,
         )
-    };
-    Some(plot.svg(origin))
+    })
 }

@@ -29,8 +29,9 @@ use std::time::Instant;
 
 use crate::app::{CommandError, CommandOutput, make_folder};
 use crate::ipopt;
-use crate::report::atomic;
 use crate::report::origin::Origin;
+use crate::report::page::of_plots;
+use crate::report::{Told, atomic};
 use crate::study::compare::{Judged, judge, moved_marker};
 use crate::study::conclusion::conclusion;
 use crate::study::measure::StudyTask;
@@ -87,20 +88,42 @@ fn write(
         },
     };
     let put = |name: &str, text: &str| atomic::write(&folder.join(name), text.as_bytes());
-    let mut figures = Vec::new();
+    let (mut figures, mut plots) = (Vec::new(), Vec::new());
     for judged in judged {
         let name = format!("{}.svg", judged.measure.key());
-        let svg = diagram::svg(study, results, judged, &origin);
-        if let Some(svg) = &svg {
-            put(&name, svg)?;
+        let plot = diagram::plot(study, results, judged);
+        if let Some(plot) = &plot {
+            put(&name, &plot.svg(&origin))?;
         }
-        figures.push(svg.map(|_| name));
+        figures.push(plot.as_ref().map(|_| name));
+        let title = judged.measure.label().to_owned();
+        plots.extend(plot.map(|plot| (title, plot)));
     }
     let text = table::text(study, results, judged);
     put("table.txt", &text)?;
     put("table.csv", &table::csv(study, results, judged, &origin))?;
     let page = page::markdown(study, results, judged, &figures, said, &text, &origin);
     put("study.md", &page)?;
+    let points = || results.methods.iter().flatten();
+    let solved = points().filter(|done| done.first.is_solved).count();
+    let said_of_all = Told {
+        title: "Study".to_owned(),
+        is_solved: solved > 0 && !results.is_interrupted,
+        answer: format!("{solved} of {} points solved", points().count()),
+        notes: study
+            .about
+            .iter()
+            .cloned()
+            .chain([said.to_owned()])
+            .collect(),
+        rows: Vec::new(),
+        plots,
+        documents: vec![("All points".to_owned(), text.clone())],
+    };
+    put(
+        "report.html",
+        &of_plots(&study.title, &said_of_all, &origin),
+    )?;
     let path = folder.join("study.json");
     record::write(&path, request, study, results, judged, said)?;
     Ok(text)

@@ -19,8 +19,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::app::{
-    Batch, CommandError, CommandInput, CommandOutput, Progress, RunEnd, check_run_in, make_folder,
-    run_all,
+    Batch, CommandError, CommandInput, CommandOutput, PageWanted, Progress, RunEnd, check_run_in,
+    make_folder, run_all,
 };
 use crate::ipopt;
 use crate::ipopt::interrupt;
@@ -99,6 +99,7 @@ fn solve<'a>(
         max_iterations: None,
         wanted: None,
         progress: request.progress,
+        page: PageWanted::Written,
     };
     let results = request.folder();
     let runs: Vec<CommandInput> = todo.iter().map(run).collect();

@@ -2,8 +2,8 @@
 
 use proboscis::app::CommandInput;
 use proboscis::app::CommandOutput;
-use proboscis::app::ProgressDisplay;
 use proboscis::app::run;
+use proboscis::app::{PageWanted, ProgressDisplay};
 use proboscis::control::problem::{Control, Task};
 use proboscis::files::read_problem;
 use proboscis::math::random::Random;
@@ -47,6 +47,7 @@ pub(crate) fn request() -> CommandInput {
         max_iterations: None,
         wanted: None,
         progress: ProgressDisplay::Never,
+        page: PageWanted::Written,
     }
 }
 

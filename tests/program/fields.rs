@@ -4,7 +4,7 @@ use crate::runs::read;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use nalgebra::Vector3;
-use proboscis::app::{CommandInput, CommandOutput, ProgressDisplay, run};
+use proboscis::app::{CommandInput, CommandOutput, PageWanted, ProgressDisplay, run};
 use proboscis::model::VACUUM_PERMITTIVITY;
 use serde_json::{Value, json};
 use std::collections::HashMap;
@@ -75,6 +75,7 @@ fn request(input: PathBuf, output: &Path, set: &[&str]) -> CommandInput {
         max_iterations: None,
         wanted: None,
         progress: ProgressDisplay::Never,
+        page: PageWanted::Written,
     }
 }
 

@@ -17,6 +17,7 @@ mod refusals;
 mod report;
 mod runs;
 mod shell;
+mod side_by_side;
 mod sought;
 mod starts;
 mod study;

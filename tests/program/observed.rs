@@ -2,7 +2,8 @@
 
 use crate::runs::{problem, read};
 use proboscis::app::{
-    CommandInput, CommandOutput, ProgressDisplay, Reached, check_text, run_observed, with_program,
+    CommandInput, CommandOutput, PageWanted, ProgressDisplay, Reached, check_text, run_observed,
+    with_program,
 };
 use proboscis::ipopt::interrupt::{self, StopRequest};
 use std::fs;
@@ -36,6 +37,7 @@ fn solve(
         max_iterations: None,
         wanted: None,
         progress: ProgressDisplay::Never,
+        page: PageWanted::Written,
     };
     run_observed(&request, text, observer).unwrap()
 }

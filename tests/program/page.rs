@@ -43,7 +43,7 @@ fn a_page_has_the_motion_and_the_curves_of_its_run() {
         goal: Some(&trajectory.poses[20]),
         ..run(&system, &trajectory)
     };
-    let data = page_data(&page::html(&run));
+    let data = page_data(&page::html(&run, run.told.unwrap()));
     assert_scene(&data["scene"], &run);
     assert_charts(&data["charts"], &run);
 }
@@ -62,7 +62,7 @@ fn run<'a>(system: &'a System, trajectory: &'a Trajectory) -> Run<'a> {
         tracked: &[],
         origin,
         goal: None,
-        told,
+        told: Some(told),
     }
 }
 
@@ -162,7 +162,7 @@ fn a_page_has_its_code_in_less_than_half_a_megabyte_and_asks_for_nothing() {
     trajectory.joints.resize(count as usize + 1, vec![0.0; 6]);
     trajectory.joints[7777][2] = 1.5;
     let run = run(&system, &trajectory);
-    let html = page::html(&run);
+    let html = page::html(&run, run.told.unwrap());
     let data = page_data(&html);
     let size = data.to_string().len();
     assert!(html.len() - size < 500_000, "{} of code", html.len() - size);

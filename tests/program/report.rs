@@ -276,11 +276,11 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
         tracked: &tracked,
         origin: &origin(),
         goal: None,
-        told: &Told {
+        told: Some(&Told {
             title: "A <title>".to_owned(),
             rows: vec![("status".to_owned(), "a < b".to_owned())],
             ..Told::default()
-        },
+        }),
     };
     let folder = tempfile::tempdir().unwrap();
     let inner = folder.path().join("results").join("swing");

@@ -342,6 +342,8 @@ fn ctrl_c_keeps_the_results_so_far() {
     assert_eq!(points.len(), 4);
     assert_eq!(points[3]["status"], "interrupted");
     assert!(points[3].get("seconds").is_none());
+    let html = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    assert!(html.contains("\"title\":\"Study\""));
     let page = fs::read_to_string(folder.path().join("out/study.md")).unwrap();
     assert!(page.contains("Interrupted"), "{page}");
 }

@@ -124,6 +124,8 @@ fn a_point_that_fails_is_listed_and_drawn_nowhere_and_the_others_go_on() {
     );
     let text = fs::read_to_string(folder.path().join("out/table.txt")).unwrap();
     assert!(text.contains("iteration limit"), "{text}");
+    let html = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    assert!(html.contains("\"label\":\"median time of a solution [s]\",\"log\":true"));
     let page = fs::read_to_string(folder.path().join("out/study.md")).unwrap();
     assert!(page.contains("Points without an answer"), "{page}");
     let svg = fs::read_to_string(folder.path().join("out/objective.svg")).unwrap();

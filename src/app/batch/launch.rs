@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use super::parent::bind;
 use crate::app::progress::ProgressDisplay;
-use crate::app::request::CommandInput;
+use crate::app::request::{CommandInput, PageWanted};
 
 /// A solve that runs.
 pub(super) struct Running {
@@ -43,6 +43,9 @@ pub(super) fn words(request: &CommandInput) -> Vec<OsString> {
     }
     if let Some(seconds) = request.max_seconds {
         option("--max-seconds", seconds.to_string().into());
+    }
+    if request.page == PageWanted::LeftOut {
+        words.push("--no-report".into());
     }
     words.push("--quiet".into());
     words

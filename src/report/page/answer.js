@@ -9,11 +9,38 @@ function answer(data, holder) {
   }
   const rows = data.rows.filter(([name]) => name !== "status").map(([name, value]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, value)));
   holder.append(element("table", {}, element("tbody", {}, ...rows)));
+}
+
+/** The command that repeats the run. */
+function again(data, holder) {
   if (data.command) {
     const copy = element("button", { id: "copy" }, "Copy");
     copy.addEventListener("click", () => navigator.clipboard?.writeText(data.command).then(() => { copy.textContent = "Copied"; }));
     holder.append(element("h2", {}, "Again"), element("p", {}, element("code", {}, data.command), " ", copy));
   }
+}
+
+/** Results side by side: how each ended, and what differs between them. */
+function compared(data, holder) {
+  const name = (text, i) => element("th", { scope: "col" }, element("span", { class: "dot", style: `--c:${readable(data.colours[i])}` }), text);
+  const head = element("tr", {}, element("th", { scope: "col" }, "result"), ...data.names.map(name));
+  const ends = data.answers.map((text, i) => element("td", { class: data.solved[i] ? "good" : "bad" }, `${data.solved[i] ? "✓" : "✗"} ${text}`));
+  const rows = [element("tr", {}, element("th", { scope: "row" }, "status"), ...ends)];
+  for (const [title, ...values] of data.table.filter((row) => row[0] !== "status")) {
+    const differs = values.some((value) => value !== values[0]);
+    const cells = values.map((value, i) => element("td", {}, value + (i ? change(values[0], value) : "")));
+    rows.push(element("tr", { class: differs ? "differs" : null }, element("th", { scope: "row" }, title), ...cells));
+  }
+  holder.append(element("div", { class: "wide", tabindex: 0, role: "region", "aria-label": "Differences" },
+    element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows))));
+}
+
+/** By how much a number with its unit differs from another one of the same unit. */
+function change(first, value) {
+  const parts = [first, value].map((text) => /^(-?[\d.]+(?:e[-+]?\d+)?)(.*)$/.exec(text));
+  if (!parts[0] || !parts[1] || parts[0][2] !== parts[1][2] || first === value) return "";
+  const [a, b] = parts.map((part) => Number(part[1]));
+  return a === 0 ? "" : ` (${b > a ? "+" : "−"}${short(Math.abs((100 * (b - a)) / a), 3)} %)`;
 }
 
 /** A table with a header; columns of numbers to the right. */
@@ -30,7 +57,8 @@ function table(header, rows) {
 
 /** Effects, sizes and seconds of `summary.json`, then all texts. */
 function tables(data, holder) {
-  const text = data.documents.find((document) => document.name === "Summary")?.text;
+  const documents = data.documents || [];
+  const text = documents.find((document) => document.name === "Summary")?.text;
   const summary = text ? JSON.parse(text) : {};
   const fold = (title, ...children) => holder.append(element("details", {}, element("summary", {}, title), ...children));
   if (summary.effects?.length) {
@@ -50,7 +78,7 @@ function tables(data, holder) {
   const found = sizes.filter((name) => summary[name] !== undefined).flatMap((name) => listed({ [name]: summary[name] }));
   if (found.length) fold("Sizes", table(["size", "number"], found));
   if (summary.seconds) fold("Seconds", table(["part", "s"], listed(summary.seconds)));
-  for (const { name, text: shown } of data.documents) {
+  for (const { name, text: shown } of documents) {
     fold(name, element("pre", { tabindex: 0, role: "region", "aria-label": name }, shown));
   }
 }

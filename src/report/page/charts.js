@@ -139,10 +139,13 @@ class Panel extends Drawn {
   settings() {
     const { panel } = this;
     const settings = this.common(panel.x, panel.y);
-    const logarithmic = panel.y.log && this.series.flatMap((one) => one.points).map((point) => point.y).filter((y) => y > 0);
-    if (logarithmic?.length) {
-      settings.options.scales.y.min = 10 ** Math.floor(Math.log10(logarithmic.reduce((a, b) => Math.min(a, b))));
+    for (const axis of ["x", "y"]) {
+      const values = this.series.flatMap((one) => one.points).map((point) => point[axis]).filter((value) => value > 0);
+      if (!panel[axis].log || !values.length) continue;
+      const [least, greatest] = [Math.min, Math.max].map((of) => values.reduce((a, b) => of(a, b)));
+      Object.assign(settings.options.scales[axis], { min: oneDigit(least / 1.2), max: oneDigit(2 * greatest) });
     }
+    if (this.series.some((one) => one.labels?.length)) settings.options.layout.padding.top = 18;
     const dataset = (one, i) => {
       const colour = readable(one.colour);
       one.button?.style.setProperty("--c", colour);
@@ -184,8 +187,8 @@ class Rows extends Drawn {
     const ends = this.series[0].points;
     Object.assign(x, { min: ends[0].x, max: ends[ends.length - 1].x });
     Object.assign(y, { min: -0.5, max: count - 0.5, reverse: true, title: { display: false }, grid: { display: false } });
-    Object.assign(y.ticks, { stepSize: 1, autoSkip: true, maxTicksLimit: 60, callback: (value) => this.series[value]?.name ?? "", font: { size: 10 } });
-    y.afterFit = (scale) => { scale.width = Math.max(LABELS, 90); };
+    y.afterBuildTicks = (scale) => { scale.ticks = this.series.map((_, value) => ({ value })); };
+    Object.assign(y.ticks, { autoSkip: true, maxTicksLimit: 60, callback: (value) => { const name = this.series[value]?.name ?? ""; return name.length > 11 ? `${name.slice(0, 10)}…` : name; }, font: { size: 10 } });
     settings.data = { datasets: [] };
     settings.plugins = [{
       id: "rows",
@@ -217,6 +220,12 @@ function at(points, time) {
   }
   const [a, b] = [points[low], points[high]];
   return b.x > a.x ? a.y + ((b.y - a.y) * Math.min(1, Math.max(0, (time - a.x) / (b.x - a.x)))) : b.y;
+}
+
+/** The number of one digit at or below a positive one. */
+function oneDigit(value) {
+  const size = 10 ** Math.floor(Math.log10(value));
+  return Number((Math.floor(value / size) * size).toPrecision(1));
 }
 
 /** Ticks at round numbers, whatever the ends of an axis are. */

@@ -8,7 +8,7 @@ use crate::report::axes::Scale;
 use crate::report::lines::{Aspect, LinePlot, Mark, Series};
 use crate::report::page::numbers::numbers;
 use crate::report::style::{self, Dash};
-use crate::report::{Run, joints, tip_path, tracking, voltages};
+use crate::report::{Run, Told, joints, tip_path, tracking, voltages};
 
 /// Panels beyond which voltages are shown as colours.
 const PANELS: usize = 12;
@@ -16,17 +16,22 @@ const PANELS: usize = 12;
 const POINTS: usize = 2000;
 
 /// All charts of a run, in the order of the page.
-pub(super) fn charts(run: &Run<'_>) -> Vec<Value> {
+pub(super) fn charts(run: &Run<'_>, told: &Told) -> Vec<Value> {
     let mut charts = Vec::new();
     if run.trajectory.times.len() > 1 {
         charts.extend(of_voltages(run));
         charts.extend(paths(run));
         charts.extend(over_time(run));
     }
-    charts.extend(run.told.plots.iter().map(
-        |(title, plot)| json!({ "title": title, "kind": "plot", "panels": [panel("", plot)] }),
-    ));
+    charts.extend(plots(told));
     charts
+}
+
+/// What is no function of time.
+pub(super) fn plots(told: &Told) -> Vec<Value> {
+    let plots = told.plots.iter();
+    let chart = |(title, plot): &(String, LinePlot)| json!({ "title": title, "kind": "plot", "panels": [panel("", plot)] });
+    plots.map(chart).collect()
 }
 
 /// Voltages: the sources between the same two bodies share a panel; many panels become rows of colours.

@@ -5,17 +5,18 @@
 
 mod charts;
 mod code;
+pub mod compared;
 mod numbers;
 mod scene;
 
 use serde_json::{Value, json};
 
-use crate::report::Run;
 use crate::report::markup::escape;
+use crate::report::origin::Origin;
+use crate::report::{Run, Told};
 
 /// The page of a run.
-pub fn html(run: &Run<'_>) -> String {
-    let told = run.told;
+pub fn html(run: &Run<'_>, told: &Told) -> String {
     let documents = told.documents.iter();
     let documents = documents.map(|(name, text)| json!({ "name": name, "text": text }));
     let data = json!({
@@ -27,7 +28,7 @@ pub fn html(run: &Run<'_>) -> String {
         "rows": told.rows,
         "command": run.origin.command,
         "scene": scene::scene(run),
-        "charts": charts::charts(run),
+        "charts": charts::charts(run, told),
         "documents": documents.collect::<Vec<_>>(),
     });
     page(
@@ -35,6 +36,24 @@ pub fn html(run: &Run<'_>) -> String {
         &run.origin.line(),
         &data,
     )
+}
+
+/// A page of plots and words without a motion; `subject` stands before the title.
+pub fn of_plots(subject: &str, told: &Told, origin: &Origin) -> String {
+    let documents = told.documents.iter();
+    let documents = documents.map(|(name, text)| json!({ "name": name, "text": text }));
+    let data = json!({
+        "title": told.title,
+        "system": subject,
+        "isSolved": told.is_solved,
+        "answer": told.answer,
+        "notes": told.notes,
+        "rows": told.rows,
+        "command": origin.command,
+        "charts": charts::plots(told),
+        "documents": documents.collect::<Vec<_>>(),
+    });
+    page(&format!("{subject}: {}", told.title), &origin.line(), &data)
 }
 
 /// A page with its title, the line of its origin, and what it shows.

@@ -163,6 +163,14 @@ class Block {
     this.object.children.forEach((child) => { child.frustumCulled = false; });
   }
 
+  /** Edges of the reference configuration. */
+  outline() {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(this.reference, 3));
+    geometry.setIndex(new THREE.BufferAttribute(indices(this.part.edges), 1));
+    return new THREE.LineSegments(geometry, line("#8a9098", 1));
+  }
+
   displacements() {
     const count = this.reference.length / 3;
     return Float32Array.from({ length: this.places.length / 3 }, (_, i) => {

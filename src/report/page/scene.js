@@ -28,7 +28,7 @@ class Scene {
     this.camera = new Camera(points, data.toward, () => this.draw());
     this.size = 2 * Math.hypot(...this.camera.half);
     this.light();
-    this.groups = { paths: this.paths(), joints: this.joints(), axes: this.jointAxes(), frames: this.frames(), goal: this.goal(), snapshots: new THREE.Group() };
+    this.groups = { paths: this.paths(), joints: this.joints(), axes: this.jointAxes(), frames: this.frames(), goal: this.goal(), reference: this.reference(), snapshots: new THREE.Group() };
     this.ties();
     for (const group of Object.values(this.groups)) if (group) this.root.add(group);
     for (const name of ["axes", "frames", "goal", "snapshots"]) if (this.groups[name]) this.groups[name].visible = false;
@@ -48,6 +48,7 @@ class Scene {
   extent() {
     const all = [];
     const push = (values) => { for (const value of values) if (Number.isFinite(value)) all.push(value); };
+    if (this.times.length === 1) for (const part of this.parts) push(part.reference || []);
     for (let k = 0; k < this.times.length; k++) for (const part of this.parts) push(part.extent(k));
     for (const marker of this.markers) push(marker.path);
     for (const tie of this.data.ties) push(numbers(tie.places));
@@ -186,6 +187,16 @@ class Scene {
     return group;
   }
 
+  /** Edges of elastic blocks where nothing deforms them; shown from the beginning beside a state of rest. */
+  reference() {
+    const blocks = this.parts.filter((part) => part.outline);
+    if (!blocks.length) return null;
+    const group = new THREE.Group();
+    group.add(...blocks.map((block) => block.outline()));
+    group.visible = this.times.length === 1;
+    return group;
+  }
+
   /** Poses of the motion at equal distances of time, made when they are asked for first. */
   snapshots() {
     const group = this.groups.snapshots;
@@ -297,7 +308,7 @@ function options(scene, bar, holder) {
     told();
   }
   choice("View", "viewpoint", [["auto", "auto"], ["front", "front"], ["side", "side"], ["top", "top"]], (name) => scene.camera.look(name));
-  const labels = { paths: scene.times.length > 1 ? "Paths" : "Markers", goal: "Goal", frames: "Frames", axes: "Joint axes", snapshots: "Snapshots" };
+  const labels = { paths: scene.times.length > 1 ? "Paths" : "Markers", goal: "Goal", reference: "Reference", frames: "Frames", axes: "Joint axes", snapshots: "Snapshots" };
   for (const [name, label] of Object.entries(labels)) {
     const group = scene.groups[name];
     if (!group || (name === "paths" && !group.children.length) || (name === "snapshots" && scene.times.length < 3)) continue;

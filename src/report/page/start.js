@@ -4,17 +4,22 @@ async function start() {
   const data = JSON.parse(document.getElementById("data").textContent);
   document.getElementById("system").textContent = data.system;
   document.getElementById("kind").textContent = data.title;
-  answer(data, document.getElementById("answer"));
+  if (data.names) compared(data, document.getElementById("answer"));
+  else answer(data, document.getElementById("answer"));
+  again(data, document.getElementById("answer"));
   tables(data, document.getElementById("tables"));
   await unpack("three");
   await unpack("chart");
   Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
   const view = document.getElementById("view");
-  const times = numbers(data.scene.times);
-  const moves = times.length > 1;
-  const clock = new Clock(times[0], times[times.length - 1]);
+  const [first, last] = data.scene?.span || data.span || [0, 0];
+  const moves = last > first;
+  const clock = new Clock(first, last);
   const page = { clock };
-  try {
+  if (!data.scene) {
+    view.remove();
+    document.getElementById("first").classList.add("plain");
+  } else try {
     page.scene = new Scene(data.scene, view);
     options(page.scene, document.getElementById("options"), view);
     clock.listen((time) => page.scene.set(time));

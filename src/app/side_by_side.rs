@@ -1,0 +1,73 @@
+//! Results side by side on one page, made from the pages of their folders.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::app::error::CommandError;
+use crate::app::folder::make_folder;
+use crate::app::request::CommandOutput;
+use crate::report::atomic;
+use crate::report::origin::Origin;
+use crate::report::page::compared;
+
+/// Name of the page of a result.
+const PAGE: &str = "report.html";
+
+/// Writes `report.html` into `output`, which compares the results of some folders.
+///
+/// # Errors
+/// A folder has no page of a result, or the page cannot be written.
+pub fn compare(
+    command: &str,
+    folders: &[PathBuf],
+    output: &Path,
+) -> Result<CommandOutput, CommandError> {
+    let wrong = |reason| CommandError::Option {
+        option: "RESULT",
+        reason,
+    };
+    let mut results = Vec::new();
+    for (folder, name) in folders.iter().zip(names(folders)) {
+        let file = folder.join(PAGE);
+        let html = fs::read_to_string(&file).map_err(|cause| {
+            wrong(format!(
+                "cannot read {}: {cause}; a run writes it unless --no-report is given",
+                file.display()
+            ))
+        })?;
+        let data = compared::data(&html).ok_or_else(|| {
+            wrong(format!(
+                "{} is no page of a result of this version",
+                file.display()
+            ))
+        })?;
+        results.push((name, data));
+    }
+    let origin = Origin {
+        command: command.to_owned(),
+        version: Origin::program(),
+        ..Origin::default()
+    };
+    make_folder(output)?;
+    let file = output.join(PAGE);
+    atomic::write(&file, compared::html(&results, &origin).as_bytes())?;
+    Ok(CommandOutput {
+        is_solved: true,
+        result: file.display().to_string(),
+        notes: Vec::new(),
+    })
+}
+
+/// The last parts of the paths where all differ, otherwise the whole paths.
+fn names(folders: &[PathBuf]) -> Vec<String> {
+    let last = |folder: &PathBuf| Some(folder.file_name()?.to_string_lossy().into_owned());
+    let names: Option<Vec<String>> = folders.iter().map(last).collect();
+    let differ = |all: &Vec<String>| (1..all.len()).all(|i| !all[..i].contains(&all[i]));
+    let whole = || {
+        folders
+            .iter()
+            .map(|folder| folder.display().to_string())
+            .collect()
+    };
+    names.filter(differ).unwrap_or_else(whole)
+}

@@ -1,0 +1,136 @@
+//! Results side by side: curves of the same quantity over each other, rows of their tables beside each other.
+
+use serde_json::{Value, json};
+
+use crate::report::origin::Origin;
+use crate::report::page::page;
+use crate::report::style;
+
+/// Where the data of a page begin, and where they end.
+const DATA: [&str; 2] = [
+    "<script type=\"application/json\" id=\"data\">",
+    "</script>",
+];
+
+/// The data of a page that this program wrote; none where it is no such page.
+pub fn data(html: &str) -> Option<Value> {
+    let (_, rest) = html.split_once(DATA[0])?;
+    let (text, _) = rest.split_once(DATA[1])?;
+    let data: Value = serde_json::from_str(text).ok()?;
+    data["charts"].is_array().then_some(data)
+}
+
+/// The page of several results with their names.
+pub fn html(results: &[(String, Value)], origin: &Origin) -> String {
+    let names: Vec<&str> = results.iter().map(|(name, _)| name.as_str()).collect();
+    let of_each = |key: &str| -> Vec<&Value> { results.iter().map(|(_, one)| &one[key]).collect() };
+    let spans = results.iter().map(|(_, one)| &one["scene"]["span"]);
+    let end = |span: &Value| span[1].as_f64().unwrap_or(0.0);
+    let data = json!({
+        "title": "side by side",
+        "system": names.join(", "),
+        "names": names,
+        "colours": (0..results.len()).map(|r| style::hue(r).hex()).collect::<Vec<_>>(),
+        "answers": of_each("answer"),
+        "solved": of_each("isSolved"),
+        "table": table(results),
+        "span": spans.filter(|span| span.is_array()).max_by(|a, b| end(a).total_cmp(&end(b))),
+        "command": origin.command,
+        "charts": charts(results),
+    });
+    let title = format!("{}: side by side", names.join(", "));
+    page(&title, &origin.line(), &data)
+}
+
+/// Rows of all tables, in the order in which they come first: the name, the value of each result.
+fn table(results: &[(String, Value)]) -> Vec<Vec<String>> {
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    for (r, (_, data)) in results.iter().enumerate() {
+        for row in data["rows"].as_array().into_iter().flatten() {
+            let [name, value] = [0, 1].map(|i| row[i].as_str().unwrap_or_default().to_owned());
+            let found = rows.iter().position(|row| row[0] == name);
+            let at = found.unwrap_or_else(|| {
+                rows.push(vec![String::new(); results.len() + 1]);
+                rows.len() - 1
+            });
+            rows[at][0] = name;
+            rows[at][r + 1] = value;
+        }
+    }
+    rows
+}
+
+/// A panel of some results.
+struct Shared {
+    chart: Value,
+    title: Value,
+    panel: Value,
+    series: Vec<Value>,
+}
+
+/// All charts; each quantity over time has a panel of its own, other plots keep theirs.
+fn charts(results: &[(String, Value)]) -> Vec<Value> {
+    let mut shared: Vec<Shared> = Vec::new();
+    for (r, (name, data)) in results.iter().enumerate() {
+        for (chart, panel, series) in curves(data) {
+            let is_over_time = chart["time"] == true;
+            let title = if is_over_time {
+                &series["name"]
+            } else {
+                &panel["title"]
+            };
+            let mut curve = series.clone();
+            curve["colour"] = style::hue(r).hex().into();
+            curve["name"] = match series["name"].as_str().unwrap_or_default() {
+                _ if is_over_time => name.as_str().into(),
+                "" => "".into(),
+                own => format!("{name}, {own}").into(),
+            };
+            // Results are told apart by colour alone.
+            curve["dashed"] = (!is_over_time && series["dashed"] == true).into();
+            let same =
+                |one: &&mut Shared| one.chart["title"] == chart["title"] && one.title == *title;
+            match shared.iter_mut().find(same) {
+                Some(one) => one.series.push(curve),
+                None => shared.push(Shared {
+                    chart: json!({ "title": chart["title"], "time": chart["time"], "kind": "panels" }),
+                    title: title.clone(),
+                    panel: panel.clone(),
+                    series: vec![curve],
+                }),
+            }
+        }
+    }
+    let mut charts: Vec<(Value, Vec<Value>)> = Vec::new();
+    for Shared {
+        chart,
+        title,
+        mut panel,
+        series,
+    } in shared
+    {
+        panel["title"] = title;
+        panel["series"] = series.into();
+        match charts.iter_mut().find(|(other, _)| *other == chart) {
+            Some((_, panels)) => panels.push(panel),
+            None => charts.push((chart, vec![panel])),
+        }
+    }
+    let whole = charts.into_iter().map(|(mut chart, panels)| {
+        chart["panels"] = panels.into();
+        chart
+    });
+    whole.collect()
+}
+
+fn list(value: &Value) -> std::slice::Iter<'_, Value> {
+    value.as_array().map_or(&[][..], Vec::as_slice).iter()
+}
+
+/// All curves of a page with their charts and panels.
+fn curves(data: &Value) -> impl Iterator<Item = (&Value, &Value, &Value)> {
+    list(&data["charts"]).flat_map(move |chart| {
+        list(&chart["panels"])
+            .flat_map(move |panel| list(&panel["series"]).map(move |series| (chart, panel, series)))
+    })
+}
