@@ -14,7 +14,7 @@ use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::solution_file;
 use crate::app::solve_page::{convergence, describe, goal, rows};
-use crate::app::solve_words::{meaning, redundancy, restarted, stretched, unresolved};
+use crate::app::solve_words::{carried, meaning, redundancy, restarted, unresolved};
 use crate::app::summary::{
     Evaluations, LinearSystems, MEASURED, PerInterval, Program, Seconds, SoughtValue, Summary,
 };
@@ -155,7 +155,7 @@ pub(super) fn control(
     summary.notes.extend(note.into_iter().chain(coarse));
     summary.notes.extend(not_kept.filter(|_| is_solved));
     summary.notes.extend(holding::free_end(control));
-    summary.notes.extend(optimum.stretched.map(stretched));
+    summary.notes.extend(carried(&optimum.carried));
     summary.notes.extend(optimum.restarted.map(restarted));
     if is_infeasible(solution.status) {
         let left = allowed.seconds.map(|s| s - began.elapsed().as_secs_f64());

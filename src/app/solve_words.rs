@@ -1,5 +1,6 @@
 //! Words for how a solve went.
 
+use crate::control::Carried;
 use crate::ipopt::Status;
 use crate::model::Model;
 
@@ -34,13 +35,20 @@ pub(super) fn meaning(status: Status) -> &'static str {
     }
 }
 
-/// A guess of another length.
-pub(super) fn stretched([from, to]: [f64; 2]) -> String {
-    format!(
-        "the guess lasts {} s; it was stretched in time to {} s",
-        from / 1e3,
-        to / 1e3
-    )
+/// What became of an earlier solution as a guess.
+pub(super) fn carried(carried: &Carried) -> Vec<String> {
+    let stretched = carried.stretched.map(|[from, to]| {
+        format!(
+            "the guess lasts {} s; it was stretched in time to {} s",
+            from / 1e3,
+            to / 1e3
+        )
+    });
+    let simulated = carried.simulated.then(|| {
+        "the earlier solution does not tell where the nodes of these finite elements are; the guess is the motion under its voltages"
+            .to_owned()
+    });
+    stretched.into_iter().chain(simulated).collect()
 }
 
 /// Why an optimum of the discrete equations is none of the system.

@@ -64,6 +64,7 @@ pub(super) fn evened<'s>(
         coordinates: solved.coordinates,
         multiplier_time: solved.multiplier_time,
         hold: solved.hold.clone(),
+        meshes: solved.meshes.clone(),
         parameters: solved.parameters.clone(),
         times: (0..=intervals).map(|k| time(k as f64)).collect(),
         joints: along(&solved.joints),

@@ -7,6 +7,7 @@ use crate::control::resample::{self, Grids};
 use crate::control::solution::{Costates, Solution};
 use crate::dynamics::{DiscreteTrajectory, simulate};
 use crate::kinematics::Pose;
+use crate::math::Vector;
 use crate::model::{Coordinates, Graph, Model, Role};
 use nalgebra::Rotation3;
 use std::ops::ControlFlow;
@@ -23,12 +24,23 @@ pub struct InitialGuess {
     pub h: f64,
     /// Costates and bound multipliers.
     pub costates: Option<Costates>,
-    /// Durations in ms of an earlier solution and of this guess, where they differ: it is stretched in time.
+    /// What became of an earlier solution.
+    pub carried: Carried,
+}
+
+/// What an earlier solution had to become to be a guess.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Carried {
+    /// Its duration in ms and that of the guess, where they differ: it is stretched in time.
     pub stretched: Option<[f64; 2]>,
+    /// Whether the guess is the motion under its voltages: it does not tell where the nodes of these meshes are.
+    pub simulated: bool,
 }
 
 /// Durations that differ by no more than this part are one: a solver may end so far outside a bound.
 const SAME_DURATION: f64 = 1e-6;
+/// Places that differ by no more than this part of the size of a mesh are one: a file has other units.
+const SAME_PLACE: f64 = 1e-9;
 
 /// The guess of a control problem on `control.intervals` intervals of about `h` ms; `earlier` is the solution it
 /// names, or one that comes before it. A duration that is given stays; one that is free starts from that of the earlier
@@ -40,38 +52,51 @@ pub fn guess(
     h: f64,
     earlier: Option<&Solution>,
 ) -> InitialGuess {
-    let intervals = control.intervals;
     match (&control.guess, earlier) {
         (_, Some(solved)) => from_solution(model, boundary, control, solved),
         (Guess::Simulate(voltages), _) => {
-            let scalars = |from: f64, to: f64| {
-                let time = 0.5 * (from + to);
-                let mut voltages = voltages.at(time).to_vec();
-                for (source, voltage) in voltages.iter_mut().enumerate() {
-                    *voltage = control.given_voltage(source, time).unwrap_or(*voltage);
-                }
-                model.scalars(&voltages)
-            };
-            let start = &boundary.start;
-            let (mut history, _) = simulate(model, start, h, intervals, scalars, |_| {
-                ControlFlow::Continue(())
-            });
-            // A simulation that ends early is held where it ended.
-            while history.intervals() < intervals {
-                history.z.push(history.z[history.z.len() - 1].clone());
-                let last = history.scalars.last().cloned();
-                let still = || model.variables.scalars(&scalars(0.0, h));
-                history.scalars.push(last.unwrap_or_else(still));
-            }
+            let voltages = |time| voltages.at(time).to_vec();
             InitialGuess {
-                history,
+                history: under_voltages(model, boundary, control, h, voltages),
                 h,
                 costates: None,
-                stretched: None,
+                carried: Carried::default(),
             }
         }
         _ => interpolate(model, boundary, control, h),
     }
+}
+
+/// The motion of the model on `control.intervals` intervals of h ms under voltages by source at a time in ms, and under those that
+/// `control` gives.
+fn under_voltages(
+    model: &Model,
+    boundary: &BoundaryConditions,
+    control: &Control,
+    h: f64,
+    voltages: impl Fn(f64) -> Vec<f64>,
+) -> DiscreteTrajectory {
+    let intervals = control.intervals;
+    let scalars = |from: f64, to: f64| {
+        let time = 0.5 * (from + to);
+        let mut voltages = voltages(time);
+        for (source, voltage) in voltages.iter_mut().enumerate() {
+            *voltage = control.given_voltage(source, time).unwrap_or(*voltage);
+        }
+        model.scalars(&voltages)
+    };
+    let start = &boundary.start;
+    let (mut history, _) = simulate(model, start, h, intervals, scalars, |_| {
+        ControlFlow::Continue(())
+    });
+    // A simulation that ends early is held where it ended.
+    while history.intervals() < intervals {
+        history.z.push(history.z[history.z.len() - 1].clone());
+        let last = history.scalars.last().cloned();
+        let still = || model.variables.scalars(&scalars(0.0, h));
+        history.scalars.push(last.unwrap_or_else(still));
+    }
+    history
 }
 
 /// 3s² − 2s³ between start and goal; rest voltages of the goal lifted a little.
@@ -131,7 +156,7 @@ fn interpolate(
         history,
         h,
         costates: None,
-        stretched: None,
+        carried: Carried::default(),
     }
 }
 
@@ -158,8 +183,24 @@ fn between(from: &[Pose], to: &[Pose], part: f64) -> Vec<Pose> {
     from.iter().zip(to).map(pose).collect()
 }
 
+/// Whether each solid has the nodes that an earlier solution tells of it.
+fn has_same_meshes(model: &Model, solved: &Solution) -> bool {
+    let mut solids = model.solids.iter().map(|block| &block.solid);
+    solids.all(|solid| {
+        let nodes = &solid.mesh.nodes;
+        let tolerance = SAME_PLACE * solid.mesh.size();
+        let is_same = |told: &Vec<[f64; 3]>| {
+            let mut places = told.iter().zip(nodes);
+            let apart = |a: [f64; 3], b: &Vector| (Vector::from(a) - b).amax();
+            told.len() == nodes.len() && places.all(|(&a, b)| apart(a, b) <= tolerance)
+        };
+        solved.meshes.get(&solid.name).is_none_or(is_same)
+    })
+}
+
 /// An earlier solution: as it is on the same grid, carried over from another one, stretched in time where its duration is
-/// not allowed; from other coordinates the joints and what the poses tell beside them.
+/// not allowed; from other coordinates the joints and what the poses tell beside them. Where it does not tell the places of the nodes, the
+/// motion under its voltages.
 fn from_solution(
     model: &Model,
     boundary: &BoundaryConditions,
@@ -168,6 +209,7 @@ fn from_solution(
 ) -> InitialGuess {
     let motion = &model.action.motion;
     let has_same_coordinates = solved.coordinates == model.coordinates
+        && has_same_meshes(model, solved)
         && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
     let solved = &*evened(solved, has_same_coordinates.then_some(motion));
     let intervals = control.intervals;
@@ -177,6 +219,22 @@ fn from_solution(
     let is_stretched = (duration - before).abs() > SAME_DURATION * duration;
     let stretch = if is_stretched { duration / before } else { 1.0 };
     let grids = Grids::new(solved.intervals(), intervals, stretch);
+    let carried = Carried {
+        stretched: is_stretched.then_some([before, duration]),
+        simulated: !has_same_coordinates && !motion.of_nodes.is_empty(),
+    };
+    if carried.simulated {
+        let voltages = |time: f64| {
+            let k = (time / h) as usize;
+            grids.mean(&solved.voltages, k.min(intervals - 1))
+        };
+        return InitialGuess {
+            history: under_voltages(model, boundary, control, h, voltages),
+            h,
+            costates: None,
+            carried,
+        };
+    }
     let along_joints = |k: usize| {
         let s = k as f64 / intervals as f64 * solved.intervals() as f64;
         let i = (s.floor() as usize).min(solved.intervals() - 1);
@@ -225,6 +283,6 @@ fn from_solution(
         costates: has_same_coordinates
             .then(|| resample::costates(model, boundary, control, solved, grids))
             .flatten(),
-        stretched: is_stretched.then_some([before, duration]),
+        carried,
     }
 }

@@ -28,7 +28,7 @@ pub use conditions::{BoundaryConditions, Rests, TerminalState};
 pub use earlier::{Earlier, EarlierSolution};
 pub use error::BoundaryError;
 pub use goal::{Orientation, Place};
-pub use guess::{InitialGuess, guess};
+pub use guess::{Carried, InitialGuess, guess};
 pub use limits::{BoundedQuantity, Limits, When};
 pub use numbering::{Column, Numbering, Row};
 pub use objective::Cost;

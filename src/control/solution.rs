@@ -1,5 +1,7 @@
 //! What is kept of a solution: enough to start any later run exactly.
 
+use std::collections::BTreeMap;
+
 use crate::kinematics::Pose;
 use crate::model::{Coordinates, FoundParameter};
 
@@ -16,6 +18,8 @@ pub struct Solution {
     pub poses: Vec<Vec<Pose>>,
     /// Coordinates and multipliers by instant.
     pub z: Vec<Vec<f64>>,
+    /// Reference places in mm of the nodes of each solid and each muscle of finite elements, by its name, where they are told.
+    pub meshes: BTreeMap<String, Vec<[f64; 3]>>,
     /// Time h₀ in ms that scales the multipliers in `z`.
     pub multiplier_time: f64,
     /// Voltages by interval and muscle.

@@ -105,12 +105,14 @@ struct Body {
     directors: Vec<[[f64; 3]; 3]>,
 }
 
-/// Times in ms, coordinates and multipliers by instant.
+/// Times in ms, coordinates and multipliers by instant, and reference places of the nodes of each mesh.
 #[derive(Debug, Serialize, Deserialize)]
 struct StateRecord {
     times_ms: Vec<f64>,
     multiplier_time_ms: f64,
     z: Vec<Vec<f64>>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    meshes_mm: BTreeMap<String, Vec<[f64; 3]>>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -166,6 +168,7 @@ pub fn text(model: &Model, solved: &Solution) -> String {
             times_ms: solved.times.clone(),
             multiplier_time_ms: solved.multiplier_time,
             z: solved.z.clone(),
+            meshes_mm: solved.meshes.clone(),
         }),
         costates: solved.costates.clone().map(|c| Multipliers {
             rows: c.rows,
@@ -272,6 +275,7 @@ fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
             });
         }
     };
+    let meshes = file.state.as_ref().map(|state| state.meshes_mm.clone());
     let (times, multiplier_time, z) = match file.state {
         Some(state) => {
             same_length("state.times_ms", state.times_ms.len(), instants, "instants")?;
@@ -301,6 +305,7 @@ fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
         joints: joint_rows,
         poses,
         z,
+        meshes: meshes.unwrap_or_default(),
         multiplier_time,
         voltages,
         hold,

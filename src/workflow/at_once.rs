@@ -48,9 +48,16 @@ pub fn at_once<T: Sync, A: Send>(
         for _ in 0..threads {
             let sender = sender.clone();
             let work = move || {
-                let pool = ThreadPoolBuilder::new().num_threads(share);
-                let _pool = pool.use_current_thread().build().ok();
-                std::iter::from_fn(take).for_each(|one| sender.send(one).unwrap_or(()));
+                let all =
+                    || std::iter::from_fn(take).for_each(|one| sender.send(one).unwrap_or(()));
+                let pool = ThreadPoolBuilder::new()
+                    .num_threads(share)
+                    .stack_size(STACK);
+                // A pool of which this thread were a part would never be freed.
+                match pool.build() {
+                    Ok(pool) => pool.install(all),
+                    Err(_) => all(),
+                }
             };
             let thread = thread::Builder::new().stack_size(STACK);
             if thread.spawn_scoped(scope, work).is_err() {

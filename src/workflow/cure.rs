@@ -81,7 +81,7 @@ pub(crate) fn reproduced(
             finest = Some(intervals);
             iterations += more;
             if found.is_solved() {
-                found.stretched = optimum.stretched;
+                found.carried = optimum.carried;
                 return Ok(Cured {
                     optimum: found,
                     iterations,

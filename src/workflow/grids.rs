@@ -57,7 +57,7 @@ pub fn optimise_to(
                 observer(control.intervals, iterate)
             })?;
             // What the guess of the problem became belongs to all grids.
-            run.stretched = before.map_or(run.stretched, |optimum| optimum.stretched);
+            run.carried = before.map_or(run.carried, |optimum| optimum.carried);
             // What is not reproduced may be on a finer grid.
             let is_complete = run.meets_equations();
             let sample = match is_complete {

@@ -1,5 +1,7 @@
 //! From coordinates and multipliers to what people look at: poses, joint coordinates, voltages by muscle.
 
+use std::collections::BTreeMap;
+
 use crate::control::{Costates, Solution};
 use crate::dynamics::DiscreteTrajectory;
 use crate::dynamics::trajectory::Trajectory;
@@ -23,6 +25,7 @@ pub fn solved(model: &Model, history: &DiscreteTrajectory, costates: Option<Cost
         joints: motion.joints.into_iter().map(by_joint).collect(),
         poses: motion.poses,
         z: history.z.clone(),
+        meshes: meshes(model),
         multiplier_time: model.multiplier_time,
         voltages: motion.voltages,
         hold: None,
@@ -30,6 +33,17 @@ pub fn solved(model: &Model, history: &DiscreteTrajectory, costates: Option<Cost
         parameters: parameters(model, history),
         costates,
     }
+}
+
+/// Reference places of the nodes of each block.
+fn meshes(model: &Model) -> BTreeMap<String, Vec<[f64; 3]>> {
+    let blocks = model.solids.iter().map(|block| &block.solid);
+    blocks
+        .map(|solid| {
+            let nodes = solid.mesh.nodes.iter().map(|&place| place.into());
+            (solid.name.clone(), nodes.collect())
+        })
+        .collect()
 }
 
 /// Values of the parameters that a motion was found with; none where none is sought.

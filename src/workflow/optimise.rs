@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::control::problem::{Control, Duration, Guess};
-use crate::control::{BoundaryConditions, InitialGuess, Solution, Transcription, guess};
+use crate::control::{BoundaryConditions, Carried, InitialGuess, Solution, Transcription, guess};
 use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
 use crate::ipopt::{
     Iteration, OptionValue, Options, Solver, SolverResult, Start, StartingPoint, Status, interrupt,
@@ -75,8 +75,8 @@ pub struct Optimum {
     pub hessian_nonzeros: usize,
     /// Seconds before the solver began.
     pub setup: f64,
-    /// Durations in ms of the solution that it started from and of its first guess, where they differ.
-    pub stretched: Option<[f64; 2]>,
+    /// What became of the solution that it started from.
+    pub carried: Carried,
     /// The verification of its voltages, where the solver found a solution.
     pub resimulation: Option<Resimulation>,
     /// Seconds that the test took.
@@ -166,7 +166,7 @@ pub fn optimise(
         program,
         point,
         start,
-        stretched,
+        carried,
     } = prepare(&model, &boundary, control, earlier, Counted::Yes)?;
     let setup = began.elapsed().as_secs_f64();
     let options = Options {
@@ -278,7 +278,7 @@ pub fn optimise(
         jacobian_nonzeros,
         hessian_nonzeros,
         setup,
-        stretched,
+        carried,
         resimulation,
         tested,
         restarted,
@@ -303,7 +303,7 @@ fn recentred(model: &Model, history: &DiscreteTrajectory) -> Option<InitialGuess
             },
             h: history.times[1],
             costates: None,
-            stretched: None,
+            carried: Carried::default(),
         }
     })
 }
@@ -313,8 +313,8 @@ pub(crate) struct Prepared<'m> {
     pub(crate) program: Transcription<'m>,
     pub(crate) point: StartingPoint,
     pub(crate) start: Start,
-    /// Durations in ms of the earlier solution and of the start, where they differ.
-    pub(crate) stretched: Option<[f64; 2]>,
+    /// What became of the earlier solution.
+    pub(crate) carried: Carried,
 }
 
 /// Whether a program with more equations than unknowns is refused.
@@ -349,12 +349,14 @@ pub(crate) fn prepare<'m>(
         Counted::No => Transcription::of_any(model, boundary, control, &initial),
     };
     let point = program.start(&initial);
-    let stretched = initial.stretched;
-    let is_same_grid =
-        |earlier: &Solution| earlier.intervals() == control.intervals && stretched.is_none();
+    let carried = initial.carried;
+    let is_same_grid = |earlier: &Solution| {
+        earlier.intervals() == control.intervals && carried.stretched.is_none()
+    };
     let start = match (earlier, &point.costates) {
         (None, _) if matches!(control.guess, Guess::Simulate(_)) => Start::Simulated,
         (None, _) => Start::Cold,
+        (Some(_), _) if carried.simulated => Start::Simulated,
         (Some(earlier), Some(_)) if is_same_grid(earlier) => Start::PrimalDual,
         (Some(_), Some(_)) if program.violation(&point.x) < FITS => Start::PrimalDual,
         (Some(_), Some(_)) => Start::Centred,
@@ -365,7 +367,7 @@ pub(crate) fn prepare<'m>(
         program,
         point,
         start,
-        stretched,
+        carried,
     })
 }
 

@@ -102,7 +102,7 @@ fn a_guess_changes_nothing_that_is_asked() {
                     );
                     assert!((end - expected).abs() < 1e-9, "{place}");
                     let is_other = (expected - length).abs() > 1e-6 * expected;
-                    assert_eq!(initial.stretched.is_some(), is_other, "{place}");
+                    assert_eq!(initial.carried.stretched.is_some(), is_other, "{place}");
                     // The same way, faster or slower.
                     let at = |k: usize| between(&before.joints, k as f64 / intervals as f64, 0);
                     let apart = (0..=intervals).map(|k| (joints[k][0] - at(k)).abs());

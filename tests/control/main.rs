@@ -15,6 +15,7 @@ mod held_ends;
 mod identified;
 mod interface;
 mod limits;
+mod meshes;
 mod moved;
 mod optimality;
 mod reference;
