@@ -205,7 +205,9 @@ async function charts(page, run, told, screen) {
   const empty = await page.evaluate(() => window.proboscis.charts.made.filter((one) => !one.chart).length);
   expect(empty === 0, `${told}: ${empty} charts are not drawn`);
   await page.evaluate(() => window.scrollTo(0, 0));
-  await page.screenshot({ path: join(folder, `${run.name}-${screen.name}-all.png`), fullPage: true });
+  // For a person to look at; long pages take a slow machine more time than the test has.
+  const all = { path: join(folder, `${run.name}-${screen.name}-all.png`), fullPage: true, timeout: 30000 };
+  await page.screenshot(all).catch(() => console.error(`browser: ${told}: no picture of the whole page`));
 }
 
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || "/usr/bin/chromium", args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });

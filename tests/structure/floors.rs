@@ -49,9 +49,10 @@ fn imports_go_downwards() {
 }
 
 /// The data of the page, which are JSON.
-const FIGURES: [&str; 4] = [
+const FIGURES: [&str; 5] = [
     "report/page/mod.rs",
     "report/page/charts.rs",
+    "report/page/compared.rs",
     "report/page/scene.rs",
     "report/page/numbers.rs",
 ];
