@@ -1,6 +1,7 @@
 //! The record of a motion: coordinates, momenta and voltages on a time grid.
 
 use crate::dynamics::step_report::StepperReport;
+use crate::dynamics::step_state::StepState;
 
 /// N + 1 instants and N intervals.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,6 +24,8 @@ pub struct DiscreteTrajectory {
     pub solver: String,
     /// What it cost.
     pub report: StepperReport,
+    /// From what it goes on.
+    pub end: StepState,
 }
 
 /// Where a method means its energies and momenta.

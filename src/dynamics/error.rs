@@ -45,6 +45,12 @@ pub enum StepError {
         /// Smallest step that was tried in ms.
         step: f64,
     },
+    /// The motion that was to go on is one of another model or method.
+    #[error("the motion that ends at t = {time} ms was made by other equations or another method")]
+    Foreign {
+        /// Where it ends in ms.
+        time: f64,
+    },
     /// Ctrl-C was pressed, or the time allowed is over.
     #[error("the step from t = {time} ms was stopped ({})", status.word().replace('_', " "))]
     Stopped {

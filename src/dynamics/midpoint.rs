@@ -18,6 +18,7 @@ use crate::functional::{BlockMask, Order};
 use crate::math::Vector;
 use crate::model::Model;
 use crate::sparse::DENSE;
+use std::slice;
 
 /// Steps of the midpoint rule.
 pub type Stepper<'m> = Steps<Midpoint<'m>>;
@@ -40,7 +41,6 @@ pub struct Midpoint<'m> {
     sizes: Vec<f64>,
     /// Lengths in ms of the last step and of the one before; zero where there was none.
     lengths: [f64; 2],
-    is_first: bool,
     time: f64,
     scratch: Scratch,
     values: Vec<f64>,
@@ -83,7 +83,6 @@ impl<'m> Stepper<'m> {
             typical_energy: typical_energy(model),
             sizes: sizes[..n].to_vec(),
             lengths: [0.0; 2],
-            is_first: true,
             time: 0.0,
             scratch: model.action.scratch(Order::Hessian),
             values: vec![0.0; layout.values(1)],
@@ -257,6 +256,20 @@ impl Equations for Midpoint<'_> {
         worst * h.powi(3) / 12.0
     }
 
+    fn visit_state(&mut self, visit: &mut dyn FnMut(&'static str, &mut [f64])) {
+        visit("time", slice::from_mut(&mut self.time));
+        visit("z", &mut self.here.z);
+        visit("momentum", &mut self.momentum);
+        visit("rates", &mut self.rates);
+        visit("changes", &mut self.changes);
+        visit("lengths", &mut self.lengths);
+        visit("scalars", &mut self.scalars);
+    }
+
+    fn take_state(&mut self) {
+        self.model.action.motion.place(&mut self.here);
+    }
+
     /// With the forces that the balance evaluated.
     fn accept(&mut self, h: f64) -> bool {
         let action = &self.model.action;
@@ -274,13 +287,13 @@ impl Equations for Midpoint<'_> {
             return false;
         }
         std::mem::swap(&mut self.momentum, &mut self.momentum_next);
+        let is_first = self.lengths[0] == 0.0;
         for (i, rate) in self.rates.iter_mut().enumerate() {
             let new = (next.z[i] - here.z[i]) / h;
             // In the first step nothing is known of the change.
-            self.changes[i] = if self.is_first { 0.0 } else { new - *rate };
+            self.changes[i] = if is_first { 0.0 } else { new - *rate };
             *rate = new;
         }
-        self.is_first = false;
         self.lengths = [h, self.lengths[0]];
         let (n, m) = (motion.coordinates, motion.unknowns());
         here.z[n..m].copy_from_slice(&next.z[n..m]);

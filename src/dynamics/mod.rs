@@ -2,6 +2,7 @@
 //!
 //! - `stepper`: Newton on the equations of one step; `midpoint`: those of the midpoint rule; `stages`: those of every other
 //!   method.
+//! - `step_state`, `resume`: from what a motion goes on.
 //! - `domain`: where the first-order dielectric ends.
 //! - `resolution`, `spans`: which steps are refused; `local_error`: what those neglect that are not.
 //! - `simulate`, `history`, `observe`, `kinetic`: step after step, recorded and observed.
@@ -23,11 +24,13 @@ mod momenta;
 mod observe;
 mod resolution;
 mod rest;
+mod resume;
 mod simulate;
 mod solving;
 mod spans;
 mod stages;
 mod step_report;
+mod step_state;
 mod stepper;
 mod tangent;
 pub mod trajectory;
@@ -46,9 +49,12 @@ pub use rest::{
     Continuation, Equilibrium, Instability, Load, Mode, Route, Softening, StabilityLoss,
     continuation, equilibrium, stable_equilibrium,
 };
-pub use simulate::{Start, StepControl, simulate, simulate_by, simulate_within};
+pub use simulate::{
+    Lengths, Start, StepControl, TimeGrid, go_on, simulate, simulate_by, simulate_within,
+};
 pub use solving::{Integrator, Newton, Solving};
 pub use spans::{muscle_without_length, reversed_muscle};
 pub use stages::Stages;
 pub use step_report::StepperReport;
+pub use step_state::{StepState, TangentState};
 pub use stepper::Steps;

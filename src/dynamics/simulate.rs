@@ -111,19 +111,18 @@ pub fn simulate_by(
     voltages: impl Fn(f64, f64) -> Vec<f64>,
     observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
 ) -> (DiscreteTrajectory, Option<StepError>) {
-    let mut history = DiscreteTrajectory::at(start);
-    let grid = TimeGrid { h, steps };
-    let failure = if solving.integrator == Integrator::Midpoint {
-        let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
-        record(&mut stepper, grid, voltages, observer, &mut history)
-    } else {
-        history.reading = Reading::Instants;
-        match Steps::stages(model, start, solving, h, &voltages(0.0, h)) {
-            Ok(mut stages) => record(&mut stages, grid, voltages, observer, &mut history),
-            Err(error) => Some(error),
-        }
-    };
-    (history, failure)
+    let lengths = Lengths::Equal(TimeGrid { h, steps });
+    let begun = DiscreteTrajectory::at(start);
+    go_on(solving, model, begun, lengths, voltages, observer)
+}
+
+/// Equal steps, or steps that a tolerance controls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lengths<'a> {
+    /// Equal ones.
+    Equal(TimeGrid),
+    /// By their local error.
+    Controlled(StepControl<'a>),
 }
 
 /// Lengths of steps that a tolerance controls.
@@ -149,23 +148,88 @@ pub fn simulate_within(
     start: &Start,
     control: StepControl<'_>,
     voltages: impl Fn(f64, f64) -> Vec<f64>,
-    mut observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
+    observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
 ) -> (DiscreteTrajectory, Option<StepError>) {
+    let begun = DiscreteTrajectory::at(start);
+    let lengths = Lengths::Controlled(control);
+    go_on(solving, model, begun, lengths, voltages, observer)
+}
+
+/// Goes on with a motion that has begun, up to the number of steps or the duration of the whole: it becomes what it would have become without
+/// a stop, to the bit.
+///
+/// `voltages` and `observer` are as in [`simulate`]. Where the motion is not one of this model by this method it stays as it is, and the error
+/// says so.
+pub fn go_on(
+    solving: Solving,
+    model: &Model,
+    mut history: DiscreteTrajectory,
+    lengths: Lengths<'_>,
+    voltages: impl Fn(f64, f64) -> Vec<f64>,
+    observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
+) -> (DiscreteTrajectory, Option<StepError>) {
+    if !history.is_of(model) {
+        let time = history.times.last().copied().unwrap_or(0.0);
+        return (history, Some(StepError::Foreign { time }));
+    }
+    let start = Start {
+        z: history.z[0].clone(),
+        momentum: history.momenta[0].clone(),
+        rates: history.rates.clone(),
+    };
+    let is_midpoint = solving.integrator == Integrator::Midpoint;
+    history.reading = match is_midpoint {
+        true => Reading::Intervals,
+        false => Reading::Instants,
+    };
+    let failure = match lengths {
+        Lengths::Equal(grid) if !is_midpoint => {
+            let first = voltages(0.0, grid.h);
+            match Steps::stages(model, &start, solving, grid.h, &first) {
+                Ok(mut stages) => record(&mut stages, grid, voltages, observer, &mut history),
+                Err(error) => Some(error),
+            }
+        }
+        _ => {
+            let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
+            match lengths {
+                Lengths::Equal(grid) => {
+                    record(&mut stepper, grid, voltages, observer, &mut history)
+                }
+                Lengths::Controlled(control) => {
+                    if let Some(rates) = &start.rates {
+                        stepper.began_with(rates);
+                    }
+                    controlled(&mut stepper, control, voltages, observer, &mut history)
+                }
+            }
+        }
+    };
+    (history, failure)
+}
+
+/// Takes steps that a tolerance controls and records them; returns why they end early.
+fn controlled(
+    stepper: &mut Stepper<'_>,
+    control: StepControl<'_>,
+    voltages: impl Fn(f64, f64) -> Vec<f64>,
+    mut observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
+    history: &mut DiscreteTrajectory,
+) -> Option<StepError> {
     let StepControl {
         duration,
         first,
         tolerance,
         switches,
     } = control;
-    let mut history = DiscreteTrajectory::at(start);
-    let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
-    if let Some(rates) = &start.rates {
-        stepper.began_with(rates);
-    }
     let n = stepper.momentum().len();
-    let mut wanted = first;
+    let mut k = history.intervals();
+    let mut time = history.times[k];
+    if !stepper.take(&history.end) {
+        return Some(StepError::Foreign { time });
+    }
+    let mut wanted = history.end.wanted.unwrap_or(first);
     let mut failure = None;
-    let (mut time, mut k) = (0.0, 0);
     while time < duration * (1.0 - 1e-12) {
         let mut later = switches.iter().filter(|&&at| at > time * (1.0 + 1e-12));
         let end = later.next().copied().unwrap_or(duration).min(duration);
@@ -196,20 +260,21 @@ pub fn simulate_within(
             step.next
         };
         history.z[k][n..n + step.multipliers.len()].copy_from_slice(&step.multipliers);
-        history.push(time, &stepper);
+        history.push(time, stepper);
+        history.end.wanted = Some(wanted);
         k += 1;
-        if observer(&history).is_break() {
+        if observer(history).is_break() {
             break;
         }
     }
     history.report = stepper.report();
     history.solver = stepper.solver();
-    (history, failure)
+    failure
 }
 
 impl DiscreteTrajectory {
     /// A motion that begins.
-    fn at(start: &Start) -> Self {
+    pub fn at(start: &Start) -> Self {
         Self {
             times: vec![0.0],
             z: vec![start.z.clone()],
@@ -219,21 +284,39 @@ impl DiscreteTrajectory {
         }
     }
 
+    /// Whether its lists have the lengths of a motion of this model.
+    fn is_of(&self, model: &Model) -> bool {
+        let (instants, intervals) = (self.times.len(), self.scalars.len());
+        let motion = &model.action.motion;
+        let have = |rows: &[Vec<f64>], length: usize| rows.iter().all(|row| row.len() == length);
+        let n = motion.coordinates;
+        instants == intervals + 1
+            && [self.z.len(), self.momenta.len()] == [instants; 2]
+            && have(&self.z, motion.instant().z.len())
+            && have(&self.momenta, n)
+            && have(&self.scalars, model.action.intervals.scalars)
+            && self.rates.as_ref().is_none_or(|rates| rates.len() == n)
+            && self.z.iter().all(|z| motion.has_unit_charts(z))
+    }
+
     /// Takes in the step that ends at a time in ms.
-    fn push<E: Equations>(&mut self, time: f64, stepper: &Steps<E>) {
+    fn push<E: Equations>(&mut self, time: f64, stepper: &mut Steps<E>) {
         self.times.push(time);
         self.z.push(stepper.coordinates().to_vec());
         self.momenta.push(stepper.momentum().to_vec());
         self.scalars.push(stepper.scalars().to_vec());
         self.works.extend(stepper.work());
+        stepper.keep(&mut self.end);
     }
 }
 
 /// So many steps of h ms.
-#[derive(Clone, Copy, Debug)]
-struct TimeGrid {
-    h: f64,
-    steps: usize,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeGrid {
+    /// Length in ms.
+    pub h: f64,
+    /// How many.
+    pub steps: usize,
 }
 
 /// Takes the steps and records them; returns why they end early.
@@ -246,7 +329,12 @@ fn record<E: Equations>(
 ) -> Option<StepError> {
     let n = stepper.momentum().len();
     let mut failure = None;
-    for k in 0..steps {
+    let done = history.intervals();
+    if !stepper.take(&history.end) {
+        let time = history.times[done];
+        return Some(StepError::Foreign { time });
+    }
+    for k in done..steps {
         let (from, to) = (k as f64 * h, (k + 1) as f64 * h);
         match stepper.step(h, &voltages(from, to)) {
             Ok(multipliers) => {

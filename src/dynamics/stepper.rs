@@ -30,10 +30,10 @@ const REUSED: usize = 40;
 /// State at one instant and the means to go on from it.
 #[derive(Debug)]
 pub struct Steps<E> {
-    equations: E,
-    updates: Updates,
+    pub(super) equations: E,
+    pub(super) updates: Updates,
     /// Step of the tangent that is factorised.
-    factored: Option<f64>,
+    pub(super) factored: Option<f64>,
     /// Whether the last attempt began with the tangent of a step before.
     stale: bool,
     residual: Vec<f64>,
@@ -43,7 +43,7 @@ pub struct Steps<E> {
     used: f64,
     /// Energy balance of the last attempt, where the method has one.
     balance: Option<Balance>,
-    report: StepperReport,
+    pub(super) report: StepperReport,
 }
 
 impl<E: Equations> Steps<E> {

@@ -3,6 +3,7 @@
 //! Unknowns are those of a step (see [`Variables`](crate::model::Variables)).
 
 use crate::coordinates::StepPattern;
+use crate::dynamics::step_state::TangentState;
 use crate::model::Model;
 use crate::sparse::{Backend, Direct, Precision, Singular, Symmetry};
 
@@ -179,6 +180,34 @@ impl Tangent {
         let entries: Vec<_> = self.entries.iter().map(pair).collect();
         self.solver = Direct::new(self.solver.size(), &entries);
         true
+    }
+
+    /// Writes how it is factorised, and the matrix where its factors are used again.
+    pub(super) fn keep(&self, with_matrix: bool, to: &mut TangentState) {
+        to.is_approximate = self.is_approximate;
+        to.method = self.solver.state();
+        to.matrix.clear();
+        if with_matrix {
+            to.matrix.extend_from_slice(&self.matrix);
+        }
+    }
+
+    /// Factorises as it was done before; whether that is possible.
+    pub(super) fn take(&mut self, from: &TangentState) -> bool {
+        if self.is_approximate && !from.is_approximate {
+            self.make_exact();
+        }
+        if self.is_approximate != from.is_approximate || !self.solver.take(&from.method) {
+            return false;
+        }
+        if from.step.is_none() {
+            return true;
+        }
+        if from.matrix.len() != self.matrix.len() {
+            return false;
+        }
+        self.matrix.copy_from_slice(&from.matrix);
+        self.solver.factor_again(&self.matrix).is_ok()
     }
 
     /// Number of negative pivots of the last factorisation, where it tells.

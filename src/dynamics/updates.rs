@@ -2,6 +2,7 @@
 
 use crate::dynamics::anderson::Anderson;
 use crate::dynamics::solving::Newton;
+use crate::dynamics::step_state::TangentState;
 use crate::dynamics::tangent::Tangent;
 use crate::sparse::Singular;
 
@@ -37,6 +38,19 @@ impl Updates {
     /// The method that factorises.
     pub(super) fn name(&self) -> String {
         self.tangent.name()
+    }
+
+    /// Writes the tangent that is kept, and the step that it belongs to.
+    pub(super) fn keep(&self, step: Option<f64>, to: &mut Option<TangentState>) {
+        let to = to.get_or_insert_default();
+        // Newton's method makes a new one in every iteration.
+        to.step = step.filter(|_| self.newton == Newton::Modified);
+        self.tangent.keep(to.step.is_some(), to);
+    }
+
+    /// Takes a tangent; whether it is one of these equations.
+    pub(super) fn take(&mut self, from: &TangentState) -> bool {
+        self.tangent.take(from)
     }
 
     /// Forgets earlier updates.

@@ -30,20 +30,20 @@ const BALANCED: (f64, usize) = (4.0, 12);
 /// A direct solver for one pattern.
 #[derive(Debug)]
 pub struct Direct {
-    pattern: Arc<Pattern>,
-    backend: Backend,
-    factorisation: Box<dyn Factorisation>,
+    pub(super) pattern: Arc<Pattern>,
+    pub(super) backend: Backend,
+    pub(super) factorisation: Box<dyn Factorisation>,
     /// The scaled matrix, by slot.
-    values: Vec<f64>,
+    pub(super) values: Vec<f64>,
     /// Factors of rows, and of columns.
     scales: [Vec<f64>; 2],
     /// Largest entry of each row, and of each column, of the scaled matrix.
     largest: [Vec<f64>; 2],
     rhs: Vec<f64>,
     residual: Vec<f64>,
-    factored: bool,
+    pub(super) factored: bool,
     /// Matrices in a row that needed double precision in place of single.
-    doubled: usize,
+    pub(super) doubled: usize,
 }
 
 impl Direct {
@@ -243,7 +243,7 @@ impl Direct {
     }
 
     /// Finds the largest entry of each row and column.
-    fn measure(&mut self) {
+    pub(super) fn measure(&mut self) {
         let [rows, cols] = &mut self.largest;
         rows.fill(0.0);
         cols.fill(0.0);
@@ -282,7 +282,7 @@ impl Direct {
     }
 
     /// Brings the largest entries near 1.
-    fn equilibrate(&mut self) {
+    pub(super) fn equilibrate(&mut self) {
         self.scales.iter_mut().for_each(|scale| scale.fill(1.0));
         if self.pattern.symmetry == Symmetry::Unsymmetric && self.backend != Backend::Mumps {
             // Exchanges of rows see the scales of rows alone; a power of two rounds nothing.
@@ -308,7 +308,7 @@ impl Direct {
     }
 
     /// Leaves the right-hand side of the known solution in `self.rhs`.
-    fn rehearse(&mut self) {
+    pub(super) fn rehearse(&mut self) {
         for col in 0..self.pattern.size {
             self.residual[col] = self.known(col);
         }
@@ -320,7 +320,7 @@ impl Direct {
     }
 
     /// Factorises, and tries the factor on the known solution.
-    fn attempt(&mut self) -> Result<(), Singular> {
+    pub(super) fn attempt(&mut self) -> Result<(), Singular> {
         self.factorisation.factor(&self.values)?;
         self.residual.copy_from_slice(&self.rhs);
         self.factorisation.solve(&mut self.residual);

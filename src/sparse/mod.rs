@@ -2,6 +2,7 @@
 //!
 //! [`Direct`] lays the pattern, scales, checks and refines; a [`Factorisation`] is what it does so with.
 
+mod again;
 mod backend;
 mod dense;
 mod direct;
@@ -13,6 +14,7 @@ mod pattern;
 mod precision;
 mod symmetry;
 
+pub use again::MethodState;
 pub use backend::{Backend, DENSE};
 pub use direct::Direct;
 pub use dissection::Places;

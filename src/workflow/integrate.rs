@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::control::problem::Simulation;
 use crate::control::resolve_start;
-use crate::dynamics::{DiscreteTrajectory, StepControl, StepError, simulate_by, simulate_within};
+use crate::dynamics::{DiscreteTrajectory, Lengths, StepControl, StepError, TimeGrid, go_on};
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::workflow::error::WorkflowError;
@@ -47,6 +47,19 @@ pub fn grid(task: &Simulation) -> (usize, f64) {
 pub fn integrate(
     system: &System,
     task: &Simulation,
+    observer: impl FnMut(&Model, &DiscreteTrajectory) -> ControlFlow<()>,
+) -> Result<Simulated, WorkflowError> {
+    integrate_on(system, task, None, observer)
+}
+
+/// The same, from where a motion that has `begun` ends: the whole is to the bit what it would be without a stop.
+///
+/// # Errors
+/// As of [`integrate`]; a motion of another model or method is a failure.
+pub fn integrate_on(
+    system: &System,
+    task: &Simulation,
+    begun: Option<DiscreteTrajectory>,
     mut observer: impl FnMut(&Model, &DiscreteTrajectory) -> ControlFlow<()>,
 ) -> Result<Simulated, WorkflowError> {
     let began = Instant::now();
@@ -62,24 +75,28 @@ pub fn integrate(
         return Err(WorkflowError::Stopped(status));
     }
     phase("finding the start");
-    let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;
+    let begun = match begun {
+        Some(begun) => begun,
+        None => {
+            let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;
+            DiscreteTrajectory::at(&start)
+        }
+    };
     let setup = began.elapsed().as_secs_f64();
     phase("ordering and first factorisation");
     let observer = |history: &DiscreteTrajectory| observer(&model, history);
     let scalars = |from: f64, to: f64| model.scalars(&task.voltages.at(0.5 * (from + to)));
     let switches = task.voltages.switches();
-    let (history, failure) = match task.tolerance {
-        Some(tolerance) => {
-            let control = StepControl {
-                duration: task.duration,
-                first: h,
-                tolerance,
-                switches: &switches,
-            };
-            simulate_within(task.solving, &model, &start, control, scalars, observer)
-        }
-        None => simulate_by(task.solving, &model, &start, h, steps, scalars, observer),
+    let lengths = match task.tolerance {
+        Some(tolerance) => Lengths::Controlled(StepControl {
+            duration: task.duration,
+            first: h,
+            tolerance,
+            switches: &switches,
+        }),
+        None => Lengths::Equal(TimeGrid { h, steps }),
     };
+    let (history, failure) = go_on(task.solving, &model, begun, lengths, scalars, observer);
     let seconds = began.elapsed().as_secs_f64() - setup;
     Ok(Simulated {
         model,

@@ -39,7 +39,7 @@ pub use active::{Active, active};
 pub use effects::{EffectCounts, Plan, coupling, effect_counts};
 pub use error::WorkflowError;
 pub use grids::{integrate_to, optimise_to};
-pub use integrate::{Simulated, grid, integrate};
+pub use integrate::{Simulated, grid, integrate, integrate_on};
 pub use motion::{solved, trajectory};
 pub use optimise::{Counted, Iterate, Optimum, SolveLimits, optimise};
 pub use phase::listen_to_phases;

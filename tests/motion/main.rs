@@ -16,6 +16,7 @@ mod order;
 mod reductions;
 mod reference;
 mod resolution;
+mod resumed;
 mod screws;
 mod single_joints;
 mod tolerance;

@@ -9,6 +9,7 @@ use crate::dynamics::stages::state::{StagePoint, Stages, between};
 use crate::functional::{Kind, Order};
 use crate::math::Vector;
 use crate::model::Model;
+use std::slice;
 
 impl Equations for Stages<'_> {
     fn begin(&mut self, voltages: &[f64]) {
@@ -137,6 +138,34 @@ impl Equations for Stages<'_> {
 
     fn ends(&self) -> [&Configuration; 2] {
         [&self.points[0], &self.points[self.points.len() - 1]]
+    }
+
+    fn visit_state(&mut self, visit: &mut dyn FnMut(&'static str, &mut [f64])) {
+        visit("time", slice::from_mut(&mut self.time));
+        visit("z", &mut self.points[0].z);
+        visit("momentum", &mut self.momentum);
+        let mut count = [self.trail.len() as f64];
+        visit("points", &mut count);
+        self.resize_trail(count[0]);
+        for (time, u) in &mut self.trail {
+            visit("point time", slice::from_mut(time));
+            visit("point", u);
+        }
+        for multipliers in &mut self.multipliers {
+            visit("multipliers", multipliers);
+        }
+        for sample in &mut self.samples {
+            visit("scalars", &mut sample.scalars);
+        }
+        for carried in self.rule.carried() {
+            for vector in carried {
+                visit("carried", vector.as_mut_slice());
+            }
+        }
+    }
+
+    fn take_state(&mut self) {
+        self.model.action.motion.place(&mut self.points[0]);
     }
 
     fn accept(&mut self, h: f64) -> bool {

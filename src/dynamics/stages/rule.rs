@@ -17,6 +17,7 @@
 
 use crate::dynamics::stages::lobatto::Lobatto;
 use crate::math::Vector;
+use std::slice;
 
 /// What changes from method to method.
 #[derive(Clone, Debug)]
@@ -62,6 +63,15 @@ impl Rule {
         match self {
             Self::Galerkin(_) => point - 1,
             Self::Euler(_) | Self::Alpha(_) => point,
+        }
+    }
+
+    /// Lists of vectors that it carries from step to step.
+    pub(super) fn carried(&mut self) -> &mut [Vec<Vector>] {
+        match self {
+            Self::Galerkin(_) => &mut [],
+            Self::Euler(momenta) => slice::from_mut(momenta),
+            Self::Alpha(alpha) => &mut alpha.state,
         }
     }
 

@@ -262,10 +262,22 @@ impl Stages<'_> {
         }
     }
 
+    /// How many points the next guess may be made of.
+    fn most_points(&self) -> usize {
+        self.points.len().max(3)
+    }
+
+    /// Makes room for so many points of the next guess, one or more.
+    pub(super) fn resize_trail(&mut self, count: f64) {
+        let last = self.trail[self.trail.len() - 1].clone();
+        self.trail
+            .resize((count as usize).clamp(1, self.most_points()), last);
+    }
+
     /// Keeps the coordinates of the points for the next guess: those of the last step, three at least.
     pub(super) fn remember(&mut self, h: f64) {
         let n = self.model.action.motion.coordinates;
-        let most = (self.points.len()).max(3);
+        let most = self.most_points();
         let times = self.rule.points();
         for (point, at) in self.points.iter().zip(times).skip(1) {
             if self.trail.len() == most {
