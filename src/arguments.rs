@@ -33,7 +33,7 @@ pub(crate) enum Command {
         #[arg(long, value_name = "N")]
         max_iterations: Option<usize>,
         /// Solve from so many starting points, its own guess and random ones, and keep the best.
-        #[arg(long, value_name = "N", conflicts_with_all = ["accuracy", "estimate_error"])]
+        #[arg(long, value_name = "N", conflicts_with_all = ["accuracy", "estimate_error", "from"])]
         starts: Option<usize>,
         /// Seed of the random starting points.
         #[arg(long, value_name = "SEED", default_value_t = 1, requires = "starts")]
@@ -281,6 +281,9 @@ pub(crate) struct InTime {
     /// Estimate the error of discretisation by a second run with twice the intervals; what is written stays the same.
     #[arg(long, conflicts_with = "accuracy")]
     estimate_error: bool,
+    /// Go on from the result in a folder, such as that of a run that was stopped: a simulation to the bit, a solve from its last point.
+    #[arg(long, value_name = "DIR")]
+    from: Option<PathBuf>,
 }
 
 impl InTime {
@@ -296,6 +299,7 @@ impl InTime {
         };
         CommandInput {
             wanted,
+            from: self.from,
             ..self.problem.request()
         }
     }
@@ -310,6 +314,7 @@ impl Input {
             output: None,
             max_seconds: None,
             max_iterations: None,
+            from: None,
             wanted: None,
             progress: ProgressDisplay::Never,
             page: PageWanted::Written,

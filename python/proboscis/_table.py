@@ -41,11 +41,24 @@ class Table(Mapping[str, Array]):
             values = values.reshape(len(rows) - 1, len(rows[0]))
         except (OSError, ValueError, IndexError) as error:
             raise Error(f"{path}: found no readable table ({error}), expected rows of numbers under a header") from error
+        return cls._of({header: values[:, index] for index, header in enumerate(rows[0])})
+
+    @classmethod
+    def read_arrays(cls, path: Path, table: str) -> Table:
+        """Reads one of the complete tables of a long motion, of which the CSV file has some rows."""
+        try:
+            with np.load(path) as arrays:
+                return cls._of({name.partition("/")[2]: arrays[name] for name in arrays if name.startswith(f"{table}/")})
+        except (OSError, ValueError) as error:
+            raise Error(f"{path}: found no readable tables ({error}), expected arrays of numbers") from error
+
+    @classmethod
+    def _of(cls, headed: Mapping[str, Array]) -> Table:
         columns, units = {}, {}
-        for index, header in enumerate(rows[0]):
+        for header, values in headed.items():
             name, _, unit = header.removesuffix("]").partition(" [")
             scale, units[name] = _si(unit)
-            columns[name] = values[:, index] / scale
+            columns[name] = values / scale
         return cls(columns, units)
 
     def to_pandas(self) -> pandas.DataFrame:

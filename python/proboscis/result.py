@@ -87,7 +87,9 @@ class Result:
 
     @cached_property
     def table(self) -> Table:
-        """Columns by name: of a motion one row per instant, of a path one per equilibrium, of an equilibrium one; all at the time of the row."""
+        """Columns by name: of a motion one row per instant, of a path one per equilibrium, of an equilibrium one; all at the time of the row.
+
+        Where the problem says how its `output` is sampled, these rows."""
         return self._table(*_TABLES)
 
     @cached_property
@@ -150,8 +152,11 @@ class Result:
         return Figure(path.read_text(encoding="utf-8"))
 
     def _table(self, *names: str) -> Table:
+        arrays = self.folder / "tables.npz"
         for name in names:
             path = self.folder / name
+            if arrays.is_file() and name in ("trajectory.csv", "controls.csv"):
+                return Table.read_arrays(arrays, path.stem)
             if path.is_file():
                 return Table.read(path)
         raise Error(f"{self.folder}: there is no {' or '.join(names)} in this result ({self.status})")

@@ -75,6 +75,7 @@ pub(crate) fn run(
         output: Some(folder),
         max_seconds,
         max_iterations,
+        from: None,
         wanted: match (accuracy, estimate_error) {
             (Some(error), _) => Some(AccuracyTarget::Below(error)),
             (None, true) => Some(AccuracyTarget::Estimate),

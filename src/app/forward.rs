@@ -1,10 +1,14 @@
 //! A simulation from file to folder.
 
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::time::Instant;
+
+use serde_json::Value;
 
 use crate::app::blocks::BlockSizes;
 use crate::app::comparison::{self, Comparison};
+use crate::app::continuation;
 use crate::app::error::CommandError;
 use crate::app::exchanged::Exchanged;
 use crate::app::fields;
@@ -12,23 +16,25 @@ use crate::app::folder::make_folder;
 use crate::app::page;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
+use crate::app::shown::{Motion, Shown};
 use crate::app::solution_file;
 use crate::app::summary::{self, MEASURED, Seconds, Summary};
-use crate::app::unfinished::Unfinished;
+use crate::app::unfinished::{self, Unfinished};
 use crate::app::words::counted;
 use crate::control::problem::{Afterwards, Simulation, Voltages};
 use crate::dynamics::{
     DiscreteTrajectory, EnergyExchange, local_error, observations, out_of_domain,
 };
+use crate::files::{Loaded, continuation as continuation_file};
 use crate::ipopt::interrupt;
-use crate::model::{Model, System};
+use crate::model::Model;
+use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
-use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::grids::integrate_to;
-use crate::workflow::integrate::{Simulated, grid, integrate};
+use crate::workflow::integrate::{Simulated, grid, integrate_on};
 use crate::workflow::motion::{solved, trajectory};
 use crate::workflow::phase::phase;
 use crate::workflow::steps;
@@ -36,11 +42,12 @@ use crate::workflow::steps;
 /// Simulates and writes the folder; a motion that ends early is kept as far as it went.
 pub(super) fn simulation(
     (request, asked): (&CommandInput, &[(String, String)]),
-    system: &System,
+    loaded: &Loaded,
     task: &Simulation,
     began: Instant,
     observer: &mut dyn FnMut(Reached<'_>),
 ) -> Result<CommandOutput, CommandError> {
+    let (system, output) = (&loaded.system, &loaded.output);
     let (steps, _) = grid(task);
     if task.tolerance.is_some() && request.wanted.is_some() {
         return Err(CommandError::Problem {
@@ -50,10 +57,19 @@ pub(super) fn simulation(
                 .to_owned(),
         });
     }
+    let problem = continuation::asked(loaded, task);
+    let from = request.from.as_ref();
+    let begun = from.map(|from| continuation::begun(from, &problem, task));
+    let begun = begun.transpose()?;
     let folder = request.folder();
     let read = began.elapsed().as_secs_f64();
     let mut unwritable = None;
-    let mut unfinished = Unfinished::of(&folder);
+    // Steps that are halved begin anew: what is kept of them is no motion to go on with.
+    let goes_on = request.wanted.is_none();
+    let mut unfinished = Unfinished::of(folder.join(match goes_on {
+        true => continuation::UNFINISHED,
+        false => solution_file::UNFINISHED,
+    }));
     let watch = interrupt::watch(request.max_seconds.map(|s| s - read));
     let (
         Simulated {
@@ -75,7 +91,10 @@ pub(super) fn simulation(
                 unwritable = make_folder(&folder).err();
             }
             // The steps so far are final; those of a finer grid begin anew.
-            unfinished.consider(model, 0.0, || solved(model, history, None));
+            unfinished.consider(0.0, |path| match goes_on {
+                true => write_continuation(path, history, &problem),
+                false => solution_file::write(path, model, &solved(model, history, None)),
+            });
             match unwritable {
                 Some(_) => ControlFlow::Break(()),
                 None => ControlFlow::Continue(()),
@@ -83,7 +102,7 @@ pub(super) fn simulation(
         };
         match request.wanted {
             None => {
-                let run = integrate(system, task, |model, history| {
+                let run = integrate_on(system, task, begun, |model, history| {
                     observe(steps, model, history)
                 })
                 .map_err(CommandError::of(&request.input))?;
@@ -120,6 +139,15 @@ pub(super) fn simulation(
     if kept.intervals() > 0 {
         solution_file::add(&mut files, &model, &kept)?;
     }
+    match goes_on && kept.intervals() > 0 {
+        true => {
+            let path = folder.join(continuation::ENDED);
+            let bytes = continuation_file::bytes(&history, &problem);
+            let bytes = bytes.map_err(|cause| WriteError { path, cause })?;
+            files.add(continuation::ENDED, &bytes)?;
+        }
+        false => files.remove(continuation::ENDED),
+    }
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = failure.as_ref().map(ToString::to_string);
     summary.accuracy = accuracy;
@@ -155,6 +183,19 @@ pub(super) fn simulation(
     summary.notes.extend(domain::note(&summary.domain, true));
     summary.notes.extend(steps::told(neglected, &history, task));
     summary.notes.extend(steps::unbalanced(&history));
+    let shown = Shown::of(
+        Motion {
+            model: &model,
+            history: &history,
+            trajectory: &motion,
+            observations: &observed,
+        },
+        output,
+        true,
+        &mut files,
+    )?;
+    summary.notes.extend(shown.notes.iter().cloned());
+    summary.shown = shown.part;
     notes.extend(summary.notes.iter().cloned());
     let method = match task.tolerance {
         Some(tolerance) => format!(
@@ -191,12 +232,14 @@ pub(super) fn simulation(
     }));
     let mut told = page::told("Simulation", &summary, asked);
     told.rows = rows;
+    let earlier = earlier.map(|earlier| shown.beside(earlier));
     let run = Run {
         system,
-        trajectory: &motion,
-        skins: &Skins::new(&model, &history),
+        trajectory: &shown.trajectory,
+        skins: &shown.skins,
         name: "simulation",
-        observations: &observed,
+        observations: &shown.observations,
+        tabulated: &shown.tabulated,
         comparison: earlier.as_ref().map(|e| ("the solution", e)),
         held: None,
         tracked: &[],
@@ -207,12 +250,15 @@ pub(super) fn simulation(
     write_run(&mut files, &run)?;
     summary.seconds.wrote(began, writing);
     summary.write(files)?;
-    unfinished.done();
+    unfinished::done(&folder);
     let mut is_solved = status == "simulated";
     let mut word = match is_solved {
         true => "simulated".to_owned(),
         false => format!("not simulated to the end ({})", status.replace('_', " ")),
     };
+    if stopped.is_some() && goes_on {
+        notes.extend(continuation::command(request, &loaded.task));
+    }
     if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
         notes.extend(accuracy.notes());
         (word, is_solved) = accuracy.outcome(&word);
@@ -228,6 +274,20 @@ pub(super) fn simulation(
         ),
         notes,
     })
+}
+
+/// Writes the motion so far by itself.
+fn write_continuation(
+    path: &Path,
+    history: &DiscreteTrajectory,
+    asked: &Value,
+) -> Result<(), WriteError> {
+    let bytes = continuation_file::bytes(history, asked);
+    let bytes = bytes.map_err(|cause| WriteError {
+        path: path.to_owned(),
+        cause,
+    })?;
+    atomic::write(path, &bytes)
 }
 
 /// What drives a simulation after the end of the solution whose voltages it takes, where it goes on for longer.

@@ -4,6 +4,8 @@
 //! - `batch`: several solves at once, in threads or processes; `multistart`: a control problem from several guesses.
 //! - `inspect`, `sparsity`, `check`, `templates`: the other commands; `program`: what is asked from other languages in place of files.
 //! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
+//! - `continuation`: runs that go on from the result of another; `digest`: what tells that two are the same.
+//! - `shown`: which part of a motion tables, figures and page show.
 //! - `side_by_side`: several results on one page.
 //! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`: what is told of a result.
 //! - `page`, `solve_page`: what the page tells; `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `progress`, `request`, `error`: what commands share.
@@ -13,6 +15,8 @@ mod batch;
 mod blocks;
 mod check;
 mod comparison;
+mod continuation;
+mod digest;
 mod error;
 mod exchanged;
 mod extent;
@@ -31,6 +35,7 @@ mod rest;
 mod rest_observed;
 mod rest_refused;
 mod rest_words;
+mod shown;
 mod side_by_side;
 mod solution_file;
 mod solve;
@@ -48,6 +53,7 @@ pub(crate) use batch::{Batch, RunEnd, Said, check_run_in, run_all, task_runs_at_
 pub use batch::{RunIn, end_with_parent};
 pub use blocks::{BlockSize, BlockSizes};
 pub use check::check;
+pub(crate) use digest::digest;
 pub use error::CommandError;
 pub(crate) use folder::make_folder;
 pub use inspect::inspect;

@@ -126,6 +126,7 @@ pub(super) fn follow(
         skins: &Skins::new(&model, &shown_state),
         name: "rest",
         observations: &observed,
+        tabulated: &observed,
         comparison: None,
         held: Some(&motion.voltages[0]),
         tracked: &[],

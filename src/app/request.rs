@@ -24,6 +24,8 @@ pub struct CommandInput {
     pub max_seconds: Option<f64>,
     /// Iterations that the solver may take, in place of those of the file.
     pub max_iterations: Option<usize>,
+    /// Folder of the result from which the run goes on.
+    pub from: Option<PathBuf>,
     /// What is asked about the error of discretisation.
     pub wanted: Option<AccuracyTarget>,
     /// Whether progress is shown.

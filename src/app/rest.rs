@@ -168,6 +168,7 @@ pub(super) fn at(
         skins: &Skins::new(&model, &state),
         name: "rest",
         observations: &observed,
+        tabulated: &observed,
         comparison: None,
         held: Some(&motion.voltages[0]),
         tracked: &[],

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
+use crate::app::continuation;
 use crate::app::error::CommandError;
 use crate::app::exchanged::Exchanged;
 use crate::app::fields;
@@ -12,6 +13,7 @@ use crate::app::folder::make_folder;
 use crate::app::page;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
+use crate::app::shown::{Motion, Shown};
 use crate::app::solution_file;
 use crate::app::solve_page::{convergence, describe, goal, rows};
 use crate::app::solve_words::{carried, meaning, redundancy, restarted, unresolved};
@@ -19,15 +21,16 @@ use crate::app::summary::{
     Evaluations, LinearSystems, MEASURED, PerInterval, Program, Seconds, SoughtValue, Summary,
 };
 use crate::app::tracking_words;
-use crate::app::unfinished::Unfinished;
+use crate::app::unfinished::{self, Unfinished};
 use crate::app::words::counted;
 use crate::control::problem::{Control, Hold};
 use crate::dynamics::{EnergyExchange, observations, out_of_domain};
+use crate::files::Loaded;
+use crate::files::problem::output::Output;
 use crate::ipopt::{Status, interrupt};
 use crate::model::System;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
-use crate::report::skins::Skins;
 use crate::report::{Run, write_run};
 use crate::workflow::accuracy::{Accuracy, Refined};
 use crate::workflow::cure::{Cured, reproduced};
@@ -45,17 +48,20 @@ use crate::workflow::violations::Violation;
 
 /// Length of the motion under constant voltages that is drawn beside the optimal one, in durations.
 const COMPARED: usize = 3;
+/// How a solve ends that might have gone on.
+const STOPPED: [&str; 3] = ["interrupted", "time_limit", "iteration_limit"];
 /// Solves a control problem and writes its folder, solved or not.
 pub(super) fn control(
     (request, asked): (&CommandInput, &[(String, String)]),
-    system: &System,
+    loaded: &Loaded,
     control: &Control,
     began: Instant,
     observer: &mut dyn FnMut(Reached<'_>),
 ) -> Result<CommandOutput, CommandError> {
+    let (system, output) = (&loaded.system, &loaded.output);
     let folder = request.folder();
     let mut unwritable = None;
-    let mut unfinished = Unfinished::of(&folder);
+    let mut unfinished = Unfinished::of(folder.join(solution_file::UNFINISHED));
     let read = began.elapsed().as_secs_f64();
     let allowed = SolveLimits {
         iterations: request.max_iterations,
@@ -81,7 +87,9 @@ pub(super) fn control(
                 if report.iteration == 0 && unwritable.is_none() {
                     unwritable = make_folder(&folder).err();
                 }
-                unfinished.consider(model, report.primal_infeasibility, iterate.motion);
+                unfinished.consider(report.primal_infeasibility, |path| {
+                    solution_file::write(path, model, &(iterate.motion)())
+                });
                 match unwritable {
                     Some(_) => ControlFlow::Break(()),
                     None => ControlFlow::Continue(()),
@@ -180,10 +188,20 @@ pub(super) fn control(
         hessian: seconds.hessian,
         ..Seconds::default()
     };
-    let request = (request, asked);
-    write_files(request, &folder, (control, &optimum), &mut summary, began)?;
-    unfinished.done();
-    Ok(told(&summary, violated, &folder))
+    write_files(
+        (request, asked),
+        &folder,
+        (control, &optimum, output),
+        &mut summary,
+        began,
+    )?;
+    unfinished::done(&folder);
+    let mut told = told(&summary, violated, &folder);
+    if STOPPED.contains(&word) {
+        told.notes
+            .extend(continuation::command(request, &loaded.task));
+    }
+    Ok(told)
 }
 
 /// The optimum that is written, and the way to it.
@@ -236,7 +254,7 @@ fn find(
 fn write_files(
     (request, asked): (&CommandInput, &[(String, String)]),
     folder: &Path,
-    (control, optimum): (&Control, &Optimum),
+    (control, optimum, output): (&Control, &Optimum, &Output),
     summary: &mut Summary,
     began: Instant,
 ) -> Result<(), WriteError> {
@@ -265,28 +283,43 @@ fn write_files(
     summary
         .notes
         .extend(tracking_words::told(&summary.tracking));
+    let shown = Shown::of(
+        Motion {
+            model,
+            history: &history,
+            trajectory: &motion,
+            observations: &observed,
+        },
+        output,
+        false,
+        &mut files,
+    )?;
+    summary.notes.extend(shown.notes.iter().cloned());
+    summary.shown = shown.part;
     let is_solved = summary.message.is_none();
     let compared = is_solved
         .then(|| under_constant_voltages(model, boundary, kept, COMPARED))
         .flatten()
-        .map(|(history, _)| trajectory(model, &solved(model, &history, None)));
+        .map(|(history, _)| trajectory(model, &solved(model, &history, None)))
+        .map(|other| shown.beside(other));
     let goal = goal(model, boundary);
     let mut told = page::told("Optimal control", summary, asked);
     told.rows = rows(summary);
     told.plots.push(convergence(&optimum.solution.iterations));
     let run = Run {
         system: &model.system,
-        trajectory: &motion,
-        skins: &Skins::new(model, &history),
+        trajectory: &shown.trajectory,
+        skins: &shown.skins,
         name: match summary.status.as_str() {
             _ if is_solved => "optimal voltages",
             "not_reproduced" | "not_held" => "optimum",
             _ => "last iterate",
         },
-        observations: &observed,
+        observations: &shown.observations,
+        tabulated: &shown.tabulated,
         comparison: compared.as_ref().map(|c| ("constant voltages", c)),
         held: boundary.rest[1].as_deref().filter(|_| is_solved),
-        tracked: &summary.tracking,
+        tracked: &shown.tracked(&summary.tracking),
         origin: &origin,
         goal: goal.as_deref(),
         told: request.page.of(&told),

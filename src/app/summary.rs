@@ -12,6 +12,7 @@ use crate::app::exchanged::Exchanged;
 use crate::app::followed::Followed;
 use crate::app::request::CommandInput;
 use crate::app::rest_words::Rest;
+use crate::app::shown::ShownPart;
 use crate::control::problem;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
 use crate::files::lay_out;
@@ -47,6 +48,9 @@ pub(super) struct Summary {
     pub(super) program: Option<Program>,
     #[serde(flatten)]
     pub(super) simulation: Option<Simulation>,
+    /// How many instants tables, figures and page show, where not all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) shown: Option<ShownPart>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) accuracy: Option<Accuracy>,
     /// How closely markers and joints follow what the objective names.
@@ -366,6 +370,7 @@ impl Summary {
             notes: Vec::new(),
             program: None,
             simulation: None,
+            shown: None,
             accuracy: None,
             tracking: Vec::new(),
             energies: None,

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
+use crate::app::continuation;
 use crate::app::error::CommandError;
 use crate::app::forward;
 use crate::app::page::asked;
@@ -10,7 +11,9 @@ use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::rest;
 use crate::app::solve;
-use crate::control::problem::Task;
+use crate::control::Earlier;
+use crate::control::problem::{Guess, Task};
+use crate::files::solution::SolutionFile;
 use crate::files::{Loaded, read_problem, read_problem_text};
 use crate::workflow::accuracy::AccuracyTarget;
 use crate::workflow::memory;
@@ -41,12 +44,19 @@ pub fn run_observed(
     let loaded = read(&request.input, text, &request.set)?;
     refuse_unused(request, &loaded.task)?;
     let told = (request, &asked(&loaded)[..]);
-    match loaded.task {
-        Task::Control(control) => solve::control(told, &loaded.system, &control, began, observer),
-        Task::Simulate(simulation) => {
-            forward::simulation(told, &loaded.system, &simulation, began, observer)
+    match &loaded.task {
+        Task::Control(control) => {
+            let mut control = control.clone();
+            if let Some(folder) = &request.from {
+                let file = SolutionFile(continuation::solution(folder)?);
+                control.guess = Guess::Solution(Earlier::new(file));
+            }
+            solve::control(told, &loaded, &control, began, observer)
         }
-        Task::Equilibrium(task) => rest::at(told, &loaded.system, &task, began),
+        Task::Simulate(simulation) => {
+            forward::simulation(told, &loaded, simulation, began, observer)
+        }
+        Task::Equilibrium(task) => rest::at(told, &loaded.system, task, began),
     }
 }
 
@@ -69,12 +79,18 @@ fn refuse_unused(request: &CommandInput, task: &Task) -> Result<(), CommandError
     let option = match (task, request.wanted) {
         (Task::Equilibrium(_), Some(AccuracyTarget::Below(_))) => "--accuracy",
         (Task::Equilibrium(_), Some(AccuracyTarget::Estimate)) => "--estimate-error",
+        (Task::Equilibrium(_), _) if request.from.is_some() => "--from",
+        (Task::Simulate(_), Some(_)) if request.from.is_some() => "--from",
         (Task::Equilibrium(_) | Task::Simulate(_), _) if request.max_iterations.is_some() => {
             "--max-iterations"
         }
         _ => return Ok(()),
     };
     let asks = match task {
+        Task::Equilibrium(_) if option == "--from" => "an equilibrium, which goes on from nothing",
+        Task::Simulate(_) if option == "--from" => {
+            "a simulation, whose steps --accuracy and --estimate-error halve from the start"
+        }
         Task::Equilibrium(_) if request.wanted.is_some() => {
             "an equilibrium, which has no steps in time to refine"
         }

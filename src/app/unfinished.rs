@@ -4,20 +4,17 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::app::solution_file;
-use crate::control::Solution;
-use crate::model::Model;
+use crate::app::{continuation, solution_file};
+use crate::report::atomic::WriteError;
 
-/// Name of the file; it has the format of `solution.json`.
-const NAME: &str = "unfinished.json";
-/// Shortest time between two writings.
-const PERIOD: Duration = Duration::from_secs(2);
+/// Shortest and longest time between two writings.
+const PERIOD: [Duration; 2] = [Duration::from_secs(2), Duration::from_secs(30)];
 /// No more than one part in so many of the time goes into writing.
 const SHARE: u32 = 20;
 /// A point of no greater violation is as good as one that meets equations and limits.
 const MEETS: f64 = 1e-6;
 
-/// The file in the folder of the results, written anew now and then, and removed when the results are complete.
+/// A file in the folder of the results, written anew now and then.
 #[derive(Debug)]
 pub(super) struct Unfinished {
     path: PathBuf,
@@ -29,36 +26,36 @@ pub(super) struct Unfinished {
 
 impl Unfinished {
     /// Nothing is written yet; the first time comes after two seconds.
-    pub(super) fn of(folder: &Path) -> Self {
+    pub(super) fn of(path: PathBuf) -> Self {
         Self {
-            path: folder.join(NAME),
-            next: Instant::now() + PERIOD,
+            path,
+            next: Instant::now() + PERIOD[0],
             violation: f64::INFINITY,
         }
     }
 
-    /// Writes a motion, when it is time and it is as good as the one that was written: `violation` is that of its equations and
+    /// Writes what there is, when it is time and it is as good as what was written: `violation` is that of its equations and
     /// limits.
     pub(super) fn consider(
         &mut self,
-        model: &Model,
         violation: f64,
-        motion: impl FnOnce() -> Solution,
+        write: impl FnOnce(&Path) -> Result<(), WriteError>,
     ) {
         let began = Instant::now();
         if began < self.next || violation > self.violation.max(MEETS) {
             return;
         }
-        match solution_file::write(&self.path, model, &motion()) {
+        match write(&self.path) {
             Ok(()) => self.violation = violation,
             // The results of the whole run are written to the same folder, and tell it then.
             Err(error) => tracing::warn!("{error}"),
         }
-        self.next = Instant::now() + PERIOD.max(SHARE * began.elapsed());
+        self.next = Instant::now() + (SHARE * began.elapsed()).clamp(PERIOD[0], PERIOD[1]);
     }
+}
 
-    /// The results are complete: nothing is unfinished, of this run or an earlier one.
-    pub(super) fn done(self) {
-        fs::remove_file(self.path).ok();
-    }
+/// The results of a folder are complete: nothing is unfinished, of this run or an earlier one.
+pub(super) fn done(folder: &Path) {
+    solution_file::remove(&folder.join(solution_file::UNFINISHED));
+    fs::remove_file(folder.join(continuation::UNFINISHED)).ok();
 }

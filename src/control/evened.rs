@@ -75,5 +75,6 @@ pub(super) fn evened<'s>(
         voltages: within(&solved.voltages),
         potentials: within(&solved.potentials),
         costates: None,
+        barrier: None,
     })
 }

@@ -32,6 +32,8 @@ pub struct Solution {
     pub parameters: Vec<FoundParameter>,
     /// Multipliers of the optimisation.
     pub costates: Option<Costates>,
+    /// Barrier parameter of a solve that has not come to its end.
+    pub barrier: Option<f64>,
 }
 
 /// Multipliers of an optimisation, unscaled, in the order of its rows and variables.

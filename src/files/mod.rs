@@ -3,11 +3,14 @@
 //! - [`units`]: numbers with units; [`json`]: text, places in it, mistakes, overrides.
 //! - [`scene`], [`problem`]: what is written in the two files, and what it becomes: [`System`] and [`Task`].
 //! - [`study`], [`sweep`]: what is written in a study of variants of a problem, or a sweep of them; `changes`: their overrides.
+//! - [`solution`]: motions that later runs start from; [`npz`]: arrays of long ones; [`continuation`]: motions that go on.
 //! - `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
 
 pub(crate) mod changes;
 mod columns;
+pub mod continuation;
 pub mod json;
+pub mod npz;
 pub mod problem;
 pub mod scene;
 pub mod solution;
@@ -31,6 +34,7 @@ use std::path::{Path, PathBuf};
 use crate::control::problem::Task;
 use crate::files::json::set::Override;
 use crate::files::problem::build::build_problem;
+use crate::files::problem::output::{Output, output};
 use crate::files::problem::spec::{ProblemSpec, SceneSource};
 use crate::files::scene::build::build_scene;
 use crate::files::scene::expand::expanded;
@@ -46,6 +50,8 @@ pub struct Loaded {
     pub system: System,
     /// What is asked.
     pub task: Task,
+    /// What is shown of a motion.
+    pub output: Output,
     /// File of the scene; `None` where the problem holds the scene itself.
     pub scene_path: Option<PathBuf>,
     /// The scene as written, overrides applied.
@@ -114,8 +120,19 @@ fn problem_of(
             (written, system, scene.value, Some(file))
         }
     };
+    let task = build_problem(&problem, (&written, &system), &scope)?;
+    let place = scope.key("output");
+    let output = match (&problem.output, &task) {
+        (None, _) => Output::default(),
+        (Some(_), Task::Equilibrium(_)) => {
+            let expected = "none beside an equilibrium, which has no times";
+            return Err(place.wrong("an \"output\"", expected));
+        }
+        (Some(spec), _) => output(spec, &system, &place)?,
+    };
     Ok(Loaded {
-        task: build_problem(&problem, (&written, &system), &scope)?,
+        task,
+        output,
         system,
         scene_path,
         scene,

@@ -59,6 +59,11 @@ pub enum Start {
     /// 10 and 674, 39 and 1323; [`Start::Centred`] takes 10 and 430, 11 and 451, 19 and 613, a cold start about 21 each. The many iterations of a few
     /// come from voltages that leave zero, where neither effort nor force has a slope: between 300 V and 3 kV the sum to the nearest goals halves.
     PrimalDual,
+    /// Variables and multipliers where another solve of the same problem was stopped, and its barrier parameter: it goes on.
+    Resumed {
+        /// The barrier parameter.
+        mu_init: f64,
+    },
     /// Variables and multipliers of a solution on another grid or of another duration: bounded variables and the multipliers of
     /// their bounds are moved to the barrier's path at a parameter from their complementarity, which is then chosen in each
     /// iteration. `results/gallery/warm_starts.md` tells what that saves.
@@ -74,12 +79,15 @@ impl Start {
 
     /// Whether the multipliers of the starting point are read.
     pub(super) fn is_dual(self) -> bool {
-        matches!(self, Self::PrimalDual | Self::Centred)
+        matches!(
+            self,
+            Self::PrimalDual | Self::Centred | Self::Resumed { .. }
+        )
     }
 
     /// Whether the barrier parameter is chosen in each iteration.
     fn is_adaptive(self) -> bool {
-        self.is_dual() || self == Self::Simulated
+        matches!(self, Self::PrimalDual | Self::Centred | Self::Simulated)
     }
 }
 
@@ -173,7 +181,7 @@ impl Options {
                 "slack_bound_push",
                 "slack_bound_frac",
             ],
-            Start::PrimalDual | Start::Centred => &[
+            Start::PrimalDual | Start::Centred | Start::Resumed { .. } => &[
                 "warm_start_bound_push",
                 "warm_start_bound_frac",
                 "warm_start_slack_bound_push",
@@ -184,7 +192,7 @@ impl Options {
         for name in pushes {
             number(name, PUSH);
         }
-        if let Start::Primal { mu_init } = self.start {
+        if let Start::Primal { mu_init } | Start::Resumed { mu_init } = self.start {
             number("mu_init", mu_init);
         }
 

@@ -130,7 +130,7 @@ impl<N: Nlp> Solver<N> {
         let costates = &mut self.result.costates;
         match self.options.start {
             Start::Cold | Start::Simulated | Start::Primal { .. } => {}
-            Start::PrimalDual | Start::Centred => {
+            Start::PrimalDual | Start::Centred | Start::Resumed { .. } => {
                 let known = start.costates.as_ref();
                 costates.clone_from(known.expect("a start with multipliers has them"));
             }

@@ -14,6 +14,7 @@ pub mod page;
 pub mod paraview;
 pub mod pose;
 mod run;
+pub mod sampled;
 pub mod skin;
 pub mod skins;
 pub mod solids;
@@ -68,7 +69,7 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
     let mut files = vec![
         (
             "trajectory.csv",
-            table::trajectory_csv(observations, origin),
+            table::trajectory_csv(run.tabulated, origin),
         ),
         (
             "controls.csv",

@@ -21,6 +21,8 @@ pub struct Run<'a> {
     pub name: &'a str,
     /// What was observed at the instants, see [`Trajectory::observe`]; energies are columns in N mm.
     pub observations: &'a Observations,
+    /// What of it stands in `trajectory.csv`.
+    pub tabulated: &'a Observations,
     /// Another motion of the same system and its name, such as `constant voltages`.
     pub comparison: Option<(&'a str, &'a Trajectory)>,
     /// Voltages in V, one per muscle, that hold the last instant, where they are known; they colour the configuration.

@@ -2,49 +2,79 @@
 
 use std::fmt::Write;
 
-use crate::dynamics::trajectory::{Observations, Trajectory};
+use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::model::system::System;
 use crate::report::origin::Origin;
 
-/// `trajectory.csv`: one row per instant, headers `name [unit]`; each number reads back identical, and where there is none
-/// the cell is empty. Charges, which are observed in mC, are written in nC.
-pub fn trajectory_csv(observations: &Observations, origin: &Origin) -> String {
-    let columns = &observations.columns;
-    let written = |unit: &'static str| match unit {
+/// A column of numbers under its heading.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableColumn<'a> {
+    /// Name and unit: `tip_x [mm]`.
+    pub heading: String,
+    /// Numbers as they are inside.
+    values: &'a [f64],
+    /// How many of the unit in the heading one of the unit inside is.
+    factor: f64,
+}
+
+impl TableColumn<'_> {
+    /// The numbers in the unit of the heading.
+    pub fn values(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
+        self.values.iter().map(|value| self.factor * value)
+    }
+}
+
+/// The columns of `trajectory.csv`. Charges, which are observed in mC, are written in nC.
+pub fn columns(observations: &Observations) -> Vec<TableColumn<'_>> {
+    observations.columns.iter().map(headed).collect()
+}
+
+fn headed(Column { name, unit, values }: &Column) -> TableColumn<'_> {
+    let (unit, factor) = match *unit {
         "mC" => ("nC", 1e6),
         unit => (unit, 1.0),
     };
-    let header = columns.iter().map(|c| match written(c.unit) {
-        ("", _) => c.name.clone(),
-        (unit, _) => format!("{} [{unit}]", c.name),
-    });
+    let heading = match unit {
+        "" => name.clone(),
+        unit => format!("{name} [{unit}]"),
+    };
+    TableColumn {
+        heading,
+        values,
+        factor,
+    }
+}
+
+/// `trajectory.csv`: one row per instant, headers `name [unit]`; each number reads back identical, and where there is none
+/// the cell is empty.
+pub fn trajectory_csv(observations: &Observations, origin: &Origin) -> String {
+    let columns = columns(observations);
     let rows = columns.iter().map(|c| c.values.len()).max().unwrap_or(0);
     let line = format!("{}; every column at the time of its row", origin.line());
+    let cell = |column: &TableColumn<'_>, k: usize| {
+        column.factor * column.values.get(k).copied().unwrap_or(f64::NAN)
+    };
     csv(
         &line,
-        header,
-        (0..rows).map(|k| {
-            columns
-                .iter()
-                .map(move |c| written(c.unit).1 * c.values.get(k).copied().unwrap_or(f64::NAN))
-        }),
+        columns.iter().map(|column| column.heading.clone()),
+        (0..rows).map(|k| columns.iter().map(move |column| cell(column, k))),
     )
 }
 
-/// `controls.csv`: one row per interval with its start and end in ms and the voltage of each source in V.
+/// The headings of `controls.csv`: start and end of an interval in ms and the voltage of each source in V.
+pub fn control_headings(system: &System) -> Vec<String> {
+    let ends = ["start [ms]", "end [ms]"].map(str::to_owned);
+    let sources = system.sources().into_iter();
+    let voltages = sources.map(|source| format!("{} [V]", source.name));
+    ends.into_iter().chain(voltages).collect()
+}
+
+/// `controls.csv`: one row per interval.
 pub fn controls_csv(trajectory: &Trajectory, system: &System, origin: &Origin) -> String {
-    let header = ["start [ms]".to_owned(), "end [ms]".to_owned()]
-        .into_iter()
-        .chain(
-            system
-                .sources()
-                .into_iter()
-                .map(|s| format!("{} [V]", s.name)),
-        );
     let ends = trajectory.times.windows(2);
     csv(
         &origin.line(),
-        header,
+        control_headings(system).into_iter(),
         ends.zip(&trajectory.voltages)
             .map(|(ends, voltages)| ends.iter().chain(voltages).copied()),
     )
@@ -88,13 +118,20 @@ pub(super) fn csv<R>(
 where
     R: Iterator<Item = f64>,
 {
-    // The shortest decimal that reads back as the same number.
-    let cell = |value: f64| match value.is_finite() {
-        true => format!("{value:?}"),
-        false => String::new(),
-    };
-    let rows = rows.map(|row| row.map(cell).collect());
-    csv_under(line, [header.collect()].into_iter().chain(rows))
+    let mut text = csv_under(line, [header.collect()].into_iter());
+    for row in rows {
+        for (column, value) in row.enumerate() {
+            if column > 0 {
+                text.push(',');
+            }
+            // The shortest decimal that reads back as the same number.
+            if value.is_finite() {
+                write!(text, "{value:?}").expect("writing to a string does not fail");
+            }
+        }
+        text.push('\n');
+    }
+    text
 }
 
 /// Rows of cells, separated by commas, under a line of comment.

@@ -1,9 +1,8 @@
 //! What tells whether two variants are one, and whether a result is that of a variant.
 
-use std::fmt::{self, Write};
+use std::fmt;
 
-use sha2::{Digest, Sha256};
-
+use crate::app::digest;
 use crate::files::Loaded;
 use crate::report::origin::Origin;
 
@@ -27,28 +26,12 @@ impl Identity {
     }
 
     fn of(written: fmt::Arguments<'_>) -> Self {
-        let mut hash = Hash(Sha256::new());
-        let all = write!(hash, "{}\n{written}", Origin::program());
-        all.expect("a hash takes everything");
-        let mut digits = String::new();
-        for byte in hash.0.finalize().iter().take(DIGITS / 2) {
-            write!(digits, "{byte:02x}").expect("room for digits");
-        }
-        Self(digits)
+        let program = Origin::program();
+        Self(digest(format_args!("{program}\n{written}"), DIGITS))
     }
 
     /// Its digits.
     pub(super) fn as_str(&self) -> &str {
         &self.0
-    }
-}
-
-/// What is written is hashed piece by piece.
-struct Hash(Sha256);
-
-impl Write for Hash {
-    fn write_str(&mut self, text: &str) -> fmt::Result {
-        self.0.update(text.as_bytes());
-        Ok(())
     }
 }

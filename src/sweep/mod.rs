@@ -97,6 +97,7 @@ fn solve<'a>(
         output: Some(folder(variant)),
         max_seconds: None,
         max_iterations: None,
+        from: None,
         wanted: None,
         progress: request.progress,
         page: PageWanted::Written,

@@ -25,6 +25,7 @@ pub(crate) mod integrate;
 pub(crate) mod memory;
 pub(crate) mod motion;
 pub(crate) mod optimise;
+mod ordering;
 pub(crate) mod phase;
 pub(crate) mod reasons;
 pub(crate) mod resimulate;

@@ -32,6 +32,7 @@ pub fn solved(model: &Model, history: &DiscreteTrajectory, costates: Option<Cost
         potentials: potentials(model, history),
         parameters: parameters(model, history),
         costates,
+        barrier: None,
     }
 }
 

@@ -1,22 +1,22 @@
 //! A control problem solved in memory: boundary, guess, program, solver.
 
-use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use crate::control::problem::{Control, Duration, Guess};
+use crate::control::problem::{Control, Guess};
 use crate::control::{BoundaryConditions, Carried, InitialGuess, Solution, Transcription, guess};
 use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
 use crate::ipopt::{
-    Iteration, OptionValue, Options, Solver, SolverResult, Start, StartingPoint, Status, interrupt,
+    Iteration, Options, Solver, SolverResult, Start, StartingPoint, Status, interrupt,
 };
-use crate::model::{Coordinates, Model, System};
+use crate::model::{Model, System};
 use crate::nlp::Nlp;
 use crate::workflow::active::{Active, active};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::memory;
 use crate::workflow::motion::solved;
+use crate::workflow::ordering::ordering;
 use crate::workflow::phase::phase;
 use crate::workflow::resimulate::{Cause, Resimulation, resimulate};
 use crate::workflow::resolve::{interval, resolve, with_found};
@@ -183,7 +183,10 @@ pub fn optimise(
     let mut solve = |solver: &mut Solver<Transcription<'_>>, point: &StartingPoint| {
         let decoder = solver.program().decoder();
         let mut observer = |report: &Iteration, x: &[f64]| {
-            let motion = || solved(&model, &decoder.decode(x), None);
+            let motion = || Solution {
+                barrier: Some(report.mu),
+                ..solved(&model, &decoder.decode(x), None)
+            };
             observer(&Iterate {
                 report,
                 model: &model,
@@ -231,6 +234,10 @@ pub fn optimise(
     let history = program.decode(&solution.x);
     let motion = Solution {
         hold: boundary.rest[1].clone(),
+        barrier: match solution.status.is_solved() {
+            true => None,
+            false => solution.iterations.last().map(|last| last.mu),
+        },
         ..solved(&model, &history, Some(program.costates(&solution.costates)))
     };
     let violated = match solution.status.is_solved() {
@@ -356,6 +363,15 @@ pub(crate) fn prepare<'m>(
     let start = match (earlier, &point.costates) {
         (None, _) if matches!(control.guess, Guess::Simulate(_)) => Start::Simulated,
         (None, _) => Start::Cold,
+        (
+            Some(Solution {
+                barrier: Some(mu), ..
+            }),
+            costates,
+        ) if earlier.is_some_and(is_same_grid) => match costates {
+            Some(_) => Start::Resumed { mu_init: *mu },
+            None => Start::Primal { mu_init: *mu },
+        },
         (Some(_), _) if carried.simulated => Start::Simulated,
         (Some(earlier), Some(_)) if is_same_grid(earlier) => Start::PrimalDual,
         (Some(_), Some(_)) if program.violation(&point.x) < FITS => Start::PrimalDual,
@@ -369,25 +385,4 @@ pub(crate) fn prepare<'m>(
         start,
         carried,
     })
-}
-
-/// Options of Ipopt, with the ordering of MUMPS that was fastest for the kind of program, unless the problem names one.
-///
-/// Approximate minimum degree (0) where each instant is a small dense block or the duration is given; minimum fill (2)
-/// where a free duration couples all instants of a redundant program; nested dissection of SCOTCH (3) for the meshes of elastic
-/// blocks. Measurements: `benches/README.md`.
-fn ordering(model: &Model, control: &Control) -> BTreeMap<String, OptionValue> {
-    let free = matches!(control.duration, Duration::Free { .. });
-    let ordering = if !model.action.motion.of_nodes.is_empty() {
-        3
-    } else if free && model.coordinates == Coordinates::Redundant {
-        2
-    } else {
-        0
-    };
-    let mut options = control.solver.ipopt.clone();
-    options
-        .entry("mumps_pivot_order".to_owned())
-        .or_insert(OptionValue::Integer(ordering));
-    options
 }

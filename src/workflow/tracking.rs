@@ -58,6 +58,20 @@ pub struct TrackedPath {
     difference: Vec<f64>,
 }
 
+impl TrackedPath {
+    /// The same at some of the instants.
+    pub(crate) fn at(&self, instants: &[usize]) -> Self {
+        let pick = |list: &[f64]| instants.iter().map(|&k| list[k]).collect();
+        Self {
+            name: self.name.clone(),
+            axis: self.axis,
+            value: pick(&self.value),
+            reference: pick(&self.reference),
+            difference: pick(&self.difference),
+        }
+    }
+}
+
 /// All that an optimum follows, with its motion as a trajectory.
 pub fn followed(optimum: &Optimum, control: &Control, motion: &Trajectory) -> Vec<Tracked> {
     let model = &optimum.model;

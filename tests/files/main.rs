@@ -5,6 +5,7 @@ mod extremes;
 mod free;
 mod fuzz_reader;
 mod meaning;
+mod npz;
 mod objectives;
 mod quantities;
 mod scene;

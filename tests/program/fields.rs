@@ -73,6 +73,7 @@ fn request(input: PathBuf, output: &Path, set: &[&str]) -> CommandInput {
         output: Some(output.to_owned()),
         max_seconds: None,
         max_iterations: None,
+        from: None,
         wanted: None,
         progress: ProgressDisplay::Never,
         page: PageWanted::Written,

@@ -51,23 +51,3 @@ fn a_solve_that_is_killed_leaves_an_iterate_to_go_on_from() {
     assert!(results.join("solution.json").exists());
     assert!(!results.join("unfinished.json").exists());
 }
-
-#[test]
-fn a_simulation_that_is_killed_leaves_its_steps() {
-    let folder = tempfile::tempdir().unwrap();
-    let problem = problem("fe_trunk");
-    let long = ["--set", "simulate.duration=100 s"];
-    let results = killed(
-        folder.path(),
-        &[&["simulate", &problem][..], &long].concat(),
-    );
-    let kept = read(results.join("unfinished.json"));
-    let steps = kept["time"].as_array().unwrap().len();
-    assert!(steps > 2, "{steps} instants");
-    let voltages = kept["voltages"].as_object().unwrap();
-    assert!(
-        voltages
-            .values()
-            .all(|v| v.as_array().unwrap().len() == steps - 1)
-    );
-}

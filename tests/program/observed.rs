@@ -35,6 +35,7 @@ fn solve(
         output: Some(output.to_owned()),
         max_seconds: None,
         max_iterations: None,
+        from: None,
         wanted: None,
         progress: ProgressDisplay::Never,
         page: PageWanted::Written,

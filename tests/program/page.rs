@@ -57,6 +57,7 @@ fn run<'a>(system: &'a System, trajectory: &'a Trajectory) -> Run<'a> {
         skins,
         name: "swing",
         observations,
+        tabulated: observations,
         comparison: None,
         held: None,
         tracked: &[],

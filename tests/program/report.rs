@@ -271,6 +271,7 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
         skins: &Skins::default(),
         name: "swing",
         observations: &observations,
+        tabulated: &observations,
         comparison: Some(("again", &trajectory)),
         held: None,
         tracked: &tracked,

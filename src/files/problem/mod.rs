@@ -1,8 +1,8 @@
 //! The problem file: what is written (`spec`, `spec_*`) and how it becomes a [`Task`](crate::control::problem::Task).
 //!
 //! - `build`: the problem; `control`, `simulation`: its two longer tasks.
-//! - `state`, `goal`, `limits`, `free`, `guess`, `voltages`, `signal`, `track`, `energies`, `coordinates`: their parts; `solution_voltages`,
-//!   `solution_joints`:
+//! - `state`, `goal`, `limits`, `free`, `guess`, `voltages`, `signal`, `track`, `energies`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
+//!   `solution_joints`, `solution_document`:
 //!   what is read of an earlier solution.
 
 pub(crate) mod build;
@@ -13,8 +13,10 @@ pub(crate) mod free;
 pub(crate) mod goal;
 pub(crate) mod guess;
 pub(crate) mod limits;
+pub mod output;
 pub(crate) mod signal;
 pub(crate) mod simulation;
+pub(crate) mod solution_document;
 pub(crate) mod solution_joints;
 pub(crate) mod solution_voltages;
 pub mod spec;
@@ -24,6 +26,7 @@ pub mod spec_energies;
 pub mod spec_free;
 pub mod spec_integrator;
 pub mod spec_limits;
+pub mod spec_output;
 pub mod spec_signal;
 pub mod spec_simulate;
 pub mod spec_states;

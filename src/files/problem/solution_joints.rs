@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::control::Signal;
-use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::problem::solution_document::solution_document;
 use crate::files::problem::state::joint_with_coordinate;
 use crate::model::joint_unit;
 use crate::model::system::System;
@@ -32,7 +32,9 @@ struct Configuration {
 
 /// The coordinate of each joint of a solution by index, linear between its instants.
 pub(crate) fn read(path: &Path, system: &System) -> Result<Vec<(usize, Signal)>, SceneError> {
-    let document = &Document::read(path)?;
+    let document = &solution_document(path, |name| {
+        name == "time" || name.starts_with("configuration/joints/")
+    })?;
     let solution: SolutionRecord = document.parse()?;
     let scope = Scope::of(document);
     let place = scope.key("time");

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::control::problem::{Afterwards, Voltages};
-use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::problem::solution_document::solution_document;
 use crate::files::problem::spec_voltages::TableSpec;
 use crate::files::problem::state::{driven, voltages};
 use crate::model::system::System;
@@ -27,7 +27,8 @@ struct SolutionRecord {
 /// Voltages of a solution, then those that hold its goal, or where it names none the last ones; 0 for sources that it does
 /// not know.
 pub(crate) fn of_solution(path: &Path, system: &System) -> Result<Voltages, SceneError> {
-    let document = &Document::read(path)?;
+    let document =
+        &solution_document(path, |name| name == "time" || name.starts_with("voltages/"))?;
     let solution: SolutionRecord = document.parse()?;
     let scope = Scope::of(document);
     let instants: Vec<f64> = solution.time.iter().map(|time| 1e3 * time).collect();

@@ -7,6 +7,7 @@ use std::marker::PhantomData;
 use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::files::problem::spec_control::ControlSpec;
 use crate::files::problem::spec_coordinates::CoordinatesSpec;
+use crate::files::problem::spec_output::OutputSpec;
 use crate::files::problem::spec_simulate::SimulateSpec;
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::scene::spec::SceneSpec;
@@ -30,6 +31,9 @@ pub struct ProblemSpec {
     /// Optimal control.
     #[serde(default)]
     pub control: Option<ControlSpec>,
+    /// What tables, figures and page show of a motion.
+    #[serde(default)]
+    pub output: Option<OutputSpec>,
 }
 
 /// A static equilibrium.

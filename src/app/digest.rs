@@ -1,0 +1,26 @@
+//! Digits that tell what is the same.
+
+use std::fmt::{self, Write};
+
+use sha2::{Digest, Sha256};
+
+/// Hexadecimal digits of a hash of what is written.
+pub(crate) fn digest(written: fmt::Arguments<'_>, digits: usize) -> String {
+    let mut hash = Hash(Sha256::new());
+    write!(hash, "{written}").expect("a hash takes everything");
+    let mut text = String::new();
+    for byte in hash.0.finalize().iter().take(digits / 2) {
+        write!(text, "{byte:02x}").expect("room for digits");
+    }
+    text
+}
+
+/// What is written is hashed piece by piece.
+struct Hash(Sha256);
+
+impl Write for Hash {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0.update(text.as_bytes());
+        Ok(())
+    }
+}

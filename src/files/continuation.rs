@@ -1,0 +1,198 @@
+//! `continuation.npz`: a simulated motion with all from which another run goes on with it to the bit.
+//!
+//! Times are in ms; coordinates, momenta, voltages and potentials are as the program has them (g, mm, ms, N, V). `state/…` is the state of
+//! the method at the end, `tangent/…` the matrix whose factors are used again, `problem.json` what was asked.
+
+use std::io;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::dynamics::{DiscreteTrajectory, StepState, StepperReport, TangentState};
+use crate::files::npz::{self, Array, Npz, NpzError, NpzWriter};
+use crate::sparse::MethodState;
+
+/// The text of what was asked.
+const PROBLEM: &str = "problem.json";
+/// The text that names the method of factorisation.
+const METHOD: &str = "tangent/method.txt";
+/// Begins the names of lists of the state.
+const STATE: &str = "state/";
+
+/// A motion, and what was asked.
+#[derive(Clone, Debug)]
+pub struct Continuation {
+    /// The motion.
+    pub history: DiscreteTrajectory,
+    /// What was asked.
+    pub problem: Value,
+}
+
+/// Why a file is none.
+#[derive(Debug, thiserror::Error)]
+pub enum ContinuationError {
+    /// It is no file of arrays.
+    #[error(transparent)]
+    Npz(#[from] NpzError),
+    /// Something is missing, or has another shape.
+    #[error("{0} is missing, or not as a simulation writes it")]
+    Missing(&'static str),
+}
+
+/// The bytes of a file.
+///
+/// # Errors
+/// A motion with names too long for the format; no method has them.
+pub fn bytes(history: &DiscreteTrajectory, problem: &Value) -> io::Result<Vec<u8>> {
+    let mut arrays = NpzWriter::default();
+    arrays.text(PROBLEM, &problem.to_string());
+    arrays.list("times", &history.times);
+    arrays.rows("z", &history.z);
+    arrays.rows("momenta", &history.momenta);
+    arrays.rows("scalars", &history.scalars);
+    arrays.list("works", &history.works);
+    if let Some(rates) = &history.rates {
+        arrays.list("rates", rates);
+    }
+    let StepState {
+        lists,
+        tangent,
+        report,
+        wanted,
+    } = &history.end;
+    for (i, (name, list)) in lists.iter().enumerate() {
+        arrays.list(&format!("{STATE}{i:04} {name}"), list);
+    }
+    if let Some(tangent) = tangent {
+        arrays.text(METHOD, &tangent.method.method);
+        let is_approximate = f64::from(u8::from(tangent.is_approximate));
+        arrays.list(
+            "tangent/learnt",
+            &[is_approximate, tangent.method.doubled as f64],
+        );
+        arrays.list("tangent/step", tangent.step.as_slice());
+        arrays.list("tangent/matrix", &tangent.matrix);
+    }
+    let counts = [
+        report.steps,
+        report.iterations,
+        report.halved,
+        report.factorisations,
+    ];
+    arrays.list("report/counts", &counts.map(|count| count as f64));
+    let StepperReport {
+        assembly,
+        factorisation,
+        solution,
+        made,
+        exchanged,
+        ..
+    } = *report;
+    arrays.list("report/seconds", &[assembly, factorisation, solution]);
+    arrays.list("report/energies", &[made, exchanged]);
+    arrays.list("wanted", wanted.as_slice());
+    Ok(arrays.finish()?.0)
+}
+
+/// Reads a file.
+///
+/// # Errors
+/// It is none.
+pub fn read(path: &Path) -> Result<Continuation, ContinuationError> {
+    let mut file = npz::read(path, |_| true)?;
+    let problem = file.texts.get(PROBLEM);
+    let problem = problem.and_then(|text| serde_json::from_str(text).ok());
+    let problem = problem.ok_or(ContinuationError::Missing(PROBLEM))?;
+    let end = state(&mut file)?;
+    let history = DiscreteTrajectory {
+        times: list(&mut file, "times")?,
+        z: rows(&mut file, "z")?,
+        momenta: rows(&mut file, "momenta")?,
+        scalars: rows(&mut file, "scalars")?,
+        works: list(&mut file, "works")?,
+        rates: file.arrays.remove("rates").map(|rates| rates.values),
+        report: end.report,
+        end,
+        ..DiscreteTrajectory::default()
+    };
+    let is_whole = history.times.len() > 1 && history.z.len() == history.times.len();
+    if !is_whole || history.momenta.len() != history.times.len() {
+        return Err(ContinuationError::Missing("a motion of one step or more"));
+    }
+    Ok(Continuation { history, problem })
+}
+
+fn state(file: &mut Npz) -> Result<StepState, ContinuationError> {
+    let (of_state, others) = std::mem::take(&mut file.arrays)
+        .into_iter()
+        .partition(|(name, _)| name.starts_with(STATE));
+    file.arrays = others;
+    // Their numbers put them in order.
+    let of_state: std::collections::BTreeMap<String, Array> = of_state;
+    let lists = of_state.into_iter().map(|(name, array)| {
+        let (_, name) = name.split_once(' ').unwrap_or_default();
+        (name.to_owned(), array.values)
+    });
+    let tangent = match file.texts.remove(METHOD) {
+        None => None,
+        Some(method) => {
+            let [is_approximate, doubled] = numbers(file, "tangent/learnt")?;
+            Some(TangentState {
+                step: list(file, "tangent/step")?.first().copied(),
+                is_approximate: is_approximate != 0.0,
+                method: MethodState {
+                    method,
+                    doubled: doubled as usize,
+                },
+                matrix: list(file, "tangent/matrix")?,
+            })
+        }
+    };
+    let counts = numbers::<4>(file, "report/counts")?;
+    let [steps, iterations, halved, factorisations] = counts.map(|count| count as usize);
+    let [assembly, factorisation, solution] = numbers(file, "report/seconds")?;
+    let [made, exchanged] = numbers(file, "report/energies")?;
+    Ok(StepState {
+        lists: lists.collect(),
+        tangent,
+        report: StepperReport {
+            steps,
+            iterations,
+            halved,
+            factorisations,
+            assembly,
+            factorisation,
+            solution,
+            made,
+            exchanged,
+        },
+        wanted: list(file, "wanted")?.first().copied(),
+    })
+}
+
+fn taken(file: &mut Npz, name: &'static str) -> Result<Array, ContinuationError> {
+    let array = file.arrays.remove(name);
+    array.ok_or(ContinuationError::Missing(name))
+}
+
+fn list(file: &mut Npz, name: &'static str) -> Result<Vec<f64>, ContinuationError> {
+    Ok(taken(file, name)?.values)
+}
+
+fn numbers<const N: usize>(
+    file: &mut Npz,
+    name: &'static str,
+) -> Result<[f64; N], ContinuationError> {
+    let list = list(file, name)?;
+    list.try_into()
+        .map_err(|_| ContinuationError::Missing(name))
+}
+
+fn rows(file: &mut Npz, name: &'static str) -> Result<Vec<Vec<f64>>, ContinuationError> {
+    let Array { shape, values } = taken(file, name)?;
+    let [count, length] = shape[..] else {
+        return Err(ContinuationError::Missing(name));
+    };
+    let row = |k: usize| values[k * length..(k + 1) * length].to_vec();
+    Ok((0..count).map(row).collect())
+}

@@ -1,0 +1,88 @@
+//! From what is to be written of a motion to its meaning.
+
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::spec_output::OutputSpec;
+use crate::files::scene::names::names;
+use crate::model::system::System;
+
+/// What tables, figures and page show of a motion.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Output {
+    /// Time in ms between the instants shown.
+    pub every: Option<f64>,
+    /// Columns of the table; `None`: all.
+    pub quantities: Option<Vec<String>>,
+}
+
+/// Words for columns of one kind.
+const KINDS: [&str; 7] = [
+    "joints",
+    "markers",
+    "stretches",
+    "charges",
+    "energies",
+    "momenta",
+    "constraint_violation",
+];
+
+pub(crate) fn output(
+    spec: &OutputSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Output, SceneError> {
+    let every = spec.every.as_ref();
+    let every = every.map(|every| scope.key("every").positive(every));
+    let place = scope.key("quantities");
+    if spec.quantities.as_ref().is_some_and(Vec::is_empty) {
+        return Err(place.wrong("none", "one or more names of quantities"));
+    }
+    let mut known: Vec<String> = KINDS.map(str::to_owned).to_vec();
+    known.extend(names(&system.joints, |joint| &joint.name));
+    known.extend(names(&system.markers, |marker| &marker.name));
+    known.extend(names(&system.muscles, |muscle| &muscle.name));
+    known.extend(names(&system.solids, |solid| &solid.name));
+    known.extend(system.components.iter().map(|one| one.name().to_owned()));
+    for (index, name) in spec.quantities.iter().flatten().enumerate() {
+        let expected = format!(
+            "{}, or the name of a joint, marker, muscle, block, spring or tendon",
+            KINDS.join(", ")
+        );
+        place.index(index).find(name, &known, &expected)?;
+    }
+    Ok(Output {
+        every: every.transpose()?,
+        quantities: spec.quantities.clone(),
+    })
+}
+
+impl Output {
+    /// Whether a column stands in the table.
+    pub fn takes(&self, column: &str, system: &System) -> bool {
+        let Some(quantities) = &self.quantities else {
+            return true;
+        };
+        let of_kind = |kind: &str| match kind {
+            "joints" => system.joints.iter().any(|joint| joint.name == column),
+            "markers" => {
+                let point = column.strip_suffix(['x', 'y', 'z']);
+                let marker = point.and_then(|point| point.strip_suffix('_'));
+                system
+                    .markers
+                    .iter()
+                    .any(|m| Some(m.name.as_str()) == marker)
+            }
+            "stretches" => column.ends_with("_stretch"),
+            "charges" => column.ends_with("_charge"),
+            "energies" => column.contains("energy") || column.ends_with("mechanical_work"),
+            "momenta" => column.contains("_momentum_"),
+            "constraint_violation" => column == kind,
+            _ => false,
+        };
+        let of_name = |name: &str| {
+            let rest = column.strip_prefix(name);
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
+        };
+        column == "time" || quantities.iter().any(|name| of_kind(name) || of_name(name))
+    }
+}

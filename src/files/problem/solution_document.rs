@@ -1,0 +1,23 @@
+//! An earlier `solution.json` of which a problem reads a part.
+
+use std::path::Path;
+
+use crate::files::json::document::Document;
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::solution::complete;
+
+/// The file with those of its arrays that are wanted, wherever they stand.
+pub(crate) fn solution_document(
+    path: &Path,
+    is_wanted: impl Fn(&str) -> bool,
+) -> Result<Document, SceneError> {
+    let mut document = Document::read(path)?;
+    let done = complete(path, &mut document.value, is_wanted);
+    match done {
+        Ok(()) => Ok(document),
+        Err(reason) => Err(Scope::of(&document)
+            .key("arrays")
+            .wrong(reason.to_string(), "the file that was written with it")),
+    }
+}

@@ -1,0 +1,19 @@
+//! What is written of a motion, as it is written in a problem.
+
+use crate::files::units::quantity::{Quantity, Time};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// What tables, figures and page show of a motion; all of it stays in the solution.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OutputSpec {
+    /// Time between the instants shown, SI unit s: those nearest to its multiples. Where not written all, and of a long motion so many that
+    /// nothing is lost to the eye.
+    #[serde(default)]
+    pub every: Option<Quantity<Time>>,
+    /// Columns of `trajectory.csv`: `joints`, `markers`, `stretches`, `charges`, `energies`, `momenta`, `constraint_violation`, or all of a
+    /// joint, marker, muscle, block, spring or tendon by its name. All where not written.
+    #[serde(default)]
+    pub quantities: Option<Vec<String>>,
+}

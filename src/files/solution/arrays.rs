@@ -1,0 +1,147 @@
+//! The arrays of a long solution in a file of their own.
+
+use std::io;
+use std::mem;
+use std::path::Path;
+
+use serde::Deserialize;
+use serde_json::{Map, Value};
+
+use crate::files::npz::{self, NpzError, NpzWriter};
+use crate::files::solution::error::Reason;
+use crate::files::solution::record::{ArraysOf, File};
+
+/// Names of arrays that end with a name of the scene.
+const OF_NAMES: [&str; 2] = ["voltages/", "configuration/joints/"];
+/// Begins the names of arrays of bodies.
+const OF_BODIES: &str = "configuration/bodies/";
+
+/// Takes the arrays out of what is written, into the bytes of a file of this name.
+///
+/// # Errors
+/// A name of the scene is too long for them.
+pub(super) fn taken(file: &mut File, name: &str) -> io::Result<Vec<u8>> {
+    let mut arrays = NpzWriter::default();
+    arrays.list("time", &mem::take(&mut file.time));
+    for (name, values) in file.voltages.take().into_iter().flatten() {
+        arrays.list(&format!("voltages/{name}"), &values);
+    }
+    if let Some(configuration) = file.configuration.take() {
+        for (name, values) in configuration.joints {
+            arrays.list(&format!("configuration/joints/{name}"), &values);
+        }
+        for (name, body) in configuration.bodies {
+            let instants = body.centre.len();
+            let of = |what: &str| format!("{OF_BODIES}{name}/{what}");
+            let centres = body.centre.as_flattened().iter().copied();
+            arrays.array(&of("centre"), &[instants, 3], centres);
+            let directors = body.directors.as_flattened().as_flattened().iter().copied();
+            arrays.array(&of("directors"), &[instants, 3, 3], directors);
+        }
+    }
+    if !file.potentials.is_empty() {
+        arrays.rows("potentials", &mem::take(&mut file.potentials));
+    }
+    if let Some(state) = &mut file.state {
+        arrays.list("state/times_ms", &mem::take(&mut state.times_ms));
+        arrays.rows("state/z", &mem::take(&mut state.z));
+    }
+    if let Some(costates) = file.costates.take() {
+        arrays.list("costates/rows", &costates.rows);
+        arrays.list("costates/lower", &costates.lower);
+        arrays.list("costates/upper", &costates.upper);
+    }
+    let (bytes, digits) = arrays.finish()?;
+    file.arrays = Some(ArraysOf {
+        file: name.to_owned(),
+        digits,
+    });
+    Ok(bytes)
+}
+
+/// What tells that there is a file of arrays.
+#[derive(Deserialize)]
+struct WithArrays {
+    #[serde(default)]
+    arrays: Option<ArraysOf>,
+}
+
+/// Puts the arrays that are wanted back to where they would stand in the solution at `path`; nothing where it has no file of arrays.
+///
+/// # Errors
+/// The file cannot be used.
+pub(crate) fn complete(
+    path: &Path,
+    solution: &mut Value,
+    is_wanted: impl Fn(&str) -> bool,
+) -> Result<(), Reason> {
+    let Ok(WithArrays {
+        arrays: Some(arrays),
+    }) = WithArrays::deserialize(&*solution)
+    else {
+        return Ok(());
+    };
+    let path = path.with_file_name(&arrays.file);
+    let wrong = |cause: NpzError| Reason::Arrays {
+        path: path.clone(),
+        cause,
+    };
+    let read = npz::read(&path, is_wanted).map_err(wrong)?;
+    if read.digits != arrays.digits {
+        return Err(Reason::OtherArrays(path));
+    }
+    // A motion without a source has voltages of none.
+    put(solution, &["voltages"], Value::Object(Map::new()));
+    for (name, array) in read.arrays {
+        put(solution, &steps(&name), value(&array.shape, &array.values));
+    }
+    Ok(())
+}
+
+/// The keys that lead to an array.
+fn steps(name: &str) -> Vec<&str> {
+    let of_name = OF_NAMES
+        .iter()
+        .find_map(|&of| Some((of, name.strip_prefix(of)?)));
+    let of_body = name
+        .strip_prefix(OF_BODIES)
+        .and_then(|rest| rest.rsplit_once('/'));
+    match (of_name, of_body) {
+        (Some((of, name)), _) => of.trim_end_matches('/').split('/').chain([name]).collect(),
+        (None, Some((name, what))) => vec!["configuration", "bodies", name, what],
+        (None, None) => name.split('/').collect(),
+    }
+}
+
+/// Numbers in rows.
+fn value(shape: &[usize], values: &[f64]) -> Value {
+    match shape {
+        [] => values.first().map_or(Value::Null, |&number| number.into()),
+        [_] => values.iter().map(|&number| Value::from(number)).collect(),
+        [rows, within @ ..] => {
+            let length: usize = within.iter().product();
+            let row = |row: usize| value(within, &values[row * length..(row + 1) * length]);
+            (0..*rows).map(row).collect()
+        }
+    }
+}
+
+/// Puts an entry under keys.
+fn put(into: &mut Value, keys: &[&str], entry: Value) {
+    let Some((last, before)) = keys.split_last() else {
+        return;
+    };
+    let mut place = into;
+    for key in before {
+        place = object(place).entry(*key).or_insert(Value::Null);
+    }
+    object(place).insert((*last).to_owned(), entry);
+}
+
+/// A place as an object, empty where something else stood there.
+fn object(place: &mut Value) -> &mut Map<String, Value> {
+    if !place.is_object() {
+        *place = Value::Object(Map::new());
+    }
+    place.as_object_mut().expect("it is one now")
+}

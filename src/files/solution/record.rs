@@ -1,0 +1,98 @@
+//! What is written in a `solution.json`.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::model::system::{Joint, JointKind};
+
+/// ms in a s.
+pub(super) const SECOND: f64 = 1e3;
+/// mm in a m.
+pub(super) const METRE: f64 = 1e3;
+
+/// The file.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(super) struct File {
+    #[serde(default)]
+    pub(super) scene: String,
+    /// Where all that is an array here stands, of a long motion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) arrays: Option<ArraysOf>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) time: Vec<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) joints: Option<BTreeMap<String, Vec<f64>>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) configuration: Option<ConfigurationRecord>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) voltages: Option<BTreeMap<String, Vec<f64>>>,
+    /// Voltages that hold the goal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) hold: Option<BTreeMap<String, f64>>,
+    /// Potentials of elastic blocks by interval, as multiples of their unit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) potentials: Vec<Vec<f64>>,
+    /// Sought parameters by their names, in SI units.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) parameters: BTreeMap<String, f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) coordinates: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) state: Option<StateRecord>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) costates: Option<Multipliers>,
+    /// Barrier parameter of a solve that has not come to its end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) barrier: Option<f64>,
+}
+
+/// A file of arrays beside a solution.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct ArraysOf {
+    /// Its name.
+    pub(super) file: String,
+    /// Digits of its contents: another file is not taken for it.
+    pub(super) digits: String,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct ConfigurationRecord {
+    #[serde(default)]
+    pub(super) bodies: BTreeMap<String, Body>,
+    pub(super) joints: BTreeMap<String, Vec<f64>>,
+}
+
+/// Centre (m) and directors d₁, d₂, d₃ of a body at each instant.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Body {
+    pub(super) centre: Vec<[f64; 3]>,
+    pub(super) directors: Vec<[[f64; 3]; 3]>,
+}
+
+/// Times in ms, coordinates and multipliers by instant, and reference places of the nodes of each mesh.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct StateRecord {
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) times_ms: Vec<f64>,
+    pub(super) multiplier_time_ms: f64,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) z: Vec<Vec<f64>>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) meshes_mm: BTreeMap<String, Vec<[f64; 3]>>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Multipliers {
+    pub(super) rows: Vec<f64>,
+    pub(super) lower: Vec<f64>,
+    pub(super) upper: Vec<f64>,
+}
+
+/// Length of a unit of the file in the units inside: rad for angles, m for displacements.
+pub(super) fn unit(joint: &Joint) -> f64 {
+    match joint.kind {
+        JointKind::Prismatic { .. } => METRE,
+        _ => 1.0,
+    }
+}

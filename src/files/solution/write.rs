@@ -1,0 +1,110 @@
+//! From a solution to its files.
+
+use std::io;
+
+use crate::control::Solution;
+use crate::files::lay_out;
+use crate::files::solution::arrays;
+use crate::files::solution::record::{
+    Body, ConfigurationRecord, File, METRE, Multipliers, SECOND, StateRecord, unit,
+};
+use crate::model::Model;
+
+/// A solution with more numbers than this has them in a file of arrays.
+const MOST: usize = 200_000;
+
+/// The texts of a solution.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Written {
+    /// Of `solution.json`.
+    pub json: String,
+    /// Of the file of arrays beside it, where it has one.
+    pub arrays: Option<Vec<u8>>,
+}
+
+/// The files of a solution; `arrays_file` would be the name of the second one.
+///
+/// # Errors
+/// A name of the scene is too long for a file of arrays.
+pub fn written(model: &Model, solved: &Solution, arrays_file: &str) -> io::Result<Written> {
+    let mut file = record(model, solved);
+    let arrays = (numbers(solved) > MOST)
+        .then(|| arrays::taken(&mut file, arrays_file))
+        .transpose()?;
+    let json = serde_json::to_string(&file).expect("numbers and names are JSON");
+    Ok(Written {
+        json: lay_out(&json),
+        arrays,
+    })
+}
+
+/// How many numbers there are, nearly.
+fn numbers(solved: &Solution) -> usize {
+    let rows = |rows: &[Vec<f64>]| rows.len() * rows.first().map_or(0, Vec::len);
+    let poses = solved.poses.len() * solved.poses.first().map_or(0, Vec::len);
+    let lists = [
+        &solved.joints,
+        &solved.z,
+        &solved.voltages,
+        &solved.potentials,
+    ];
+    12 * poses + lists.into_iter().map(|list| rows(list)).sum::<usize>()
+}
+
+/// What is written.
+fn record(model: &Model, solved: &Solution) -> File {
+    let system = &model.system;
+    let columns = |j: usize, unit: f64| solved.joints.iter().map(|row| row[j] / unit).collect();
+    let joints = system.joints.iter().enumerate();
+    let joints = joints
+        .filter(|(_, joint)| joint.has_coordinate())
+        .map(|(j, joint)| (joint.name.clone(), columns(j, unit(joint))));
+    let body = |b: usize| Body {
+        centre: solved
+            .poses
+            .iter()
+            .map(|p| (p[b].centre / METRE).into())
+            .collect(),
+        directors: solved.poses.iter().map(|p| p[b].directors.into()).collect(),
+    };
+    let bodies = system.bodies.iter().enumerate();
+    let sources = system.sources();
+    let voltage = |&s: &usize| {
+        let history = solved.voltages.iter().map(|row| row[s]).collect();
+        (sources[s].name.clone(), history)
+    };
+    File {
+        arrays: None,
+        scene: system.name.clone(),
+        time: solved.times.iter().map(|t| t / SECOND).collect(),
+        joints: None,
+        configuration: Some(ConfigurationRecord {
+            bodies: bodies.map(|(b, it)| (it.name.clone(), body(b))).collect(),
+            joints: joints.collect(),
+        }),
+        voltages: Some(model.reached.iter().map(voltage).collect()),
+        hold: solved.hold.as_ref().map(|row| {
+            let held = |&s: &usize| (sources[s].name.clone(), row[s]);
+            model.reached.iter().map(held).collect()
+        }),
+        potentials: solved.potentials.clone(),
+        parameters: solved
+            .parameters
+            .iter()
+            .map(|found| (found.name.clone(), found.value * found.unit.factor))
+            .collect(),
+        coordinates: Some(solved.coordinates.name().to_owned()),
+        state: Some(StateRecord {
+            times_ms: solved.times.clone(),
+            multiplier_time_ms: solved.multiplier_time,
+            z: solved.z.clone(),
+            meshes_mm: solved.meshes.clone(),
+        }),
+        costates: solved.costates.clone().map(|c| Multipliers {
+            rows: c.rows,
+            lower: c.lower,
+            upper: c.upper,
+        }),
+        barrier: solved.barrier,
+    }
+}
