@@ -58,8 +58,9 @@ pub(super) struct Rest {
 struct Softest {
     /// What moves most.
     moves: String,
-    /// `voltages`, `weight` or `elastic_forces`.
-    softened_by: &'static str,
+    /// `voltages`, `weight` or `elastic_forces`; absent where nothing takes from the elastic stiffness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    softened_by: Option<&'static str>,
 }
 
 /// A loss of the stable equilibrium under a growing load.
@@ -142,11 +143,11 @@ pub(super) fn describe(
         stiffness: found.stiffness.iter().map(|k| factor * k).collect(),
         softest_mode: found.softest.as_ref().map(|mode| Softest {
             moves: mode.moves.clone(),
-            softened_by: match mode.softening {
+            softened_by: mode.softening.map(|softening| match softening {
                 Softening::Voltages => "voltages",
                 Softening::Weight => "weight",
                 Softening::Elastic => "elastic_forces",
-            },
+            }),
         }),
         is_stable: found.is_stable(),
         unstable_directions: found.unstable,
@@ -196,7 +197,7 @@ impl Rest {
         }
         .to_owned();
         if let (Some(false), Some(count @ 1..)) = (self.is_stable, self.unstable_directions) {
-            let cause = match self.softest_mode.as_ref().map(|mode| mode.softened_by) {
+            let cause = match self.softest_mode.as_ref().and_then(|mode| mode.softened_by) {
                 Some("voltages") => "pull-in",
                 Some("weight") => "collapse under weight",
                 _ => "buckling",

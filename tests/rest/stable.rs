@@ -101,7 +101,7 @@ fn redundant_coordinates_rest_where_joint_coordinates_do() {
     let none = vec![0.0; voltages.len()];
     let upright = Equilibrium::of_state(&reduced, &reference(&reduced), &none);
     assert_eq!(upright.is_stable(), Some(false));
-    assert_eq!(upright.softest.unwrap().softening, Softening::Weight);
+    assert_eq!(upright.softest.unwrap().softening, Some(Softening::Weight));
 }
 
 /// Potential energy in N mm, written out: W(Λ, V) of the lumped muscles by docs/theory.md, 3.1, weights of bodies and of halves of
@@ -246,6 +246,14 @@ fn a_link_too_heavy_to_stand_leans_aside() {
     let upright = found(&light, &[0.0; 2]);
     assert_eq!(upright.route, Route::Loads);
     assert!(upright.z[0].abs() < 1e-12);
+    let softening = |rest: &Equilibrium| rest.softest.as_ref().unwrap().softening;
+    assert_eq!(softening(&upright), Some(Softening::Weight));
+    // Hanging, its weight makes it stiffer, and there are no voltages.
+    let mut hanging = link(0.01);
+    hanging.gravity = hanging.gravity.map(|g| -g);
+    let hanging = found(&model(hanging), &[0.0; 2]);
+    assert!(hanging.stiffness[0] > 1.01 * upright.stiffness[0]);
+    assert_eq!(softening(&hanging), None);
     // Stiffness k − m g ℓ/2 of the upright link: linear in the mass.
     let at = |mass: f64| found(&model(link(mass)), &[0.0; 2]).stiffness[0];
     let (a, b) = (at(0.01), at(0.02));
@@ -268,7 +276,7 @@ fn a_link_too_heavy_to_stand_leans_aside() {
             (Some(false), true)
         );
         let mode = on_path.softest.unwrap();
-        assert_eq!(mode.softening, Softening::Weight);
+        assert_eq!(mode.softening, Some(Softening::Weight));
         assert!(
             mode.moves.starts_with("joint1, stretch of muscle"),
             "{}",

@@ -18,6 +18,6 @@ pub struct Mode {
     pub direction: Vec<f64>,
     /// What moves most, in words: joints, or bodies, or a node of a block, then the muscle whose stretch changes most.
     pub moves: String,
-    /// What makes it soft.
-    pub softening: Softening,
+    /// What makes it soft; `None` where nothing takes from the elastic stiffness along it.
+    pub softening: Option<Softening>,
 }

@@ -16,6 +16,8 @@ const STEPS: usize = 30;
 const NAMED: f64 = 0.5;
 /// So many parts are named at most.
 const LISTED: usize = 3;
+/// Parts of the stiffness below this of the elastic one are rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// Whether the stiffness in joint coordinates can be looked at eigenvalue by eigenvalue.
 fn is_small(model: &Model) -> bool {
@@ -111,13 +113,13 @@ fn named(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64], direction: 
     }
 }
 
-/// The part of the stiffness along a direction that is smallest.
+/// The part of the stiffness along a direction that takes most from it; `None` where none does.
 fn softening(
     statics: &mut Statics<'_>,
     state: &[f64],
     voltages: &[f64],
     direction: &[f64],
-) -> Softening {
+) -> Option<Softening> {
     let m = statics.model.action.motion.unknowns();
     let mut bare = state.to_vec();
     bare[m..].fill(0.0);
@@ -139,7 +141,9 @@ fn softening(
         (Softening::Elastic, elastic),
     ];
     let least = parts.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
-    least.expect("three parts").0
+    least
+        .filter(|(_, part)| *part < -ROUNDING * elastic.abs())
+        .map(|(softening, _)| softening)
 }
 
 /// What moves along a direction, in words.
