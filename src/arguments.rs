@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use clap_complete::Shell;
 use proboscis::app::{CommandInput, PageWanted, ProgressDisplay, RunIn};
+use proboscis::report::Figures;
+use proboscis::report::viewpoint::Viewpoint;
 use proboscis::study::StudyRequest;
 use proboscis::sweep::{Shard, SweepRequest};
 use proboscis::workflow::accuracy::AccuracyTarget;
@@ -249,6 +251,40 @@ pub(crate) struct Input {
     set: Vec<String>,
 }
 
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum View {
+    /// From before, the right and above.
+    Oblique,
+    /// Along the z axis, y upwards.
+    Front,
+    /// Along the x axis, y upwards.
+    Side,
+    /// Along the y axis, from above.
+    Top,
+    /// In the direction in which the system moves least.
+    Auto,
+}
+
+impl View {
+    const fn viewpoint(self) -> Viewpoint {
+        match self {
+            Self::Oblique => Viewpoint::Oblique,
+            Self::Front => Viewpoint::Front,
+            Self::Side => Viewpoint::Side,
+            Self::Top => Viewpoint::Top,
+            Self::Auto => Viewpoint::Auto,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Export {
+    /// motion.gltf: an animation of bodies, muscles, markers and elastic blocks, for Blender and other programs.
+    Gltf,
+    /// parts.pvd: bodies, muscles and markers for ParaView; elastic blocks always have such files.
+    Paraview,
+}
+
 #[derive(Args, Debug)]
 pub(crate) struct Problem {
     #[command(flatten)]
@@ -259,6 +295,12 @@ pub(crate) struct Problem {
     /// Stop after so many seconds.
     #[arg(long, value_name = "S", value_parser = seconds)]
     max_seconds: Option<f64>,
+    /// From where figures look at the system.
+    #[arg(long, value_name = "VIEW", default_value = "oblique")]
+    view: View,
+    /// Write the motion in another format too.
+    #[arg(long, value_name = "FORMAT")]
+    export: Vec<Export>,
     /// Print the summary, as in summary.json, in place of words.
     #[arg(long)]
     json: bool,
@@ -316,6 +358,7 @@ impl Input {
             max_iterations: None,
             from: None,
             wanted: None,
+            figures: Figures::default(),
             progress: ProgressDisplay::Never,
             page: PageWanted::Written,
         }
@@ -332,6 +375,11 @@ impl Problem {
         CommandInput {
             output: self.output,
             max_seconds: self.max_seconds,
+            figures: Figures {
+                view: self.view.viewpoint(),
+                gltf: self.export.contains(&Export::Gltf),
+                parts: self.export.contains(&Export::Paraview),
+            },
             progress: shown(self.quiet),
             page: match self.no_report {
                 true => PageWanted::LeftOut,

@@ -6,6 +6,7 @@ use std::thread;
 use std::time::Duration;
 
 use proboscis::app::{CommandInput, CommandOutput, PageWanted, ProgressDisplay, Reached, run_observed};
+use proboscis::report::Figures;
 use proboscis::ipopt::interrupt::{self, StopRequest};
 use proboscis::workflow::accuracy::AccuracyTarget;
 use pyo3::exceptions::PyRuntimeError;
@@ -81,6 +82,7 @@ pub(crate) fn run(
             (None, true) => Some(AccuracyTarget::Estimate),
             (None, false) => None,
         },
+        figures: Figures::default(),
         progress: ProgressDisplay::Never,
         page: PageWanted::Written,
     };

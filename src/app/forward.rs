@@ -241,7 +241,9 @@ pub(super) fn simulation(
         observations: &shown.observations,
         tabulated: &shown.tabulated,
         comparison: earlier.as_ref().map(|e| ("the solution", e)),
-        held: None,
+        held: held(task, reached),
+        equilibria: None,
+        figures: request.figures,
         tracked: &[],
         origin: &origin,
         goal: None,
@@ -288,6 +290,19 @@ fn write_continuation(
         cause,
     })?;
     atomic::write(path, &bytes)
+}
+
+/// Voltages in V that the solution or table says to hold from the end of the motion on, which it reached.
+fn held(task: &Simulation, reached: f64) -> Option<&[f64]> {
+    match &task.voltages {
+        Voltages::Sampled {
+            ends,
+            rows,
+            afterwards: Afterwards::Held,
+            ..
+        } if reached >= ends[ends.len() - 1] * (1.0 - 1e-9) => rows.last().map(Vec::as_slice),
+        _ => None,
+    }
 }
 
 /// What drives a simulation after the end of the solution whose voltages it takes, where it goes on for longer.

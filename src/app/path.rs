@@ -77,6 +77,7 @@ pub(super) fn follow(
     let shown = shown.unwrap_or(stops.len() - 1);
     let shown_state = single_instant(&history, shown + 1);
     let motion = Trajectory::from_history(&model, &shown_state);
+    let way = Trajectory::from_history(&model, &up_to(&history, shown + 1));
     let rows = path.rows(stops[shown].fraction);
     let mut files = FileSet::of(&folder);
     let plot = figure(&model, &stops, &history);
@@ -129,6 +130,8 @@ pub(super) fn follow(
         tabulated: &observed,
         comparison: None,
         held: Some(&motion.voltages[0]),
+        equilibria: Some(&way),
+        figures: request.figures,
         tracked: &[],
         origin: &origin,
         goal: None,
@@ -167,6 +170,17 @@ impl<'a> Stop<'a> {
             }
         }
         stops
+    }
+}
+
+/// The history up to an instant.
+fn up_to(history: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
+    DiscreteTrajectory {
+        times: history.times[..=k].to_vec(),
+        z: history.z[..=k].to_vec(),
+        momenta: history.momenta[..=k].to_vec(),
+        scalars: history.scalars[..k].to_vec(),
+        ..DiscreteTrajectory::default()
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use crate::app::progress::ProgressDisplay;
 use crate::files::is_standard_input;
-use crate::report::Told;
+use crate::report::{Figures, Told};
 use crate::report::origin::Origin;
 use crate::workflow::accuracy::AccuracyTarget;
 
@@ -28,6 +28,8 @@ pub struct CommandInput {
     pub from: Option<PathBuf>,
     /// What is asked about the error of discretisation.
     pub wanted: Option<AccuracyTarget>,
+    /// How figures look, and what is written besides.
+    pub figures: Figures,
     /// Whether progress is shown.
     pub progress: ProgressDisplay,
     /// Whether `report.html` is written.

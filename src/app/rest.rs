@@ -171,6 +171,8 @@ pub(super) fn at(
         tabulated: &observed,
         comparison: None,
         held: Some(&motion.voltages[0]),
+        equilibria: None,
+        figures: request.figures,
         tracked: &[],
         origin: &origin,
         goal: None,

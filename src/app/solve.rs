@@ -319,6 +319,8 @@ fn write_files(
         tabulated: &shown.tabulated,
         comparison: compared.as_ref().map(|c| ("constant voltages", c)),
         held: boundary.rest[1].as_deref().filter(|_| is_solved),
+        equilibria: None,
+        figures: request.figures,
         tracked: &shown.tracked(&summary.tracking),
         origin: &origin,
         goal: goal.as_deref(),

@@ -19,9 +19,7 @@ pub enum LegendSymbol {
     /// A surface.
     Swatch(Colour),
     /// The path of a marker.
-    Path,
-    /// The place of a marker.
-    Place,
+    Path(Colour),
 }
 
 /// Width in pt that rows take.
@@ -33,7 +31,6 @@ pub fn width(rows: &[(String, LegendSymbol)]) -> f64 {
 
 /// The rows, the middle of the first at the given place.
 pub fn draw(canvas: &Canvas<'_>, [left, top]: CanvasPoint, rows: &[(String, LegendSymbol)]) {
-    let ink = Stroke::solid(style::INK, 1.1);
     for (i, (name, sample)) in rows.iter().enumerate() {
         let at = top + ROW * i as f64;
         match *sample {
@@ -43,8 +40,10 @@ pub fn draw(canvas: &Canvas<'_>, [left, top]: CanvasPoint, rows: &[(String, Lege
                 canvas.fill(&corners, colour.mix(style::PAPER, 0.55), 1.0);
                 canvas.outline(&corners, Stroke::solid(colour, 0.8));
             }
-            LegendSymbol::Path => canvas.line(&[[left, at], [left + 14.0, at]], ink),
-            LegendSymbol::Place => canvas.disc([left + 7.0, at], 2.4, style::INK, ink),
+            LegendSymbol::Path(colour) => {
+                let ink = Stroke::solid(colour, 1.1);
+                canvas.line(&[[left, at], [left + 14.0, at]], ink);
+            }
         }
         let place = [left + TEXT, at];
         canvas.text(place, name, style::TICK_SIZE, style::INK, Align::Left);
@@ -63,6 +62,9 @@ pub fn triad(canvas: &Canvas<'_>, view: &View, at: CanvasPoint) {
         ("y", Vector3::y()),
         ("z", Vector3::z()),
     ] {
+        if axis.dot(&view.toward).abs() > 0.999 {
+            continue;
+        }
         canvas.line(&[at, unit.place(&axis)], Stroke::solid(style::MUTED, 1.0));
         let place = unit.place(&(axis * 1.4));
         canvas.text(place, name, style::TICK_SIZE, style::INK, Align::Centre);

@@ -4,7 +4,10 @@ pub mod axes;
 pub mod body;
 pub mod canvas;
 pub mod colour_bar;
+mod drawing;
 pub mod file_set;
+mod frame;
+pub mod gltf;
 pub mod joints;
 pub mod legend;
 pub mod lines;
@@ -12,11 +15,13 @@ pub mod markup;
 pub mod origin;
 pub mod page;
 pub mod paraview;
+mod parts;
 pub mod pose;
 mod run;
 pub mod sampled;
 pub mod skin;
 pub mod skins;
+mod snapshots;
 pub mod solids;
 pub mod style;
 pub mod table;
@@ -24,9 +29,10 @@ mod ties;
 pub mod tip_path;
 pub mod tracking;
 pub mod view;
+pub mod viewpoint;
 pub mod voltages;
 
-pub use run::{Run, Told};
+pub use run::{Figures, Run, Told};
 
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
@@ -47,6 +53,9 @@ pub fn write_run(files: &mut FileSet, run: &Run<'_>) -> Result<(), WriteError> {
     match page {
         Some(page) => texts.push((PAGE, page)),
         None => files.remove(PAGE),
+    }
+    if run.figures.parts {
+        parts::write(files, run.system, run.trajectory, run.origin)?;
     }
     let mut texts = texts.into_iter();
     texts.try_for_each(|(name, text)| files.add(name, text.as_bytes()))
@@ -77,16 +86,22 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
         ),
         (
             "configuration.svg",
-            pose::svg(system, trajectory, skins, run.held, origin),
+            pose::svg(system, trajectory, skins, &run.shown(), origin),
         ),
     ];
+    if run.figures.gltf {
+        let animated = gltf::text(system, trajectory, skins, origin);
+        files.extend(animated.map(|text| ("motion.gltf", text)));
+    }
+    let stills = snapshots::svg(system, trajectory, skins, run.figures.view, origin);
+    files.extend(stills.map(|svg| ("snapshots.svg", svg)));
     if !system.sources().is_empty() {
         files.push(("voltages.svg", voltages::svg(system, trajectory, origin)));
     }
     if !system.markers.is_empty() {
         files.push((
             "tip_path.svg",
-            tip_path::svg(system, &motions, run.tracked, origin),
+            tip_path::svg(system, &motions, run.tracked, run.figures.view, origin),
         ));
     }
     if !trajectory.coordinates(system).is_empty() {
@@ -113,7 +128,21 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
 /// A file cannot be written.
 pub fn write_still(files: &mut FileSet, table: &str, run: &Run<'_>) -> Result<(), WriteError> {
     let csv = table::trajectory_csv(run.observations, run.origin);
-    let svg = pose::svg(run.system, run.trajectory, run.skins, run.held, run.origin);
+    let svg = pose::svg(
+        run.system,
+        run.trajectory,
+        run.skins,
+        &run.shown(),
+        run.origin,
+    );
+    if run.figures.gltf
+        && let Some(text) = gltf::text(run.system, run.trajectory, run.skins, run.origin)
+    {
+        files.add("motion.gltf", text.as_bytes())?;
+    }
+    if run.figures.parts {
+        parts::write(files, run.system, run.trajectory, run.origin)?;
+    }
     files.add(table, csv.as_bytes())?;
     files.add("configuration.svg", svg.as_bytes())?;
     match run.told {

@@ -146,12 +146,23 @@ impl<'a> Series<'a> {
         grids: &[UnstructuredGrid<'_>],
         files: &mut FileSet,
     ) -> Result<(), WriteError> {
+        self.add_file(time, "vtu", &vtu(grids, self.origin), files)
+    }
+
+    /// Adds the next file, of a time in s, with this ending.
+    pub(super) fn add_file(
+        &mut self,
+        time: f64,
+        ending: &str,
+        bytes: &[u8],
+        files: &mut FileSet,
+    ) -> Result<(), WriteError> {
         let number = self.instants.len();
         let file = match &self.within {
-            Some(folder) => format!("{folder}/{number:04}.vtu"),
-            None => format!("{}_{number:04}.vtu", self.name),
+            Some(folder) => format!("{folder}/{number:04}.{ending}"),
+            None => format!("{}_{number:04}.{ending}", self.name),
         };
-        files.add(&file, &vtu(grids, self.origin))?;
+        files.add(&file, bytes)?;
         self.instants.push((time, file));
         Ok(())
     }
@@ -238,7 +249,7 @@ fn connectivity(grids: &[UnstructuredGrid<'_>]) -> Vec<u8> {
 }
 
 /// Numbers inline: their length in bytes as a 64-bit number, then they themselves, both in one base64 text.
-fn array(text: &mut String, kind: &str, name: &str, components: usize, bytes: Vec<u8>) {
+pub(super) fn array(text: &mut String, kind: &str, name: &str, components: usize, bytes: Vec<u8>) {
     let mut block = (bytes.len() as u64).to_le_bytes().to_vec();
     block.extend(bytes);
     let name = escaped(name);
@@ -255,13 +266,13 @@ fn array(text: &mut String, kind: &str, name: &str, components: usize, bytes: Ve
     text.push_str("\n</DataArray>\n");
 }
 
-fn bytes_of(values: impl Iterator<Item = f64>) -> Vec<u8> {
+pub(super) fn bytes_of(values: impl Iterator<Item = f64>) -> Vec<u8> {
     values.flat_map(f64::to_le_bytes).collect()
 }
 
 /// The XML declaration, the origin as a processing instruction (a comment must not hold the `--` of a command), and the
 /// opening tag.
-fn head(kind: &str, origin: &Origin) -> String {
+pub(super) fn head(kind: &str, origin: &Origin) -> String {
     let origin = origin.line().replace("?>", "? >");
     format!(
         r#"<?xml version="1.0" encoding="UTF-8"?>
@@ -271,7 +282,7 @@ fn head(kind: &str, origin: &Origin) -> String {
     )
 }
 
-fn line(text: &mut String, arguments: std::fmt::Arguments<'_>) {
+pub(super) fn line(text: &mut String, arguments: std::fmt::Arguments<'_>) {
     writeln!(text, "{arguments}").expect("writing to a string does not fail");
 }
 

@@ -5,8 +5,21 @@ use crate::kinematics::Pose;
 use crate::model::system::System;
 use crate::report::lines::LinePlot;
 use crate::report::origin::Origin;
+use crate::report::pose::Shown;
 use crate::report::skins::Skins;
+use crate::report::viewpoint::Viewpoint;
 use crate::workflow::Tracked;
+
+/// How figures look, and what is written besides.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Figures {
+    /// From where figures in space look at the system.
+    pub view: Viewpoint,
+    /// Whether there is a glTF file of the motion.
+    pub gltf: bool,
+    /// Whether there are ParaView files of bodies, muscles and markers.
+    pub parts: bool,
+}
 
 /// What there is to show of a run.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +40,10 @@ pub struct Run<'a> {
     pub comparison: Option<(&'a str, &'a Trajectory)>,
     /// Voltages in V, one per muscle, that hold the last instant, where they are known; they colour the configuration.
     pub held: Option<&'a [f64]>,
+    /// Equilibria on the way to a state of rest, where they were followed.
+    pub equilibria: Option<&'a Trajectory>,
+    /// How figures look.
+    pub figures: Figures,
     /// What markers and joints were to follow.
     pub tracked: &'a [Tracked],
     /// Where the results come from.
@@ -54,4 +71,15 @@ pub struct Told {
     pub plots: Vec<(String, LinePlot)>,
     /// Names and texts of what was asked and answered: `summary.json`, problem, scene.
     pub documents: Vec<(String, String)>,
+}
+
+impl Run<'_> {
+    /// What a figure in space shows.
+    pub(super) fn shown(&self) -> Shown<'_> {
+        Shown {
+            viewpoint: self.figures.view,
+            held: self.held,
+            equilibria: self.equilibria,
+        }
+    }
 }

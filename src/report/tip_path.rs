@@ -1,4 +1,4 @@
-//! Paths of the markers in the plane in which they move most.
+//! Paths of the markers in the plane in which they move most, or that of a viewpoint.
 
 use nalgebra::Vector3;
 
@@ -9,6 +9,7 @@ use crate::report::lines::{Aspect, LinePlot, Mark, Series};
 use crate::report::origin::Origin;
 use crate::report::style::{self, Dash};
 use crate::report::tracking;
+use crate::report::viewpoint::Viewpoint;
 use crate::workflow::Tracked;
 
 /// The two axes of largest extent, horizontal first: y is never horizontal, and x goes before z.
@@ -39,10 +40,11 @@ pub fn svg(
     system: &System,
     trajectories: &[(&str, &Trajectory)],
     tracked: &[Tracked],
+    view: Viewpoint,
     origin: &Origin,
 ) -> String {
     let all = trajectories.iter().flat_map(|(_, one)| &one.marks);
-    let plane = plane(all.flatten());
+    let plane = view.plane().unwrap_or_else(|| plane(all.flatten()));
     plot(system, trajectories, tracked, plane).svg(origin)
 }
 

@@ -35,6 +35,28 @@ impl View {
         }
     }
 
+    /// The view of figures and pages from before, the right and above.
+    pub fn oblique() -> Self {
+        Self::axonometric(0.5, 0.32)
+    }
+
+    /// View against a unit vector, which points towards the viewer, with y upwards; along y with z downwards
+    /// from above and upwards from below, so that x is to the right.
+    pub fn toward(toward: Vector3<f64>) -> Self {
+        let across = Vector3::y() - toward * toward.y;
+        let up = match across.norm() > 1e-3 {
+            true => across.normalize(),
+            false => -(Vector3::z() - toward * toward.z).normalize() * toward.y.signum(),
+        };
+        Self {
+            right: up.cross(&toward),
+            up,
+            toward,
+            scale: 1.0,
+            origin: [0.0, 0.0],
+        }
+    }
+
     /// Place of a point on the sheet in pt.
     pub fn place(&self, point: &Vector3<f64>) -> CanvasPoint {
         [

@@ -24,9 +24,9 @@ use crate::app::{
 };
 use crate::ipopt;
 use crate::ipopt::interrupt;
-use crate::report::atomic;
 use crate::report::origin::Origin;
 use crate::report::table::cells_csv;
+use crate::report::{Figures, atomic};
 use crate::sweep::kept::Kept;
 use crate::sweep::read::{Sweep, Variant, read_sweep};
 
@@ -99,6 +99,7 @@ fn solve<'a>(
         max_iterations: None,
         from: None,
         wanted: None,
+        figures: Figures::default(),
         progress: request.progress,
         page: PageWanted::Written,
     };

@@ -9,6 +9,7 @@ use proboscis::files::read_problem;
 use proboscis::math::random::Random;
 use proboscis::model::System;
 use proboscis::nlp::Bounds;
+use proboscis::report::Figures;
 use proboscis::workflow::Cause;
 use proboscis::workflow::SolveLimits;
 use proboscis::workflow::integrate;
@@ -46,6 +47,7 @@ pub(crate) fn request() -> CommandInput {
         max_seconds: None,
         max_iterations: None,
         wanted: None,
+        figures: Figures::default(),
         progress: ProgressDisplay::Never,
         page: PageWanted::Written,
     }

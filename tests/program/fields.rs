@@ -6,6 +6,7 @@ use base64::engine::general_purpose::STANDARD;
 use nalgebra::Vector3;
 use proboscis::app::{CommandInput, CommandOutput, PageWanted, ProgressDisplay, run};
 use proboscis::model::VACUUM_PERMITTIVITY;
+use proboscis::report::Figures;
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::fs;
@@ -75,6 +76,7 @@ fn request(input: PathBuf, output: &Path, set: &[&str]) -> CommandInput {
         max_iterations: None,
         from: None,
         wanted: None,
+        figures: Figures::default(),
         progress: ProgressDisplay::Never,
         page: PageWanted::Written,
     }

@@ -6,6 +6,7 @@ use proboscis::app::{
     with_program,
 };
 use proboscis::ipopt::interrupt::{self, StopRequest};
+use proboscis::report::Figures;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -37,6 +38,7 @@ fn solve(
         max_iterations: None,
         from: None,
         wanted: None,
+        figures: Figures::default(),
         progress: ProgressDisplay::Never,
         page: PageWanted::Written,
     };

@@ -10,7 +10,7 @@ use proboscis::model::System;
 use proboscis::model::system::{ElectricConstants, VACUUM_PERMITTIVITY};
 use proboscis::report::origin::Origin;
 use proboscis::report::skins::Skins;
-use proboscis::report::{Run, Told, page};
+use proboscis::report::{Figures, Run, Told, page};
 use serde_json::Value;
 
 use crate::report::swing;
@@ -60,6 +60,8 @@ fn run<'a>(system: &'a System, trajectory: &'a Trajectory) -> Run<'a> {
         tabulated: observations,
         comparison: None,
         held: None,
+        equilibria: None,
+        figures: Figures::default(),
         tracked: &[],
         origin,
         goal: None,

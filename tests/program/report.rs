@@ -10,8 +10,12 @@ use proboscis::report::axes::{Axis, Extent};
 use proboscis::report::file_set::FileSet;
 use proboscis::report::lines::{LinePlot, Mark, Series};
 use proboscis::report::origin::Origin;
+use proboscis::report::pose::Shown;
 use proboscis::report::skins::Skins;
-use proboscis::report::{Run, Told, markup, pose, style, table, tip_path, voltages, write_run};
+use proboscis::report::viewpoint::Viewpoint;
+use proboscis::report::{
+    Figures, Run, Told, markup, pose, style, table, tip_path, voltages, write_run,
+};
 
 fn origin() -> Origin {
     Origin {
@@ -51,7 +55,7 @@ pub(crate) fn assert_well_formed(svg: &str) {
 }
 
 /// How many polylines have this colour.
-fn polylines(svg: &str, colour: style::Colour) -> usize {
+pub(crate) fn polylines(svg: &str, colour: style::Colour) -> usize {
     let stroke = format!("stroke=\"{}\"", colour.hex().to_uppercase());
     let lines = svg.lines();
     lines
@@ -204,8 +208,20 @@ fn what_is_not_finite_is_not_drawn() {
     let plot = LinePlot::new(Axis::log("work"), Axis::log("error"), vec![series]);
     for svg in [
         voltages::svg(&system, &trajectory, &origin()),
-        tip_path::svg(&system, &[("swing", &trajectory)], &[], &origin()),
-        pose::svg(&system, &trajectory, &Skins::default(), None, &origin()),
+        tip_path::svg(
+            &system,
+            &[("swing", &trajectory)],
+            &[],
+            Viewpoint::Oblique,
+            &origin(),
+        ),
+        pose::svg(
+            &system,
+            &trajectory,
+            &Skins::default(),
+            &Shown::default(),
+            &origin(),
+        ),
         plot.svg(&origin()),
     ] {
         assert_well_formed(&svg);
@@ -226,7 +242,13 @@ fn every_shape_is_drawn() {
     for (body, shape) in system.bodies.iter_mut().zip(shapes) {
         body.shape = shape;
     }
-    let svg = pose::svg(&system, &trajectory, &Skins::default(), None, &origin());
+    let svg = pose::svg(
+        &system,
+        &trajectory,
+        &Skins::default(),
+        &Shown::default(),
+        &origin(),
+    );
     assert_well_formed(&svg);
     assert!(svg.contains("voltage [kV]") && svg.contains("path of tip"));
 }
@@ -274,6 +296,8 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
         tabulated: &observations,
         comparison: Some(("again", &trajectory)),
         held: None,
+        equilibria: None,
+        figures: Figures::default(),
         tracked: &tracked,
         origin: &origin(),
         goal: None,
@@ -300,6 +324,7 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
         "trajectory.csv",
         "controls.csv",
         "configuration.svg",
+        "snapshots.svg",
         "voltages.svg",
         "tip_path.svg",
         "joint_angles.svg",

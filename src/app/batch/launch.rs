@@ -9,6 +9,7 @@ use std::time::Instant;
 use super::parent::bind;
 use crate::app::progress::ProgressDisplay;
 use crate::app::request::{CommandInput, PageWanted};
+use crate::report::viewpoint::Viewpoint;
 
 /// A solve that runs.
 pub(super) struct Running {
@@ -43,6 +44,15 @@ pub(super) fn words(request: &CommandInput) -> Vec<OsString> {
     }
     if let Some(seconds) = request.max_seconds {
         option("--max-seconds", seconds.to_string().into());
+    }
+    if request.figures.view != Viewpoint::default() {
+        option("--view", request.figures.view.word().into());
+    }
+    if request.figures.gltf {
+        option("--export", "gltf".into());
+    }
+    if request.figures.parts {
+        option("--export", "paraview".into());
     }
     if request.page == PageWanted::LeftOut {
         words.push("--no-report".into());

@@ -6,13 +6,12 @@ use serde_json::{Value, json};
 use crate::kinematics::Pose;
 use crate::model::system::{Attachment, Joint, JointKind, Marker};
 use crate::report::Run;
+use crate::report::drawing::lumped;
 use crate::report::page::numbers::{indices, numbers, places};
-use crate::report::pose::{ANGLES, lumped};
 use crate::report::skins::{Skin, shown};
 use crate::report::solids::{Prism, SurfaceMesh};
 use crate::report::style;
 use crate::report::ties;
-use crate::report::view::View;
 
 /// Length in mm of the axis that tells the direction of a joint.
 const AXIS: f64 = 1.0;
@@ -33,7 +32,8 @@ pub(super) fn scene(run: &Run<'_>) -> Value {
     let mut parts = stage.bodies();
     parts.extend(stage.muscles());
     parts.extend(run.skins.list.iter().map(|skin| stage.block(skin)));
-    let (view, goal) = (View::axonometric(ANGLES[0], ANGLES[1]), run.goal);
+    let view = run.figures.view.view(run.system, run.trajectory, run.skins);
+    let goal = run.goal;
     let highest = vec![run.skins.highest()];
     let scale = style::voltage_scale(run.trajectory.voltages.iter().chain([&highest]));
     json!({

@@ -1,0 +1,232 @@
+//! The system at an instant on a sheet: bodies as glass around muscles, joints and elastic blocks.
+
+use nalgebra::Vector3;
+
+use crate::dynamics::trajectory::Trajectory;
+use crate::model::system::{Attachment, Fidelity, Joint, System};
+use crate::report::body::{Tint, draw_back, draw_front};
+use crate::report::canvas::{Canvas, CanvasPoint, Stroke};
+use crate::report::skin::{self, Paint};
+use crate::report::skins::{Skin, Skins};
+use crate::report::solids::{Prism, slice};
+use crate::report::style::{self, Colour};
+use crate::report::ties;
+use crate::report::view::View;
+
+/// Lines across a muscle that hint at its layers.
+const LAYERS: usize = 12;
+
+/// Muscles of one stretch, which are drawn as prisms; the others have surfaces.
+pub(super) fn lumped(system: &System) -> impl Iterator<Item = usize> + '_ {
+    let muscles = system.muscles.iter().enumerate();
+    muscles.filter_map(|(i, m)| (m.fidelity == Fidelity::Lumped).then_some(i))
+}
+
+/// What is drawn between the walls of the bodies.
+enum Inside<'a> {
+    Muscle(usize, Prism),
+    Skin(&'a Skin, usize),
+}
+
+impl Inside<'_> {
+    fn centre(&self) -> Vector3<f64> {
+        match self {
+            Self::Muscle(_, prism) => prism.centre,
+            Self::Skin(skin, at) => {
+                let places = &skin.places[*at];
+                places.iter().sum::<Vector3<f64>>() / places.len() as f64
+            }
+        }
+    }
+}
+
+/// What is drawn, and how.
+pub(super) struct Drawing<'a> {
+    pub(super) system: &'a System,
+    pub(super) trajectory: &'a Trajectory,
+    pub(super) skins: &'a Skins,
+    pub(super) view: View,
+    /// Voltages in V that colour the muscles.
+    pub(super) voltages: Vec<f64>,
+    /// Full scale of the colours in V.
+    pub(super) scale: f64,
+}
+
+impl Drawing<'_> {
+    /// A plate of the ground.
+    pub(super) fn ground(&self, canvas: &Canvas<'_>, plate: &[Vector3<f64>]) {
+        let places = self.view.places(plate);
+        let thickness = 4.0;
+        let lower: Vec<CanvasPoint> = places.iter().map(|p| [p[0], p[1] + thickness]).collect();
+        canvas.fill(&lower, style::REFERENCE.mix(style::INK, 0.25), 1.0);
+        canvas.fill(&places, style::GRID, 1.0);
+        canvas.outline(&places, Stroke::solid(style::REFERENCE, 0.6));
+    }
+
+    /// Bodies as glass around muscles and joints, what is far first.
+    pub(super) fn instant(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
+        let view = &self.view;
+        let poses = &self.trajectory.poses[k];
+        let mut bodies: Vec<_> = self.system.bodies.iter().zip(poses).collect();
+        bodies.sort_by(|(_, a), (_, b)| view.depth(&a.centre).total_cmp(&view.depth(&b.centre)));
+        for (body, pose) in &bodies {
+            draw_back(canvas, view, &body.shape, pose, tint);
+        }
+        let prisms = lumped(self.system).map(|i| {
+            let prism = Prism::muscle(self.system, self.trajectory, k, i);
+            Inside::Muscle(i, prism)
+        });
+        let position = self.skins.position(k);
+        let skins = self.skins.list.iter();
+        let skins = skins.map(|skin| Inside::Skin(skin, position));
+        let mut inside: Vec<_> = prisms
+            .chain(skins)
+            .map(|inside| (inside.centre(), inside))
+            .collect();
+        inside.sort_by(|(a, _), (b, _)| view.depth(a).total_cmp(&view.depth(b)));
+        let axis_depth = |centre: &Vector3<f64>| {
+            let near = self.joint_places(k).into_iter().min_by(|a, b| {
+                let distance = |p: &Vector3<f64>| (p - centre).norm();
+                distance(a).total_cmp(&distance(b))
+            });
+            near.map_or(f64::NEG_INFINITY, |joint| view.depth(&joint))
+        };
+        let (behind, before): (Vec<_>, Vec<_>) = inside
+            .into_iter()
+            .partition(|(centre, _)| view.depth(centre) < axis_depth(centre));
+        let draw = |inside: &Inside<'_>| match inside {
+            Inside::Muscle(i, prism) => self.muscle(canvas, prism, self.colour(*i, tint)),
+            Inside::Skin(skin, at) => self.skin(canvas, skin, *at, tint),
+        };
+        behind.iter().for_each(|(_, inside)| draw(inside));
+        self.joints(canvas, k, tint);
+        self.ties(canvas, k, tint);
+        before.iter().for_each(|(_, inside)| draw(inside));
+        for (body, pose) in &bodies {
+            draw_front(canvas, view, &body.shape, pose, tint);
+        }
+    }
+
+    /// Colour of a muscle by its voltage.
+    fn colour(&self, muscle: usize, tint: Tint) -> Colour {
+        match tint {
+            Tint::Reference => style::GRID,
+            Tint::Coloured => style::voltage(self.voltages[muscle].abs() / self.scale),
+        }
+    }
+
+    /// The surfaces of blocks in the reference configuration.
+    pub(super) fn reference_skins(&self, canvas: &Canvas<'_>) {
+        for skin in &self.skins.list {
+            skin::draw(canvas, &self.view, skin, &skin.reference, Paint::Reference);
+        }
+    }
+
+    /// The surface of a block at one of the instants shown, coloured by its potentials, of a muscle by its voltage.
+    fn skin(&self, canvas: &Canvas<'_>, skin: &Skin, at: usize, tint: Tint) {
+        let paint = match (skin.muscle, skin.potentials.get(at)) {
+            (_, _) if tint == Tint::Reference => Paint::Reference,
+            (Some(muscle), _) => Paint::Even(self.colour(muscle, tint)),
+            (None, Some(potentials)) if skin.is_charged => Paint::Potential {
+                potentials,
+                scale: self.scale,
+            },
+            _ => Paint::Even(style::PASSIVE),
+        };
+        skin::draw(canvas, &self.view, skin, &skin.places[at], paint);
+    }
+
+    /// The faces that look at the viewer, lit from the upper left, with lines that hint at the layers.
+    fn muscle(&self, canvas: &Canvas<'_>, prism: &Prism, colour: Colour) {
+        let view = &self.view;
+        let light = (view.toward + view.up * 0.9 - view.right * 0.7).normalize();
+        let edge = colour.mix(style::INK, 0.35);
+        for face in prism.faces() {
+            let normal = face.normal.normalize();
+            if normal.dot(&view.toward) <= 0.0 {
+                continue;
+            }
+            let shade = 0.34 * (1.0 - normal.dot(&light).max(0.0));
+            let places = view.places(&face.corners);
+            canvas.fill(&places, colour.mix(style::INK, shade), 1.0);
+            let is_side = normal.dot(&prism.halves[2]).abs() < 0.5 * prism.halves[2].norm();
+            if is_side {
+                for layer in 1..LAYERS {
+                    let height = 2.0 * layer as f64 / LAYERS as f64 - 1.0;
+                    let across = slice(&face.corners, &prism.halves[2], prism.centre, height);
+                    let line = Stroke::solid(edge, 0.35).faint(0.55);
+                    canvas.line(&view.places(&across), line);
+                }
+            }
+            canvas.outline(&places, Stroke::solid(edge, 0.5));
+        }
+    }
+
+    fn joint_places(&self, k: usize) -> Vec<Vector3<f64>> {
+        let reference = |j: &Joint| Attachment {
+            body: Some(j.child),
+            at: j.at,
+        };
+        let joints = self.system.joints.iter();
+        joints
+            .map(|j| self.trajectory.point(k, &reference(j), self.system))
+            .collect()
+    }
+
+    /// A line through the joints of each body, and a disc at each joint.
+    fn joints(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
+        let ink = match tint {
+            Tint::Reference => style::REFERENCE,
+            Tint::Coloured => style::INK.mix(style::PAPER, 0.25),
+        };
+        let places = self.view.places(&self.joint_places(k));
+        for (joint, place) in self.system.joints.iter().zip(&places) {
+            let centre = self.trajectory.poses[k][joint.child].centre;
+            canvas.line(&[*place, self.view.place(&centre)], Stroke::solid(ink, 1.1));
+            if let Some(parent) = joint.parent {
+                let centre = self.trajectory.poses[k][parent].centre;
+                canvas.line(&[*place, self.view.place(&centre)], Stroke::solid(ink, 1.1));
+            }
+        }
+        for place in places {
+            canvas.disc(place, 2.6, style::PAPER, Stroke::solid(ink, 1.1));
+        }
+    }
+
+    /// Springs, tendons and other components.
+    fn ties(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
+        let ink = match tint {
+            Tint::Reference => style::REFERENCE,
+            Tint::Coloured => style::TIE,
+        };
+        for line in ties::lines(self.system, self.trajectory, k) {
+            canvas.line(&self.view.places(&line), Stroke::solid(ink, 1.0));
+        }
+    }
+
+    /// The path of each marker, with its beginning and end.
+    pub(super) fn paths(&self, canvas: &Canvas<'_>, paths: &[Vec<Vector3<f64>>]) {
+        for (marker, path) in paths.iter().enumerate() {
+            let ink = marker_colour(marker, paths.len());
+            let rim = Stroke::solid(ink, 1.1);
+            let places = self.view.places(path);
+            canvas.line(&places, rim);
+            match places[..] {
+                [first, .., last] => {
+                    canvas.disc(first, 2.8, style::PAPER, rim);
+                    canvas.disc(last, 2.4, ink, rim);
+                }
+                [only] => canvas.disc(only, 2.4, ink, rim),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Colour of a marker among so many.
+pub(super) fn marker_colour(marker: usize, count: usize) -> Colour {
+    match count {
+        1 => style::INK,
+        _ => style::hue(marker),
+    }
+}

@@ -1,0 +1,179 @@
+//! A motion as a file of glTF 2.0, which Blender and browsers show: `motion.gltf`, in m and s, y upwards.
+//!
+//! - `document`: numbers, meshes and nodes of such a file; `shapes`: their geometry.
+//!
+//! Bodies, lumped muscles and markers are nodes that move, turn and stretch. Surfaces of elastic blocks, springs and tendons are meshes
+//! with a morph target for each instant, of which the weights are 0 and 1: between instants their points move on straight lines.
+
+mod document;
+mod shapes;
+
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+
+use crate::dynamics::trajectory::Trajectory;
+use crate::kinematics::Pose;
+use crate::model::system::{Shape, System};
+use crate::report::drawing::{lumped, marker_colour};
+use crate::report::gltf::document::{Document, Mode, Moving, Placed};
+use crate::report::gltf::shapes::{body, cube, sphere, triangles};
+use crate::report::origin::Origin;
+use crate::report::skins::{Skins, shown};
+use crate::report::solids::Prism;
+use crate::report::style;
+use crate::report::ties;
+
+/// Length in m of a length in mm.
+const METRE: f64 = 1e-3;
+/// Opacity of bodies, so that muscles within show.
+const GLASS: f32 = 0.35;
+/// Radius of a marker as a part of the size of the system.
+const MARKER: f64 = 0.008;
+
+/// `motion.gltf`: the system at the instants that pictures show; of a single instant without animation. None where nothing is finite.
+pub fn text(
+    system: &System,
+    trajectory: &Trajectory,
+    skins: &Skins,
+    origin: &Origin,
+) -> Option<String> {
+    let instants = instants(trajectory, skins);
+    let times: Vec<f64> = instants
+        .iter()
+        .map(|&k| trajectory.times[k] / 1e3)
+        .collect();
+    if times.is_empty() {
+        return None;
+    }
+    let mut document = Document::new(&times);
+
+    let glass = document.material("body", style::BODY, GLASS);
+    for (b, part) in system.bodies.iter().enumerate() {
+        let shape = body(&part.shape);
+        let mesh = match part.shape {
+            Shape::None => None,
+            _ => Some(document.mesh(&part.name, &shape, glass)),
+        };
+        let poses = instants.iter().map(|&k| of_pose(&trajectory.poses[k][b]));
+        document.moving(&part.name, mesh, &poses.collect::<Vec<_>>(), Moving::Rigid);
+    }
+    let unit = cube();
+    for m in lumped(system) {
+        let name = &system.muscles[m].name;
+        let material = document.material(name, style::muscle(m).0, 1.0);
+        let mesh = document.mesh(name, &unit, material);
+        let prisms = instants.iter();
+        let prisms = prisms.map(|&k| of_prism(&Prism::muscle(system, trajectory, k, m)));
+        document.moving(
+            name,
+            Some(mesh),
+            &prisms.collect::<Vec<_>>(),
+            Moving::Stretched,
+        );
+    }
+    let ball = sphere(MARKER * METRE * size(trajectory, &instants));
+    for (m, marker) in system.markers.iter().enumerate() {
+        let colour = marker_colour(m, system.markers.len());
+        let material = document.material(&marker.name, colour, 1.0);
+        let mesh = document.mesh(&marker.name, &ball, material);
+        let places = instants.iter();
+        let places = places.map(|&k| Placed::at(trajectory.marks[k][m] * METRE));
+        document.moving(
+            &marker.name,
+            Some(mesh),
+            &places.collect::<Vec<_>>(),
+            Moving::Shifted,
+        );
+    }
+    for (s, skin) in skins.list.iter().enumerate() {
+        let (name, colour) = match skin.muscle {
+            Some(muscle) => (system.muscles[muscle].name.clone(), style::muscle(muscle).0),
+            None => (format!("block {}", s + 1), style::PASSIVE),
+        };
+        let material = document.material(&name, colour, 1.0);
+        let at = instants.iter().map(|&k| skins.position(k));
+        let places: Vec<_> = at.map(|i| metres(&skin.places[i])).collect();
+        document.deforming(
+            &name,
+            &places,
+            Mode::Triangles(triangles(&skin.quads)),
+            material,
+        );
+    }
+    let lines: Vec<_> = instants
+        .iter()
+        .map(|&k| ties::lines(system, trajectory, k))
+        .collect();
+    for (c, component) in system.components.iter().enumerate() {
+        let material = document.material(component.name(), style::TIE, 1.0);
+        let mut places: Vec<_> = lines.iter().map(|lines| metres(&lines[c])).collect();
+        // A coil that has no direction is a line of two points.
+        if places.iter().any(|points| points.len() != places[0].len()) {
+            places = places.iter().map(|p| vec![p[0], p[p.len() - 1]]).collect();
+        }
+        document.deforming(component.name(), &places, Mode::Line, material);
+    }
+    Some(document.text(&system.name, origin))
+}
+
+/// Instants at which all is finite, of those whose surfaces are known.
+fn instants(trajectory: &Trajectory, skins: &Skins) -> Vec<usize> {
+    let all = match skins.list[..] {
+        [] => shown(&trajectory.times, 1),
+        _ => skins.instants.clone(),
+    };
+    let is_finite = |k: &usize| {
+        let poses = &trajectory.poses[*k];
+        let mut centres = poses.iter().map(|pose| pose.centre);
+        let mut directors = poses.iter().flat_map(|pose| pose.directors.iter());
+        let position = skins.position(*k);
+        let mut places = skins.list.iter().flat_map(|skin| &skin.places[position]);
+        let finite = |p: &Vector3<f64>| p.iter().all(|x| x.is_finite());
+        centres.all(|p| finite(&p))
+            && directors.all(|x| x.is_finite())
+            && trajectory.marks[*k].iter().all(finite)
+            && places.all(finite)
+    };
+    all.into_iter().filter(is_finite).collect()
+}
+
+/// Greatest distance in mm between two sides of the box around centres and markers.
+fn size(trajectory: &Trajectory, instants: &[usize]) -> f64 {
+    let places = instants.iter().flat_map(|&k| {
+        let poses = trajectory.poses[k].iter().map(|pose| pose.centre);
+        poses.chain(trajectory.marks[k].iter().copied())
+    });
+    let all: Vec<_> = places.collect();
+    let low = all
+        .iter()
+        .fold(Vector3::repeat(f64::INFINITY), |a, b| a.inf(b));
+    let high = all
+        .iter()
+        .fold(Vector3::repeat(f64::NEG_INFINITY), |a, b| a.sup(b));
+    (high - low).max().max(1.0)
+}
+
+fn of_pose(pose: &Pose) -> Placed {
+    Placed {
+        rotation: turned(pose.directors),
+        ..Placed::at(pose.centre * METRE)
+    }
+}
+
+/// A prism is a cube of edge 2, stretched and turned.
+fn of_prism(prism: &Prism) -> Placed {
+    let lengths = prism.halves.map(|half| half.norm());
+    let axes = [0, 1, 2].map(|i| prism.halves[i] / lengths[i].max(f64::MIN_POSITIVE));
+    Placed {
+        rotation: turned(Matrix3::from_columns(&axes)),
+        scale: Vector3::from(lengths) * METRE,
+        ..Placed::at(prism.centre * METRE)
+    }
+}
+
+fn turned(axes: Matrix3<f64>) -> UnitQuaternion<f64> {
+    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes))
+}
+
+fn metres(places: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    places.iter().map(|place| place * METRE).collect()
+}

@@ -1,0 +1,45 @@
+//! Triangles of bodies, muscles, markers and surfaces.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::METRE;
+use crate::kinematics::Pose;
+use crate::model::system::Shape;
+use crate::report::solids::{Prism, SurfaceMesh};
+
+/// A body in its own frame, in m.
+pub(super) fn body(shape: &Shape) -> SurfaceMesh {
+    let own = Pose {
+        centre: Vector3::zeros(),
+        directors: Matrix3::identity(),
+    };
+    let mut mesh = SurfaceMesh::default();
+    mesh.add_body(shape, &own);
+    for vertex in &mut mesh.vertices {
+        *vertex *= METRE;
+    }
+    mesh
+}
+
+/// A ball about the origin.
+pub(super) fn sphere(radius: f64) -> SurfaceMesh {
+    body(&Shape::Sphere {
+        radius: radius / METRE,
+    })
+}
+
+/// A cube of edge 2 about the origin.
+pub(super) fn cube() -> SurfaceMesh {
+    let mut mesh = SurfaceMesh::default();
+    mesh.add_prism(&Prism {
+        centre: Vector3::zeros(),
+        halves: [Vector3::x(), Vector3::y(), Vector3::z()],
+    });
+    mesh
+}
+
+/// Two triangles for each quadrilateral.
+pub(super) fn triangles(quads: &[[usize; 4]]) -> Vec<[usize; 3]> {
+    let halves = |&[a, b, c, d]: &[usize; 4]| [[a, b, c], [a, c, d]];
+    quads.iter().flat_map(halves).collect()
+}

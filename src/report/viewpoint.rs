@@ -1,0 +1,103 @@
+//! From where figures look at the system.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::dynamics::trajectory::Trajectory;
+use crate::model::system::System;
+use crate::report::skins::Skins;
+use crate::report::view::View;
+
+/// Weight of the shape beside the motion: it decides where the motion leaves a choice.
+const SHAPE: f64 = 1e-3;
+
+/// Where the viewer stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Viewpoint {
+    /// Before, to the right and above, so that no axis is hidden.
+    #[default]
+    Oblique,
+    /// On the z axis: x to the right, y upwards.
+    Front,
+    /// On the x axis: z to the left, y upwards.
+    Side,
+    /// On the y axis: x to the right, z downwards.
+    Top,
+    /// In the direction in which the system moves least.
+    Auto,
+}
+
+impl Viewpoint {
+    /// Word on the command line.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Oblique => "oblique",
+            Self::Front => "front",
+            Self::Side => "side",
+            Self::Top => "top",
+            Self::Auto => "auto",
+        }
+    }
+
+    /// The view of a motion; of a single instant, of the way there from the reference configuration.
+    pub fn view(self, system: &System, trajectory: &Trajectory, skins: &Skins) -> View {
+        match self {
+            Self::Oblique => View::oblique(),
+            Self::Front => View::toward(Vector3::z()),
+            Self::Side => View::toward(Vector3::x()),
+            Self::Top => View::toward(Vector3::y()),
+            Self::Auto => View::toward(least(system, trajectory, skins)),
+        }
+    }
+
+    /// The axes to the right and upwards of a figure in a plane of the ground frame, where one is asked for.
+    pub fn plane(self) -> Option<[usize; 2]> {
+        match self {
+            Self::Front => Some([0, 1]),
+            Self::Side => Some([2, 1]),
+            Self::Top => Some([0, 2]),
+            Self::Oblique | Self::Auto => None,
+        }
+    }
+}
+
+/// The direction of the smallest motion of centres, markers and surfaces: an eigenvector of the sum of their covariances over time.
+fn least(system: &System, trajectory: &Trajectory, skins: &Skins) -> Vector3<f64> {
+    let mut tracks: Vec<Vec<Vector3<f64>>> = Vec::new();
+    for (b, body) in system.bodies.iter().enumerate() {
+        let poses = trajectory.poses.iter().map(|poses| poses[b].centre);
+        tracks.push([body.pose().centre].into_iter().chain(poses).collect());
+    }
+    for (m, marker) in system.markers.iter().enumerate() {
+        let path = trajectory.path(m);
+        tracks.push([marker.point.at].into_iter().chain(path).collect());
+    }
+    for skin in &skins.list {
+        for (c, &reference) in skin.reference.iter().enumerate() {
+            let places = skin.places.iter().map(|places| places[c]);
+            tracks.push([reference].into_iter().chain(places).collect());
+        }
+    }
+    // A motion begins where it begins.
+    let skipped = usize::from(trajectory.times.len() > 1);
+    let motion = tracks.iter().map(|track| covariance(&track[skipped..]));
+    let motion = unit(motion.sum());
+    let shape: Vec<_> = tracks.iter().map(|track| track[0]).collect();
+    let all = (motion + unit(covariance(&shape)) * SHAPE).symmetric_eigen();
+    let direction = all.eigenvectors.column(all.eigenvalues.imin()).into_owned();
+    let main = direction.iamax();
+    // From before, from the right, or from below, where x is to the right and z upwards.
+    let sign = if main == 1 { -1.0 } else { 1.0 };
+    direction * (sign * direction[main].signum())
+}
+
+/// Sum of the products of distances from the mean of finite points.
+fn covariance(points: &[Vector3<f64>]) -> Matrix3<f64> {
+    let finite = || points.iter().filter(|p| p.iter().all(|x| x.is_finite()));
+    let mean = finite().sum::<Vector3<f64>>() / finite().count().max(1) as f64;
+    let from_mean = finite().map(|p| p - mean);
+    from_mean.map(|d| d * d.transpose()).sum()
+}
+
+fn unit(matrix: Matrix3<f64>) -> Matrix3<f64> {
+    matrix / matrix.trace().max(f64::MIN_POSITIVE)
+}

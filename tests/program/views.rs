@@ -1,0 +1,217 @@
+//! From where figures look, and what stands in them.
+
+use crate::report::{assert_well_formed, polylines};
+use crate::runs::{problem, run};
+use nalgebra::{Rotation3, Unit, Vector3};
+use proboscis::dynamics::trajectory::Trajectory;
+use proboscis::model::system::System;
+use proboscis::report::file_set::FileSet;
+use proboscis::report::origin::Origin;
+use proboscis::report::skins::Skins;
+use proboscis::report::style;
+use proboscis::report::viewpoint::Viewpoint;
+use proboscis::report::{Figures, Run, Told, write_run};
+use std::fs;
+
+type Vector = Vector3<f64>;
+
+/// The trunk as a rigid whole, turned about an axis through a point on it.
+fn turning(axis: Vector) -> (System, Trajectory) {
+    let system = crate::common::trunk::system(6);
+    let mut trajectory = crate::common::trunk::swing(&system, 20);
+    let axis = Unit::new_normalize(axis);
+    for k in 0..trajectory.times.len() {
+        let turn = Rotation3::from_axis_angle(&axis, 0.05 * k as f64);
+        for (pose, body) in trajectory.poses[k].iter_mut().zip(&system.bodies) {
+            pose.centre = turn * body.pose().centre;
+        }
+        for (mark, marker) in trajectory.marks[k].iter_mut().zip(&system.markers) {
+            *mark = turn * marker.point.at;
+        }
+    }
+    (system, trajectory)
+}
+
+#[test]
+fn auto_looks_along_the_direction_of_the_smallest_motion() {
+    for axis in [
+        Vector::new(0.0, 0.0, 1.0),
+        Vector::new(1.0, 0.0, 0.0),
+        Vector::new(-1.0, 0.1, -3.0),
+        Vector::new(2.0, 0.4, -1.0),
+    ] {
+        let (system, trajectory) = turning(axis);
+        let moved = trajectory.marks[0][0] - trajectory.marks[20][0];
+        assert!(moved.norm() > 50.0);
+        // Points move in planes across the axis, and all motions are the same turn.
+        let view = Viewpoint::Auto.view(&system, &trajectory, &Skins::default());
+        let along = view.toward.dot(&axis.normalize()).abs();
+        assert!(along > 1.0 - 1e-3, "{axis:?}: {:?}", view.toward);
+        assert!((view.right.cross(&view.up) - view.toward).norm() < 1e-12);
+        assert!(view.up.y > 0.0 && (view.up.norm() - 1.0).abs() < 1e-12);
+    }
+    // Across y it is the plane of x and z, as of figures of paths.
+    let (system, mut trajectory) = turning(Vector::z());
+    for k in 0..trajectory.times.len() {
+        for place in &mut trajectory.marks[k] {
+            *place = Vector::new(place.y, 0.0, -place.x);
+        }
+        for pose in &mut trajectory.poses[k] {
+            pose.centre = Vector::new(pose.centre.y, 0.0, -pose.centre.x);
+        }
+    }
+    let view = Viewpoint::Auto.view(&system, &trajectory, &Skins::default());
+    assert!((view.right - Vector::x()).norm() < 1e-9 && (view.up - Vector::z()).norm() < 1e-9);
+}
+
+#[test]
+fn named_views_have_their_axes() {
+    let (system, trajectory) = turning(Vector::x());
+    let [x, y, z] = [Vector::x(), Vector::y(), Vector::z()];
+    for (viewpoint, right, up) in [
+        (Viewpoint::Front, x, y),
+        (Viewpoint::Side, -z, y),
+        (Viewpoint::Top, x, -z),
+    ] {
+        let view = viewpoint.view(&system, &trajectory, &Skins::default());
+        assert!((view.right - right).norm() < 1e-15 && (view.up - up).norm() < 1e-15);
+    }
+}
+
+/// Places of all points of an SVG and the size of its sheet, in its own units.
+fn places(svg: &str) -> (Vec<[f64; 2]>, [f64; 2]) {
+    let sheet = svg.split("viewBox=\"0 0 ").nth(1).unwrap();
+    let sheet = sheet.split('"').next().unwrap();
+    let number = |text: &str| -> f64 { text.parse().unwrap() };
+    let (width, height) = sheet.split_once(' ').unwrap();
+    let points = svg.split("points=\"").skip(1);
+    let points = points.flat_map(|points| points.split('"').next().unwrap().split_whitespace());
+    let points = points.map(|point| {
+        let (x, y) = point.split_once(',').unwrap();
+        [number(x), number(y)]
+    });
+    (points.collect(), [number(width), number(height)])
+}
+
+#[test]
+fn stills_of_a_motion_are_at_equal_distances_in_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let arguments = [
+        "simulate",
+        &problem("pair_constant"),
+        "-o",
+        out.to_str().unwrap(),
+        "--view",
+        "top",
+        "--export",
+        "gltf",
+    ];
+    let (status, said, errors) = run(folder.path(), &arguments);
+    assert_eq!(status, 0, "{said}{errors}");
+    let svg = fs::read_to_string(out.join("snapshots.svg")).unwrap();
+    assert_well_formed(&svg);
+    let times = svg
+        .lines()
+        .map(str::trim)
+        .filter_map(|line| line.strip_suffix(" s"));
+    let times: Vec<f64> = times.filter_map(|text| text.parse().ok()).collect();
+    let table = fs::read_to_string(out.join("trajectory.csv")).unwrap();
+    let last: f64 = table
+        .lines()
+        .last()
+        .unwrap()
+        .split(',')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    assert_eq!(times.len(), 6);
+    for (i, time) in times.iter().enumerate() {
+        let part = i as f64 / 5.0;
+        assert!(
+            (1e3 * time - part * last).abs() < 0.02 * last,
+            "{times:?} of {last}"
+        );
+    }
+    let path = fs::read_to_string(out.join("tip_path.svg")).unwrap();
+    assert!(path.contains("x [mm]") && path.contains("z [mm]") && !path.contains("y [mm]"));
+    assert!(out.join("motion.gltf").exists());
+}
+
+#[test]
+fn rest_has_its_reference_and_each_marker_a_colour_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = [
+        "equilibrium",
+        &problem("pair_constant"),
+        "--voltages",
+        "muscle2=2kV",
+        "--set",
+        "scene.markers=[{\"name\":\"near\",\"body\":\"segment1\",\"at\":[0,\"30 mm\",0]}]",
+        "-o",
+        "out",
+    ];
+    let (status, said, errors) = run(folder.path(), &arguments);
+    assert_eq!(status, 0, "{said}{errors}");
+    let svg = fs::read_to_string(folder.path().join("out/configuration.svg")).unwrap();
+    assert_well_formed(&svg);
+    for words in [
+        "reference",
+        "at rest",
+        "displacement of near",
+        "displacement of tip",
+    ] {
+        assert!(svg.contains(words), "{words}");
+    }
+    // Each has its path and its line of the legend.
+    for marker in 0..2 {
+        assert_eq!(polylines(&svg, style::hue(marker)), 2, "marker {marker}");
+    }
+    assert!(!folder.path().join("out/snapshots.svg").exists());
+}
+
+#[test]
+fn figures_have_room_for_the_whole_motion() {
+    let system = crate::common::trunk::system(6);
+    let mut trajectory = crate::common::trunk::swing(&system, 20);
+    // It jumps over its own height, and is back in the end.
+    for k in 5..15 {
+        for pose in &mut trajectory.poses[k] {
+            pose.centre.y += 600.0;
+        }
+        trajectory.marks[k][0].y += 600.0;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let origin = Origin {
+        command: "proboscis".to_owned(),
+        input: "a.json".to_owned(),
+        version: Origin::program(),
+        ipopt: String::new(),
+    };
+    let run = Run {
+        system: &system,
+        trajectory: &trajectory,
+        skins: &Skins::default(),
+        name: "jump",
+        observations: &trajectory.observe(&system),
+        comparison: None,
+        held: None,
+        equilibria: None,
+        figures: Figures::default(),
+        tracked: &[],
+        origin: &origin,
+        goal: None,
+        told: &Told::default(),
+    };
+    let mut files = FileSet::of(folder.path());
+    write_run(&mut files, &run).unwrap();
+    files.finish().unwrap();
+    for name in ["snapshots.svg", "configuration.svg"] {
+        let svg = fs::read_to_string(folder.path().join(name)).unwrap();
+        let (places, [width, height]) = places(&svg);
+        let inside = |[x, y]: &[f64; 2]| (0.0..=width).contains(x) && (0.0..=height).contains(y);
+        assert!(places.iter().all(inside), "{name}");
+        assert!(places.len() > 1000);
+    }
+}
