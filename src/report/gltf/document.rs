@@ -199,7 +199,7 @@ impl Document {
         let nodes: Vec<usize> = (0..self.nodes.len()).collect();
         let encoded = STANDARD.encode(&self.bytes);
         let mut document = json!({
-            "asset": { "version": "2.0", "generator": Origin::program(), "extras": { "origin": origin.line() } },
+            "asset": { "version": "2.0", "generator": format!("proboscis {}", Origin::program()), "extras": { "origin": origin.line() } },
             "scene": 0,
             "scenes": [{ "name": name, "nodes": nodes }],
             "nodes": self.nodes,
