@@ -12,6 +12,7 @@ use crate::report::origin::Origin;
 use crate::report::pose::{is_charged, time};
 use crate::report::skins::Skins;
 use crate::report::style;
+use crate::report::view::View;
 use crate::report::viewpoint::Viewpoint;
 
 /// Stills at most.
@@ -61,10 +62,11 @@ pub(super) fn svg(
                 GAP + (i % columns) as f64 * step[0],
                 GAP + (i / columns) as f64 * step[1],
             ];
-            let mut view = view;
-            for axis in 0..2 {
-                view.origin[axis] += corner[axis];
-            }
+            let [x, y] = view.origin;
+            let view = View {
+                origin: [x + corner[0], y + corner[1]],
+                ..view
+            };
             let voltages = trajectory.voltages.get(k.saturating_sub(1));
             let drawing = Drawing {
                 system,

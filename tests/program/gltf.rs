@@ -11,6 +11,8 @@ use proboscis::report::skins::{Skin, Skins};
 use serde_json::Value;
 
 type Vector = Vector3<f64>;
+/// Vectors of any length.
+type Rows = Vec<Vec<f64>>;
 
 /// A file, and the bytes of its buffer.
 struct Read {
@@ -90,7 +92,7 @@ impl Read {
     }
 
     /// The points of the only primitive of a node, those of its morph targets, and its indices.
-    fn mesh(&self, name: &str) -> (Vec<Vec<f64>>, Vec<Vec<Vec<f64>>>, Vec<usize>) {
+    fn mesh(&self, name: &str) -> (Rows, Vec<Rows>, Vec<usize>) {
         let mesh = self.node(name).1["mesh"].as_u64().unwrap() as usize;
         let primitive = &self.file["meshes"][mesh]["primitives"][0];
         assert_eq!(primitive["mode"], 4);
