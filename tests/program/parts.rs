@@ -7,7 +7,7 @@ use proboscis::model::system::Shape;
 use proboscis::report::file_set::FileSet;
 use proboscis::report::origin::Origin;
 use proboscis::report::skins::Skins;
-use proboscis::report::{Figures, Run, Told, write_run};
+use proboscis::report::{Figures, Run, write_run};
 use std::fs;
 
 /// The eight bytes of each number of the arrays with a name, in the order of the file.
@@ -55,6 +55,7 @@ fn bodies_muscles_and_markers_are_where_they_are() {
         skins: &Skins::default(),
         name: "swing",
         observations: &trajectory.observe(&system),
+        tabulated: &trajectory.observe(&system),
         comparison: None,
         held: None,
         equilibria: None,
@@ -65,7 +66,7 @@ fn bodies_muscles_and_markers_are_where_they_are() {
         tracked: &[],
         origin: &origin,
         goal: None,
-        told: &Told::default(),
+        told: None,
     };
     let mut files = FileSet::of(folder.path());
     write_run(&mut files, &run).unwrap();

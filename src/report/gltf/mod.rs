@@ -15,15 +15,13 @@ use crate::kinematics::Pose;
 use crate::model::system::{Shape, System};
 use crate::report::drawing::{lumped, marker_colour};
 use crate::report::gltf::document::{Document, Mode, Moving, Placed};
-use crate::report::gltf::shapes::{body, cube, sphere, triangles};
+use crate::report::gltf::shapes::{METRE, body, cube, sphere, triangles};
 use crate::report::origin::Origin;
 use crate::report::skins::{Skins, shown};
 use crate::report::solids::Prism;
 use crate::report::style;
 use crate::report::ties;
 
-/// Length in m of a length in mm.
-const METRE: f64 = 1e-3;
 /// Opacity of bodies, so that muscles within show.
 const GLASS: f32 = 0.35;
 /// Radius of a marker as a part of the size of the system.

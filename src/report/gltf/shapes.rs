@@ -2,10 +2,12 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::METRE;
 use crate::kinematics::Pose;
 use crate::model::system::Shape;
 use crate::report::solids::{Prism, SurfaceMesh};
+
+/// Length in m of a length in mm.
+pub(super) const METRE: f64 = 1e-3;
 
 /// A body in its own frame, in m.
 pub(super) fn body(shape: &Shape) -> SurfaceMesh {
