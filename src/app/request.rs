@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use crate::app::progress::ProgressDisplay;
 use crate::files::is_standard_input;
-use crate::report::{Figures, Told};
 use crate::report::origin::Origin;
+use crate::report::{Figures, Told};
 use crate::workflow::accuracy::AccuracyTarget;
 
 /// A command on a problem file.
