@@ -47,6 +47,7 @@ pub(crate) fn request() -> CommandInput {
         max_seconds: None,
         max_iterations: None,
         wanted: None,
+        from: None,
         figures: Figures::default(),
         progress: ProgressDisplay::Never,
         page: PageWanted::Written,
