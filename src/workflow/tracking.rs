@@ -59,8 +59,8 @@ pub struct TrackedPath {
 }
 
 impl TrackedPath {
-    /// The same at some of the instants.
-    pub(crate) fn at(&self, instants: &[usize]) -> Self {
+    /// The same at some of the instants, by their indices.
+    pub fn at(&self, instants: &[usize]) -> Self {
         let pick = |list: &[f64]| instants.iter().map(|&k| list[k]).collect();
         Self {
             name: self.name.clone(),
