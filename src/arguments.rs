@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use crate::choices::{Engine, Export, View};
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use clap_complete::Shell;
-use proboscis::app::{CommandInput, PageWanted, ProgressDisplay, RunIn};
+use proboscis::app::{CommandInput, PageWanted, ProgressDisplay};
 use proboscis::report::Figures;
-use proboscis::report::viewpoint::Viewpoint;
 use proboscis::study::StudyRequest;
 use proboscis::sweep::{Shard, SweepRequest};
 use proboscis::workflow::accuracy::AccuracyTarget;
@@ -213,35 +213,6 @@ impl Sweep {
     }
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Engine {
-    /// In threads of this process; in processes where MUMPS solves the linear systems of a control problem.
-    Threads,
-    /// Each in a process of its own.
-    Processes,
-    /// Each as a task of the HyperQueue server that runs, on whatever workers it has.
-    #[value(name = "hyperqueue")]
-    HyperQueue,
-}
-
-impl Engine {
-    const fn run_in(self) -> RunIn {
-        match self {
-            Self::Threads => RunIn::Threads,
-            Self::Processes => RunIn::Processes,
-            Self::HyperQueue => RunIn::HyperQueue,
-        }
-    }
-}
-
-/// Where several solves run.
-pub(crate) const fn run_in(processes: bool) -> RunIn {
-    match processes {
-        true => RunIn::Processes,
-        false => RunIn::Threads,
-    }
-}
-
 #[derive(Args, Debug)]
 pub(crate) struct Input {
     /// The problem file; - for standard input.
@@ -249,40 +220,6 @@ pub(crate) struct Input {
     /// Override an entry, such as control.intervals=80 or scene.gravity=[0,-9.81,0]; may be repeated.
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum View {
-    /// From before, the right and above.
-    Oblique,
-    /// Along the z axis, y upwards.
-    Front,
-    /// Along the x axis, y upwards.
-    Side,
-    /// Along the y axis, from above.
-    Top,
-    /// In the direction in which the system moves least.
-    Auto,
-}
-
-impl View {
-    const fn viewpoint(self) -> Viewpoint {
-        match self {
-            Self::Oblique => Viewpoint::Oblique,
-            Self::Front => Viewpoint::Front,
-            Self::Side => Viewpoint::Side,
-            Self::Top => Viewpoint::Top,
-            Self::Auto => Viewpoint::Auto,
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Export {
-    /// motion.gltf: an animation of bodies, muscles, markers and elastic blocks, for Blender and other programs.
-    Gltf,
-    /// parts.pvd: bodies, muscles and markers for ParaView; elastic blocks always have such files.
-    Paraview,
 }
 
 #[derive(Args, Debug)]

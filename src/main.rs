@@ -1,12 +1,14 @@
 //! The command line: what is typed, passed on, and answered with a line and an exit status.
 
 mod arguments;
+mod choices;
 
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use arguments::{Arguments, Command, File, New, run_in, typed};
+use arguments::{Arguments, Command, File, New, typed};
+use choices::run_in;
 use clap::{CommandFactory, Parser};
 use proboscis::app::{self, CommandError, CommandInput, CommandOutput, Template};
 use proboscis::files::printable;

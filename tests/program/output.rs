@@ -18,7 +18,7 @@ fn table(path: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
 }
 
 /// A naive reader of arrays that are not compressed: what stands between the header of each and the next record.
-fn arrays(path: &Path) -> BTreeMap<String, Vec<f64>> {
+pub(crate) fn arrays(path: &Path) -> BTreeMap<String, Vec<f64>> {
     let bytes = fs::read(path).unwrap();
     let at = |place: usize, length: usize| {
         let bytes = bytes[place..place + length].iter().rev();

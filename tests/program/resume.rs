@@ -58,6 +58,9 @@ fn a_shorter_simulation_goes_on_to_the_same_files() {
     }
 }
 
+/// A motion that no machine ends before it is stopped.
+const FAR: &str = "simulate.duration=400 s";
+
 #[test]
 fn a_stopped_simulation_says_how_it_goes_on() {
     let folder = workshop();
@@ -68,6 +71,8 @@ fn a_stopped_simulation_says_how_it_goes_on() {
         "problems/elephant_trunk_constant.json",
         "--set",
         set,
+        "--set",
+        FAR,
         "-o",
         "out dir",
     ];
@@ -100,7 +105,7 @@ fn a_stopped_simulation_says_how_it_goes_on() {
     assert_eq!(after["status"], "simulated");
     let steps = |summary: &Value| summary["steps"].as_u64().unwrap();
     assert_eq!(steps(&after), steps(&before) + 20);
-    let whole = [&words[..5], &["whole", "--set", &until]].concat();
+    let whole = [&words[..7], &["whole", "--set", &until]].concat();
     assert_eq!(go(folder, &whole).0, 0);
     assert!(kept(&folder.join("whole")) == kept(&folder.join("out dir")));
 }
@@ -114,6 +119,8 @@ fn a_killed_simulation_goes_on_from_its_last_steps() {
         "problems/elephant_trunk_constant.json",
         "--set",
         "simulate.step=0.1 ms",
+        "--set",
+        FAR,
     ];
     let mut child = Command::new(env!("CARGO_BIN_EXE_proboscis"))
         .args(words)

@@ -89,6 +89,15 @@ fn check_whole(folder: &Path, intervals: &[usize]) -> usize {
     });
     for path in &all {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        // Arrays in a zip archive, which ends with its directory.
+        if path.extension().is_some_and(|end| end == "npz") {
+            let bytes = fs::read(path).unwrap();
+            assert!(
+                bytes[bytes.len() - 22..].starts_with(b"PK\x05\x06"),
+                "{name}"
+            );
+            continue;
+        }
         let text = fs::read_to_string(path).unwrap();
         let told = || format!("{name}, {} bytes", text.len());
         let one_of = |count: usize, more: usize| intervals.iter().any(|n| n + more == count);
@@ -173,7 +182,9 @@ fn a_killed_run_leaves_the_files_before_or_those_after() {
     assert!(killed > 5, "{killed} were killed before their end");
     let out = folder.path().join("out");
     let partial = || files(&out).into_iter().filter(|f| is_partial(f)).count();
-    assert!(partial() <= killed, "{} partial files", partial());
+    // All files of a run are partial until the last one is written.
+    let at_once = files(&out).len() - partial();
+    assert!(partial() <= killed * at_once, "{} partial files", partial());
 
     // What is old is cleared by the next run, what is young may belong to another one.
     let long_ago = SystemTime::now() - Duration::from_secs(3600);

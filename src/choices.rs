@@ -1,0 +1,68 @@
+//! Words that options of the command line choose from.
+
+use clap::ValueEnum;
+use proboscis::app::RunIn;
+use proboscis::report::viewpoint::Viewpoint;
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Engine {
+    /// In threads of this process; in processes where MUMPS solves the linear systems of a control problem.
+    Threads,
+    /// Each in a process of its own.
+    Processes,
+    /// Each as a task of the HyperQueue server that runs, on whatever workers it has.
+    #[value(name = "hyperqueue")]
+    HyperQueue,
+}
+
+impl Engine {
+    pub(crate) const fn run_in(self) -> RunIn {
+        match self {
+            Self::Threads => RunIn::Threads,
+            Self::Processes => RunIn::Processes,
+            Self::HyperQueue => RunIn::HyperQueue,
+        }
+    }
+}
+
+/// Where several solves run.
+pub(crate) const fn run_in(processes: bool) -> RunIn {
+    match processes {
+        true => RunIn::Processes,
+        false => RunIn::Threads,
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum View {
+    /// From before, the right and above.
+    Oblique,
+    /// Along the z axis, y upwards.
+    Front,
+    /// Along the x axis, y upwards.
+    Side,
+    /// Along the y axis, from above.
+    Top,
+    /// In the direction in which the system moves least.
+    Auto,
+}
+
+impl View {
+    pub(crate) const fn viewpoint(self) -> Viewpoint {
+        match self {
+            Self::Oblique => Viewpoint::Oblique,
+            Self::Front => Viewpoint::Front,
+            Self::Side => Viewpoint::Side,
+            Self::Top => Viewpoint::Top,
+            Self::Auto => Viewpoint::Auto,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Export {
+    /// motion.gltf: an animation of bodies, muscles, markers and elastic blocks, for Blender and other programs.
+    Gltf,
+    /// parts.pvd: bodies, muscles and markers for ParaView; elastic blocks always have such files.
+    Paraview,
+}
