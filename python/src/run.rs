@@ -5,9 +5,11 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-use proboscis::app::{CommandInput, CommandOutput, PageWanted, ProgressDisplay, Reached, run_observed};
-use proboscis::report::Figures;
+use proboscis::app::{
+    CommandInput, CommandOutput, PageWanted, ProgressDisplay, Reached, run_observed,
+};
 use proboscis::ipopt::interrupt::{self, StopRequest};
+use proboscis::report::Figures;
 use proboscis::workflow::accuracy::AccuracyTarget;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;

@@ -26,6 +26,7 @@ fn a_joint_turns_many_times() {
     for (i, coordinates) in ["reduced", "redundant"].into_iter().enumerate() {
         let mut task = simulate_from("100 s", "5 ms", json!({}), json!({ "hinge": "100 rad/s" }));
         task["simulate"]["coordinates"] = json!(coordinates);
+        task["output"] = json!({ "every": "5 ms" });
         let motion = run(&wheel, &task).solved();
         let found = motion.column("hinge");
         let error = difference(&found, &expected);
@@ -158,6 +159,7 @@ fn a_pendulum_goes_where_the_benchmark_of_others_says() {
         let errors = steps.map(|step: f64| {
             let mut task = simulate("10 s", &format!("{step} ms"), json!({}));
             task["simulate"]["integrator"] = integrator.clone();
+            task["output"] = json!({ "every": format!("{step} ms") });
             let found = run(&scene, &task).solved();
             let [x, y] = ["end_x", "end_y"].map(|name| found.column(name));
             let apart = |&[time, a, b]: &[f64; 3]| {
