@@ -77,6 +77,8 @@ class Drawn {
     scales.y.afterFit = (scale) => { scale.width = LABELS; };
     scales.y.ticks.maxTicksLimit = 7;
     if (x.log === false) scales.x.bounds = "data";
+    // Curves that end earlier than the clock, beside longer ones, leave room for its cursor.
+    if (this.clock) Object.assign(scales.x, { suggestedMin: this.clock.first, suggestedMax: this.clock.last });
     return {
       type: "scatter",
       options: {
