@@ -234,20 +234,12 @@ pub(super) fn simulation(
     told.rows = rows;
     let earlier = earlier.map(|earlier| shown.beside(earlier));
     let run = Run {
-        system,
-        trajectory: &shown.trajectory,
-        skins: &shown.skins,
         name: "simulation",
-        observations: &shown.observations,
-        tabulated: &shown.tabulated,
         comparison: earlier.as_ref().map(|e| ("the solution", e)),
         held: held(task, reached),
-        equilibria: None,
         figures: request.figures,
-        tracked: &[],
-        origin: &origin,
-        goal: None,
         told: request.page.of(&told),
+        ..shown.run(system, &origin)
     };
     write_run(&mut files, &run)?;
     summary.seconds.wrote(began, writing);

@@ -121,21 +121,14 @@ pub(super) fn follow(
     let mut said = page::told("Path of equilibria", &summary, asked);
     said.rows = rows;
     said.plots.push(("Path".to_owned(), plot));
+    let skins = Skins::new(&model, &shown_state);
     let run = Run {
-        system: &model.system,
-        trajectory: &motion,
-        skins: &Skins::new(&model, &shown_state),
         name: "rest",
-        observations: &observed,
-        tabulated: &observed,
-        comparison: None,
         held: Some(&motion.voltages[0]),
         equilibria: Some(&way),
         figures: request.figures,
-        tracked: &[],
-        origin: &origin,
-        goal: None,
         told: request.page.of(&said),
+        ..Run::of(&model.system, &motion, &skins, &observed, &origin)
     };
     write_still(&mut files, "path.csv", &run)?;
     summary.write(files)?;

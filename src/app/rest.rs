@@ -162,21 +162,13 @@ pub(super) fn at(
     };
     let mut said = page::told(title, &summary, asked);
     said.rows = rows;
+    let skins = Skins::new(&model, &state);
     let run = Run {
-        system: &model.system,
-        trajectory: &motion,
-        skins: &Skins::new(&model, &state),
         name: "rest",
-        observations: &observed,
-        tabulated: &observed,
-        comparison: None,
         held: Some(&motion.voltages[0]),
-        equilibria: None,
         figures: request.figures,
-        tracked: &[],
-        origin: &origin,
-        goal: None,
         told: request.page.of(&said),
+        ..Run::of(&model.system, &motion, &skins, &observed, &origin)
     };
     write_still(&mut files, "equilibrium.csv", &run)?;
     summary.write(files)?;

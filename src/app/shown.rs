@@ -10,8 +10,10 @@ use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::files::npz::NpzWriter;
 use crate::files::problem::output::Output;
 use crate::model::{Model, System};
+use crate::report::Run;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
+use crate::report::origin::Origin;
 use crate::report::sampled::{Sampled, thinned};
 use crate::report::skins::Skins;
 use crate::report::table;
@@ -128,6 +130,15 @@ impl Shown {
             _ => files.remove(TABLES),
         }
         Ok(shown)
+    }
+
+    /// The run that is shown, without what it is compared with.
+    pub(super) fn run<'a>(&'a self, system: &'a System, origin: &'a Origin) -> Run<'a> {
+        let (trajectory, observations) = (&self.trajectory, &self.observations);
+        Run {
+            tabulated: &self.tabulated,
+            ..Run::of(system, trajectory, &self.skins, observations, origin)
+        }
     }
 
     /// What was to be followed, as it is shown.

@@ -307,24 +307,18 @@ fn write_files(
     told.rows = rows(summary);
     told.plots.push(convergence(&optimum.solution.iterations));
     let run = Run {
-        system: &model.system,
-        trajectory: &shown.trajectory,
-        skins: &shown.skins,
         name: match summary.status.as_str() {
             _ if is_solved => "optimal voltages",
             "not_reproduced" | "not_held" => "optimum",
             _ => "last iterate",
         },
-        observations: &shown.observations,
-        tabulated: &shown.tabulated,
         comparison: compared.as_ref().map(|c| ("constant voltages", c)),
         held: boundary.rest[1].as_deref().filter(|_| is_solved),
-        equilibria: None,
         figures: request.figures,
         tracked: &shown.tracked(&summary.tracking),
-        origin: &origin,
         goal: goal.as_deref(),
         told: request.page.of(&told),
+        ..shown.run(&model.system, &origin)
     };
     write_run(&mut files, &run)?;
     summary.seconds.wrote(began, writing);

@@ -73,7 +73,33 @@ pub struct Told {
     pub documents: Vec<(String, String)>,
 }
 
-impl Run<'_> {
+impl<'a> Run<'a> {
+    /// A motion with all that is observed of it in its table, alone and without a page.
+    pub fn of(
+        system: &'a System,
+        trajectory: &'a Trajectory,
+        skins: &'a Skins,
+        observations: &'a Observations,
+        origin: &'a Origin,
+    ) -> Self {
+        Self {
+            system,
+            trajectory,
+            skins,
+            name: "motion",
+            observations,
+            tabulated: observations,
+            comparison: None,
+            held: None,
+            equilibria: None,
+            figures: Figures::default(),
+            tracked: &[],
+            origin,
+            goal: None,
+            told: None,
+        }
+    }
+
     /// What a figure in space shows.
     pub(super) fn shown(&self) -> Shown<'_> {
         Shown {

@@ -10,7 +10,7 @@ use proboscis::model::System;
 use proboscis::model::system::{ElectricConstants, VACUUM_PERMITTIVITY};
 use proboscis::report::origin::Origin;
 use proboscis::report::skins::Skins;
-use proboscis::report::{Figures, Run, Told, page};
+use proboscis::report::{Run, Told, page};
 use serde_json::Value;
 
 use crate::report::swing;
@@ -52,20 +52,8 @@ fn run<'a>(system: &'a System, trajectory: &'a Trajectory) -> Run<'a> {
     static PARTS: LazyLock<(Skins, Observations, Origin, Told)> = LazyLock::new(Default::default);
     let (skins, observations, origin, told) = &*PARTS;
     Run {
-        system,
-        trajectory,
-        skins,
-        name: "swing",
-        observations,
-        tabulated: observations,
-        comparison: None,
-        held: None,
-        equilibria: None,
-        figures: Figures::default(),
-        tracked: &[],
-        origin,
-        goal: None,
         told: Some(told),
+        ..Run::of(system, trajectory, skins, observations, origin)
     }
 }
 

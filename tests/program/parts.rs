@@ -1,13 +1,11 @@
 //! Bodies, muscles and markers as ParaView reads them.
 
+use crate::runs::write_motion;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use nalgebra::Vector3;
 use proboscis::model::system::Shape;
-use proboscis::report::file_set::FileSet;
-use proboscis::report::origin::Origin;
-use proboscis::report::skins::Skins;
-use proboscis::report::{Figures, Run, write_run};
+use proboscis::report::Figures;
 use std::fs;
 
 /// The eight bytes of each number of the arrays with a name, in the order of the file.
@@ -43,34 +41,11 @@ fn bodies_muscles_and_markers_are_where_they_are() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("parts")).unwrap();
     fs::write(folder.path().join("parts/0050.vtp"), "of a longer motion").unwrap();
-    let origin = Origin {
-        command: "proboscis".to_owned(),
-        input: "a.json".to_owned(),
-        version: Origin::program(),
-        ipopt: String::new(),
+    let figures = Figures {
+        parts: true,
+        ..Figures::default()
     };
-    let run = Run {
-        system: &system,
-        trajectory: &trajectory,
-        skins: &Skins::default(),
-        name: "swing",
-        observations: &trajectory.observe(&system),
-        tabulated: &trajectory.observe(&system),
-        comparison: None,
-        held: None,
-        equilibria: None,
-        figures: Figures {
-            parts: true,
-            ..Figures::default()
-        },
-        tracked: &[],
-        origin: &origin,
-        goal: None,
-        told: None,
-    };
-    let mut files = FileSet::of(folder.path());
-    write_run(&mut files, &run).unwrap();
-    files.finish().unwrap();
+    write_motion(folder.path(), &system, &trajectory, figures);
     let list = fs::read_to_string(folder.path().join("parts.pvd")).unwrap();
     assert_eq!(list.matches("<DataSet").count(), trajectory.times.len());
     assert!(list.contains("timestep=\"0.3\"") && list.contains("file=\"parts/0020.vtp\""));

@@ -13,9 +13,7 @@ use proboscis::report::origin::Origin;
 use proboscis::report::pose::Shown;
 use proboscis::report::skins::Skins;
 use proboscis::report::viewpoint::Viewpoint;
-use proboscis::report::{
-    Figures, Run, Told, markup, pose, style, table, tip_path, voltages, write_run,
-};
+use proboscis::report::{Run, Told, markup, pose, style, table, tip_path, voltages, write_run};
 
 fn origin() -> Origin {
     Origin {
@@ -287,25 +285,16 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
     let mut control = crate::common::cases::control(&system, trajectory.intervals());
     control.objective = tracked(&[0], &[(1, true)]);
     let tracked = proboscis::workflow::tracked(&system, &control, &trajectory, None);
+    let (skins, origin) = (Skins::default(), origin());
     let run = Run {
-        system: &system,
-        trajectory: &trajectory,
-        skins: &Skins::default(),
-        name: "swing",
-        observations: &observations,
-        tabulated: &observations,
         comparison: Some(("again", &trajectory)),
-        held: None,
-        equilibria: None,
-        figures: Figures::default(),
         tracked: &tracked,
-        origin: &origin(),
-        goal: None,
         told: Some(&Told {
             title: "A <title>".to_owned(),
             rows: vec![("status".to_owned(), "a < b".to_owned())],
             ..Told::default()
         }),
+        ..Run::of(&system, &trajectory, &skins, &observations, &origin)
     };
     let folder = tempfile::tempdir().unwrap();
     let inner = folder.path().join("results").join("swing");

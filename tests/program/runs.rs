@@ -1,6 +1,12 @@
 //! Runs of the program in a folder, and what they leave.
 
 use assert_cmd::Command;
+use proboscis::dynamics::trajectory::Trajectory;
+use proboscis::model::system::System;
+use proboscis::report::file_set::FileSet;
+use proboscis::report::origin::Origin;
+use proboscis::report::skins::Skins;
+use proboscis::report::{Figures, Run, write_run};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -56,4 +62,28 @@ pub(crate) fn run_with_input(
 /// A JSON file.
 pub(crate) fn read(path: impl AsRef<Path>) -> Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// Writes the files of a motion, without a page.
+pub(crate) fn write_motion(
+    folder: &Path,
+    system: &System,
+    trajectory: &Trajectory,
+    figures: Figures,
+) {
+    let origin = Origin {
+        command: "proboscis".to_owned(),
+        input: "a.json".to_owned(),
+        version: Origin::program(),
+        ipopt: String::new(),
+    };
+    let observations = trajectory.observe(system);
+    let skins = Skins::default();
+    let run = Run {
+        figures,
+        ..Run::of(system, trajectory, &skins, &observations, &origin)
+    };
+    let mut files = FileSet::of(folder);
+    write_run(&mut files, &run).unwrap();
+    files.finish().unwrap();
 }

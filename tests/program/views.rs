@@ -1,16 +1,14 @@
 //! From where figures look, and what stands in them.
 
 use crate::report::{assert_well_formed, polylines};
-use crate::runs::{problem, run};
+use crate::runs::{problem, run, write_motion};
 use nalgebra::{Rotation3, Unit, Vector3};
 use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::model::system::System;
-use proboscis::report::file_set::FileSet;
-use proboscis::report::origin::Origin;
+use proboscis::report::Figures;
 use proboscis::report::skins::Skins;
 use proboscis::report::style;
 use proboscis::report::viewpoint::Viewpoint;
-use proboscis::report::{Figures, Run, write_run};
 use std::fs;
 
 type Vector = Vector3<f64>;
@@ -183,31 +181,7 @@ fn figures_have_room_for_the_whole_motion() {
         trajectory.marks[k][0].y += 600.0;
     }
     let folder = tempfile::tempdir().unwrap();
-    let origin = Origin {
-        command: "proboscis".to_owned(),
-        input: "a.json".to_owned(),
-        version: Origin::program(),
-        ipopt: String::new(),
-    };
-    let run = Run {
-        system: &system,
-        trajectory: &trajectory,
-        skins: &Skins::default(),
-        name: "jump",
-        observations: &trajectory.observe(&system),
-        tabulated: &trajectory.observe(&system),
-        comparison: None,
-        held: None,
-        equilibria: None,
-        figures: Figures::default(),
-        tracked: &[],
-        origin: &origin,
-        goal: None,
-        told: None,
-    };
-    let mut files = FileSet::of(folder.path());
-    write_run(&mut files, &run).unwrap();
-    files.finish().unwrap();
+    write_motion(folder.path(), &system, &trajectory, Figures::default());
     for name in ["snapshots.svg", "configuration.svg"] {
         let svg = fs::read_to_string(folder.path().join(name)).unwrap();
         let (places, [width, height]) = places(&svg);

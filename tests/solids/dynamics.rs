@@ -8,7 +8,7 @@ use proboscis::dynamics::{
 };
 use proboscis::functional::Order;
 use proboscis::mesh::grid::Grid;
-use proboscis::model::system::{Material, System};
+use proboscis::model::system::{Material, Solid, System};
 use proboscis::model::{Model, Role};
 use proboscis::sparse::Backend;
 use serde_json::Value;
@@ -205,6 +205,18 @@ fn reused_tangents_and_other_solvers_give_the_same_motion() {
     }
 }
 
+/// Steps of h ms of a block from the velocities of its nodes, without voltages.
+fn released(solid: Solid, solving: Solving, h: f64, steps: usize) -> DiscreteTrajectory {
+    let model = Model::new(system(vec![solid]), None, h, &[]).unwrap();
+    let rates = model.node_rates().unwrap();
+    let start = Start::with_rates(&model, model.coordinates_at(&[]), &rates);
+    let observer = |_: &_| ControlFlow::Continue(());
+    let none = |_: f64, _: f64| Vec::new();
+    let (history, failure) = simulate_by(solving, &model, &start, h, steps, none, observer);
+    assert_eq!(failure, None);
+    history
+}
+
 /// A few long steps of a very viscous block of 40 mm that stretches and turns.
 fn turning(newton: Newton) -> DiscreteTrajectory {
     let size = Vector3::new(10.0, 10.0, 40.0);
@@ -223,18 +235,11 @@ fn turning(newton: Newton) -> DiscreteTrajectory {
         turn.cross(&arm) + Vector3::new(0.0, 0.0, 0.025 * arm.z)
     };
     solid.velocities = solid.mesh.nodes.iter().map(velocity).collect();
-    let model = Model::new(system(vec![solid]), None, 1.0, &[]).unwrap();
-    let rates = model.node_rates().unwrap();
-    let start = Start::with_rates(&model, model.coordinates_at(&[]), &rates);
     let solving = Solving {
         newton,
         ..Solving::default()
     };
-    let observer = |_: &_| ControlFlow::Continue(());
-    let none = |_: f64, _: f64| Vec::new();
-    let (history, failure) = simulate_by(solving, &model, &start, 1.0, 8, none, observer);
-    assert_eq!(failure, None);
-    history
+    released(solid, solving, 1.0, 8)
 }
 
 #[test]
@@ -262,14 +267,7 @@ fn large(viscosity: Option<f64>, solving: Solving) -> DiscreteTrajectory {
     let mut solid = block(mesh, rubber);
     let lift = |x: &Vector3<f64>| Vector3::new(1e-3 * x.z * x.z, 0.0, 0.01 * x.z);
     solid.velocities = solid.mesh.nodes.iter().map(lift).collect();
-    let model = Model::new(system(vec![solid]), None, 0.5, &[]).unwrap();
-    let rates = model.node_rates().unwrap();
-    let start = Start::with_rates(&model, model.coordinates_at(&[]), &rates);
-    let observer = |_: &_| ControlFlow::Continue(());
-    let none = |_: f64, _: f64| Vec::new();
-    let (history, failure) = simulate_by(solving, &model, &start, 0.5, 4, none, observer);
-    assert_eq!(failure, None);
-    history
+    released(solid, solving, 0.5, 4)
 }
 
 #[test]
