@@ -55,6 +55,10 @@ class Result:
         self.is_solved, self._line, self.notes = told
         self._line = self._line.removesuffix(f", {folder}")
 
+    def __fspath__(self) -> str:
+        """Returns the folder: a result stands for it in a problem, such as `{"start": {"end_of": result}}`."""
+        return str(self.folder.resolve())
+
     @classmethod
     def load(cls, folder: str | PathLike[str], /) -> Result:
         """Reads the folder of a result. Raises `Error` where it holds none."""

@@ -197,6 +197,15 @@ def test_a_solve_starts_from_a_result(pair: pb.Problem, optimum: pb.Result) -> N
     assert np.allclose(again.objective, optimum.objective, rtol=1e-7)
 
 
+def test_a_simulation_starts_at_the_end_of_a_result() -> None:
+    constant = pb.Problem.from_file(PROBLEMS / "pair_constant.json").changed({"simulate.duration": "50 ms"})
+    first = constant.simulate()
+    second = constant.changed({"simulate.start": {"end_of": first}}).simulate()
+    whole = constant.changed({"simulate.duration": "100 ms"}).simulate()
+    assert abs(whole.position("tip")[10, 0] - whole.position("tip")[20, 0]) > 1e-4
+    np.testing.assert_array_equal(second.position("tip"), whole.position("tip")[10:])
+
+
 def test_iterations_are_told(pair: pb.Problem, optimum: pb.Result) -> None:
     heard: list[pb.Iteration] = []
     main = threading.get_ident()

@@ -168,7 +168,7 @@ pub(super) fn simulation(
         ..Seconds::default()
     };
     let motion = trajectory(&model, &kept);
-    let ends = [task.start.rest_voltages(), None];
+    let ends = [task.start.voltages(), None];
     let exchange = EnergyExchange::new(&model.system, &motion, ends);
     summary.energies = Exchanged::new(&exchange);
     observed.columns.extend(exchange.columns());
@@ -179,6 +179,7 @@ pub(super) fn simulation(
         .map(|(path, earlier)| Comparison::new(&model, path, &motion, earlier));
     let compared = summary.comparison.iter().flat_map(Comparison::notes);
     let mut notes: Vec<String> = summary.message.iter().cloned().chain(compared).collect();
+    summary.notes.extend_from_slice(task.start.notes());
     summary.notes.extend(afterwards(task));
     summary.notes.extend(domain::note(&summary.domain, true));
     summary.notes.extend(steps::told(neglected, &history, task));

@@ -160,6 +160,7 @@ pub(super) fn control(
         parameters: kept.parameters.iter().map(SoughtValue::new).collect(),
     });
     let coarse = tested.and_then(Resimulation::warning);
+    summary.notes.extend_from_slice(control.start.notes());
     summary.notes.extend(note.into_iter().chain(coarse));
     summary.notes.extend(not_kept.filter(|_| is_solved));
     summary.notes.extend(holding::free_end(control));

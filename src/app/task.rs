@@ -12,7 +12,7 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::rest;
 use crate::app::solve;
 use crate::control::Earlier;
-use crate::control::problem::{Guess, Task};
+use crate::control::problem::{BoundaryState, Guess, Task};
 use crate::files::solution::SolutionFile;
 use crate::files::{Loaded, read_problem, read_problem_text};
 use crate::workflow::accuracy::AccuracyTarget;
@@ -43,6 +43,7 @@ pub fn run_observed(
     phase("reading");
     let loaded = read(&request.input, text, &request.set)?;
     refuse_unused(request, &loaded.task)?;
+    refuse_replacing(request, &loaded.task)?;
     let told = (request, &asked(&loaded)[..]);
     match &loaded.task {
         Task::Control(control) => {
@@ -72,6 +73,30 @@ pub(super) fn read(
     }?;
     memory::of_elements(&loaded.system).map_err(CommandError::of(input))?;
     Ok(loaded)
+}
+
+/// Refuses results in the place of the one from whose end the motion starts.
+pub(super) fn refuse_replacing(request: &CommandInput, task: &Task) -> Result<(), CommandError> {
+    let (place, start) = match task {
+        Task::Control(control) => ("control.start.end_of", &control.start),
+        Task::Simulate(simulation) => ("simulate.start.end_of", &simulation.start),
+        Task::Equilibrium(_) => return Ok(()),
+    };
+    let BoundaryState::EndOf(end) = start else {
+        return Ok(());
+    };
+    let folders = [&*request.folder(), &end.source].map(|folder| folder.canonicalize().ok());
+    match folders {
+        [Some(to), Some(from)] if to == from => Err(CommandError::Problem {
+            file: request.input.clone(),
+            place: place.to_owned(),
+            reason: format!(
+                "the results would replace {}, where the motion starts; expected another folder for them, by -o",
+                end.source.display()
+            ),
+        }),
+        _ => Ok(()),
+    }
 }
 
 /// Refuses options that the task has no use for.

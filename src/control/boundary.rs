@@ -108,7 +108,7 @@ impl BoundaryConditions {
         if let Some(z) = given.iter().copied().collect::<Option<Vec<f64>>>() {
             check_muscles(&model, &z, "goal")?;
         }
-        let rest = [&control.start, &control.goal].map(BoundaryState::rest_voltages);
+        let rest = [&control.start, &control.goal].map(BoundaryState::voltages);
         let rest = rest.map(|voltages| voltages.map(<[f64]>::to_vec));
         let boundary = Self {
             start,
@@ -132,17 +132,6 @@ impl BoundaryConditions {
         sought::check(&model, control, ends)?;
         ends::check(&model, &boundary, control, scalars)?;
         Ok((model, boundary))
-    }
-}
-
-impl BoundaryState {
-    /// The voltages in V, by source, at which it rests, where they are known.
-    pub fn rest_voltages(&self) -> Option<&[f64]> {
-        match self {
-            Self::RestAtVoltages(voltages, _) => Some(voltages),
-            Self::Markers { hold, .. } => hold.as_deref(),
-            Self::JointAngles { .. } | Self::Free => None,
-        }
     }
 }
 
@@ -201,6 +190,13 @@ pub fn resolve_start(
             })?;
             let rates = with_nodes(model, rates);
             Ok(Start::with_rates(model, z, &rates))
+        }
+        BoundaryState::EndOf(end) => {
+            let start = end
+                .start(model)
+                .map_err(|reason| BoundaryError::OtherEnd { place, reason })?;
+            check_muscles(model, &start.z, place)?;
+            Ok(start)
         }
         BoundaryState::Markers { .. } | BoundaryState::Free => unreachable!("it is a goal only"),
     }

@@ -67,7 +67,9 @@ fn zero_voltage<const N: usize>(
         ends.iter().any(|state| match state {
             BoundaryState::RestAtVoltages(voltages, _) => voltages[s] != 0.0,
             BoundaryState::Markers { hold, .. } => hold.as_ref().is_some_and(|v| v[s] != 0.0),
-            BoundaryState::JointAngles { .. } | BoundaryState::Free => false,
+            BoundaryState::JointAngles { .. } | BoundaryState::EndOf(_) | BoundaryState::Free => {
+                false
+            }
         })
     };
     let sources = system.sources();
@@ -89,25 +91,33 @@ impl<'a> Named<'a> {
         }
     }
 
-    /// A start away from the reference configuration, or in motion. Sources that hold a state of rest are not at zero voltage, and
+    /// A start away from the reference configuration, or in motion; where another motion ended anything may be. Sources that hold a state of rest are not at zero voltage, and
     /// move what they move.
     fn of_start(&mut self, state: &BoundaryState) {
-        if let BoundaryState::JointAngles {
-            angles,
-            rates,
-            velocities,
-        } = state
-        {
-            self.stirred.bodies.extend(velocities.keys());
-            let all = angles.iter().chain(rates);
-            let moved = all.filter(|(_, value)| **value != 0.0);
-            moved.for_each(|(&joint, _)| self.of_joint(joint));
+        match state {
+            BoundaryState::JointAngles {
+                angles,
+                rates,
+                velocities,
+            } => {
+                self.stirred.bodies.extend(velocities.keys());
+                let all = angles.iter().chain(rates);
+                let moved = all.filter(|(_, value)| **value != 0.0);
+                moved.for_each(|(&joint, _)| self.of_joint(joint));
+            }
+            BoundaryState::EndOf(_) => {
+                self.stirred.bodies.extend(0..self.system.bodies.len());
+                self.stirred.solids.extend(0..self.system.solids.len());
+            }
+            BoundaryState::RestAtVoltages(..)
+            | BoundaryState::Markers { .. }
+            | BoundaryState::Free => {}
         }
     }
 
     fn of_goal(&mut self, state: &BoundaryState) {
         match state {
-            BoundaryState::RestAtVoltages(..) | BoundaryState::Free => {}
+            BoundaryState::RestAtVoltages(..) | BoundaryState::EndOf(_) | BoundaryState::Free => {}
             BoundaryState::JointAngles { angles, .. } => {
                 angles.keys().for_each(|&j| self.of_joint(j));
             }

@@ -46,7 +46,7 @@ pub(super) fn check(
         match state {
             BoundaryState::JointAngles { angles, .. } => end.angles = angles.clone(),
             BoundaryState::Markers { places, .. } => end.places = places.clone(),
-            BoundaryState::RestAtVoltages(..) | BoundaryState::Free => {}
+            BoundaryState::RestAtVoltages(..) | BoundaryState::EndOf(_) | BoundaryState::Free => {}
         }
         let of_joints = control.limits.iter().find_map(|limit| end.joint(limit));
         let bounded = || {

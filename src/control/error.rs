@@ -38,6 +38,14 @@ pub enum BoundaryError {
         /// The body.
         body: String,
     },
+    /// Another motion did not end in a state of this model.
+    #[error("{place}.end_of: {reason}")]
+    OtherEnd {
+        /// `start`.
+        place: &'static str,
+        /// What differs.
+        reason: String,
+    },
     /// The ends of a muscle meet in a given configuration.
     #[error("{place}: the ends of muscle \"{muscle}\" meet there, where it has no energy")]
     NoLength {

@@ -72,6 +72,7 @@ pub(super) fn evened<'s>(
             .filter_map(|k| solved.poses.get(near(k)).cloned())
             .collect(),
         z: configurations(),
+        momentum: solved.momentum.clone(),
         voltages: within(&solved.voltages),
         potentials: within(&solved.potentials),
         costates: None,

@@ -2,12 +2,12 @@
 
 use crate::control::conditions::BoundaryConditions;
 use crate::control::evened::evened;
+use crate::control::meshes::other_mesh;
 use crate::control::problem::{Control, Guess};
 use crate::control::resample::{self, Grids};
 use crate::control::solution::{Costates, Solution};
 use crate::dynamics::{DiscreteTrajectory, simulate};
 use crate::kinematics::Pose;
-use crate::math::Vector;
 use crate::model::{Coordinates, Graph, Model, Role};
 use nalgebra::Rotation3;
 use std::ops::ControlFlow;
@@ -39,8 +39,6 @@ pub struct Carried {
 
 /// Durations that differ by no more than this part are one: a solver may end so far outside a bound.
 const SAME_DURATION: f64 = 1e-6;
-/// Places that differ by no more than this part of the size of a mesh are one: a file has other units.
-const SAME_PLACE: f64 = 1e-9;
 
 /// The guess of a control problem on `control.intervals` intervals of about `h` ms; `earlier` is the solution it
 /// names, or one that comes before it. A duration that is given stays; one that is free starts from that of the earlier
@@ -183,21 +181,6 @@ fn between(from: &[Pose], to: &[Pose], part: f64) -> Vec<Pose> {
     from.iter().zip(to).map(pose).collect()
 }
 
-/// Whether each solid has the nodes that an earlier solution tells of it.
-fn has_same_meshes(model: &Model, solved: &Solution) -> bool {
-    let mut solids = model.solids.iter().map(|block| &block.solid);
-    solids.all(|solid| {
-        let nodes = &solid.mesh.nodes;
-        let tolerance = SAME_PLACE * solid.mesh.size();
-        let is_same = |told: &Vec<[f64; 3]>| {
-            let mut places = told.iter().zip(nodes);
-            let apart = |a: [f64; 3], b: &Vector| (Vector::from(a) - b).amax();
-            told.len() == nodes.len() && places.all(|(&a, b)| apart(a, b) <= tolerance)
-        };
-        solved.meshes.get(&solid.name).is_none_or(is_same)
-    })
-}
-
 /// An earlier solution: as it is on the same grid, carried over from another one, stretched in time where its duration is
 /// not allowed; from other coordinates the joints and what the poses tell beside them. Where it does not tell the places of the nodes, the
 /// motion under its voltages.
@@ -209,7 +192,7 @@ fn from_solution(
 ) -> InitialGuess {
     let motion = &model.action.motion;
     let has_same_coordinates = solved.coordinates == model.coordinates
-        && has_same_meshes(model, solved)
+        && other_mesh(model, &solved.meshes).is_none()
         && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
     let solved = &*evened(solved, has_same_coordinates.then_some(motion));
     let intervals = control.intervals;

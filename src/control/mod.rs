@@ -1,9 +1,11 @@
 //! Optimal control: direct transcription of the discrete action (DMOCC).
 
 mod boundary;
+mod boundary_state;
 mod calls;
 mod conditions;
 mod earlier;
+mod end_state;
 mod ends;
 mod energy_cost;
 mod error;
@@ -12,6 +14,7 @@ mod goal;
 mod goal_rows;
 mod guess;
 mod limits;
+mod meshes;
 mod numbering;
 mod objective;
 pub mod problem;
@@ -26,6 +29,7 @@ mod transcription;
 pub use boundary::resolve_start;
 pub use conditions::{BoundaryConditions, Rests, TerminalState};
 pub use earlier::{Earlier, EarlierSolution};
+pub use end_state::EndState;
 pub use error::BoundaryError;
 pub use goal::{Orientation, Place};
 pub use guess::{Carried, InitialGuess, guess};

@@ -1,5 +1,6 @@
 //! What is asked of a system: simulate it, find its equilibrium, or steer it. Units g, mm, ms, N, V.
 
+pub use crate::control::boundary_state::{BoundaryState, Hold, Rest};
 pub use crate::control::energy_cost::{EnergyCost, SourceEnergy};
 pub use crate::control::goal::{Orientation, Place};
 pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
@@ -8,7 +9,6 @@ use crate::dynamics::Solving;
 use crate::ipopt::{LinearSolver, OptionValue};
 use crate::model::system::{ElectricConstants, Muscle};
 use crate::model::{Coordinates, Parameter, Region, System, Variable};
-use nalgebra::Vector3;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -34,56 +34,6 @@ pub struct AtRest {
     /// How many equilibria of the path from zero voltage are followed by arc length, past limit points; `None`: only the
     /// equilibrium under the voltages is sought.
     pub path: Option<usize>,
-}
-
-/// A state of rest, or of given motion.
-#[derive(Clone, Debug, PartialEq)]
-pub enum BoundaryState {
-    /// Static equilibrium under these voltages (V, one per muscle), and at a goal what of it is reached; the start has all of it.
-    RestAtVoltages(Vec<f64>, Rest),
-    /// Joint coordinates by joint index (rad or mm); at a start, joints not named stay at zero.
-    JointAngles {
-        /// Coordinates.
-        angles: BTreeMap<usize, f64>,
-        /// Rates in rad/ms or mm/ms; only at a start, zero where not named.
-        rates: BTreeMap<usize, f64>,
-        /// Velocity of the centre of mass in mm/ms and angular velocity in rad/ms by body, both in the ground frame; only at a start,
-        /// of the first body of a free part and of those on a spherical or floating joint. Others follow from their joints.
-        velocities: BTreeMap<usize, [Vector3<f64>; 2]>,
-    },
-    /// Positions of markers in mm by marker index and orientations of bodies by body index, at rest; only as a goal.
-    Markers {
-        /// The places.
-        places: BTreeMap<usize, Place>,
-        /// The orientations.
-        orientations: BTreeMap<usize, Orientation>,
-        /// What comes to rest there.
-        rest: Rest,
-        /// Voltages that are held afterwards (V, one per source), where they are known.
-        hold: Option<Vec<f64>>,
-    },
-    /// Anything, in motion or at rest; only as a goal.
-    Free,
-}
-
-/// What comes to rest at a goal.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Rest {
-    /// Every coordinate.
-    #[default]
-    Everything,
-    /// Bodies and the markers of the goal; elastic blocks have more coordinates than a few voltages can bring to rest.
-    Bodies,
-}
-
-/// What becomes of a goal that its voltages do not keep.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Hold {
-    /// It is reported.
-    #[default]
-    Reported,
-    /// It is refused.
-    Required,
 }
 
 /// Voltages over time (V, one per muscle).

@@ -18,6 +18,8 @@ pub struct Solution {
     pub poses: Vec<Vec<Pose>>,
     /// Coordinates and multipliers by instant.
     pub z: Vec<Vec<f64>>,
+    /// Momentum of each coordinate at the end, where it is told.
+    pub momentum: Vec<f64>,
     /// Reference places in mm of the nodes of each solid and each muscle of finite elements, by its name, where they are told.
     pub meshes: BTreeMap<String, Vec<[f64; 3]>>,
     /// Time h₀ in ms that scales the multipliers in `z`.

@@ -43,6 +43,7 @@ pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};
 pub use local_error::{LocalError, local_error};
 pub use midpoint::{Midpoint, Stepper};
+pub use momenta::last_momentum;
 pub use observe::{Energies, energies, observations};
 pub use resolution::Balance;
 pub use rest::{

@@ -1,6 +1,8 @@
 //! Rates and momenta: of coordinates, of vectors, and of the whole system.
 
-use crate::coordinates::Configuration;
+use crate::coordinates::{Configuration, Interval};
+use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
+use crate::functional::{BlockMask, Order};
 use crate::kinematics::{Carrier, MaterialVector, Pose};
 use crate::math::Vector;
 use crate::model::Model;
@@ -8,12 +10,19 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Eigenvalues of the mass matrix below this fraction of the largest belong to coordinates without inertia.
 const MASSLESS: f64 = 1e-13;
+/// Up to so many coordinates the mass matrix is decomposed.
+const DECOMPOSED: usize = 500;
+/// The residual of rates that are iterated for, relative to the momenta.
+const LEFT: f64 = 1e-13;
 
 /// Rates of the coordinates with given momenta at a placed instant; coordinates without inertia rest.
 pub(super) fn rates(model: &Model, instant: &mut Configuration, momentum: &[f64]) -> Vec<f64> {
     let n = momentum.len();
     if momentum.iter().all(|&p| p == 0.0) {
         return vec![0.0; n];
+    }
+    if n > DECOMPOSED {
+        return iterated(model, instant, momentum);
     }
     let mut mass = DMatrix::<f64>::zeros(n, n);
     let mut unit = vec![0.0; n];
@@ -34,6 +43,55 @@ pub(super) fn rates(model: &Model, instant: &mut Configuration, momentum: &[f64]
         *mode = if value > smallest { *mode / value } else { 0.0 };
     }
     (q * modes).iter().copied().collect()
+}
+
+/// The same by conjugate gradients in coordinates relative to their sizes, for the well-conditioned masses of many nodes.
+fn iterated(model: &Model, instant: &mut Configuration, momentum: &[f64]) -> Vec<f64> {
+    let n = momentum.len();
+    let sizes = DVector::from_vec(model.sizes()[..n].to_vec());
+    let mut of = |direction: &DVector<f64>| {
+        let rates = direction.component_mul(&sizes);
+        let momentum = model.action.momentum(instant, rates.as_slice());
+        DVector::from_vec(momentum).component_mul(&sizes)
+    };
+    let mut residual = DVector::from_column_slice(momentum).component_mul(&sizes);
+    let mut rates = DVector::zeros(n);
+    let mut direction = residual.clone();
+    let mut squared = residual.norm_squared();
+    let enough = LEFT * LEFT * squared;
+    for _ in 0..n {
+        if squared <= enough {
+            break;
+        }
+        let moved = of(&direction);
+        let length = squared / direction.dot(&moved);
+        rates.axpy(length, &direction, 1.0);
+        residual.axpy(-length, &moved, 1.0);
+        let before = std::mem::replace(&mut squared, residual.norm_squared());
+        direction = &residual + direction * (squared / before);
+    }
+    rates.component_mul(&sizes).iter().copied().collect()
+}
+
+/// Momentum `P_Nᵀ (D₂L_d + f⁺)` of each coordinate at the end of the last interval of a motion by the midpoint rule; none of a motion without an
+/// interval.
+pub fn last_momentum(model: &Model, history: &DiscreteTrajectory) -> Option<Vec<f64>> {
+    let (scalars, k) = (history.scalars.last()?, history.intervals() - 1);
+    let action = &model.action;
+    let mut ends = [k, k + 1].map(|k| action.motion.placed(&history.z[k]));
+    let mut scratch = action.scratch(Order::Gradient);
+    let interval = Interval {
+        sides: BlockMask::FORWARD,
+        ..Interval::given(scalars, history.times[k + 1] - history.times[k])
+    };
+    let [here, next] = &mut ends;
+    action.evaluate_interval(Order::Gradient, [here, next], &interval, &mut scratch);
+    let mut momentum = vec![0.0; action.motion.coordinates];
+    let forces = &scratch.interval.plain.forces[1];
+    action
+        .motion
+        .pull_back(&next.columns, forces, &mut momentum);
+    Some(momentum)
 }
 
 /// Momenta ∂T/∂ẋ of all vectors at a placed instant with these rates of the coordinates.

@@ -2,7 +2,7 @@
 
 use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::equations::Equations;
-use crate::dynamics::momenta::vector_momenta;
+use crate::dynamics::momenta::{rates, vector_momenta};
 use crate::dynamics::solving::{Integrator, Solving};
 use crate::dynamics::stepper::Steps;
 use crate::dynamics::{StepError, Stepper};
@@ -45,6 +45,17 @@ impl Start {
             z,
             momentum,
             rates: Some(rates.to_vec()),
+        }
+    }
+
+    /// With the momentum of each coordinate.
+    pub fn moving(model: &Model, z: Vec<f64>, momentum: Vec<f64>) -> Self {
+        let mut instant = model.action.motion.placed(&z);
+        let rates = rates(model, &mut instant, &momentum);
+        Self {
+            z,
+            momentum,
+            rates: Some(rates),
         }
     }
 

@@ -3,12 +3,17 @@
 //! Besides the state of the equations that is the tangent which was factorised last, where later steps go on with it: its factors are made
 //! again from the same matrix by the same method.
 
+use crate::dynamics::solving::Solving;
 use crate::dynamics::step_report::StepperReport;
+use crate::model::Model;
 use crate::sparse::MethodState;
+use std::fmt::{self, Write};
 
 /// All that the next steps follow from.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepState {
+    /// What it is a state of: the digits of [`StepState::of`].
+    pub of: String,
     /// State of the equations, list by list; none before the first step.
     pub lists: Vec<(String, Vec<f64>)>,
     /// The tangent that is kept, where one is.
@@ -30,4 +35,40 @@ pub struct TangentState {
     pub method: MethodState,
     /// Entries of the matrix.
     pub matrix: Vec<f64>,
+}
+
+impl StepState {
+    /// Digits that tell the equations of a method for a model from others, most likely.
+    pub fn of(model: &Model, solving: Solving) -> String {
+        let mut digits = Digits(0xcbf2_9ce4_8422_2325);
+        let (coordinates, system) = (model.coordinates, &model.presolved.system);
+        write!(digits, "{solving:?} {coordinates:?} {system:?}").expect("digits take everything");
+        format!("{:016x}", digits.0)
+    }
+
+    /// The same at time zero, with nothing counted so far.
+    pub fn begun_anew(mut self) -> Self {
+        let is_time = |name: &str| name == "time" || name.ends_with(" time");
+        let now = self.lists.iter().find(|(name, _)| name == "time");
+        let now = now
+            .and_then(|(_, time)| time.first().copied())
+            .unwrap_or(0.0);
+        for (_, times) in self.lists.iter_mut().filter(|(name, _)| is_time(name)) {
+            times.iter_mut().for_each(|time| *time -= now);
+        }
+        self.report = StepperReport::default();
+        self
+    }
+}
+
+/// The hash FNV-1a of what is written.
+struct Digits(u64);
+
+impl Write for Digits {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        for byte in text.bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+        Ok(())
+    }
 }

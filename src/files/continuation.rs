@@ -16,6 +16,8 @@ use crate::sparse::MethodState;
 const PROBLEM: &str = "problem.json";
 /// The text that names the method of factorisation.
 const METHOD: &str = "tangent/method.txt";
+/// The text that tells what it is a state of.
+const OF: &str = "state/of.txt";
 /// Begins the names of lists of the state.
 const STATE: &str = "state/";
 
@@ -55,11 +57,13 @@ pub fn bytes(history: &DiscreteTrajectory, problem: &Value) -> io::Result<Vec<u8
         arrays.list("rates", rates);
     }
     let StepState {
+        of,
         lists,
         tangent,
         report,
         wanted,
     } = &history.end;
+    arrays.text(OF, of);
     for (i, (name, list)) in lists.iter().enumerate() {
         arrays.list(&format!("{STATE}{i:04} {name}"), list);
     }
@@ -153,6 +157,7 @@ fn state(file: &mut Npz) -> Result<StepState, ContinuationError> {
     let [assembly, factorisation, solution] = numbers(file, "report/seconds")?;
     let [made, exchanged] = numbers(file, "report/energies")?;
     Ok(StepState {
+        of: file.texts.remove(OF).unwrap_or_default(),
         lists: lists.collect(),
         tangent,
         report: StepperReport {

@@ -153,7 +153,7 @@ fn motion(run: &Simulated, task: &problem::Simulation) -> Motion {
     ];
     let system = run.model.system.clone();
     Motion {
-        exchange: EnergyExchange::new(&system, &trajectory, [task.start.rest_voltages(), None]),
+        exchange: EnergyExchange::new(&system, &trajectory, [task.start.voltages(), None]),
         system,
         trajectory,
         warnings: warnings.into_iter().flatten().collect(),

@@ -80,6 +80,7 @@ impl WorkflowError {
                 let reason = text.strip_prefix(&format!("{place}: ")).unwrap_or(&text);
                 (*place, reason.to_owned())
             }
+            BoundaryError::OtherEnd { reason, .. } => ("start.end_of", reason.clone()),
             BoundaryError::Parameter { name, reason } => {
                 ("free", format!("parameter \"{name}\": {reason}"))
             }

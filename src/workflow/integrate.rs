@@ -3,9 +3,11 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use crate::control::problem::Simulation;
+use crate::control::problem::{BoundaryState, Simulation};
 use crate::control::resolve_start;
-use crate::dynamics::{DiscreteTrajectory, Lengths, StepControl, StepError, TimeGrid, go_on};
+use crate::dynamics::{
+    DiscreteTrajectory, Lengths, StepControl, StepError, StepState, TimeGrid, go_on,
+};
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::workflow::error::WorkflowError;
@@ -75,13 +77,21 @@ pub fn integrate_on(
         return Err(WorkflowError::Stopped(status));
     }
     phase("finding the start");
-    let begun = match begun {
+    let of = StepState::of(&model, task.solving);
+    let mut begun = match begun {
         Some(begun) => begun,
         None => {
             let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;
-            DiscreteTrajectory::at(&start)
+            let mut begun = DiscreteTrajectory::at(&start);
+            if let BoundaryState::EndOf(end) = &task.start
+                && end.method.of == of
+            {
+                begun.end = end.method.clone();
+            }
+            begun
         }
     };
+    begun.end.of = of;
     let setup = began.elapsed().as_secs_f64();
     phase("ordering and first factorisation");
     let observer = |history: &DiscreteTrajectory| observer(&model, history);

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::control::{Costates, Solution};
-use crate::dynamics::DiscreteTrajectory;
 use crate::dynamics::trajectory::Trajectory;
+use crate::dynamics::{DiscreteTrajectory, last_momentum};
 use crate::math::Vector;
 use crate::model::system::Joint;
 use crate::model::{FoundParameter, Model, Role};
@@ -25,6 +25,10 @@ pub fn solved(model: &Model, history: &DiscreteTrajectory, costates: Option<Cost
         joints: motion.joints.into_iter().map(by_joint).collect(),
         poses: motion.poses,
         z: history.z.clone(),
+        momentum: match history.momenta.last() {
+            Some(momentum) => momentum.clone(),
+            None => last_momentum(model, history).unwrap_or_default(),
+        },
         meshes: meshes(model),
         multiplier_time: model.multiplier_time,
         voltages: motion.voltages,

@@ -5,6 +5,7 @@ mod common;
 
 mod accuracy;
 mod commands;
+mod end_of;
 mod engine;
 mod fe_control;
 mod fields;

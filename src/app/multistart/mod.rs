@@ -17,6 +17,7 @@ use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
+use crate::app::task::refuse_replacing;
 use crate::app::words::key;
 use crate::control::problem::Task;
 use crate::files::{is_standard_input, read_problem};
@@ -63,6 +64,7 @@ pub fn solve_from_starts(
             ),
         });
     };
+    refuse_replacing(request, &loaded.task)?;
     memory::of_elements(&loaded.system).map_err(CommandError::of(&request.input))?;
     resolve(&loaded.system, control).map_err(CommandError::of(&request.input))?;
     let run_in = wanted.of_tasks(task_runs_at_once(&loaded.task));

@@ -193,7 +193,9 @@ pub(crate) fn check_final_conditions(
             (given.sum(), "markers")
         }
         BoundaryState::JointAngles { angles, .. } => (angles.len(), "joint_angles"),
-        BoundaryState::RestAtVoltages(..) | BoundaryState::Free => return Ok(()),
+        BoundaryState::RestAtVoltages(..) | BoundaryState::EndOf(_) | BoundaryState::Free => {
+            return Ok(());
+        }
     };
     match tree_freedoms(system.bodies.len(), &system.joints) {
         Some(freedoms) if conditions > freedoms => {

@@ -1,13 +1,14 @@
 //! The problem file: what is written (`spec`, `spec_*`) and how it becomes a [`Task`](crate::control::problem::Task).
 //!
 //! - `build`: the problem; `control`, `simulation`: its two longer tasks.
-//! - `state`, `goal`, `limits`, `free`, `guess`, `voltages`, `signal`, `track`, `energies`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
+//! - `state`, `end_of`, `goal`, `limits`, `free`, `guess`, `voltages`, `signal`, `track`, `energies`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
 //!   `solution_joints`, `solution_document`:
 //!   what is read of an earlier solution.
 
 pub(crate) mod build;
 pub(crate) mod control;
 pub(crate) mod coordinates;
+pub(crate) mod end_of;
 pub(crate) mod energies;
 pub(crate) mod free;
 pub(crate) mod goal;

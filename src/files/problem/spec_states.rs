@@ -12,13 +12,17 @@ use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::marker::PhantomData;
 
-/// A state at the start: exactly one of `rest_at_voltages` and joint coordinates.
+/// A state at the start: exactly one of `rest_at_voltages`, `end_of` and joint coordinates.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StartSpec {
     /// Static equilibrium under these voltages, SI unit V; 0 where not named.
     #[serde(default)]
     pub rest_at_voltages: Option<VoltageMap>,
+    /// The end of another motion of the same robot, configuration and momentum: the path of the folder of its result, relative to this file or
+    /// to the current folder. Time begins at zero.
+    #[serde(default)]
+    pub end_of: Option<String>,
     /// Joint coordinates by joint, SI unit rad or m; 0 where not named.
     #[serde(default)]
     pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use crate::control::problem::{BoundaryState, Rest};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::problem::end_of::end_of;
 use crate::files::problem::spec_states::{BodyVelocitySpec, StartSpec};
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::scene::names::names;
@@ -51,6 +52,13 @@ pub(crate) fn driven(
     Err(scope.wrong(found, format!("a muscle of {ELECTRIC_KEYS}")))
 }
 
+/// The ways to write a start.
+enum Written<'a> {
+    Rest(&'a VoltageMap),
+    EndOf(&'a str),
+    Joints,
+}
+
 /// A state at the start.
 pub(crate) fn start_state(
     spec: &StartSpec,
@@ -59,16 +67,21 @@ pub(crate) fn start_state(
 ) -> Result<BoundaryState, SceneError> {
     let moving =
         spec.joint_angles.is_some() || spec.joint_rates.is_some() || spec.body_velocities.is_some();
-    let rest = spec.rest_at_voltages.as_ref().map(Some);
+    let (rest, end) = (spec.rest_at_voltages.as_ref(), spec.end_of.as_ref());
     match scope.exactly_one([
-        ("rest_at_voltages", rest),
-        ("joint_angles", moving.then_some(None)),
+        ("rest_at_voltages", rest.map(Written::Rest)),
+        ("end_of", end.map(|path| Written::EndOf(path))),
+        ("joint_angles", moving.then_some(Written::Joints)),
     ])? {
-        Some(map) => {
+        Written::Rest(map) => {
             let row = voltages(map, system, &scope.key("rest_at_voltages"))?;
             Ok(BoundaryState::RestAtVoltages(row, Rest::Everything))
         }
-        None => {
+        Written::EndOf(path) => {
+            let end = end_of(path, system, &scope.key("end_of"))?;
+            Ok(BoundaryState::EndOf(Box::new(end)))
+        }
+        Written::Joints => {
             let kinds = [Angle::kind(), Length::kind()];
             let angles = by_joint(
                 &spec.joint_angles,

@@ -45,6 +45,7 @@ pub(super) fn taken(file: &mut File, name: &str) -> io::Result<Vec<u8>> {
     if let Some(state) = &mut file.state {
         arrays.list("state/times_ms", &mem::take(&mut state.times_ms));
         arrays.rows("state/z", &mem::take(&mut state.z));
+        arrays.list("state/momentum", &mem::take(&mut state.momentum));
     }
     if let Some(costates) = file.costates.take() {
         arrays.list("costates/rows", &costates.rows);

@@ -3,7 +3,7 @@
 //! People read `time` (s), `configuration` (m, rad), `voltages` and, where a goal has any, the voltages that `hold` it (V);
 //! `state` holds coordinates and multipliers of the
 //! instants as the program has them (g, mm, ms, N), in reduced coordinates then a quaternion (w, x, y, z) for each spherical or floating joint,
-//! behind which its three turns count, and `costates` the multipliers of the optimisation, unscaled. A file made
+//! behind which its three turns count, and the `momentum` of each coordinate at the end; `costates` has the multipliers of the optimisation, unscaled. A file made
 //! by hand needs `time`, `voltages` and the coordinates of the joints, in `joints` or in `configuration.joints`.
 //!
 //! Of a long motion all that is an array stands in `solution.npz` beside it, under the path that it would have here: `state/z`,

@@ -115,7 +115,7 @@ fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
         }
     };
     let meshes = file.state.as_ref().map(|state| state.meshes_mm.clone());
-    let (times, multiplier_time, z) = match file.state {
+    let (times, multiplier_time, z, momentum) = match file.state {
         Some(state) => {
             same_length("state.times_ms", state.times_ms.len(), instants, "instants")?;
             same_length("state.z", state.z.len(), instants, "instants")?;
@@ -130,12 +130,17 @@ fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
                     found: "a rotation whose quaternion does not have length one".to_owned(),
                 });
             }
-            (state.times_ms, state.multiplier_time_ms, state.z)
+            (
+                state.times_ms,
+                state.multiplier_time_ms,
+                state.z,
+                state.momentum,
+            )
         }
         None => {
             let times = file.time.iter().map(|t| t * SECOND).collect();
             let z = joint_rows.iter().map(|row| model.coordinates_at(row));
-            (times, model.multiplier_time, z.collect())
+            (times, model.multiplier_time, z.collect(), Vec::new())
         }
     };
     Ok(Solution {
@@ -144,6 +149,7 @@ fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
         joints: joint_rows,
         poses,
         z,
+        momentum,
         meshes: meshes.unwrap_or_default(),
         multiplier_time,
         voltages,

@@ -78,6 +78,9 @@ pub(super) struct StateRecord {
     pub(super) multiplier_time_ms: f64,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) z: Vec<Vec<f64>>,
+    /// Momentum of each coordinate at the end.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) momentum: Vec<f64>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(super) meshes_mm: BTreeMap<String, Vec<[f64; 3]>>,
 }

@@ -98,6 +98,7 @@ fn record(model: &Model, solved: &Solution) -> File {
             times_ms: solved.times.clone(),
             multiplier_time_ms: solved.multiplier_time,
             z: solved.z.clone(),
+            momentum: solved.momentum.clone(),
             meshes_mm: solved.meshes.clone(),
         }),
         costates: solved.costates.clone().map(|c| Multipliers {

@@ -1,0 +1,79 @@
+//! States at the start and at the end of a motion.
+
+use crate::control::end_state::EndState;
+use crate::control::goal::{Orientation, Place};
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+
+/// A state of rest, or of given motion.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BoundaryState {
+    /// Static equilibrium under these voltages (V, one per muscle), and at a goal what of it is reached; the start has all of it.
+    RestAtVoltages(Vec<f64>, Rest),
+    /// Joint coordinates by joint index (rad or mm); at a start, joints not named stay at zero.
+    JointAngles {
+        /// Coordinates.
+        angles: BTreeMap<usize, f64>,
+        /// Rates in rad/ms or mm/ms; only at a start, zero where not named.
+        rates: BTreeMap<usize, f64>,
+        /// Velocity of the centre of mass in mm/ms and angular velocity in rad/ms by body, both in the ground frame; only at a start,
+        /// of the first body of a free part and of those on a spherical or floating joint. Others follow from their joints.
+        velocities: BTreeMap<usize, [Vector3<f64>; 2]>,
+    },
+    /// Where another motion ended, moving on; only at a start.
+    EndOf(Box<EndState>),
+    /// Positions of markers in mm by marker index and orientations of bodies by body index, at rest; only as a goal.
+    Markers {
+        /// The places.
+        places: BTreeMap<usize, Place>,
+        /// The orientations.
+        orientations: BTreeMap<usize, Orientation>,
+        /// What comes to rest there.
+        rest: Rest,
+        /// Voltages that are held afterwards (V, one per source), where they are known.
+        hold: Option<Vec<f64>>,
+    },
+    /// Anything, in motion or at rest; only as a goal.
+    Free,
+}
+
+/// What comes to rest at a goal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Rest {
+    /// Every coordinate.
+    #[default]
+    Everything,
+    /// Bodies and the markers of the goal; elastic blocks have more coordinates than a few voltages can bring to rest.
+    Bodies,
+}
+
+/// What becomes of a goal that its voltages do not keep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Hold {
+    /// It is reported.
+    #[default]
+    Reported,
+    /// It is refused.
+    Required,
+}
+
+impl BoundaryState {
+    /// The voltages in V, by source, that act there, where they are known: at rest those that hold it, where another motion ended those to
+    /// which its muscles are charged.
+    pub fn voltages(&self) -> Option<&[f64]> {
+        match self {
+            Self::RestAtVoltages(voltages, _) => Some(voltages),
+            Self::EndOf(end) => Some(&end.voltages),
+            Self::Markers { hold, .. } => hold.as_deref(),
+            Self::JointAngles { .. } | Self::Free => None,
+        }
+    }
+
+    /// What there is to say of it.
+    pub fn notes(&self) -> &[String] {
+        match self {
+            Self::EndOf(end) => &end.notes,
+            _ => &[],
+        }
+    }
+}

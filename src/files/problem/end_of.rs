@@ -1,0 +1,242 @@
+//! The end of another result, from which a motion starts.
+
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::control::EndState;
+use crate::dynamics::StepState;
+use crate::files::continuation;
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::{Scope, list};
+use crate::files::problem::solution_document::solution_document;
+use crate::kinematics::Pose;
+use crate::math::{Matrix, Vector};
+use crate::model::Coordinates;
+use crate::model::system::System;
+
+/// What a path should be.
+const FOLDER: &str = "the folder of a simulation or of a solved control problem, which holds a solution.json; a state of rest is \"rest_at_voltages\"";
+/// Who writes what is expected.
+const WRITTEN: &str = "a result that simulate or solve wrote";
+/// Status of solves whose solution is a motion of the robot.
+const SOLVED: [&str; 4] = ["solved", "acceptable", "feasible_point", "not_held"];
+/// Status of a simulation that came to its end; others go as far as they go.
+const SIMULATED: &str = "simulated";
+
+/// What is read of a solution.
+#[derive(Deserialize)]
+struct Ended {
+    configuration: Configuration,
+    #[serde(default)]
+    coordinates: Option<String>,
+    #[serde(default)]
+    state: Option<State>,
+    #[serde(default)]
+    voltages: BTreeMap<String, Vec<f64>>,
+    #[serde(default)]
+    hold: Option<BTreeMap<String, f64>>,
+}
+
+#[derive(Deserialize)]
+struct Configuration {
+    #[serde(default)]
+    bodies: BTreeMap<String, Body>,
+    #[serde(default)]
+    joints: BTreeMap<String, IgnoredAny>,
+}
+
+#[derive(Deserialize)]
+struct Body {
+    centre: Vec<[f64; 3]>,
+    directors: Vec<[[f64; 3]; 3]>,
+}
+
+#[derive(Deserialize)]
+struct State {
+    #[serde(default)]
+    z: Vec<Vec<f64>>,
+    #[serde(default)]
+    momentum: Vec<f64>,
+    #[serde(default)]
+    meshes_mm: BTreeMap<String, Vec<[f64; 3]>>,
+}
+
+/// What is read of a summary.
+#[derive(Deserialize)]
+struct Summary {
+    status: String,
+    /// Of a simulation.
+    #[serde(default)]
+    steps: Option<IgnoredAny>,
+}
+
+/// The last instant of the result that a path names.
+pub(crate) fn end_of(
+    path: &str,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<EndState, SceneError> {
+    let places = [scope.document.beside(path), PathBuf::from(path)];
+    let mut files = places.into_iter().map(|place| match place.is_dir() {
+        true => place.join("solution.json"),
+        false => place,
+    });
+    let file = files.find(|file| file.is_file());
+    let file = file
+        .ok_or_else(|| scope.wrong(format!("{path:?}, where there is no solution.json"), FOLDER))?;
+    let notes = status(&file, scope)?;
+    let document = solution_document(&file, |name| {
+        ["state/", "voltages/", "configuration/"]
+            .iter()
+            .any(|of| name.starts_with(of))
+    })?;
+    let ended: Ended = document.parse()?;
+    check_names(&ended, path, system, scope)?;
+    let untold = |what: &str| scope.wrong(format!("{path:?}, which does not tell {what}"), WRITTEN);
+    let coordinates = match ended.coordinates.as_deref() {
+        Some("reduced") => Coordinates::Reduced,
+        Some("redundant") => Coordinates::Redundant,
+        _ => return Err(untold("in which \"coordinates\" it is")),
+    };
+    let mut state = ended
+        .state
+        .ok_or_else(|| untold("the \"state\" of its motion"))?;
+    let z = state.z.pop().ok_or_else(|| untold("\"state.z\""))?;
+    if state.momentum.is_empty() != z.is_empty() {
+        return Err(untold("the \"state.momentum\" at its end"));
+    }
+    let mut poses = Vec::new();
+    for body in &system.bodies {
+        let Body { centre, directors } = &ended.configuration.bodies[&body.name];
+        let (Some(centre), Some(directors)) = (centre.last(), directors.last()) else {
+            return Err(untold(&format!("where body {:?} ended", body.name)));
+        };
+        poses.push(Pose {
+            centre: Vector::from(*centre) * 1e3,
+            directors: Matrix::from(*directors),
+        });
+    }
+    let mut voltages = Vec::new();
+    for source in system.sources() {
+        let held = ended.hold.as_ref().and_then(|hold| hold.get(&source.name));
+        let last = ended
+            .voltages
+            .get(&source.name)
+            .and_then(|list| list.last());
+        voltages.push(held.or(last).copied().unwrap_or(0.0));
+    }
+    Ok(EndState {
+        source: file.parent().unwrap_or(&file).to_owned(),
+        coordinates,
+        method: method(&file, &z, &state.momentum, scope)?,
+        z,
+        momentum: state.momentum,
+        poses,
+        meshes: state.meshes_mm,
+        voltages,
+        notes,
+    })
+}
+
+/// Refuses a result that is no motion, and notes what there is to say of one that is.
+fn status(file: &Path, scope: &Scope<'_>) -> Result<Vec<String>, SceneError> {
+    let beside = file.with_file_name("summary.json");
+    let shown = file.display();
+    let text = fs::read_to_string(&beside).ok();
+    let summary = text.and_then(|text| serde_json::from_str::<Summary>(&text).ok());
+    let Some(Summary { status, steps }) = summary else {
+        return Ok(vec![format!(
+            "no summary.json beside {shown} tells whether it is a motion of the robot"
+        )]);
+    };
+    match (steps.is_some(), status.as_str()) {
+        (true, SIMULATED) => Ok(Vec::new()),
+        (true, _) => Ok(vec![format!(
+            "{shown} ended early ({status}); the motion starts where it ended"
+        )]),
+        (false, word) if SOLVED.contains(&word) => Ok(Vec::new()),
+        (false, _) => {
+            let found = format!("{shown}, whose status is {status:?}");
+            Err(scope.wrong(
+                found,
+                format!(
+                    "a motion of the robot: a simulation, or one of {}",
+                    list(SOLVED.iter())
+                ),
+            ))
+        }
+    }
+}
+
+/// Refuses a result of other bodies, joints or sources.
+fn check_names(
+    ended: &Ended,
+    path: &str,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<(), SceneError> {
+    let Configuration { bodies, joints } = &ended.configuration;
+    let with_coordinate = system.joints.iter().filter(|joint| joint.has_coordinate());
+    for (kind, there, here) in [
+        (
+            "body",
+            bodies.keys().collect::<BTreeSet<_>>(),
+            system
+                .bodies
+                .iter()
+                .map(|body| &body.name)
+                .collect::<BTreeSet<_>>(),
+        ),
+        (
+            "joint",
+            joints.keys().collect(),
+            with_coordinate.map(|joint| &joint.name).collect(),
+        ),
+    ] {
+        let wrong = |words: String| {
+            let found = format!("{path:?}, {words}");
+            scope.wrong(found, "a result of the same robot")
+        };
+        if let Some(name) = here.difference(&there).next() {
+            return Err(wrong(format!("which has no {kind} {name:?}")));
+        }
+        if let Some(name) = there.difference(&here).next() {
+            return Err(wrong(format!("whose {kind} {name:?} is not in the scene")));
+        }
+    }
+    let sources = system.sources();
+    let mut named = ended.voltages.keys();
+    match named.find(|name| !sources.iter().any(|source| source.name == **name)) {
+        Some(name) => Err(scope.wrong(
+            format!("{path:?}, whose muscle or electrode {name:?} is not in the scene"),
+            "a result of the same robot",
+        )),
+        None => Ok(()),
+    }
+}
+
+/// The state of the method of a simulation; of a solve none is kept.
+fn method(
+    file: &Path,
+    z: &[f64],
+    momentum: &[f64],
+    scope: &Scope<'_>,
+) -> Result<StepState, SceneError> {
+    let beside = file.with_file_name("continuation.npz");
+    if !beside.is_file() {
+        return Ok(StepState::default());
+    }
+    let shown = beside.display();
+    let read = continuation::read(&beside);
+    let read = read.map_err(|error| scope.wrong(format!("{shown}: {error}"), WRITTEN))?;
+    let history = read.history;
+    let ends = [&history.z, &history.momenta].map(|rows| rows.last().map(Vec::as_slice));
+    if ends != [Some(z), Some(momentum)] {
+        let found = format!("{shown}, which is not of the motion in {}", file.display());
+        return Err(scope.wrong(found, "files of one run"));
+    }
+    Ok(history.end.begun_anew())
+}
