@@ -1,13 +1,16 @@
 //! Instants of hexahedral meshes for ParaView: `.vtu` files and the `.pvd` file that lists them over time.
 //!
-//! An instant is an XML unstructured grid of VTK with all solids in one piece; numbers stand inline as base64 of 64-bit
-//! little-endian numbers, so that each reads back identical. Units are the caller's; what a run leaves behind is in SI.
+//! An instant is an XML unstructured grid of VTK with all solids in one piece; numbers stand inline as 64-bit
+//! little-endian numbers in base64, packed block by block by zlib, so that each reads back identical. Units are the caller's; what a run leaves behind is in SI.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
 use nalgebra::Vector3;
 use std::borrow::Cow;
 use std::fmt::Write;
+use std::io::Write as _;
 
 use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
@@ -15,6 +18,10 @@ use crate::report::origin::Origin;
 
 /// Number of a trilinear hexahedron in VTK.
 const HEXAHEDRON: u8 = 12;
+/// How a file says that its numbers are packed.
+pub(super) const PACKED: &str = r#" compressor="vtkZLibDataCompressor""#;
+/// Bytes that are packed at once.
+const BLOCK: usize = 1 << 20;
 
 /// A named quantity at the points or in the cells of a grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,7 +80,7 @@ impl<'a> UnstructuredGrid<'a> {
 /// Where the values of a field are not as many as its components times points or cells, where fields of one name differ in
 /// their components, and where a cell has a point that does not exist.
 pub fn vtu(grids: &[UnstructuredGrid<'_>], origin: &Origin) -> Vec<u8> {
-    let mut text = head("UnstructuredGrid", origin);
+    let mut text = head("UnstructuredGrid", PACKED, origin);
     text.push_str("<UnstructuredGrid>\n");
     if !grids.is_empty() {
         piece(&mut text, grids);
@@ -84,7 +91,7 @@ pub fn vtu(grids: &[UnstructuredGrid<'_>], origin: &Origin) -> Vec<u8> {
 
 /// The `.pvd` file that lists instants: time in s and name of the file, relative to this one.
 pub fn pvd(instants: &[(f64, String)], origin: &Origin) -> String {
-    let mut text = head("Collection", origin);
+    let mut text = head("Collection", "", origin);
     text.push_str("<Collection>\n");
     for (time, file) in instants {
         let file = escaped(file);
@@ -209,12 +216,12 @@ fn piece(text: &mut String, grids: &[UnstructuredGrid<'_>]) {
     text.push_str("<Points>\n");
     let places = grids.iter().flat_map(|grid| grid.points);
     let places = places.flat_map(|x| [x.x, x.y, x.z]);
-    array(text, "Float64", "Points", 3, bytes_of(places));
+    array(text, "Float64", "Points", 3, &bytes_of(places));
     text.push_str("</Points>\n<Cells>\n");
-    array(text, "Int64", "connectivity", 1, connectivity(grids));
+    array(text, "Int64", "connectivity", 1, &connectivity(grids));
     let ends = (1..=cells as u64).flat_map(|end| (8 * end).to_le_bytes());
-    array(text, "Int64", "offsets", 1, ends.collect());
-    array(text, "UInt8", "types", 1, vec![HEXAHEDRON; cells]);
+    array(text, "Int64", "offsets", 1, &ends.collect::<Vec<u8>>());
+    array(text, "UInt8", "types", 1, &vec![HEXAHEDRON; cells]);
     text.push_str("</Cells>\n");
 
     for (tag, at) in [("PointData", At::Points), ("CellData", At::Cells)] {
@@ -227,7 +234,7 @@ fn piece(text: &mut String, grids: &[UnstructuredGrid<'_>]) {
                 let values = known.map_or(&lacking[..], |field| &field.values);
                 bytes.extend(bytes_of(values.iter().copied()));
             }
-            array(text, "Float64", name, components, bytes);
+            array(text, "Float64", name, components, &bytes);
         }
         line(text, format_args!("</{tag}>"));
     }
@@ -248,10 +255,21 @@ fn connectivity(grids: &[UnstructuredGrid<'_>]) -> Vec<u8> {
     bytes
 }
 
-/// Numbers inline: their length in bytes as a 64-bit number, then they themselves, both in one base64 text.
-pub(super) fn array(text: &mut String, kind: &str, name: &str, components: usize, bytes: Vec<u8>) {
-    let mut block = (bytes.len() as u64).to_le_bytes().to_vec();
-    block.extend(bytes);
+/// Numbers inline: the number of blocks, their length in bytes, that of a last one that is shorter, and the lengths of all when packed, as 64-bit
+/// numbers in one base64 text; the packed blocks in another.
+pub(super) fn array(text: &mut String, kind: &str, name: &str, components: usize, bytes: &[u8]) {
+    let (mut lengths, mut packed) = (Vec::new(), Vec::new());
+    for block in bytes.chunks(BLOCK) {
+        let before = packed.len();
+        let mut to = ZlibEncoder::new(&mut packed, Compression::fast());
+        to.write_all(block)
+            .and_then(|()| to.finish().map(drop))
+            .expect("there is room");
+        lengths.push(packed.len() - before);
+    }
+    let whole = [lengths.len(), BLOCK, bytes.len() % BLOCK];
+    let header = whole.into_iter().chain(lengths);
+    let header: Vec<u8> = header.flat_map(|n| (n as u64).to_le_bytes()).collect();
     let name = escaped(name);
     // Readers take an array that says 1 for a table of one column.
     let components = match components {
@@ -262,7 +280,8 @@ pub(super) fn array(text: &mut String, kind: &str, name: &str, components: usize
         text,
         format_args!(r#"<DataArray type="{kind}" Name="{name}"{components} format="binary">"#),
     );
-    STANDARD.encode_string(block, text);
+    STANDARD.encode_string(header, text);
+    STANDARD.encode_string(packed, text);
     text.push_str("\n</DataArray>\n");
 }
 
@@ -271,13 +290,13 @@ pub(super) fn bytes_of(values: impl Iterator<Item = f64>) -> Vec<u8> {
 }
 
 /// The XML declaration, the origin as a processing instruction (a comment must not hold the `--` of a command), and the
-/// opening tag.
-pub(super) fn head(kind: &str, origin: &Origin) -> String {
+/// opening tag with further attributes.
+pub(super) fn head(kind: &str, attributes: &str, origin: &Origin) -> String {
     let origin = origin.line().replace("?>", "? >");
     format!(
         r#"<?xml version="1.0" encoding="UTF-8"?>
 <?origin {origin}?>
-<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt64"{attributes}>
 "#
     )
 }

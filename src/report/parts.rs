@@ -10,7 +10,7 @@ use crate::report::atomic::WriteError;
 use crate::report::drawing::lumped;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
-use crate::report::paraview::{Series, array, bytes_of, head, line};
+use crate::report::paraview::{PACKED, Series, array, bytes_of, head, line};
 use crate::report::skins::shown;
 use crate::report::solids::{Prism, SurfaceMesh};
 
@@ -108,7 +108,7 @@ impl Parts {
 
     /// The text of the file.
     fn vtp(&self, origin: &Origin) -> String {
-        let mut text = head("PolyData", origin);
+        let mut text = head("PolyData", PACKED, origin);
         let (vertices, triangles) = (&self.surface.vertices, &self.surface.triangles);
         let (marks, points) = (self.markers.len(), vertices.len() + self.markers.len());
         line(
@@ -121,7 +121,7 @@ impl Parts {
         text.push_str("<Points>\n");
         let places = self.markers.iter().chain(vertices);
         let places = places.flat_map(|x| [x.x, x.y, x.z]);
-        array(&mut text, "Float64", "Points", 3, bytes_of(places));
+        array(&mut text, "Float64", "Points", 3, &bytes_of(places));
         text.push_str("</Points>\n");
         let corners = triangles.as_flattened().iter().map(|corner| marks + corner);
         for (tag, connected, size) in [
@@ -133,14 +133,14 @@ impl Parts {
             let ends = ends.collect::<Vec<_>>();
             for (name, numbers) in [("connectivity", connected), ("offsets", ends)] {
                 let bytes = numbers.iter().flat_map(|&n| (n as u64).to_le_bytes());
-                array(&mut text, "Int64", name, 1, bytes.collect());
+                array(&mut text, "Int64", name, 1, &bytes.collect::<Vec<u8>>());
             }
             line(&mut text, format_args!("</{tag}>"));
         }
         text.push_str("<CellData>\n");
         for (i, name) in DATA.into_iter().enumerate() {
             let values = self.data.iter().map(|numbers| numbers[i]);
-            array(&mut text, "Float64", name, 1, bytes_of(values));
+            array(&mut text, "Float64", name, 1, &bytes_of(values));
         }
         text.push_str("</CellData>\n</Piece></PolyData>\n</VTKFile>\n");
         text

@@ -1,8 +1,7 @@
 //! Fields of elastic blocks as ParaView reads them, against the state, the electrodes and homogeneous solutions.
 
 use crate::runs::read;
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
+use crate::vtk_arrays::unpacked;
 use nalgebra::Vector3;
 use proboscis::app::{CommandInput, CommandOutput, PageWanted, ProgressDisplay, run};
 use proboscis::model::VACUUM_PERMITTIVITY;
@@ -30,9 +29,8 @@ impl Fields {
             let (tag, rest) = array.split_once('>').unwrap();
             let name = tag.split("Name=\"").nth(1).unwrap();
             let name = name.split('"').next().unwrap().to_owned();
-            let bytes = rest.split("</DataArray>").next().unwrap().trim();
-            let bytes = STANDARD.decode(bytes).unwrap();
-            let numbers = bytes[8..].chunks_exact(8);
+            let bytes = unpacked(rest.split("</DataArray>").next().unwrap());
+            let numbers = bytes.chunks_exact(8);
             let numbers = numbers.map(|b| f64::from_le_bytes(b.try_into().unwrap()));
             (name, numbers.collect())
         });

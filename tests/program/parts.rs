@@ -1,8 +1,7 @@
 //! Bodies, muscles and markers as ParaView reads them.
 
 use crate::runs::write_motion;
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
+use crate::vtk_arrays::unpacked;
 use nalgebra::Vector3;
 use proboscis::model::system::Shape;
 use proboscis::report::Figures;
@@ -15,9 +14,8 @@ fn arrays(text: &str, name: &str) -> Vec<Vec<[u8; 8]>> {
     let arrays = arrays.filter(|array| array.split('>').next().unwrap().contains(&named));
     let read = |array: &str| {
         let data = array.split_once('>').unwrap().1;
-        let data = data.split('<').next().unwrap().trim();
-        let bytes = STANDARD.decode(data).unwrap();
-        let numbers = bytes[8..].chunks_exact(8);
+        let bytes = unpacked(data.split('<').next().unwrap());
+        let numbers = bytes.chunks_exact(8);
         numbers.map(|number| number.try_into().unwrap()).collect()
     };
     arrays.map(read).collect()
