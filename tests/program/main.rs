@@ -6,6 +6,7 @@ mod common;
 mod accuracy;
 mod commands;
 mod end_of;
+mod end_of_refused;
 mod engine;
 mod fe_control;
 mod fields;
