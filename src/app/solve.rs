@@ -141,6 +141,7 @@ pub(super) fn control(
     }
     summary.program = Some(Program {
         objective: solution.objective,
+        objective_units: control.objective.units(system),
         iterations,
         intervals,
         duration: kept.times[intervals] / 1e3,

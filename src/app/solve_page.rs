@@ -1,7 +1,7 @@
 //! What the page tells of a control problem: rows of its table, the way of the solver, the goal.
 
 use crate::app::exchanged::Exchanged;
-use crate::app::summary::Summary;
+use crate::app::summary::{Program, Summary};
 use crate::app::tracking_words;
 use crate::control::BoundaryConditions;
 use crate::ipopt::Iteration;
@@ -18,7 +18,7 @@ pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
     let mut rows = vec![("status".to_owned(), summary.status.clone())];
     let mut row = |key: &str, value: String| rows.push((key.to_owned(), value));
     if let Some(program) = &summary.program {
-        row("objective", format!("{:.9}", program.objective));
+        row("objective", objective(program));
         row("iterations", program.iterations.to_string());
         row("duration", format!("{:.6} s", program.duration));
         row("intervals", program.intervals.to_string());
@@ -52,6 +52,19 @@ pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
         }
     }
     rows
+}
+
+/// The objective with its unit, or those of its terms where they differ.
+fn objective(program: &Program) -> String {
+    let value = program.objective;
+    match program.objective_units.as_slice() {
+        [] => format!("{value:.9}"),
+        [unit] => format!("{value:.9} {unit}").trim_end().to_owned(),
+        [units @ .., last] => format!(
+            "{value:.9} (weighted sum of terms in {} and {last})",
+            units.join(", ")
+        ),
+    }
 }
 
 /// A violated row in words.

@@ -81,6 +81,7 @@ pub(super) struct Summary {
 #[derive(Debug, Serialize)]
 pub(super) struct Program {
     pub(super) objective: f64,
+    pub(super) objective_units: Vec<String>,
     pub(super) iterations: usize,
     pub(super) intervals: usize,
     /// Final time in s.

@@ -2,7 +2,7 @@
 
 use crate::control::energy_cost::EnergyCost;
 use crate::control::signal::Signal;
-use crate::model::Quantity;
+use crate::model::{Quantity, System};
 
 /// What is minimised: a sum of costs with the voltages V in kV, the interval length h in s and N intervals (docs/theory.md, 10.2). The default
 /// is no cost at all, and a weight of zero leaves no trace.
@@ -53,7 +53,42 @@ pub enum During {
     End,
 }
 
+impl Objective {
+    /// Units of its terms in their order, each once; a single one is that of the sum. Weights are plain numbers.
+    pub fn units(&self, system: &System) -> Vec<String> {
+        let weighted = [
+            (self.effort, "kV² s"),
+            (self.rate, "kV²/s"),
+            (self.duration, "s"),
+        ];
+        let weighted = weighted.iter().filter(|(weight, _)| *weight != 0.0);
+        let mut units: Vec<String> = weighted.map(|(_, unit)| (*unit).to_owned()).collect();
+        let quantities = self.quantities.iter().map(|cost| cost.unit(system));
+        let energies = self.energies.iter().map(|_| "J".to_owned());
+        for unit in quantities.chain(energies) {
+            if !units.contains(&unit) {
+                units.push(unit);
+            }
+        }
+        units
+    }
+}
+
 impl QuantityCost {
+    /// Unit of what is paid, without the weight.
+    fn unit(&self, system: &System) -> String {
+        let squared = match self.function {
+            CostFunction::Square { .. } => match self.quantity.unit(system) {
+                "" => String::new(),
+                unit => format!("{unit}²"),
+            },
+        };
+        match self.during {
+            During::Motion => format!("{squared} s").trim_start().to_owned(),
+            During::End => squared,
+        }
+    }
+
     /// Whether its second derivative by the quantity is other than zero.
     pub fn is_curved(&self) -> bool {
         match self.function {

@@ -124,19 +124,33 @@ impl Quantity {
         }
     }
 
+    /// Unit of its values; none of a ratio.
+    pub fn unit(&self, system: &System) -> &'static str {
+        match *self {
+            Self::Joint { joint, .. } => joint_unit(system, joint),
+            Self::Capacitance { .. } => "mF",
+            Self::MarkerPlace { .. } | Self::MarkerStep { .. } => "mm",
+            Self::SquaredStretch { .. }
+            | Self::SquaredField { .. }
+            | Self::Direction { .. }
+            | Self::MarkerRegion { .. } => "",
+        }
+    }
+
     /// What a value means to people: a coordinate, stretch, field or distance, and its unit.
     pub fn plain(&self, value: f64, system: &System) -> (f64, &'static str) {
         match *self {
-            Self::Joint { joint, .. } => (value, joint_unit(system, joint)),
             Self::SquaredStretch { .. } => (value.sqrt(), ""),
-            Self::Capacitance { .. } => (value, "mF"),
-            Self::Direction { .. } => (value, ""),
             Self::SquaredField { limit, .. } => (value.sqrt() * limit / MEGAVOLT_PER_METRE, "V/um"),
-            Self::MarkerPlace { .. } | Self::MarkerStep { .. } => (value, "mm"),
             Self::MarkerRegion { region, .. } => match region {
                 Region::Sphere { radius, .. } => (value.sqrt() * radius, "mm from its centre"),
                 Region::Box { .. } => (value.powf(1.0 / 16.0), "half edges from its centre"),
             },
+            Self::Joint { .. }
+            | Self::Capacitance { .. }
+            | Self::Direction { .. }
+            | Self::MarkerPlace { .. }
+            | Self::MarkerStep { .. } => (value, self.unit(system)),
         }
     }
 

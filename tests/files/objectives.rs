@@ -309,3 +309,38 @@ fn a_goal_may_be_the_equilibrium_of_bodies_alone() {
     ];
     check(cases, &problem, |problem| mistake(SCENE, problem, &[]));
 }
+
+/// Each term alone, then some beside each other.
+#[test]
+fn an_objective_has_the_units_of_its_terms() {
+    let marker = r#"{ "marker": { "marker": "tip", "along": { "x": "1 mm" } } }"#;
+    let angle = r#"{ "joint": { "joint": "joint1", "along": "1 deg" } }"#;
+    let slide = r#"{ "joint": { "joint": "joint2", "along": "1 mm" } }"#;
+    let place = r#"{ "marker": { "marker": "tip", "at": ["1 mm", null, null] } }"#;
+    let cases = [
+        (r#"{ "effort": 2 }"#.to_owned(), vec!["kV² s"]),
+        (r#"{ "rate": 2 }"#.to_owned(), vec!["kV²/s"]),
+        (r#"{ "duration": 2 }"#.to_owned(), vec!["s"]),
+        (r#"{ "effort": 0, "duration": 1 }"#.to_owned(), vec!["s"]),
+        (r#"{ "electrical_energy": 2 }"#.to_owned(), vec!["J"]),
+        (format!(r#"{{ "track": [{marker}] }}"#), vec!["mm² s"]),
+        (format!(r#"{{ "track": [{angle}] }}"#), vec!["rad² s"]),
+        (format!(r#"{{ "final": [{place}] }}"#), vec!["mm²"]),
+        (
+            format!(
+                r#"{{ "effort": 1, "mechanical_work": 3, "track": [{slide}, {marker}, {angle}] }}"#
+            ),
+            vec!["kV² s", "mm² s", "rad² s", "J"],
+        ),
+    ];
+    for (objective, expected) in cases {
+        let (folder, path) = folder(SCENE, &with(&objective));
+        let loaded = read_problem(&path, &[]).expect("a problem");
+        let Task::Control(control) = loaded.task else {
+            panic!("a control problem");
+        };
+        let found = control.objective.units(&loaded.system);
+        assert_eq!(found, expected, "{objective}");
+        drop(folder);
+    }
+}
