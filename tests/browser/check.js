@@ -1,5 +1,5 @@
-// Pages in a real Chromium: `node check.js BINARY FOLDER` runs problems with the program, opens their pages on a laptop and a phone, in light
-// and dark, and writes screenshots to the folder.
+// Pages in a real Chromium: `node check.js BINARY FOLDER [NAME…]` runs problems with the program, all or those named, opens their pages on a
+// laptop and a phone, in light and dark, and writes screenshots to the folder.
 
 import { execFileSync } from "node:child_process";
 import { createRequire } from "node:module";
@@ -8,7 +8,7 @@ import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
-const [binary, folder] = process.argv.slice(2);
+const [binary, folder, ...named] = process.argv.slice(2);
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const solve = (name) => [["solve", `problems/${name}.json`]];
 /** A study of steps, and a trunk of so many joints that its voltages are rows of colours. */
@@ -17,12 +17,12 @@ const STUDY = {
   methods: [{ name: "midpoint" }], refine: { name: "step", set: { "simulate.step": ["10 ms", "5 ms", "2.5 ms", "1.25 ms"] } },
 };
 const SWING = { scene: "scene.json", simulate: { duration: "0.2 s", step: "4 ms", voltages: { muscle1: "2 kV", muscle6: "1 kV" } } };
-/** Results, and what their pages show: so many parts that move or not, charts with these titles. */
+/** Results, and what their pages show: so many parts that move or not, faces of finite elements, charts with these titles. */
 const RUNS = [
   { name: "elephant_trunk", commands: solve("elephant_trunk"), moves: true, parts: 18, charts: ["Voltages", "Joints", "Energies", "Convergence"], megabytes: 1.5 },
-  { name: "fe_trunk", commands: [["simulate", "problems/fe_trunk.json"]], moves: true, parts: 18, charts: ["Voltages", "Stretches", "Charges"], megabytes: 3 },
-  { name: "bending_actuator", commands: solve("bending_actuator"), moves: false, parts: 1, charts: [], megabytes: 1 },
-  { name: "pull_in", commands: solve("pull_in"), moves: false, parts: 1, charts: ["Path"], megabytes: 1 },
+  { name: "fe_trunk", commands: [["simulate", "problems/fe_trunk.json"]], moves: true, parts: 18, faces: 864, charts: ["Voltages", "Stretches", "Charges"], megabytes: 3 },
+  { name: "bending_actuator", commands: solve("bending_actuator"), moves: false, parts: 1, faces: 916, charts: [], megabytes: 1 },
+  { name: "pull_in", commands: solve("pull_in"), moves: false, parts: 1, faces: 24, charts: ["Path"], megabytes: 1 },
   { name: "long_trunk", commands: [["new", "trunk", "--segments", "14", "FOLDER/scene"], ["simulate", "FOLDER/scene/swing.json"]], moves: true, parts: 42, charts: ["Voltages"], megabytes: 3 },
   { name: "study", commands: [["study", "FOLDER/study.json"]], charts: [], megabytes: 1 },
   { name: "compared", commands: [["report", "FOLDER/elephant_trunk", "FOLDER/long_trunk"]], follows: true, charts: ["Joints", "Energies"], megabytes: 2 },
@@ -88,6 +88,7 @@ async function look(browser, run, screen, file) {
   if (!screen.still) {
     if (run.parts) {
       await scene(page, run, told);
+      await picture(page, run, told);
       await controls(page, run, told);
     }
     await keyboard(page, told);
@@ -115,7 +116,7 @@ async function scene(page, run, told) {
   const fills = Math.max(...found.map((box) => Math.max((box[2] - box[0]) / width, (box[3] - box[1]) / height)));
   expect(fills > 0.5, `${told}: the robot fills ${fills} of the picture`);
   const colours = await page.evaluate(() => {
-    const { renderer, root, camera } = window.proboscis.scene;
+    const { picture: { renderer }, root, camera } = window.proboscis.scene;
     renderer.render(root, camera.three);
     const copy = Object.assign(document.createElement("canvas"), { width: 80, height: 80 });
     const pen = copy.getContext("2d");
@@ -124,6 +125,44 @@ async function scene(page, run, told) {
     return new Set(Array.from({ length: 6400 }, (_, i) => data.slice(4 * i, 4 * i + 4).join())).size;
   });
   expect(colours > 20, `${told}: the picture has ${colours} colours`);
+}
+
+/** Normals of faces point where their triangles do, at every instant, and the picture is fine again at rest. */
+async function picture(page, run, told) {
+  const { faces, wrong } = await page.evaluate(() => {
+    const { scene, clock } = window.proboscis;
+    const counted = { faces: 0, wrong: 0 };
+    for (let i = 0; i <= 10; i++) {
+      clock.set(clock.first + ((clock.last - clock.first) * i) / 10);
+      for (const { surface } of scene.parts.filter((part) => part.surface)) {
+        const corner = (name, v) => new THREE.Vector3().fromBufferAttribute(surface.attributes[name], v);
+        const index = surface.index.array;
+        for (let t = 0; t < index.length; t += 3) {
+          const [a, b, c] = [0, 1, 2].map((v) => corner("position", index[t + v]));
+          const normal = b.sub(a).cross(c.sub(a)).normalize();
+          counted.faces += 1;
+          counted.wrong += [0, 1, 2].some((v) => !(corner("normal", index[t + v]).normalize().dot(normal) > 0.9));
+        }
+      }
+    }
+    return counted;
+  });
+  expect(wrong === 0, `${told}: ${wrong} of ${faces} triangles have normals that are not theirs`);
+  expect(run.faces ? faces === 22 * run.faces : faces === 0, `${told}: ${faces} triangles of faces in 11 pictures`);
+  const resolution = () => page.evaluate(() => window.proboscis.scene.picture.renderer.getPixelRatio());
+  await page.waitForTimeout(500);
+  const finest = await page.evaluate(() => window.proboscis.scene.picture.finest);
+  expect(finest >= 2 && (await resolution()) === finest, `${told}: at rest ${await resolution()} pixels along a px, not ${finest}`);
+  if (!run.moves) return;
+  // As where drawing is slow.
+  await page.evaluate(() => {
+    const { picture } = window.proboscis.scene;
+    picture.measure = () => { picture.coarse = 1; picture.draw(picture.finest); };
+    window.proboscis.clock.play(true);
+  });
+  await page.waitForFunction(() => window.proboscis.scene.picture.renderer.getPixelRatio() === 1, null, { timeout: 20000 }).catch(() => expect(false, `${told}: it plays finely where drawing is slow`));
+  await page.evaluate(() => window.proboscis.clock.play(false));
+  await page.waitForFunction((is) => window.proboscis.scene.picture.renderer.getPixelRatio() === is, finest, { timeout: 20000 }).catch(() => expect(false, `${told}: it stays coarse at rest`));
 }
 
 /** The slider moves the scene, colours change, keys turn it. */
@@ -145,11 +184,9 @@ async function controls(page, run, told) {
     expect(later > time, `${told}: it does not play`);
     await page.locator("#play").click();
   }
-  const painted = () => page.evaluate(() => {
-    const part = window.proboscis.scene.parts.find((one) => one.part.quantities);
-    return part.colours ? Array.from(part.colours).join() : part.material.color.getHexString();
-  });
+  const painted = () => page.evaluate(() => window.proboscis.scene.parts.map((part) => (part.surface ? part.surface.attributes.color.array.join() : part.material.color.getHexString())).join());
   const quantities = await page.locator("#colour option").evaluateAll((all) => all.map((one) => one.value));
+  await page.evaluate(() => window.proboscis.clock.set(window.proboscis.clock.last));
   const seen = new Set();
   for (const quantity of quantities) {
     await page.locator("#colour").selectOption(quantity);
@@ -215,7 +252,7 @@ rmSync(folder, { recursive: true, force: true });
 mkdirSync(join(folder, "scene"), { recursive: true });
 writeFileSync(join(folder, "study.json"), JSON.stringify(STUDY));
 writeFileSync(join(folder, "scene", "swing.json"), JSON.stringify(SWING));
-for (const run of RUNS) {
+for (const run of RUNS.filter(({ name }) => !named.length || named.includes(name))) {
   const results = join(folder, run.name);
   for (const command of run.commands) {
     const words = command.map((word) => word.replace("FOLDER", folder));

@@ -20,12 +20,13 @@ pub(super) const FRAME: &str = include_str!("page.html");
 /// How it looks.
 pub(super) const SHEET: &str = include_str!("page.css");
 /// The modules of the page in the order in which they need each other.
-const MODULES: [&str; 9] = [
+const MODULES: [&str; 10] = [
     include_str!("read.js"),
     include_str!("theme.js"),
     include_str!("clock.js"),
     include_str!("camera.js"),
     include_str!("parts.js"),
+    include_str!("picture.js"),
     include_str!("scene.js"),
     include_str!("charts.js"),
     include_str!("answer.js"),

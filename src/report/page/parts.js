@@ -73,10 +73,12 @@ class Solid {
     this.part = part;
     this.motion = numbers(part.motion);
     this.values = read(part.quantities);
+    this.now = new Float32Array(12);
+    this.held = new Float32Array(1);
     const is = part.kind === "body";
     const surface = is ? creased(numbers(part.vertices), indices(part.triangles)) : new THREE.BoxBufferGeometry(2, 2, 2);
-    this.material = new THREE.MeshPhongMaterial({
-      color: NEUTRAL[part.kind], shininess: 25, specular: 0x222222, transparent: is, opacity: is ? 0.22 : 1, depthWrite: !is,
+    this.material = new THREE.MeshLambertMaterial({
+      color: NEUTRAL[part.kind], transparent: is, opacity: is ? 0.22 : 1, depthWrite: !is,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     });
     this.object = new THREE.Group();
@@ -112,14 +114,14 @@ class Solid {
   }
 
   move(at) {
-    this.matrix(between(this.motion, 12, at, this.now ||= new Float32Array(12)), this.object.matrix);
+    this.matrix(between(this.motion, 12, at, this.now), this.object.matrix);
     this.object.matrixWorldNeedsUpdate = true;
   }
 
   colour(quantity, at, scale) {
     const values = this.values[quantity];
     if (!values) this.material.color.set(NEUTRAL[this.part.kind]);
-    else this.material.color.setRGB(...scale(between(values, 1, at, [0])[0]));
+    else this.material.color.fromArray(TABLE, scale(between(values, 1, at, this.held)[0]));
   }
 
   /** The part at an instant as a ghost. */
@@ -131,7 +133,7 @@ class Solid {
   }
 }
 
-/** An elastic block: a surface whose corners move. */
+/** An elastic block: faces of four corners that move. Each face has corners of its own, so that it is flat in the light. */
 class Block {
   constructor(part) {
     this.part = part;
@@ -139,36 +141,37 @@ class Block {
     this.places = numbers(part.places);
     this.values = read(part.quantities);
     this.values.displacement = this.displacements();
+    this.faces = indices(part.faces);
     this.now = new Float32Array(this.reference);
-    this.colours = new Float32Array(this.reference.length);
+    this.held = new Float32Array(this.reference.length / 3);
+    this.neutral = new THREE.Color(NEUTRAL.block).toArray();
+    const corners = () => new THREE.BufferAttribute(new Float32Array(3 * this.faces.length), 3);
+    this.surface = new THREE.BufferGeometry();
+    this.surface.setAttribute("position", corners());
+    this.surface.setAttribute("normal", corners());
+    this.surface.setAttribute("color", corners());
+    const halves = new Uint32Array(1.5 * this.faces.length);
+    for (let f = 0; 6 * f < halves.length; f++) halves.set([0, 1, 2, 0, 2, 3].map((corner) => 4 * f + corner), 6 * f);
+    this.surface.setIndex(new THREE.BufferAttribute(halves, 1));
+    this.material = new THREE.MeshLambertMaterial({ vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
     this.position = new THREE.BufferAttribute(this.now, 3);
-    this.shade = new THREE.BufferAttribute(this.colours, 3);
-    const geometry = (index) => {
-      const made = new THREE.BufferGeometry();
-      made.setAttribute("position", this.position);
-      made.setIndex(new THREE.BufferAttribute(indices(index), 1));
-      return made;
-    };
-    const surface = geometry(part.triangles);
-    surface.setAttribute("color", this.shade);
-    this.material = new THREE.MeshPhongMaterial({
-      vertexColors: THREE.VertexColors, flatShading: true, shininess: 15, specular: 0x181818,
-      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-    });
     this.object = new THREE.Group();
-    this.object.add(new THREE.Mesh(surface, this.material));
-    this.object.add(new THREE.LineSegments(geometry(part.edges), line("#3a332a", 0.9)));
-    this.object.add(new THREE.LineSegments(geometry(part.inner), line("#3a332a", 0.22)));
+    this.object.add(new THREE.Mesh(this.surface, this.material));
+    this.object.add(new THREE.LineSegments(this.lines(part.edges, this.position), line("#3a332a", 0.9)));
+    this.object.add(new THREE.LineSegments(this.lines(part.inner, this.position), line("#3a332a", 0.22)));
     // Corners move out of the sphere in which three.js would look for them.
     this.object.children.forEach((child) => { child.frustumCulled = false; });
   }
 
+  lines(ends, position) {
+    const made = new THREE.BufferGeometry().setAttribute("position", position);
+    made.setIndex(new THREE.BufferAttribute(indices(ends), 1));
+    return made;
+  }
+
   /** Edges of the reference configuration. */
   outline() {
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(this.reference, 3));
-    geometry.setIndex(new THREE.BufferAttribute(indices(this.part.edges), 1));
-    return new THREE.LineSegments(geometry, line("#8a9098", 1));
+    return new THREE.LineSegments(this.lines(this.part.edges, new THREE.BufferAttribute(this.reference, 3)), line("#8a9098", 1));
   }
 
   displacements() {
@@ -186,24 +189,50 @@ class Block {
   move(at) {
     between(this.places, this.now.length, at, this.now);
     this.position.needsUpdate = true;
+    this.form(this.now, this.surface.attributes);
+  }
+
+  /** Corners and normals of the faces of a surface whose corners are at `places`. */
+  form(places, { position, normal }) {
+    const [p, n] = [position.array, normal.array];
+    for (let i = 0; i < this.faces.length; i++) {
+      const from = 3 * this.faces[i];
+      for (let a = 0; a < 3; a++) p[3 * i + a] = places[from + a];
+    }
+    for (let f = 0; f < p.length; f += 12) {
+      // Of both diagonals.
+      const ax = p[f + 6] - p[f], ay = p[f + 7] - p[f + 1], az = p[f + 8] - p[f + 2];
+      const bx = p[f + 9] - p[f + 3], by = p[f + 10] - p[f + 4], bz = p[f + 11] - p[f + 5];
+      for (let i = f; i < f + 12; i += 3) {
+        n[i] = ay * bz - az * by;
+        n[i + 1] = az * bx - ax * bz;
+        n[i + 2] = ax * by - ay * bx;
+      }
+    }
+    position.needsUpdate = true;
+    normal.needsUpdate = true;
   }
 
   colour(quantity, at, scale) {
     const values = this.values[quantity];
-    const count = this.now.length / 3;
-    const now = values && between(values, count, at, this.held ||= new Float32Array(count));
-    const neutral = new THREE.Color(NEUTRAL.block).toArray();
-    for (let i = 0; i < count; i++) this.colours.set(now ? scale(now[i]) : neutral, 3 * i);
-    this.shade.needsUpdate = true;
+    const { color } = this.surface.attributes;
+    if (values) between(values, this.held.length, at, this.held);
+    for (let i = 0; i < this.faces.length; i++) {
+      const from = values ? scale(this.held[this.faces[i]]) : 0;
+      for (let c = 0; c < 3; c++) color.array[3 * i + c] = values ? TABLE[from + c] : this.neutral[c];
+    }
+    color.needsUpdate = true;
   }
 
   copy(at, opacity) {
-    const moved = new THREE.BufferAttribute(between(this.places, this.now.length, at, new Float32Array(this.now.length)), 3);
+    const moved = between(this.places, this.now.length, at, new Float32Array(this.now.length));
     const copy = this.object.clone();
     copy.children.forEach((child) => {
-      child.geometry = child.geometry.clone().setAttribute("position", moved);
+      child.geometry = child.geometry.clone();
       child.material = faded(child.material, opacity);
       child.frustumCulled = false;
+      if (child.isMesh) this.form(moved, child.geometry.attributes);
+      else child.geometry.setAttribute("position", new THREE.BufferAttribute(moved, 3));
     });
     return copy;
   }

@@ -15,8 +15,6 @@ class Scene {
   constructor(data, holder) {
     Object.assign(this, { data, holder, times: numbers(data.times), root: new THREE.Scene() });
     this.canvas = element("canvas", { tabindex: 0, role: "application", "aria-label": "The robot in space. Arrow keys turn it, plus and minus enlarge it, zero shows all of it." });
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     holder.append(this.canvas);
     this.parts = data.parts.map((part) => (part.kind === "block" ? new Block(part) : new Solid(part)));
     this.root.add(...this.parts.map((part) => part.object));
@@ -26,13 +24,13 @@ class Scene {
     }));
     const points = this.extent();
     this.camera = new Camera(points, data.toward, () => this.draw());
+    this.picture = new Picture(this.canvas, this.root, this.camera.three);
     this.size = 2 * Math.hypot(...this.camera.half);
     this.light();
     this.groups = { paths: this.paths(), joints: this.joints(), axes: this.jointAxes(), frames: this.frames(), goal: this.goal(), reference: this.reference(), snapshots: new THREE.Group() };
     this.ties();
     for (const group of Object.values(this.groups)) if (group) this.root.add(group);
     for (const name of ["axes", "frames", "goal", "snapshots"]) if (this.groups[name]) this.groups[name].visible = false;
-    this.movers.forEach((mover) => mover([0, 0]));
     steer(this.camera, this.canvas);
     new ResizeObserver(() => this.resize()).observe(holder);
     this.resize();
@@ -82,7 +80,7 @@ class Scene {
   }
 
   ball(colour, radius) {
-    return new THREE.Mesh(new THREE.SphereBufferGeometry(radius * this.size, 16, 12), new THREE.MeshPhongMaterial({ color: colour }));
+    return new THREE.Mesh(new THREE.SphereBufferGeometry(radius * this.size, 16, 12), new THREE.MeshLambertMaterial({ color: colour }));
   }
 
   paths() {
@@ -93,9 +91,10 @@ class Scene {
       group.add(this.tube(marker.path, marker.colour, 0.0022));
       const ball = this.ball(marker.colour, 0.008);
       group.add(ball);
+      const now = new Float32Array(3);
       this.movers.push((_, time) => {
         const at = marker.times.length > 1 ? place(marker.times, time ?? marker.times[0]) : [0, 0];
-        ball.position.fromArray(between(marker.path, 3, at, [0, 0, 0]));
+        ball.position.fromArray(between(marker.path, 3, at, now));
       });
     }
     return group;
@@ -107,6 +106,7 @@ class Scene {
     const lines = new THREE.LineSegments(new THREE.BufferGeometry().setAttribute("position", places), line(colour, 1));
     lines.frustumCulled = false;
     this.movers.push((at) => {
+      if (lines.parent && !lines.parent.visible) return;
       ends(at, places.array);
       places.needsUpdate = true;
     });
@@ -130,13 +130,14 @@ class Scene {
     const bodies = this.parts.filter((part) => part.part.kind === "body");
     for (const joint of this.data.joints) {
       const all = numbers(joint.places);
+      const now = new Float32Array(3);
       const ball = this.ball("#e9edf2", 0.007);
       group.add(ball);
-      this.movers.push((at) => ball.position.fromArray(between(all, 3, at, [0, 0, 0])));
+      this.movers.push((at) => ball.position.fromArray(between(all, 3, at, now)));
       for (const b of joint.bodies.filter((body) => body !== null)) {
         group.add(this.moving(1, "#55606c", (at, into) => {
-          into.set(between(all, 3, at, [0, 0, 0]), 0);
-          into.set(between(bodies[b].motion, 12, at, new Array(12)).slice(9), 3);
+          between(all, 3, at, into);
+          for (let i = 0; i < 3; i++) into[3 + i] = bodies[b].now[9 + i];
         }));
       }
     }
@@ -149,10 +150,15 @@ class Scene {
     const group = new THREE.Group();
     for (const joint of joints) {
       const [all, axis] = [numbers(joint.places), numbers(joint.axis)];
+      const [a, b] = [new Float32Array(3), new Float32Array(3)];
       group.add(this.moving(1, "#d55e00", (at, into) => {
-        const [a, b] = [between(all, 3, at, [0, 0, 0]), between(axis, 3, at, [0, 0, 0])];
-        const way = new THREE.Vector3(b[0] - a[0], b[1] - a[1], b[2] - a[2]).setLength(0.08 * this.size);
-        into.set([0, 1, 2].map((i) => a[i] - way.getComponent(i)).concat([0, 1, 2].map((i) => a[i] + way.getComponent(i))));
+        between(all, 3, at, a);
+        between(axis, 3, at, b);
+        const half = (0.08 * this.size) / Math.hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+        for (let i = 0; i < 3; i++) {
+          into[i] = a[i] - half * (b[i] - a[i]);
+          into[3 + i] = a[i] + half * (b[i] - a[i]);
+        }
       }));
     }
     return group;
@@ -165,9 +171,12 @@ class Scene {
     const group = new THREE.Group();
     for (const body of bodies) {
       ["#d02f2f", "#2c9a3f", "#2f6fd0"].forEach((colour, i) => {
-        group.add(this.moving(1, colour, (at, into) => {
-          const m = between(body.motion, 12, at, new Array(12));
-          into.set([0, 1, 2].flatMap((a) => m[9 + a]).concat([0, 1, 2].map((a) => m[9 + a] + 0.07 * this.size * m[3 * i + a])));
+        group.add(this.moving(1, colour, (_, into) => {
+          const m = body.now;
+          for (let a = 0; a < 3; a++) {
+            into[a] = m[9 + a];
+            into[3 + a] = m[9 + a] + 0.07 * this.size * m[3 * i + a];
+          }
         }));
       });
     }
@@ -215,7 +224,7 @@ class Scene {
   show(name, on) {
     if (name === "snapshots" && on) this.snapshots();
     this.groups[name].visible = on;
-    this.draw();
+    this.set(this.time);
   }
 
   /** Least and greatest value of each quantity that some part has. */
@@ -236,9 +245,10 @@ class Scene {
     return ranges;
   }
 
+  /** Where the colour of a value of the quantity that is shown begins in the table. */
   scale() {
     const [low, high] = this.ranges[this.quantity] || [0, 1];
-    return (value) => mapped((value - low) / (high - low));
+    return (value) => step((value - low) / (high - low));
   }
 
   paint(quantity) {
@@ -263,18 +273,12 @@ class Scene {
   resize() {
     const [width, height] = [this.holder.clientWidth, this.holder.clientHeight];
     if (!width || !height) return;
-    this.renderer.setSize(width, height, false);
+    this.picture.resize(width, height);
     this.camera.resize(width / height);
   }
 
-  /** Draws with the next picture of the browser. */
   draw() {
-    if (this.asked || !this.renderer) return;
-    this.asked = true;
-    requestAnimationFrame(() => {
-      this.asked = false;
-      this.renderer.render(this.root, this.camera.three);
-    });
+    this.picture?.ask();
   }
 }
 

@@ -132,10 +132,6 @@ impl Stage<'_> {
             quantities["voltage"] = all(&skin.potentials, 1e-3);
             quantities["field"] = all(&skin.fields, 1e-3);
         }
-        let triangles = skin
-            .quads
-            .iter()
-            .flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]);
         let edges = |is_sharp: bool| {
             let sides = skin
                 .quads
@@ -154,7 +150,7 @@ impl Stage<'_> {
             "kind": "block",
             "name": skin.name,
             "vertices": places(&skin.reference),
-            "triangles": indices(triangles),
+            "faces": indices(skin.quads.iter().flatten().copied()),
             "edges": edges(true),
             "inner": edges(false),
             "places": places(skin.places.iter().flatten()),

@@ -28,7 +28,10 @@ async function start() {
   }
   if (moves) player(clock, document.getElementById("player"));
   page.charts = new Charts(data.charts, document.getElementById("charts"), clock);
-  dark.addEventListener("change", () => page.scene?.draw());
+  dark.addEventListener("change", () => {
+    page.scene?.picture.theme();
+    page.scene?.draw();
+  });
   // The end of the motion is what was asked for.
   clock.set(clock.last);
   window.proboscis = page;

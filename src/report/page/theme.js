@@ -16,6 +16,13 @@ function mapped(part) {
   return [mix(0), mix(1), mix(2)];
 }
 
+/** Steps of the map for what changes colour with every picture, red, green and blue of each. */
+const STEPS = 255;
+const TABLE = new Float32Array(Array.from({ length: STEPS + 1 }, (_, i) => mapped(i / STEPS)).flat());
+
+/** Where the colour of a part of the full scale begins in the table. */
+const step = (part) => 3 * Math.round(STEPS * Math.min(1, Math.max(0, part || 0)));
+
 /** The colour of a curve on the paper of the theme: ink stays ink, dark ones become lighter on dark paper. */
 function readable(colour) {
   if (colour === "#22262b") return themed("ink");
