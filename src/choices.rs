@@ -43,7 +43,7 @@ pub(crate) enum View {
     Side,
     /// Along the y axis, from above.
     Top,
-    /// In the direction in which the system moves least.
+    /// In the direction in which motion and shape of the system together are smallest.
     Auto,
 }
 

@@ -4,11 +4,9 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::dynamics::trajectory::Trajectory;
 use crate::model::system::System;
-use crate::report::skins::Skins;
+use crate::report::body::extent_points;
+use crate::report::skins::{Skins, shown};
 use crate::report::view::View;
-
-/// Weight of the shape beside the motion: it decides where the motion leaves a choice.
-const SHAPE: f64 = 1e-3;
 
 /// Where the viewer stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,7 +20,7 @@ pub enum Viewpoint {
     Side,
     /// On the y axis: x to the right, z downwards.
     Top,
-    /// In the direction in which the system moves least.
+    /// In the direction in which motion and shape of the system together are smallest.
     Auto,
 }
 
@@ -60,7 +58,9 @@ impl Viewpoint {
     }
 }
 
-/// The direction of the smallest motion of centres, markers and surfaces: an eigenvector of the sum of their covariances over time.
+/// The direction in which motion and shape together are smallest: an eigenvector of the sum of two covariances, both of trace one, of each
+/// centre, marker and corner of a surface over time, and of all corners at each time. A trunk that bends both ways moves least along itself,
+/// and is longest there.
 fn least(system: &System, trajectory: &Trajectory, skins: &Skins) -> Vector3<f64> {
     let mut tracks: Vec<Vec<Vector3<f64>>> = Vec::new();
     for (b, body) in system.bodies.iter().enumerate() {
@@ -80,9 +80,17 @@ fn least(system: &System, trajectory: &Trajectory, skins: &Skins) -> Vector3<f64
     // A motion begins where it begins.
     let skipped = usize::from(trajectory.times.len() > 1);
     let motion = tracks.iter().map(|track| covariance(&track[skipped..]));
-    let motion = unit(motion.sum());
-    let shape: Vec<_> = tracks.iter().map(|track| track[0]).collect();
-    let all = (motion + unit(covariance(&shape)) * SHAPE).symmetric_eigen();
+    let shape = shown(&trajectory.times, 1).into_iter().map(|k| {
+        let bodies = system.bodies.iter().zip(&trajectory.poses[k]);
+        let corners = bodies.flat_map(|(body, pose)| extent_points(&body.shape, pose));
+        let centres = trajectory.poses[k].iter().map(|pose| pose.centre);
+        let marks = trajectory.marks[k].iter().copied();
+        let surfaces = skins.list.iter();
+        let surfaces = surfaces.filter_map(|skin| skin.places.get(skins.position(k)));
+        let all = corners.chain(centres).chain(marks);
+        covariance(&all.chain(surfaces.flatten().copied()).collect::<Vec<_>>())
+    });
+    let all = (unit(motion.sum()) + unit(shape.sum())).symmetric_eigen();
     let direction = all.eigenvectors.column(all.eigenvalues.imin()).into_owned();
     let main = direction.iamax();
     // From before, from the right, or from below, where x is to the right and z upwards.

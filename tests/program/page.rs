@@ -16,7 +16,7 @@ use serde_json::Value;
 use crate::report::swing;
 
 /// The data that a page draws.
-fn page_data(html: &str) -> Value {
+pub(crate) fn page_data(html: &str) -> Value {
     let from = html
         .split("<script type=\"application/json\" id=\"data\">")
         .nth(1);
