@@ -1,15 +1,16 @@
-//! `report.html`: any two columns of the table against each other, and all rows.
+//! `report.html`: any two columns of the table against each other, all that varies in parallel coordinates, and all rows.
 
 use serde_json::json;
 
 use crate::report::origin::Origin;
+use crate::report::page::framed;
 use crate::sweep::kept::Kept;
 use crate::sweep::read::Sweep;
 
-/// The page without its data.
-const PAGE: &str = include_str!("page.html");
-/// Where they go.
-const DATA: &str = "@DATA@";
+/// The page around everything, as that of a run.
+const FRAME: &str = include_str!("page.html");
+/// What draws it.
+const MODULE: &str = include_str!("page.js");
 
 /// The page; `table` has a row of headings first.
 pub(super) fn html(sweep: &Sweep, ends: &[Kept], table: &[Vec<String>], origin: &Origin) -> String {
@@ -19,11 +20,9 @@ pub(super) fn html(sweep: &Sweep, ends: &[Kept], table: &[Vec<String>], origin: 
     let data = json!({
         "title": sweep.title,
         "words": format!("{count} of {} variants of {problem} have an answer.", ends.len()),
-        "origin": origin.line(),
         "places": sweep.places.len(),
         "table": table,
         "solved": solved,
     });
-    // No text ends the element that it stands in.
-    PAGE.replace(DATA, &data.to_string().replace('<', "\\u003c"))
+    framed(FRAME, &sweep.title, origin, &data, &[MODULE])
 }

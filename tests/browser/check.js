@@ -3,7 +3,7 @@
 
 import { execFileSync } from "node:child_process";
 import { createRequire } from "node:module";
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
@@ -17,6 +17,11 @@ const STUDY = {
   methods: [{ name: "midpoint" }], refine: { name: "step", set: { "simulate.step": ["10 ms", "5 ms", "2.5 ms", "1.25 ms"] } },
 };
 const SWING = { scene: "scene.json", simulate: { duration: "0.2 s", step: "4 ms", voltages: { muscle1: "2 kV", muscle6: "1 kV" } } };
+/** Variants of a pair of two materials' constants. */
+const SWEEP = {
+  title: "Stiffness and permittivity", problem: resolve("problems/pair.json"),
+  vary: { "scene.materials.silicone.shear_modulus": ["50 kPa", "100 kPa", "200 kPa"], "scene.materials.silicone.relative_permittivity": [2.5, 4] },
+};
 /** Results, and what their pages show: so many parts that move or not, faces of finite elements, charts with these titles. */
 const RUNS = [
   { name: "elephant_trunk", commands: solve("elephant_trunk"), moves: true, parts: 18, charts: ["Voltages", "Joints", "Energies", "Convergence"], megabytes: 1.5 },
@@ -25,6 +30,7 @@ const RUNS = [
   { name: "pull_in", commands: solve("pull_in"), moves: false, parts: 1, faces: 24, charts: ["Path"], megabytes: 1 },
   { name: "long_trunk", commands: [["new", "trunk", "--segments", "14", "FOLDER/scene"], ["simulate", "FOLDER/scene/swing.json"]], moves: true, parts: 42, charts: ["Voltages"], megabytes: 3 },
   { name: "study", commands: [["study", "FOLDER/study.json"]], charts: [], megabytes: 1 },
+  { name: "sweep", commands: [["sweep", "FOLDER/sweep.json"]], variants: 6, charts: [], megabytes: 0.1 },
   { name: "compared", commands: [["report", "FOLDER/elephant_trunk", "FOLDER/long_trunk"]], follows: true, charts: ["Joints", "Energies"], megabytes: 2 },
 ];
 const SCREENS = [
@@ -82,7 +88,7 @@ async function look(browser, run, screen, file) {
   page.on("pageerror", (error) => expect(false, `${told}: ${error.message}`));
   page.on("request", (request) => expect(/^(file|data|blob):/.test(request.url()), `${told}: asks for ${request.url()}`));
   await page.goto(pathToFileURL(file).href);
-  await page.waitForFunction(() => window.proboscis?.charts, null, { timeout: 180000 });
+  await page.waitForFunction(() => window.proboscis?.charts || document.querySelector("#plot circle"), null, { timeout: 180000 });
   await page.waitForTimeout(150);
   await page.screenshot({ path: join(folder, `${run.name}-${screen.name}.png`) });
   if (!screen.still) {
@@ -92,7 +98,12 @@ async function look(browser, run, screen, file) {
       await controls(page, run, told);
     }
     await keyboard(page, told);
-    await charts(page, run, told, screen);
+    if (run.variants) await sweep(page, run, told);
+    else await charts(page, run, told, screen);
+    await page.evaluate(() => window.scrollTo(0, 0));
+    // For a person to look at; long pages take a slow machine more time than the test has.
+    const all = { path: join(folder, `${run.name}-${screen.name}-all.png`), fullPage: true, timeout: 30000 };
+    await page.screenshot(all).catch(() => console.error(`browser: ${told}: no picture of the whole page`));
   }
   await page.evaluate(axe);
   const found = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
@@ -204,6 +215,28 @@ async function controls(page, run, told) {
   expect(turned !== 0, `${told}: keys do not turn the scene`);
 }
 
+/** Each variant is a point and a line; columns that are chosen move and colour them, heads of columns sort the rows. */
+async function sweep(page, run, told) {
+  const points = () => page.locator("#plot circle").evaluateAll((all) => all.map((one) => [one.getAttribute("cx"), one.getAttribute("cy"), one.style.fill].join(" ")));
+  const before = await points();
+  const lines = await page.locator("#parallel path").count();
+  expect(before.length === run.variants && new Set(before).size === run.variants && lines === run.variants, `${told}: points ${before}, ${lines} lines`);
+  for (const [axis, value] of [["#x", "objective"], ["#y", "iterations"], ["#colour", "objective"]]) {
+    const earlier = await points();
+    await page.locator(axis).selectOption({ label: value });
+    expect((await points()).some((point, i) => point !== earlier[i]), `${told}: ${value} for ${axis} changes nothing`);
+  }
+  const column = () => page.locator("#rows tbody tr td:nth-child(7)").evaluateAll((all) => all.map((one) => Number(one.textContent)));
+  for (const sign of [1, -1]) {
+    await page.locator("#rows th button").nth(6).click();
+    const values = await column();
+    expect(values.length === run.variants && values.every((value, i) => i === 0 || sign * (value - values[i - 1]) >= 0), `${told}: sorted by the objective are ${values}`);
+    expect(sign * (values[values.length - 1] - values[0]) > 0, `${told}: all objectives are ${values}`);
+  }
+  const links = await page.locator("#rows a").evaluateAll((all) => all.map((one) => one.getAttribute("href")));
+  expect(links.length === run.variants && links.every((link) => existsSync(join(folder, run.name, link))), `${told}: links to ${links}`);
+}
+
 /** The keyboard reaches all controls. */
 async function keyboard(page, told) {
   const controls = await page.evaluate(() => {
@@ -241,16 +274,13 @@ async function charts(page, run, told, screen) {
   }
   const empty = await page.evaluate(() => window.proboscis.charts.made.filter((one) => !one.chart).length);
   expect(empty === 0, `${told}: ${empty} charts are not drawn`);
-  await page.evaluate(() => window.scrollTo(0, 0));
-  // For a person to look at; long pages take a slow machine more time than the test has.
-  const all = { path: join(folder, `${run.name}-${screen.name}-all.png`), fullPage: true, timeout: 30000 };
-  await page.screenshot(all).catch(() => console.error(`browser: ${told}: no picture of the whole page`));
 }
 
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || "/usr/bin/chromium", args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
 rmSync(folder, { recursive: true, force: true });
 mkdirSync(join(folder, "scene"), { recursive: true });
 writeFileSync(join(folder, "study.json"), JSON.stringify(STUDY));
+writeFileSync(join(folder, "sweep.json"), JSON.stringify(SWEEP));
 writeFileSync(join(folder, "scene", "swing.json"), JSON.stringify(SWING));
 for (const run of RUNS.filter(({ name }) => !named.length || named.includes(name))) {
   const results = join(folder, run.name);

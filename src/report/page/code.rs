@@ -19,10 +19,10 @@ pub(super) const LIBRARIES: [(&str, &[u8]); 2] = [
 pub(super) const FRAME: &str = include_str!("page.html");
 /// How it looks.
 pub(super) const SHEET: &str = include_str!("page.css");
-/// The modules of the page in the order in which they need each other.
-const MODULES: [&str; 10] = [
-    include_str!("read.js"),
-    include_str!("theme.js"),
+/// What all pages share.
+const HELPERS: [&str; 2] = [include_str!("read.js"), include_str!("theme.js")];
+/// The modules of the page of a run in the order in which they need each other.
+pub(super) const MODULES: [&str; 8] = [
     include_str!("clock.js"),
     include_str!("camera.js"),
     include_str!("parts.js"),
@@ -33,9 +33,10 @@ const MODULES: [&str; 10] = [
     include_str!("start.js"),
 ];
 
-/// The page's own code: one function around all modules.
-pub(super) fn script() -> String {
-    format!("(() => {{\n\"use strict\";\n{}}})();\n", MODULES.concat())
+/// A page's own code: one function around helpers and modules.
+pub(super) fn script(modules: &[&str]) -> String {
+    let (helpers, modules) = (HELPERS.concat(), modules.concat());
+    format!("(() => {{\n\"use strict\";\n{helpers}{modules}}})();\n")
 }
 
 /// The elements of the libraries, which the page unpacks.

@@ -39,7 +39,7 @@ pub fn html(results: &[(String, Value)], origin: &Origin) -> String {
         "charts": charts(results),
     });
     let title = format!("{}: side by side", names.join(", "));
-    page(&title, &origin.line(), &data)
+    page(&title, origin, &data)
 }
 
 /// Rows of all tables, in the order in which they come first: the name, the value of each result.

@@ -33,7 +33,7 @@ pub fn html(run: &Run<'_>, told: &Told) -> String {
     });
     page(
         &format!("{}: {}", run.system.name, told.title),
-        &run.origin.line(),
+        run.origin,
         &data,
     )
 }
@@ -53,22 +53,28 @@ pub fn of_plots(subject: &str, told: &Told, origin: &Origin) -> String {
         "charts": charts::plots(told),
         "documents": documents.collect::<Vec<_>>(),
     });
-    page(&format!("{subject}: {}", told.title), &origin.line(), &data)
+    page(&format!("{subject}: {}", told.title), origin, &data)
 }
 
-/// A page with its title, the line of its origin, and what it shows.
-fn page(title: &str, origin: &str, data: &Value) -> String {
+/// A page with its title, where it comes from, and what it shows.
+fn page(title: &str, origin: &Origin, data: &Value) -> String {
+    framed(code::FRAME, title, origin, data, &code::MODULES)
+}
+
+/// A frame with its places `{{name}}` filled: `title`, `origin`, `sheet`, `data`, `script`, and `libraries`, the code of others;
+/// `modules` are the code of the page beside the helpers that all pages share.
+pub fn framed(frame: &str, title: &str, origin: &Origin, data: &Value, modules: &[&str]) -> String {
     // In JSON such a sign stands in texts only; there it must not end the script.
     let data = data.to_string().replace('<', "\\u003c");
     filled(
-        code::FRAME,
+        frame,
         &[
             ("title", &escape(title)),
-            ("origin", &escape(origin)),
+            ("origin", &escape(&origin.line())),
             ("sheet", code::SHEET),
             ("data", &data),
             ("libraries", &code::libraries()),
-            ("script", &code::script()),
+            ("script", &code::script(modules)),
         ],
     )
 }
