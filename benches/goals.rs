@@ -62,6 +62,9 @@ const GROUPS: [Group; 3] = [
     },
 ];
 
+/// The linear solver along the horizon, and the one beside which it is measured.
+const SOLVERS: [&str; 2] = ["stages", "mumps"];
+
 /// How a solve of a goal ended.
 #[derive(Clone, Debug)]
 struct Ended {
@@ -94,7 +97,11 @@ fn main() {
         .flat_map(|group| (1..=count / group.part).map(move |number| (group, number)))
         .map(|(group, number)| (group, number, goals.draw(group.kind)))
         .collect();
-    let once = in_parallel(&plan, |(group, goal, it)| solve(group, *goal, it, 1));
+    // Both solvers in turn, so that what else the machine does meets both.
+    let both = in_parallel(&plan, |(group, goal, it)| {
+        SOLVERS.map(|name| solve(group, *goal, it, &Way { name, starts: 1 }))
+    });
+    let [once, by_mumps] = [0, 1].map(|i| both.iter().map(|of| of[i].clone()).collect::<Vec<_>>());
     let mut chosen = Vec::new();
     for group in &GROUPS {
         let of_group = |solved: bool| {
@@ -109,10 +116,15 @@ fn main() {
         .iter()
         .map(|&index| {
             let (group, goal, it) = &plan[index];
-            solve(group, *goal, it, STARTS)
+            let way = Way {
+                name: SOLVERS[0],
+                starts: STARTS,
+            };
+            solve(group, *goal, it, &way)
         })
         .collect();
-    let text = report(&once, &several, &chosen);
+    let mut text = report(&once, &several, &chosen);
+    text += &beside_mumps(&once, &by_mumps);
     println!("{text}");
     if writes {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/gallery/random_goals");
@@ -136,8 +148,18 @@ fn in_parallel<T: Sync, A: Send>(items: &[T], answer: impl Fn(&T) -> A + Sync) -
         .collect()
 }
 
+/// How a goal is solved.
+#[derive(Debug)]
+struct Way {
+    /// The linear solver.
+    name: &'static str,
+    /// Number of starting points.
+    starts: usize,
+}
+
 /// Solves the trunk problem for a goal in a process.
-fn solve(group: &Group, goal: usize, it: &Goal, starts: usize) -> Ended {
+fn solve(group: &Group, goal: usize, it: &Goal, way: &Way) -> Ended {
+    let starts = way.starts;
     let folder = tempfile::tempdir().expect("a temporary folder");
     let output = folder.path().join("out");
     let mut command = Command::new(env!("CARGO_BIN_EXE_proboscis"));
@@ -147,6 +169,9 @@ fn solve(group: &Group, goal: usize, it: &Goal, starts: usize) -> Ended {
         .arg(format!("control.goal={}", it.json));
     let duration = format!("control.duration={} s", group.duration);
     command.arg("--set").arg(duration);
+    command
+        .arg("--set")
+        .arg(format!("solver.linear_solver={:?}", way.name));
     command.arg("--max-iterations").arg(ITERATIONS.to_string());
     command.arg("-o").arg(&output).arg("--quiet");
     if starts > 1 {
@@ -332,6 +357,32 @@ fn report(once: &[Ended], several: &[Ended], chosen: &[usize]) -> String {
             100.0 * lowered,
             100.0 * solved as f64 / total as f64,
             100.0 * (solved + now - before) as f64 / total as f64,
+        )
+        .expect("a text grows");
+    }
+    out
+}
+
+/// What both linear solvers take for the same goals, whole processes.
+fn beside_mumps(ours: &[Ended], theirs: &[Ended]) -> String {
+    let mut out = "\n## Beside MUMPS\n\n\
+         The same goals from the guess of the problem, both linear solvers in turn; seconds of all goals together, solved or not, without the start of a process.\n\n\
+         | goals | solved along the horizon, with MUMPS | seconds along the horizon, with MUMPS | ratio |\n\
+         |:--|--:|--:|--:|\n"
+        .to_owned();
+    for group in &GROUPS {
+        let of = |all: &[Ended]| {
+            let all = all.iter().filter(|one| one.group == group.name);
+            all.fold((0, 0.0), |(solved, seconds), one| {
+                (solved + usize::from(one.is_solved), seconds + one.seconds)
+            })
+        };
+        let [(ours, fast), (theirs, slow)] = [of(ours), of(theirs)];
+        let ratio = slow / fast;
+        let name = group.name;
+        writeln!(
+            out,
+            "| {name} | {ours}, {theirs} | {fast:.1}, {slow:.1} | {ratio:.2} |"
         )
         .expect("a text grows");
     }
