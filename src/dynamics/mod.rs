@@ -2,6 +2,7 @@
 //!
 //! - `stepper`: Newton on the equations of one step; `midpoint`: those of the midpoint rule; `stages`: those of every other
 //!   method.
+//! - `updates`, `anderson`, `contraction`: updates of an iteration, with kept factors, and how they shrink.
 //! - `step_state`, `resume`: from what a motion goes on.
 //! - `domain`: where the first-order dielectric ends.
 //! - `resolution`, `spans`: which steps are refused; `local_error`: what those neglect that are not.
@@ -11,6 +12,7 @@
 //!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest`: its softest mode.
 
 mod anderson;
+mod contraction;
 mod controlled;
 mod discrete_trajectory;
 mod domain;

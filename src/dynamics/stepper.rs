@@ -1,5 +1,6 @@
 //! One step forward: Newton on the equations of a method, and halves of the step where it fails.
 
+use crate::dynamics::contraction::{Contraction, Verdict};
 use crate::dynamics::controlled::{Controlled, factor};
 use crate::dynamics::equations::Equations;
 use crate::dynamics::error::StepError;
@@ -17,13 +18,6 @@ use std::time::Instant;
 const ITERATIONS: usize = 16;
 /// How often a step is halved before it is refused.
 const HALVINGS: u32 = 10;
-/// Convergence: the error after a Newton update of relative size δ is of order δ².
-const UPDATE: f64 = 1e-9;
-
-/// Error, by the rate of the updates, that an iteration with a reused tangent leaves.
-const LEFT: f64 = 1e-10;
-/// A reused tangent that makes the updates shrink by less than this is factorised anew.
-const SLOW: f64 = 0.75;
 /// Limit of iterations with a reused tangent.
 const REUSED: usize = 40;
 
@@ -207,7 +201,7 @@ impl<E: Equations> Steps<E> {
         let newton = self.updates.newton();
         let mut reused = newton == Newton::Modified && self.factored == Some(h);
         self.stale = reused;
-        let mut last = f64::INFINITY;
+        let mut contraction = Contraction::new(newton);
         self.updates.start();
         let limit = match newton {
             Newton::Full => ITERATIONS,
@@ -235,27 +229,23 @@ impl<E: Equations> Steps<E> {
                 self.factor(h)?;
                 self.go_on(h)?;
             }
-            let size = self.advance(h, !reused)?;
-            // Newton's updates shrink quadratically, those of a reused tangent by a factor.
-            // What a tangent of an earlier step does is not known before its second update.
-            let rate = match last.is_finite() {
-                true => size / last,
-                false if reused || self.updates.are_approximate() => SLOW,
-                false => 0.0,
-            };
-            let is_close = match newton {
-                Newton::Full => size < UPDATE,
-                Newton::Modified => size * (rate / (1.0 - rate)).max(size) < LEFT,
-            };
-            if is_close && (rate < 1.0 || size < UPDATE) {
+            let size = self.solve(h, !reused)?;
+            let is_approximate = self.updates.are_approximate();
+            let verdict = contraction.judge(size, reused, is_approximate);
+            reused = verdict == Verdict::Shrinks;
+            if verdict == Verdict::Astray {
+                residuals.pop();
+                continue;
+            }
+            self.updates.accelerate(&mut self.residual);
+            self.equations.update(&self.residual);
+            if verdict == Verdict::Converged {
                 if self.accept(h)? {
                     return Ok(());
                 }
                 residuals.push(f64::NAN);
                 break;
             }
-            reused = newton == Newton::Modified && (rate < SLOW || last == f64::INFINITY);
-            last = size;
         }
         self.equations.restore();
         let first = residuals.first().copied().unwrap_or(f64::NAN);
@@ -373,23 +363,21 @@ impl<E: Equations> Steps<E> {
         })
     }
 
-    /// Solves for an update and makes it; returns its size relative to the scales.
-    fn advance(&mut self, h: f64, is_fresh: bool) -> Result<f64, StepError> {
-        let mut size = self.solve();
-        if is_fresh && self.updates.leave_out_much(&self.residual, size) {
-            self.equations
-                .evaluate(Order::Hessian, h, &mut self.residual);
-            self.updates.make_exact();
-            self.factor(h)?;
-            size = self.solve();
+    /// Solves for an update, with the whole tangent where a new factor leaves out too much; returns its size relative to the
+    /// scales.
+    fn solve(&mut self, h: f64, is_fresh: bool) -> Result<f64, StepError> {
+        let size = self.solve_once();
+        if !(is_fresh && self.updates.leave_out_much(&self.residual, size)) {
+            return Ok(size);
         }
-        self.updates.accelerate(&mut self.residual);
-        self.equations.update(&self.residual);
-        Ok(size)
+        self.equations
+            .evaluate(Order::Hessian, h, &mut self.residual);
+        self.updates.make_exact();
+        self.factor(h)?;
+        Ok(self.solve_once())
     }
 
-    /// Solves for an update; returns its size relative to the scales.
-    fn solve(&mut self) -> f64 {
+    fn solve_once(&mut self) -> f64 {
         let began = Instant::now();
         let size = self.updates.solve(&mut self.residual);
         self.report.solution += began.elapsed().as_secs_f64();
