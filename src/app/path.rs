@@ -26,7 +26,7 @@ use crate::report::file_set::FileSet;
 use crate::report::lines::{LinePlot, Mark, Series};
 use crate::report::skins::Skins;
 use crate::report::style::Dash;
-use crate::report::{Run, style, write_still};
+use crate::report::{Branch, Run, style, write_still};
 use crate::workflow::WorkflowError;
 use crate::workflow::domain;
 use crate::workflow::effects::Plan;
@@ -122,10 +122,22 @@ pub(super) fn follow(
     said.rows = rows;
     said.plots.push(("Path".to_owned(), plot));
     let skins = Skins::new(&model, &shown_state);
+    let steps = DiscreteTrajectory {
+        times: (0..=stops.len()).map(|k| 1e3 * (k as f64 - 1.0)).collect(),
+        ..history.clone()
+    };
+    let fractions: Vec<f64> = stops.iter().map(|stop| stop.fraction).collect();
+    let branch = Branch {
+        trajectory: &Trajectory::from_history(&model, &steps),
+        skins: &Skins::new(&model, &steps),
+        fractions: &fractions,
+        shown,
+    };
     let run = Run {
         name: "rest",
         held: Some(&motion.voltages[0]),
         equilibria: Some(&way),
+        branch: Some(branch),
         figures: request.figures,
         told: request.page.of(&said),
         ..Run::of(&model.system, &motion, &skins, &observed, &origin)

@@ -32,7 +32,7 @@ pub mod view;
 pub mod viewpoint;
 pub mod voltages;
 
-pub use run::{Figures, Run, Told};
+pub use run::{Branch, Figures, Run, Told};
 
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;

@@ -42,6 +42,8 @@ pub struct Run<'a> {
     pub held: Option<&'a [f64]>,
     /// Equilibria on the way to a state of rest, where they were followed.
     pub equilibria: Option<&'a Trajectory>,
+    /// The whole path of equilibria, along which the page walks.
+    pub branch: Option<Branch<'a>>,
     /// How figures look.
     pub figures: Figures,
     /// What markers and joints were to follow.
@@ -52,6 +54,19 @@ pub struct Run<'a> {
     pub goal: Option<&'a [Pose]>,
     /// What the page says of it; none where no page is wanted.
     pub told: Option<&'a Told>,
+}
+
+/// A path of equilibria.
+#[derive(Clone, Copy, Debug)]
+pub struct Branch<'a> {
+    /// The equilibria at the times 0, 1 s, 2 s, …, and the first of them once more before, so that each ends an interval with its voltages.
+    pub trajectory: &'a Trajectory,
+    /// Surfaces at these instants.
+    pub skins: &'a Skins,
+    /// The fraction of the voltages of each equilibrium.
+    pub fractions: &'a [f64],
+    /// The equilibrium that figures show.
+    pub shown: usize,
 }
 
 /// What a page says of a run in words, and what it shows besides the motion.
@@ -74,6 +89,18 @@ pub struct Told {
 }
 
 impl<'a> Run<'a> {
+    /// The run as its page shows it: along the whole path of equilibria where there is one.
+    pub(super) fn along_branch(&self) -> Self {
+        match self.branch {
+            None => *self,
+            Some(branch) => Self {
+                trajectory: branch.trajectory,
+                skins: branch.skins,
+                ..*self
+            },
+        }
+    }
+
     /// A motion with all that is observed of it in its table, alone and without a page.
     pub fn of(
         system: &'a System,
@@ -92,6 +119,7 @@ impl<'a> Run<'a> {
             comparison: None,
             held: None,
             equilibria: None,
+            branch: None,
             figures: Figures::default(),
             tracked: &[],
             origin,

@@ -27,7 +27,7 @@ const RUNS = [
   { name: "elephant_trunk", commands: solve("elephant_trunk"), moves: true, parts: 18, charts: ["Voltages", "Joints", "Energies", "Convergence"], megabytes: 1.5 },
   { name: "fe_trunk", commands: [["simulate", "problems/fe_trunk.json"]], moves: true, parts: 18, faces: 864, charts: ["Voltages", "Stretches", "Charges"], megabytes: 3 },
   { name: "bending_actuator", commands: solve("bending_actuator"), moves: false, parts: 1, faces: 916, charts: [], megabytes: 1 },
-  { name: "pull_in", commands: solve("pull_in"), moves: false, parts: 1, faces: 24, charts: ["Path"], megabytes: 1 },
+  { name: "pull_in", commands: solve("pull_in"), moves: true, walks: true, parts: 1, faces: 24, charts: ["Path"], megabytes: 1 },
   { name: "long_trunk", commands: [["new", "trunk", "--segments", "14", "FOLDER/scene"], ["simulate", "FOLDER/scene/swing.json"]], moves: true, parts: 42, charts: ["Voltages"], megabytes: 3 },
   { name: "study", commands: [["study", "FOLDER/study.json"]], charts: [], megabytes: 1 },
   { name: "sweep", commands: [["sweep", "FOLDER/sweep.json"]], variants: 6, charts: [], megabytes: 0.1 },
@@ -188,6 +188,7 @@ async function controls(page, run, told) {
     await page.locator("#time").fill("300");
     expect((await place()) !== before, `${told}: the slider does not move the scene`);
     const time = await page.evaluate(() => window.proboscis.clock.time / window.proboscis.clock.last);
+    if (run.walks) await path(page, told);
     expect(Math.abs(time - 0.3) < 1e-3, `${told}: the slider sets ${time}`);
     await page.locator("#play").click();
     await page.waitForTimeout(400);
@@ -213,6 +214,31 @@ async function controls(page, run, told) {
     return by;
   });
   expect(turned !== 0, `${told}: keys do not turn the scene`);
+}
+
+/** A path of equilibria: the slider shows their fractions, up to the limit and back; the block is as stretched as the curve of the path says. */
+async function path(page, told) {
+  const found = await page.evaluate(() => {
+    const { clock, scene, charts: { made: [chart] } } = window.proboscis;
+    const curve = chart.series.filter((one) => one.joined).flatMap((one) => one.points);
+    const marker = scene.markers[0];
+    const start = marker.path.slice(0, 3);
+    const before = clock.time;
+    let worst = 0;
+    const fractions = [];
+    for (let k = 0; k <= clock.last; k++) {
+      clock.set(k);
+      fractions.push(clock.fraction());
+      const far = Math.hypot(...[0, 1, 2].map((a) => scene.groups.paths.children.find((one) => one.geometry?.type === "SphereBufferGeometry").position.getComponent(a) - start[a]));
+      const nearest = Math.min(...curve.map((point) => Math.hypot(point.x - far, point.y - clock.fraction())));
+      worst = Math.max(worst, nearest / Math.max(...curve.map((point) => point.x)));
+    }
+    clock.set(before);
+    return { worst, fractions, told: document.querySelector("#player output").textContent };
+  });
+  const most = Math.max(...found.fractions);
+  expect(found.worst < 1e-4 && most > 0.9 && found.fractions[found.fractions.length - 1] < most, `${told}: the scene is ${found.worst} beside the path, fractions ${found.fractions}`);
+  expect(/^\d+\.\d\d % of the voltages$/.test(found.told), `${told}: the path is told as ${found.told}`);
 }
 
 /** Each variant is a point and a line; columns that are chosen move and colour them, heads of columns sort the rows. */
@@ -268,7 +294,8 @@ async function charts(page, run, told, screen) {
     const areas = window.proboscis.charts.made.filter((one) => one.clock && one.chart).map((one) => [one.plot.getBoundingClientRect().left, one.chart.chartArea.left, one.cursor.style.display]);
     return { edges: [...new Set(areas.map(([a, b]) => `${Math.round(a)} ${Math.round(b)}`))], cursors: areas.every((one) => one[2] === "block"), count: areas.length };
   });
-  if (run.moves || run.follows) {
+  if (run.walks) expect(left.count === 1 && left.cursors, `${told}: the path has no mark`);
+  else if (run.moves || run.follows) {
     expect(left.count > 3 && left.cursors, `${told}: ${left.count} charts follow the clock`);
     if (screen.width < 600) expect(left.edges.length === 1, `${told}: time axes begin at ${left.edges}`);
   }

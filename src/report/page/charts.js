@@ -18,16 +18,16 @@ class Charts {
     const several = chart.kind !== "rows" && chart.panels.length > 1;
     const panels = element("div", { class: `panels ${chart.kind === "rows" ? "rows" : several ? "several" : "alone"} ${equal ? "equal" : ""}` });
     this.holder.append(element("section", { "aria-label": chart.title }, element("h2", {}, chart.title), panels));
-    const clock = chart.time ? this.clock : null;
+    const clock = chart.time || chart.level ? this.clock : null;
     if (chart.kind === "rows") this.made.push(new Rows(chart, panels, clock));
-    else for (const panel of chart.panels) this.made.push(new Panel(panel, panels, clock, chart.title));
+    else for (const panel of chart.panels) this.made.push(new Panel(panel, panels, clock, chart));
   }
 }
 
 /** A chart that is drawn when it comes into sight. */
 class Drawn {
   constructor(holder, clock, label, height) {
-    Object.assign(this, { clock, visible: false });
+    Object.assign(this, { clock, visible: false, level: Boolean(clock?.fractions) });
     this.canvas = element("canvas", { role: "img", "aria-label": label });
     this.cursor = element("div", { class: "cursor" });
     this.plot = element("div", { class: "plot" }, this.canvas, this.cursor);
@@ -38,8 +38,10 @@ class Drawn {
       if (this.visible && !this.chart) this.renew();
       if (this.visible) this.follow();
     }, { rootMargin: "200px" }).observe(this.plot);
+    this.cursor.classList.toggle("level", this.level);
     if (!clock) return;
     clock.listen(() => this.visible && this.follow());
+    if (this.level) return;
     const pick = (event) => {
       if (event.type === "pointermove" && !event.buttons) return;
       clock.play(false);
@@ -59,7 +61,12 @@ class Drawn {
 
   follow() {
     if (!this.clock || !this.chart?.chartArea) return;
-    const { top, bottom } = this.chart.chartArea;
+    const { top, bottom, left, right } = this.chart.chartArea;
+    if (this.level) {
+      const height = this.chart.scales.y.getPixelForValue(this.clock.fraction());
+      Object.assign(this.cursor.style, { display: "block", left: `${left}px`, width: `${right - left}px`, transform: `translateY(${height}px)` });
+      return;
+    }
     const at = this.chart.scales.x.getPixelForValue(this.clock.time);
     Object.assign(this.cursor.style, { display: "block", top: `${top}px`, height: `${bottom - top}px`, transform: `translateX(${at}px)` });
     this.tell?.();
@@ -78,7 +85,7 @@ class Drawn {
     scales.y.ticks.maxTicksLimit = 7;
     if (x.log === false) scales.x.bounds = "data";
     // Curves that end earlier than the clock, beside longer ones, leave room for its cursor.
-    if (this.clock) Object.assign(scales.x, { suggestedMin: this.clock.first, suggestedMax: this.clock.last });
+    if (this.clock && !this.level) Object.assign(scales.x, { suggestedMin: this.clock.first, suggestedMax: this.clock.last });
     return {
       type: "scatter",
       options: {
@@ -93,7 +100,7 @@ class Drawn {
 
 /** Curves over a pair of axes. */
 class Panel extends Drawn {
-  constructor(panel, holder, clock, title) {
+  constructor(panel, holder, clock, { title }) {
     const frame = element("div", { class: "panel" });
     if (panel.title) frame.append(element("h3", {}, panel.title));
     holder.append(frame);

@@ -18,12 +18,16 @@ const POINTS: usize = 2000;
 /// All charts of a run, in the order of the page.
 pub(super) fn charts(run: &Run<'_>, told: &Told) -> Vec<Value> {
     let mut charts = Vec::new();
-    if run.trajectory.times.len() > 1 {
+    if run.trajectory.times.len() > 1 && run.branch.is_none() {
         charts.extend(of_voltages(run));
         charts.extend(paths(run));
         charts.extend(over_time(run));
     }
-    charts.extend(plots(told));
+    charts.extend(plots(told).into_iter().map(|mut chart| {
+        // The path of equilibria has their fraction of the voltages upwards.
+        chart["level"] = run.branch.is_some().into();
+        chart
+    }));
     charts
 }
 

@@ -1,11 +1,24 @@
 // Time: played, paused, moved by hand; everything that moves listens to it.
 
-/** The clock of a motion from `first` to `last` in s. */
+/** The clock of a motion from `first` to `last` in s, or of a path of equilibria by their numbers, which have `fractions` of the voltages. */
 class Clock {
-  constructor(first, last) {
-    Object.assign(this, { first, last, time: first, speed: 1, playing: false, listeners: [] });
-    // A motion is shown in 4 s or more, unless the reader wants it faster.
-    this.rate = Math.min(1, (last - first) / 4) || 1;
+  constructor(first, last, fractions = null) {
+    Object.assign(this, { first, last, fractions, time: first, speed: 1, playing: false, listeners: [] });
+    // A motion is shown in 4 s or more, unless the reader wants it faster; a path in 6 s.
+    this.rate = fractions ? (last - first) / 6 : Math.min(1, (last - first) / 4) || 1;
+  }
+
+  /** Fraction of the voltages at a place of the path. */
+  fraction(time = this.time) {
+    const before = Math.min(Math.max(0, this.fractions.length - 2), Math.floor(time));
+    const [a, b] = [this.fractions[before], this.fractions[Math.min(before + 1, this.fractions.length - 1)]];
+    return a + (time - before) * (b - a);
+  }
+
+  /** The time in words, with so many digits. */
+  told(time, digits) {
+    if (this.fractions) return `${(100 * this.fraction(time)).toFixed(2)} % of the voltages`;
+    return `${time.toFixed(digits)} of ${this.last.toFixed(digits)} s`;
   }
 
   /** Calls `listener(time)` whenever the time changes, and now. */
@@ -43,7 +56,7 @@ function player(clock, bar) {
   const play = element("button", { id: "play", onclick: () => clock.play(!clock.playing) }, "Play");
   clock.changed = () => { play.textContent = clock.playing ? "Pause" : "Play"; };
   const steps = 1000;
-  const slider = element("input", { type: "range", id: "time", min: 0, max: steps, step: 1, "aria-label": "Time" });
+  const slider = element("input", { type: "range", id: "time", min: 0, max: steps, step: 1, "aria-label": clock.fractions ? "Equilibrium" : "Time" });
   slider.addEventListener("input", () => {
     clock.play(false);
     clock.set(clock.first + ((clock.last - clock.first) * slider.value) / steps);
@@ -57,7 +70,7 @@ function player(clock, bar) {
   const digits = Math.max(0, Math.ceil(-Math.log10((clock.last - clock.first) / 500)));
   clock.listen((time) => {
     slider.value = Math.round((steps * (time - clock.first)) / (clock.last - clock.first));
-    slider.setAttribute("aria-valuetext", `${time.toFixed(digits)} s`);
-    told.textContent = `${time.toFixed(digits)} of ${clock.last.toFixed(digits)} s`;
+    told.textContent = clock.told(time, digits);
+    slider.setAttribute("aria-valuetext", told.textContent);
   });
 }

@@ -15,8 +15,9 @@ use crate::report::markup::escape;
 use crate::report::origin::Origin;
 use crate::report::{Run, Told};
 
-/// The page of a run.
+/// The page of a run, or of a path of equilibria.
 pub fn html(run: &Run<'_>, told: &Told) -> String {
+    let run = &run.along_branch();
     let documents = told.documents.iter();
     let documents = documents.map(|(name, text)| json!({ "name": name, "text": text }));
     let data = json!({

@@ -16,6 +16,8 @@ class Scene {
     Object.assign(this, { data, holder, times: numbers(data.times), root: new THREE.Scene() });
     this.canvas = element("canvas", { tabindex: 0, role: "application", "aria-label": "The robot in space. Arrow keys turn it, plus and minus enlarge it, zero shows all of it." });
     holder.append(this.canvas);
+    /** Whether states of rest are shown, which the reference configuration stands beside. */
+    this.rests = this.times.length === 1 || Boolean(data.branch);
     this.parts = data.parts.map((part) => (part.kind === "block" ? new Block(part) : new Solid(part)));
     this.root.add(...this.parts.map((part) => part.object));
     this.markers = data.markers.map((marker) => ({
@@ -46,7 +48,7 @@ class Scene {
   extent() {
     const all = [];
     const push = (values) => { for (const value of values) if (Number.isFinite(value)) all.push(value); };
-    if (this.times.length === 1) for (const part of this.parts) push(part.reference || []);
+    if (this.rests) for (const part of this.parts) push(part.reference || []);
     for (let k = 0; k < this.times.length; k++) for (const part of this.parts) push(part.extent(k));
     for (const marker of this.markers) push(marker.path);
     for (const tie of this.data.ties) push(numbers(tie.places));
@@ -202,7 +204,7 @@ class Scene {
     if (!blocks.length) return null;
     const group = new THREE.Group();
     group.add(...blocks.map((block) => block.outline()));
-    group.visible = this.times.length === 1;
+    group.visible = this.rests;
     return group;
   }
 

@@ -12,9 +12,11 @@ async function start() {
   await unpack("chart");
   Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
   const view = document.getElementById("view");
-  const [first, last] = data.scene?.span || data.span || [0, 0];
+  const branch = data.scene?.branch;
+  const fractions = branch ? numbers(branch.fractions) : null;
+  const [first, last] = branch ? [0, fractions.length - 1] : data.scene?.span || data.span || [0, 0];
   const moves = last > first;
-  const clock = new Clock(first, last);
+  const clock = new Clock(first, last, fractions);
   const page = { clock };
   if (!data.scene) {
     view.remove();
@@ -32,8 +34,8 @@ async function start() {
     page.scene?.picture.theme();
     page.scene?.draw();
   });
-  // The end of the motion is what was asked for.
-  clock.set(clock.last);
+  // The end of the motion is what was asked for, of a path where stability is lost.
+  clock.set(branch ? branch.shown : clock.last);
   window.proboscis = page;
 }
 
