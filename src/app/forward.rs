@@ -21,6 +21,7 @@ use crate::app::solution_file;
 use crate::app::summary::{self, MEASURED, Seconds, Summary};
 use crate::app::unfinished::{self, Unfinished};
 use crate::app::words::counted;
+use crate::control::Solution;
 use crate::control::problem::{Afterwards, Simulation, Voltages};
 use crate::dynamics::{
     DiscreteTrajectory, EnergyExchange, local_error, observations, out_of_domain,
@@ -136,30 +137,34 @@ pub(super) fn simulation(
 
     let kept = solved(&model, &history, None);
     let mut files = FileSet::of(&folder);
-    if kept.intervals() > 0 {
-        solution_file::add(&mut files, &model, &kept)?;
-    }
-    match goes_on && kept.intervals() > 0 {
-        true => {
-            let path = folder.join(continuation::ENDED);
-            let bytes = continuation_file::bytes(&history, &problem);
-            let bytes = bytes.map_err(|cause| WriteError { path, cause })?;
-            files.add(continuation::ENDED, &bytes)?;
-        }
-        false => files.remove(continuation::ENDED),
-    }
+    let origin = request.origin(false);
+    let integrator = task.solving.integrator;
+    // Of many steps both take long, and neither needs the other.
+    let (seen, written) = rayon::join(
+        || {
+            (
+                observations(&model, &history),
+                out_of_domain(&model, &history),
+                local_error(&model, &history, integrator.order()),
+            )
+        },
+        || -> Result<_, WriteError> {
+            write_motion(
+                &mut files,
+                (&model, &history, &kept),
+                goes_on.then_some(&problem),
+            )?;
+            fields::write(&mut files, &model, &history, &origin)
+        },
+    );
+    let ((mut observed, outside, neglected), written) = (seen, written?);
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = failure.as_ref().map(ToString::to_string);
     summary.accuracy = accuracy;
-    let integrator = task.solving.integrator;
-    let neglected = local_error(&model, &history, integrator.order());
     let simulation = summary::Simulation::new(&history, task, neglected);
     summary.simulation = Some(simulation);
     summary.plan = plan;
-    let mut observed = observations(&model, &history);
-    summary.domain = domain::told(&out_of_domain(&model, &history));
-    let origin = request.origin(false);
-    let written = fields::write(&mut files, &model, &history, &origin)?;
+    summary.domain = domain::told(&outside);
     summary.blocks = BlockSizes::of(&model).map(|b| b.after(&model, &observed, written));
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),
@@ -269,6 +274,30 @@ pub(super) fn simulation(
         ),
         notes,
     })
+}
+
+/// Adds the motion to the files of a result, and from what it goes on where it does.
+fn write_motion(
+    files: &mut FileSet,
+    (model, history, kept): (&Model, &DiscreteTrajectory, &Solution),
+    goes_on: Option<&Value>,
+) -> Result<(), WriteError> {
+    let is_motion = kept.intervals() > 0;
+    if is_motion {
+        solution_file::add(files, model, kept)?;
+    }
+    match goes_on.filter(|_| is_motion) {
+        Some(asked) => {
+            let path = files.folder().join(continuation::ENDED);
+            let bytes = continuation_file::bytes(history, asked);
+            let bytes = bytes.map_err(|cause| WriteError { path, cause })?;
+            files.add(continuation::ENDED, &bytes)
+        }
+        None => {
+            files.remove(continuation::ENDED);
+            Ok(())
+        }
+    }
 }
 
 /// Writes the motion so far by itself.

@@ -33,7 +33,7 @@ impl Trajectory {
         };
         for z in &history.z {
             instant.z.copy_from_slice(z);
-            model.action.motion.place(&mut instant);
+            model.action.motion.vectors(&mut instant);
             near = model.joints(&instant, &near);
             let with_coordinate = near
                 .iter()

@@ -91,7 +91,7 @@ impl Skins {
         let mut instant = model.action.motion.instant();
         for &k in &instants {
             instant.z.copy_from_slice(&history.z[k]);
-            model.action.motion.place(&mut instant);
+            model.action.motion.vectors(&mut instant);
             let scalars = history.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
             for (continuum, (skin, nodes)) in model.solids.iter().zip(&mut parts) {
                 let vectors = nodes.iter().map(|&n| instant.x[continuum.vectors[n]]);

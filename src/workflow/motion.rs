@@ -88,7 +88,7 @@ fn marks(model: &Model, z: &[Vec<f64>]) -> Vec<Vec<Vector>> {
     let mut instant = model.action.motion.instant();
     let mut at = |z: &Vec<f64>| {
         instant.z.copy_from_slice(z);
-        model.action.motion.place(&mut instant);
+        model.action.motion.vectors(&mut instant);
         model.markers.iter().map(|&v| instant.x[v]).collect()
     };
     z.iter().map(&mut at).collect()

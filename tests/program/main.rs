@@ -22,6 +22,7 @@ mod refusals;
 mod report;
 mod resume;
 mod runs;
+mod sampled;
 mod shell;
 mod side_by_side;
 mod sought;

@@ -1,7 +1,7 @@
 //! Runs that are stopped and go on from what they have kept.
 
 use crate::commands::summary;
-use crate::runs::{problem, read, run, workshop};
+use crate::runs::{problem, read, run, run_with_input, workshop};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -290,6 +290,33 @@ fn what_nothing_goes_on_from_is_refused_with_one_line() {
         assert_eq!(error.trim_end().lines().count(), 1, "{error}");
     }
     assert!(!folder.join("results").exists());
+    // The problem is the same, a file that it names is not.
+    let voltages =
+        r#"simulate.voltages={"muscle1":{"csv":{"file":"v.csv","time":"time","values":"v"}}}"#;
+    let driven = [
+        "simulate",
+        "-",
+        "--set",
+        voltages,
+        "--set",
+        "simulate.duration=50 ms",
+    ];
+    let scene = problem("scenes/elephant_trunk");
+    let asked =
+        format!("{{\"scene\":{scene:?},\"simulate\":{{\"duration\":1,\"step\":\"5 ms\"}}}}");
+    let csv = folder.join("v.csv");
+    fs::write(&csv, "time [s],v [kV]\n0,1\n1,2\n").unwrap();
+    let (status, _, error) =
+        run_with_input(folder, &[&driven[..], &["-o", "csv"]].concat(), &asked);
+    assert_eq!(status, 0, "{error}");
+    fs::write(&csv, "time [s],v [kV]\n0,1\n1,1.5\n").unwrap();
+    let on = ["-o", "on", "--from", "csv"];
+    let (status, _, error) = run_with_input(folder, &[&driven[..], &on].concat(), &asked);
+    assert_eq!(status, 2, "{error}");
+    assert!(
+        error.contains("a file that it names has changed"),
+        "{error}"
+    );
     let path = folder.join("part/continuation.npz");
     let bytes = fs::read(&path).unwrap();
     for end in [0, 10, bytes.len() / 2, bytes.len() - 1] {
