@@ -110,19 +110,12 @@ pub fn thinned(full: &Trajectory) -> Trajectory {
 fn multiples(times: &[f64], every: f64) -> Vec<usize> {
     let last = times.len() - 1;
     let since = |k: usize| (times[k] - times[0]) / every;
-    let (mut instants, mut k, mut multiple) = (vec![0], 0, 0.0_f64);
-    while k < last {
-        k += 1;
-        multiple = (multiple + 1.0).max((since(k) + 0.5).floor());
-        if multiple > since(last) {
-            break;
-        }
-        while k < last && (since(k + 1) - multiple).abs() <= (since(k) - multiple).abs() {
-            k += 1;
-        }
-        instants.push(k);
-    }
-    instants
+    let middle = |k: usize| 0.5 * (since(k) + since(k + 1));
+    // A multiple between the middles of the intervals around an instant is nearest to it.
+    let is_nearest = |&k: &usize| middle(k - 1).ceil() < middle(k);
+    [0].into_iter()
+        .chain((1..last).filter(is_nearest))
+        .collect()
 }
 
 /// Every so many-th instant, and those between that are needed to see the motion.

@@ -1,10 +1,13 @@
 //! Arrays read back as they were, and what is no such file is refused.
 
 use std::fs;
+use std::io::{Cursor, Write};
 use std::path::PathBuf;
 
 use proboscis::files::npz::{self, NpzError, NpzWriter};
 use tempfile::TempDir;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
 
 /// Rows, a list, an array of three indices, and a text.
 fn example() -> (Vec<u8>, String) {
@@ -98,6 +101,68 @@ fn a_damaged_file_is_refused_and_nothing_panics() {
         }
     }
     assert!(changed < bytes.len() / 2, "{changed} of {}", bytes.len());
+}
+
+/// The bytes of a file with one array `a` of this header and these numbers.
+fn with_header(header: &str, numbers: &[u8]) -> Vec<u8> {
+    let mut member = b"\x93NUMPY\x01\x00".to_vec();
+    member.extend((header.len() as u16).to_le_bytes());
+    member.extend(header.as_bytes());
+    member.extend(numbers);
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+    archive.start_file("a.npy", options).unwrap();
+    archive.write_all(&member).unwrap();
+    archive.finish().unwrap().into_inner()
+}
+
+#[test]
+fn arrays_of_other_numbers_and_shapes_are_refused() {
+    let header = |descr: &str, order: &str, shape: &str| {
+        format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': {shape}, }}\n")
+    };
+    let numbers = [1.0_f64, 2.0].map(f64::to_le_bytes).concat();
+    let read = |header: &str, numbers: &[u8]| {
+        let (_folder, path) = file(&with_header(header, numbers));
+        npz::read(&path, |_| true)
+    };
+    let right = read(&header("<f8", "False", "(2,)"), &numbers).unwrap();
+    assert_eq!(right.arrays["a"].values, [1.0, 2.0]);
+    let none = read(&header("<f8", "False", "(0, 3)"), &[]).unwrap();
+    assert_eq!(none.arrays["a"].shape, [0, 3]);
+    for (descr, order, shape, numbers) in [
+        ("<f4", "False", "(4,)", &numbers[..]),
+        (">f8", "False", "(2,)", &numbers),
+        ("<i8", "False", "(2,)", &numbers),
+        ("<f8", "True", "(1, 2)", &numbers),
+        ("<f8", "False", "(3,)", &numbers),
+        ("<f8", "False", "(1,)", &numbers),
+        ("<f8", "False", "(2,)", &numbers[..15]),
+        ("<f8", "False", "(-2,)", &numbers),
+        ("<f8", "False", "(2", &numbers),
+        ("<f8", "False", "(0, 99999999999999)", &[]),
+        ("<f8", "False", "(4294967296, 4294967296, 4294967296)", &[]),
+    ] {
+        let found = read(&header(descr, order, shape), numbers);
+        assert!(
+            matches!(&found, Err(NpzError::NoNumbers(name)) if name == "a"),
+            "{descr} {order} {shape}: {found:?}"
+        );
+    }
+}
+
+/// Two arrays that change places are other contents.
+#[test]
+fn digits_tell_which_array_is_which() {
+    let of = |a: f64, b: f64| {
+        let mut arrays = NpzWriter::default();
+        arrays.list("a", &[a]);
+        arrays.list("b", &[b]);
+        arrays.finish().unwrap().1
+    };
+    assert_eq!(of(1.0, 2.0), of(1.0, 2.0));
+    assert_ne!(of(1.0, 2.0), of(2.0, 1.0));
+    assert_ne!(of(1.0, 1.0), of(2.0, 2.0));
 }
 
 #[test]
