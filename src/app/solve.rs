@@ -15,7 +15,7 @@ use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::shown::{Motion, Shown};
 use crate::app::solution_file;
-use crate::app::solve_page::{convergence, describe, goal, rows};
+use crate::app::solve_page::{convergence, describe, goal, rows, targets};
 use crate::app::solve_words::{carried, meaning, redundancy, restarted, unresolved};
 use crate::app::summary::{
     Evaluations, LinearSystems, MEASURED, PerInterval, Program, Seconds, SoughtValue, Summary,
@@ -319,6 +319,7 @@ fn write_files(
         figures: request.figures,
         tracked: &shown.tracked(&summary.tracking),
         goal: goal.as_deref(),
+        targets: &targets(control, &motion),
         told: request.page.of(&told),
         ..shown.run(&model.system, &origin)
     };

@@ -4,14 +4,18 @@ use crate::app::exchanged::Exchanged;
 use crate::app::summary::{Program, Summary};
 use crate::app::tracking_words;
 use crate::control::BoundaryConditions;
+use crate::control::problem::{BoundaryState, Control, CostFunction, During, Place};
+use crate::dynamics::trajectory::Trajectory;
 use crate::ipopt::Iteration;
 use crate::kinematics::Pose;
 use crate::math::significant;
-use crate::model::Model;
+use crate::model::{Model, Quantity};
 use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Series};
 use crate::report::style;
 use crate::workflow::violations::Violation;
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
 
 /// Rows of the table of the page.
 pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
@@ -108,6 +112,29 @@ pub(super) fn convergence(iterations: &[Iteration]) -> (String, LinePlot) {
         series,
     );
     ("Convergence".to_owned(), plot)
+}
+
+/// Places in mm where markers were to end, by goal or objective, with their indices; as they ended in directions that are free.
+pub(super) fn targets(control: &Control, motion: &Trajectory) -> Vec<(usize, Vector3<f64>)> {
+    let mut places = match &control.goal {
+        BoundaryState::Markers { places, .. } => places.clone(),
+        _ => BTreeMap::new(),
+    };
+    let last = motion.times.len() - 1;
+    for cost in &control.objective.quantities {
+        let CostFunction::Square { reference } = &cost.function;
+        if let (Quantity::MarkerPlace { marker, axis }, During::End) = (cost.quantity, cost.during)
+        {
+            let place = &mut places.entry(marker).or_default().0[axis];
+            place.get_or_insert_with(|| reference.at(motion.times[last]));
+        }
+    }
+    let whole = |(marker, place): (usize, Place)| {
+        let mut at = motion.marks[last][marker];
+        place.given().for_each(|(axis, value)| at[axis] = value);
+        (marker, at)
+    };
+    places.into_iter().map(whole).collect()
 }
 
 /// Poses of the bodies at the end that is asked for, where it is given as a whole.

@@ -1,5 +1,7 @@
 //! What a report is made of.
 
+use nalgebra::Vector3;
+
 use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::kinematics::Pose;
 use crate::model::system::System;
@@ -52,6 +54,8 @@ pub struct Run<'a> {
     pub origin: &'a Origin,
     /// Poses of the bodies where the motion was to end, where they are known.
     pub goal: Option<&'a [Pose]>,
+    /// Places in mm where markers were to end, with their indices.
+    pub targets: &'a [(usize, Vector3<f64>)],
     /// What the page says of it; none where no page is wanted.
     pub told: Option<&'a Told>,
 }
@@ -124,6 +128,7 @@ impl<'a> Run<'a> {
             tracked: &[],
             origin,
             goal: None,
+            targets: &[],
             told: None,
         }
     }

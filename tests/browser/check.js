@@ -17,6 +17,8 @@ const STUDY = {
   methods: [{ name: "midpoint" }], refine: { name: "step", set: { "simulate.step": ["10 ms", "5 ms", "2.5 ms", "1.25 ms"] } },
 };
 const SWING = { scene: "scene.json", simulate: { duration: "0.2 s", step: "4 ms", voltages: { muscle1: "2 kV", muscle6: "1 kV" } } };
+/** A pair whose marker is to end near a place. */
+const AIM = ["--set", "control.goal=free", "--set", 'control.objective={"effort": 1, "final": [{"marker": {"marker": "tip", "at": ["-12 mm", "60 mm", null]}}]}'];
 /** Variants of a pair of two materials' constants. */
 const SWEEP = {
   title: "Stiffness and permittivity", problem: resolve("problems/pair.json"),
@@ -29,6 +31,7 @@ const RUNS = [
   { name: "bending_actuator", commands: solve("bending_actuator"), moves: false, parts: 1, faces: 916, charts: [], megabytes: 1 },
   { name: "pull_in", commands: solve("pull_in"), moves: true, walks: true, parts: 1, faces: 24, charts: ["Path"], megabytes: 1 },
   { name: "long_trunk", commands: [["new", "trunk", "--segments", "14", "FOLDER/scene"], ["simulate", "FOLDER/scene/swing.json"]], moves: true, parts: 42, charts: ["Voltages"], megabytes: 3 },
+  { name: "aimed", commands: [["solve", "problems/pair.json", ...AIM]], moves: true, parts: 3, charts: ["Voltages"], megabytes: 1, target: [-12, 60, 0] },
   { name: "study", commands: [["study", "FOLDER/study.json"]], charts: [], megabytes: 1 },
   { name: "sweep", commands: [["sweep", "FOLDER/sweep.json"]], variants: 6, charts: [], megabytes: 0.1 },
   { name: "compared", commands: [["report", "FOLDER/elephant_trunk", "FOLDER/long_trunk"]], follows: true, charts: ["Joints", "Energies"], megabytes: 2 },
@@ -195,6 +198,11 @@ async function controls(page, run, told) {
     const later = await page.evaluate(() => window.proboscis.clock.time / window.proboscis.clock.last);
     expect(later > time, `${told}: it does not play`);
     await page.locator("#play").click();
+  }
+  if (run.target) {
+    const arms = await page.evaluate(() => window.proboscis.scene.groups.goal.children.map((one) => one.position.toArray()));
+    const shown = await page.locator("#show-goal").getAttribute("aria-pressed");
+    expect(arms.length === 3 && shown === "true" && arms.every((arm) => arm.every((x, i) => Math.abs(x - run.target[i]) < 1e-4)), `${told}: crosses at ${arms}, shown ${shown}`);
   }
   const painted = () => page.evaluate(() => window.proboscis.scene.parts.map((part) => (part.surface ? part.surface.attributes.color.array.join() : part.material.color.getHexString())).join());
   const quantities = await page.locator("#colour option").evaluateAll((all) => all.map((one) => one.value));

@@ -41,6 +41,7 @@ fn a_page_has_the_motion_and_the_curves_of_its_run() {
     });
     let run = Run {
         goal: Some(&trajectory.poses[20]),
+        targets: &[(0, Vector3::new(1.0, -2.0, 3.5))],
         ..run(&system, &trajectory)
     };
     let data = page_data(&page::html(&run, run.told.unwrap()));
@@ -95,6 +96,7 @@ fn assert_scene(scene: &Value, run: &Run<'_>) {
     assert!(close(quantity("stretch"), length / rest));
     let field = voltage / (muscle.layer_thickness * length / rest);
     assert!(close(quantity("field"), field));
+    assert_eq!(unpacked(&scene["markers"][0]["target"]), [1.0, -2.0, 3.5]);
     let path = unpacked(&scene["markers"][0]["path"]);
     assert!(
         trajectory

@@ -21,7 +21,7 @@ class Scene {
     this.parts = data.parts.map((part) => (part.kind === "block" ? new Block(part) : new Solid(part)));
     this.root.add(...this.parts.map((part) => part.object));
     this.markers = data.markers.map((marker) => ({
-      ...marker, times: numbers(marker.times), path: numbers(marker.path),
+      ...marker, times: numbers(marker.times), path: numbers(marker.path), target: marker.target ? numbers(marker.target) : [],
       compared: marker.compared && numbers(marker.compared), followed: marker.followed && numbers(marker.followed),
     }));
     const points = this.extent();
@@ -32,7 +32,7 @@ class Scene {
     this.groups = { paths: this.paths(), joints: this.joints(), axes: this.jointAxes(), frames: this.frames(), goal: this.goal(), reference: this.reference(), snapshots: new THREE.Group() };
     this.ties();
     for (const group of Object.values(this.groups)) if (group) this.root.add(group);
-    for (const name of ["axes", "frames", "goal", "snapshots"]) if (this.groups[name]) this.groups[name].visible = false;
+    for (const name of ["axes", "frames", "snapshots"]) if (this.groups[name]) this.groups[name].visible = false;
     steer(this.camera, this.canvas);
     new ResizeObserver(() => this.resize()).observe(holder);
     this.resize();
@@ -50,7 +50,7 @@ class Scene {
     const push = (values) => { for (const value of values) if (Number.isFinite(value)) all.push(value); };
     if (this.rests) for (const part of this.parts) push(part.reference || []);
     for (let k = 0; k < this.times.length; k++) for (const part of this.parts) push(part.extent(k));
-    for (const marker of this.markers) push(marker.path);
+    for (const marker of this.markers) push([...marker.path, ...marker.target]);
     for (const tie of this.data.ties) push(numbers(tie.places));
     return new Float32Array(all);
   }
@@ -185,17 +185,29 @@ class Scene {
     return group;
   }
 
+  /** Bodies as ghosts where they were to end, crosses where markers were. */
   goal() {
-    if (!this.data.goal) return null;
-    const all = numbers(this.data.goal);
     const group = new THREE.Group();
-    this.parts.filter((part) => part.part.kind === "body").forEach((body, b) => {
+    const all = this.data.goal ? numbers(this.data.goal) : [];
+    this.parts.filter((part) => all.length && part.part.kind === "body").forEach((body, b) => {
       const ghost = body.copy([0, 0], 0.55);
       body.matrix(all.subarray(12 * b, 12 * b + 12), ghost.matrix);
       ghost.children.forEach((child) => child.material.color.set("#009e73"));
       group.add(ghost);
     });
-    return group;
+    const [long, thin] = [0.05 * this.size, 0.003 * this.size];
+    // Seen through what is before them.
+    const material = new THREE.MeshBasicMaterial({ color: "#009e73", depthTest: false, transparent: true, opacity: 0.85 });
+    for (const { target } of this.markers.filter((marker) => marker.target.length)) {
+      for (let i = 0; i < 3; i++) {
+        const arm = new THREE.Mesh(new THREE.BoxBufferGeometry(...[0, 1, 2].map((j) => (i === j ? long : thin))), material);
+        arm.position.fromArray(target);
+        arm.renderOrder = 1;
+        group.add(arm);
+      }
+    }
+    group.visible = !this.data.goal;
+    return group.children.length ? group : null;
   }
 
   /** Edges of elastic blocks where nothing deforms them; shown from the beginning beside a state of rest. */

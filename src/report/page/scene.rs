@@ -231,8 +231,10 @@ impl Stage<'_> {
                 };
                 places(&kept.clone().map(place).collect::<Vec<_>>())
             });
+            let target = self.run.targets.iter().find(|(index, _)| *index == m);
             json!({
                 "name": marker.name,
+                "target": target.map(|(_, place)| places([place])),
                 "colour": style::hue(m).hex(),
                 "times": numbers(kept.clone().map(|k| motion.times[k] / 1e3)),
                 "path": places(kept.clone().map(|k| &path[k])),
