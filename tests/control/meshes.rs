@@ -48,12 +48,14 @@ fn a_solution_on_another_mesh_lends_its_voltages() {
     let (same, _) = start(&system, &problem, &before);
     assert!(!same.carried.simulated);
     assert_eq!(same.history.z, before.z);
-    // As many coordinates, other nodes; then more coordinates.
-    for elements in [[3, 1, 4], [7, 1, 2]] {
-        let (system, problem) = control("fe_bending_control", &changes(elements));
+    // As many coordinates, other nodes; then more coordinates, and as many nodes at other places.
+    for (elements, width) in [([3, 1, 4], 0), ([7, 1, 2], 0), ([5, 1, 2], 1)] {
+        let size = format!("scene.solids[0].box.size[1]=\"{} mm\"", 4 + width);
+        let set = [&changes(elements)[..], &[size]].concat();
+        let (system, problem) = control("fe_bending_control", &set);
         let (initial, _) = start(&system, &problem, &before);
         let count = initial.history.z[0].len();
-        assert_eq!(count == before.z[0].len(), elements == [3, 1, 4]);
+        assert_eq!(count == before.z[0].len(), elements != [7, 1, 2]);
         assert!(initial.carried.simulated && initial.costates.is_none());
         let expected = under(&system, &problem, &before.times[1..], &before.voltages);
         let way = (0..count).map(|i| (expected[0][i] - expected[8][i]).abs());

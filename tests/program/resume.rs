@@ -201,6 +201,14 @@ fn a_stopped_solve_goes_on_from_its_point_multipliers_and_barrier() {
     let on = summary(folder, "on");
     let left = iterations(&whole) - half;
     assert!(iterations(&on) <= left + 3, "{left}: {}", on["iterations"]);
+    // What a run that was killed has kept is newer than the solution of the run before it.
+    let at = |name: &str| folder.join("part").join(name);
+    fs::rename(at("solution.json"), at("unfinished.json")).unwrap();
+    fs::copy(folder.join("whole/solution.json"), at("solution.json")).unwrap();
+    let again = [&solve[..], &["-o", "again", "--from", "part"]].concat();
+    assert_eq!(go(folder, &again).0, 0);
+    let begun = [&on, &summary(folder, "again")].map(iterations);
+    assert!(begun[0] > 2 && begun[0] == begun[1], "{begun:?}");
     let [a, b] = [&whole, &on].map(|s| s["objective"].as_f64().unwrap());
     assert!((a - b).abs() < 1e-7 * a.abs(), "{a} against {b}");
     assert!(
