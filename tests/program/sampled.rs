@@ -61,10 +61,9 @@ proptest! {
         let shown = Sampled { instants: instants.clone() }.trajectory(&full);
         for (ends, row) in instants.windows(2).zip(&shown.voltages) {
             // The integral by steps, over the length.
-            let mut integral = 0.0;
-            for k in ends[0]..ends[1] {
-                integral += full.voltages[k][0] * steps[k];
-            }
+            let within = ends[0]..ends[1];
+            let areas = within.map(|k| full.voltages[k][0] * steps[k]);
+            let integral: f64 = areas.sum();
             let mean = integral / (times[ends[1]] - times[ends[0]]);
             prop_assert!((row[0] - mean).abs() < 1e-9 * mean);
         }
