@@ -79,6 +79,7 @@ pub(super) fn follow(
     let motion = Trajectory::from_history(&model, &shown_state);
     let way = Trajectory::from_history(&model, &up_to(&history, shown + 1));
     let rows = path.rows(stops[shown].fraction);
+    let writing = Instant::now();
     let mut files = FileSet::of(&folder);
     let plot = figure(&model, &stops, &history);
     files.add("path.svg", plot.svg(&origin).as_bytes())?;
@@ -143,6 +144,7 @@ pub(super) fn follow(
         ..Run::of(&model.system, &motion, &skins, &observed, &origin)
     };
     write_still(&mut files, "path.csv", &run)?;
+    summary.seconds.wrote(began, writing);
     summary.write(files)?;
     Ok(told)
 }

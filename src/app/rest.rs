@@ -126,6 +126,7 @@ pub(super) fn at(
     let folder = request.folder();
     make_folder(&folder)?;
     let origin = request.origin(false);
+    let writing = Instant::now();
     let mut files = FileSet::of(&folder);
     let written = fields::write(&mut files, &model, &state, &origin)?;
     let status = failure.map_or("at_rest", status);
@@ -171,6 +172,7 @@ pub(super) fn at(
         ..Run::of(&model.system, &motion, &skins, &observed, &origin)
     };
     write_still(&mut files, "equilibrium.csv", &run)?;
+    summary.seconds.wrote(began, writing);
     summary.write(files)?;
     Ok(told)
 }

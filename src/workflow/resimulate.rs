@@ -218,7 +218,7 @@ impl Resimulation {
         let error = self.error.filter(|&e| e > COARSE && self.cause.is_none())?;
         let Finer { deviation, .. } = self.finer.last()?;
         Some(format!(
-            "the intervals are long for this motion: with finer steps under the same voltages the motion with finer steps deviates from it by up to \
+            "the intervals are long for this motion: under the same voltages the motion with finer steps deviates from it by up to \
              {:.0} % of the path length ({deviation}); use more intervals, or --accuracy",
             100.0 * error
         ))

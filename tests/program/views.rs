@@ -81,9 +81,12 @@ fn bending(lean: impl Fn(f64) -> [f64; 2]) -> (System, Trajectory) {
     (system, trajectory)
 }
 
+/// How far a trunk leans in mm at a part of the motion.
+type Lean<'a> = &'a dyn Fn(f64) -> [f64; 2];
+
 #[test]
 fn auto_sees_a_trunk_from_its_side_whichever_way_it_bends() {
-    let ways: [(&str, &dyn Fn(f64) -> [f64; 2]); 4] = [
+    let ways: [(&str, Lean<'_>); 4] = [
         ("to one side", &|t| [90.0 * t, 0.0]),
         ("to both, more to x", &|t| {
             [90.0 * (7.0 * t).sin(), 40.0 * (5.0 * t).sin()]
