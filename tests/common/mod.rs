@@ -13,6 +13,7 @@ pub mod sought;
 pub mod systems;
 pub mod tracked;
 pub mod trunk;
+pub mod vtk_arrays;
 
 use nalgebra::{Matrix3, SVector, Vector3};
 use proboscis::coordinates::Configuration;

@@ -1,7 +1,7 @@
 //! Fields of elastic blocks as ParaView reads them, against the state, the electrodes and homogeneous solutions.
 
+use crate::common::vtk_arrays::unpacked;
 use crate::runs::read;
-use crate::vtk_arrays::unpacked;
 use nalgebra::Vector3;
 use proboscis::app::{CommandInput, CommandOutput, PageWanted, ProgressDisplay, run};
 use proboscis::model::VACUUM_PERMITTIVITY;

@@ -35,7 +35,6 @@ mod study_refused;
 mod sweep;
 mod told;
 mod views;
-mod vtk_arrays;
 mod warm_starts;
 mod whole_files;
 mod written_files;

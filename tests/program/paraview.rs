@@ -1,6 +1,6 @@
 //! What ParaView is given reads back as it was: checked with a naive reader of XML, base64 and zlib and zlib.
 
-use crate::vtk_arrays::unpacked;
+use crate::common::vtk_arrays::unpacked;
 use nalgebra::Vector3;
 use proboscis::mesh::grid::Grid as Planes;
 use proboscis::report::file_set::FileSet;

@@ -1,7 +1,7 @@
 //! Bodies, muscles and markers as ParaView reads them.
 
+use crate::common::vtk_arrays::unpacked;
 use crate::runs::write_motion;
-use crate::vtk_arrays::unpacked;
 use nalgebra::Vector3;
 use proboscis::model::system::Shape;
 use proboscis::report::Figures;
