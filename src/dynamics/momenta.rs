@@ -74,7 +74,7 @@ fn iterated(model: &Model, instant: &mut Configuration, momentum: &[f64]) -> Vec
 }
 
 /// Momentum `P_Nᵀ (D₂L_d + f⁺)` of each coordinate at the end of the last interval of a motion by the midpoint rule; none of a motion without an
-/// interval.
+/// interval, or where it is not finite.
 pub fn last_momentum(model: &Model, history: &DiscreteTrajectory) -> Option<Vec<f64>> {
     let (scalars, k) = (history.scalars.last()?, history.intervals() - 1);
     let action = &model.action;
@@ -91,7 +91,7 @@ pub fn last_momentum(model: &Model, history: &DiscreteTrajectory) -> Option<Vec<
     action
         .motion
         .pull_back(&next.columns, forces, &mut momentum);
-    Some(momentum)
+    momentum.iter().all(|p| p.is_finite()).then_some(momentum)
 }
 
 /// Momenta ∂T/∂ẋ of all vectors at a placed instant with these rates of the coordinates.

@@ -132,7 +132,7 @@ fn a_motion_that_nothing_drives_any_more_moves_on() {
         let [[whole, _], [on, _]] = ["whole", "on"].map(|name| motion(&folder.join(name)));
         let [worst, size] = apart(&whole[steps..], &on);
         let [moved, _] = apart(&whole[steps..=steps], &whole[2 * steps..]);
-        assert!(moved > 1e-2 * size, "{moved:e} of {size:e}");
+        assert!(moved > 1e-3 * size, "{name}: {moved:e} of {size:e}");
         // Each step is solved to round-off.
         assert!(worst < 1e-9 * size, "{name}: {worst:e} of {size:e}");
         // Steps of no given length have to know how fast it starts.
