@@ -90,9 +90,10 @@ fn a_stopped_simulation_says_how_it_goes_on() {
     );
     // The shell takes it as it stands; a shorter motion is enough here.
     let reached = before["duration"].as_f64().unwrap();
+    // A whole number of ms, so that both motions have the same step to the last bit.
     let until = format!(
-        "simulate.duration={} s",
-        ((reached / 0.005).round() + 20.0) * 0.005
+        "simulate.duration={} ms",
+        5.0 * ((reached / 0.005).round() + 20.0)
     );
     let line = format!(
         "'{}' {command} --set '{until}'",
