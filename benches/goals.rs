@@ -101,7 +101,10 @@ fn main() {
     let both = in_parallel(&plan, |(group, goal, it)| {
         SOLVERS.map(|name| solve(group, *goal, it, &Way { name, starts: 1 }))
     });
-    let [once, by_mumps] = [0, 1].map(|i| both.iter().map(|of| of[i].clone()).collect::<Vec<_>>());
+    let (once, by_mumps): (Vec<_>, Vec<_>) = both
+        .into_iter()
+        .map(|[ours, theirs]| (ours, theirs))
+        .unzip();
     let mut chosen = Vec::new();
     for group in &GROUPS {
         let of_group = |solved: bool| {

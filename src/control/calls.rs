@@ -65,11 +65,8 @@ fn zero_voltage<const N: usize>(
 ) -> BTreeSet<usize> {
     let is_held = |s: usize| {
         ends.iter().any(|state| match state {
-            BoundaryState::RestAtVoltages(voltages, _) => voltages[s] != 0.0,
-            BoundaryState::Markers { hold, .. } => hold.as_ref().is_some_and(|v| v[s] != 0.0),
-            BoundaryState::JointAngles { .. } | BoundaryState::EndOf(_) | BoundaryState::Free => {
-                false
-            }
+            BoundaryState::EndOf(_) => false,
+            held => held.voltages().is_some_and(|v| v[s] != 0.0),
         })
     };
     let sources = system.sources();
@@ -91,8 +88,8 @@ impl<'a> Named<'a> {
         }
     }
 
-    /// A start away from the reference configuration, or in motion; where another motion ended anything may be. Sources that hold a state of rest are not at zero voltage, and
-    /// move what they move.
+    /// A start away from the reference configuration, or in motion; where another motion ended anything may be. Sources that hold a
+    /// state of rest are not at zero voltage, and move what they move.
     fn of_start(&mut self, state: &BoundaryState) {
         match state {
             BoundaryState::JointAngles {

@@ -21,6 +21,13 @@ impl Coordinates {
             Self::Redundant => "redundant",
         }
     }
+
+    /// What a word in files names.
+    pub fn named(word: &str) -> Option<Self> {
+        [Self::Reduced, Self::Redundant]
+            .into_iter()
+            .find(|coordinates| coordinates.name() == word)
+    }
 }
 
 /// A question to a system.

@@ -96,7 +96,7 @@ fn what_cannot_be_followed_is_refused() {
         ("\"marker\": { \"marker\": \"tip\", \"along\": { \"x\": 0 } }", "", "control.objective.track[0]", "none of them", "exactly one of \"marker\", \"joint\", \"joints\"", "{  }"),
         ("\"marker\": { \"marker\": \"tip\", \"along\": { \"x\": 0 } }", "\"joint\": { \"joint\": \"joint2\", \"along\": \"3 deg\" }", "control.objective.track[0].joint.along", "which is an angle", "a length", "3 deg"),
         ("\"marker\": { \"marker\": \"tip\", \"along\": { \"x\": 0 } }", "\"joint\": { \"joint\": \"joint1\", \"along\": { \"sine\": { \"amplitude\": \"3 mm\", \"period\": 1 } } }", "control.objective.track[0].joint.along.sine.amplitude", "which is a length", "an angle", "3 mm"),
-        ("\"marker\": { \"marker\": \"tip\", \"along\": { \"x\": 0 } }", "\"joints\": { \"solution\": \"none.json\" }", "control.objective.track[0].joints.solution", "\"none.json\", where there is no file", "the path of a solution.json", "none.json"),
+        ("\"marker\": { \"marker\": \"tip\", \"along\": { \"x\": 0 } }", "\"joints\": { \"solution\": \"none.json\" }", "control.objective.track[0].joints.solution", "\"none.json\", where there is no solution.json", "the path of a solution.json, or of the folder that holds it", "none.json"),
         ("\"track\": [ {", "\"effort\": 1, \"track\": [ 3, {", "control.objective.track[0]", "3", "", "3"),
     ];
     check(cases, &problem, |problem| mistake(SCENE, problem, &[]));

@@ -61,23 +61,36 @@ impl<'a> Scope<'a> {
 
     /// The file that a path written here names: beside the document.
     pub(crate) fn file(&self, path: &str, expected: &str) -> Result<PathBuf, SceneError> {
-        self.first_file(path, [self.document.beside(path)], expected)
+        let file = Some(self.document.beside(path)).filter(|file| file.is_file());
+        file.ok_or_else(|| self.missing(path, "file", expected))
     }
 
     /// The same, or else in the current folder: results of earlier runs.
     pub(crate) fn file_or_result(&self, path: &str, expected: &str) -> Result<PathBuf, SceneError> {
-        let places = [self.document.beside(path), PathBuf::from(path)];
-        self.first_file(path, places, expected)
+        let file = self.near(path).into_iter().find(|file| file.is_file());
+        file.ok_or_else(|| self.missing(path, "file", expected))
     }
 
-    fn first_file<const N: usize>(
-        &self,
-        path: &str,
-        places: [PathBuf; N],
-        expected: &str,
-    ) -> Result<PathBuf, SceneError> {
-        let file = places.into_iter().find(|file| file.is_file());
-        file.ok_or_else(|| self.wrong(format!("{path:?}, where there is no file"), expected))
+    /// The `solution.json` that a path names, or that is in the folder that it names; in the same places.
+    pub(crate) fn solution_file(&self, path: &str, expected: &str) -> Result<PathBuf, SceneError> {
+        let mut files = self
+            .near(path)
+            .into_iter()
+            .map(|place| match place.is_dir() {
+                true => place.join("solution.json"),
+                false => place,
+            });
+        let file = files.find(|file| file.is_file());
+        file.ok_or_else(|| self.missing(path, "solution.json", expected))
+    }
+
+    /// Beside the document, and in the current folder.
+    fn near(&self, path: &str) -> [PathBuf; 2] {
+        [self.document.beside(path), PathBuf::from(path)]
+    }
+
+    fn missing(&self, path: &str, kind: &str, expected: &str) -> SceneError {
+        self.wrong(format!("{path:?}, where there is no {kind}"), expected)
     }
 
     /// That times in ms increase, at the first that does not.

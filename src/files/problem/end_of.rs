@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::control::EndState;
 use crate::dynamics::StepState;
@@ -79,14 +79,7 @@ pub(crate) fn end_of(
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<EndState, SceneError> {
-    let places = [scope.document.beside(path), PathBuf::from(path)];
-    let mut files = places.into_iter().map(|place| match place.is_dir() {
-        true => place.join("solution.json"),
-        false => place,
-    });
-    let file = files.find(|file| file.is_file());
-    let file = file
-        .ok_or_else(|| scope.wrong(format!("{path:?}, where there is no solution.json"), FOLDER))?;
+    let file = scope.solution_file(path, FOLDER)?;
     let notes = status(&file, scope)?;
     let document = solution_document(&file, |name| {
         ["state/", "voltages/", "configuration/"]
@@ -96,11 +89,8 @@ pub(crate) fn end_of(
     let ended: Ended = document.parse()?;
     check_names(&ended, path, system, scope)?;
     let untold = |what: &str| scope.wrong(format!("{path:?}, which does not tell {what}"), WRITTEN);
-    let coordinates = match ended.coordinates.as_deref() {
-        Some("reduced") => Coordinates::Reduced,
-        Some("redundant") => Coordinates::Redundant,
-        _ => return Err(untold("in which \"coordinates\" it is")),
-    };
+    let coordinates = ended.coordinates.as_deref().and_then(Coordinates::named);
+    let coordinates = coordinates.ok_or_else(|| untold("in which \"coordinates\" it is"))?;
     let mut state = ended
         .state
         .ok_or_else(|| untold("the \"state\" of its motion"))?;

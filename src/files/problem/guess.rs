@@ -27,7 +27,7 @@ pub(crate) fn guess(
     let solution = spec.solution.as_ref().map(|solution| -> Build<'_> {
         let scope = scope.key("solution");
         Box::new(move || {
-            let path = scope.file_or_result(solution, SOLUTION_PATH)?;
+            let path = scope.solution_file(solution, SOLUTION_PATH)?;
             Ok(Guess::Solution(Earlier::new(SolutionFile(path))))
         })
     });

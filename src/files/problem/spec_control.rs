@@ -165,7 +165,7 @@ pub struct GuessObjectSpec {
     /// A simulation under given voltages.
     #[serde(default)]
     pub simulate: Option<GuessSimulationSpec>,
-    /// Path of a `solution.json`, relative to this file or to the current folder.
+    /// Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder.
     #[serde(default)]
     pub solution: Option<String>,
     /// A simulation under constant voltages drawn at random within the bounds.

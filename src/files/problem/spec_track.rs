@@ -67,7 +67,7 @@ pub struct TrackJointSpec {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrackJointsSpec {
-    /// Path of a `solution.json`, relative to this file or to the current folder; linear between its instants, constant after
+    /// Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder; linear between its instants, constant after
     /// the last.
     pub solution: String,
     /// Weight of the sum over all joints of ∫ (θ − r)² dt in rad² s, or mm² s of prismatic joints; 1 where not written.

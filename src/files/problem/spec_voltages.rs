@@ -27,7 +27,7 @@ pub enum VoltagesSpec {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolutionSpec {
-    /// Path of a `solution.json`, relative to this file or to the current folder.
+    /// Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder.
     pub solution: String,
 }
 

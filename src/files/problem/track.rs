@@ -89,7 +89,7 @@ fn of_joints(
 ) -> Result<Vec<QuantityCost>, SceneError> {
     let place = scope.key("solution");
     let weight = weight(spec.weight, scope)?;
-    let path = place.file_or_result(&spec.solution, SOLUTION_PATH)?;
+    let path = place.solution_file(&spec.solution, SOLUTION_PATH)?;
     let joints = solution_joints::read(&path, system)?;
     if joints.is_empty() {
         let found = "a scene without a revolute or prismatic joint";

@@ -9,7 +9,8 @@ use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::model::system::System;
 
 /// What a path to an earlier result should be.
-pub(crate) const SOLUTION_PATH: &str = "the path of a solution.json";
+pub(crate) const SOLUTION_PATH: &str =
+    "the path of a solution.json, or of the folder that holds it";
 
 /// Voltages of a simulation.
 pub(crate) fn over_time(
@@ -22,7 +23,7 @@ pub(crate) fn over_time(
         VoltagesSpec::Solution(solution) => {
             let path = scope
                 .key("solution")
-                .file_or_result(&solution.solution, SOLUTION_PATH)?;
+                .solution_file(&solution.solution, SOLUTION_PATH)?;
             of_solution(&path, system)
         }
         VoltagesSpec::Table(table) => of_table(table, system, scope),

@@ -104,15 +104,11 @@ fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
     };
     let poses = poses(file.configuration.as_ref(), system, instants)?;
     let coordinates = match file.coordinates.as_deref() {
-        Some("reduced") => Coordinates::Reduced,
-        Some("redundant") => Coordinates::Redundant,
         None => model.coordinates,
-        Some(other) => {
-            return Err(Reason::NoSolution {
-                place: "coordinates".to_owned(),
-                found: format!("{other:?}, expected \"reduced\" or \"redundant\""),
-            });
-        }
+        Some(word) => Coordinates::named(word).ok_or_else(|| Reason::NoSolution {
+            place: "coordinates".to_owned(),
+            found: format!("{word:?}, expected \"reduced\" or \"redundant\""),
+        })?,
     };
     let meshes = file.state.as_ref().map(|state| state.meshes_mm.clone());
     let (times, multiplier_time, z, momentum) = match file.state {
