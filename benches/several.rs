@@ -206,7 +206,7 @@ fn follow(intervals: usize, step: f64, start: Start) -> [f64; 5] {
     let initial = guess(&model, &here, &control, h, None);
     let program = Transcription::new(&model, &here, &control, &initial).expect("a program");
     let point = program.start(&initial);
-    let mut go_on = |_: &_, _: &[f64]| ControlFlow::Continue(());
+    let mut go_on = |_: &_, _: &proboscis::ipopt::Reached<'_>| ControlFlow::Continue(());
     let options = Options {
         tolerance: control.solver.tolerance,
         ..Options::default()

@@ -209,7 +209,7 @@ fn allocations_of_solves() -> usize {
     let initial = guess(&model, &here, &control(1.0), h, None);
     let program = Transcription::new(&model, &here, &control(1.0), &initial).unwrap();
     let point = program.start(&initial);
-    let mut go_on = |_: &_, _: &[f64]| ControlFlow::Continue(());
+    let mut go_on = |_: &_, _: &ipopt::Reached<'_>| ControlFlow::Continue(());
     let mut solver = ipopt::Solver::new(program, Options::default());
     let found = solver.solve(&point, &mut go_on).unwrap();
     assert!(found.status.is_solved());

@@ -25,7 +25,7 @@ fn solves_until_interrupted() {
         x: HS071_START.to_vec(),
         costates: None,
     };
-    let mut wait = |_: &_, _: &[f64]| {
+    let mut wait = |_: &_, _: &proboscis::ipopt::Reached<'_>| {
         thread::sleep(Duration::from_millis(20));
         ControlFlow::Continue(())
     };

@@ -24,9 +24,9 @@ use std::path::PathBuf;
 use std::sync::Barrier;
 use std::thread;
 
-/// Rows, Jacobian and Hessian of the trunk at a point between guess and noise.
+/// Rows, Jacobian and Hessian of the trunk at a point between guess and noise: of so many intervals that both halves are evaluated at once.
 fn values() -> [Vec<f64>; 3] {
-    let (intervals, duration) = (64, 600.0);
+    let (intervals, duration) = (800, 7500.0);
     let control = rest_to_rest(3, intervals, duration);
     of_program(&trunk(3), &control, duration / intervals as f64)
 }
@@ -34,6 +34,7 @@ fn values() -> [Vec<f64>; 3] {
 fn of_program(system: &System, control: &Control, h: f64) -> [Vec<f64>; 3] {
     let (model, boundary) = BoundaryConditions::resolve(system, control, h).unwrap();
     let initial = guess(&model, &boundary, control, h, None);
+    assert!(model.action.layout().values(control.intervals) > 50_000);
     let mut program = Transcription::new(&model, &boundary, control, &initial).unwrap();
     let mut x = program.start(&initial).x;
     for (i, value) in x.iter_mut().enumerate() {
@@ -151,9 +152,14 @@ fn goals() -> Vec<(PathBuf, Vec<String>)> {
             all.push((kept(name).into(), changes));
         }
     }
-    // From 32 intervals on a thread that is alone evaluates both halves at once.
+    // Long enough that a thread that is alone evaluates both halves at once.
     let goal = goals.draw(Kind::Rest).json;
-    all.push((random_goals::trunk(), vec![format!("control.goal={goal}")]));
+    let changes = ["control.intervals=400", "control.solver.max_iterations=4"].map(str::to_owned);
+    let goal = format!("control.goal={goal}");
+    all.push((
+        random_goals::trunk(),
+        changes.into_iter().chain([goal]).collect(),
+    ));
     all
 }
 

@@ -32,6 +32,7 @@ use crate::model::System;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::report::{Run, write_run};
+use crate::workflow::Iterate;
 use crate::workflow::accuracy::{Accuracy, Refined};
 use crate::workflow::cure::{Cured, reproduced};
 use crate::workflow::domain;
@@ -40,7 +41,7 @@ use crate::workflow::grids::optimise_to;
 use crate::workflow::holding;
 use crate::workflow::infeasible::explain;
 use crate::workflow::motion::{history, solved, trajectory};
-use crate::workflow::optimise::{Iterate, Optimum, SolveLimits};
+use crate::workflow::optimise::{Optimum, SolveLimits};
 use crate::workflow::resimulate::{Cause, Resimulation, under_constant_voltages};
 use crate::workflow::second_start::is_infeasible;
 use crate::workflow::tracking::followed;
@@ -87,8 +88,9 @@ pub(super) fn control(
                 if report.iteration == 0 && unwritable.is_none() {
                     unwritable = make_folder(&folder).err();
                 }
-                unfinished.consider(report.primal_infeasibility, |path| {
-                    solution_file::write(path, model, &(iterate.motion)())
+                let (kept, motion) = iterate.before.unwrap_or((report, iterate.motion));
+                unfinished.consider(kept.primal_infeasibility, |path| {
+                    solution_file::write(path, model, &motion())
                 });
                 match unwritable {
                     Some(_) => ControlFlow::Break(()),

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::ipopt::interrupt::{self, Watch};
+use crate::ipopt::reached::{Before, Reached};
 use crate::ipopt::session;
 use crate::ipopt::solution::{Evaluations, Iteration, Multipliers, Seconds};
 use crate::ipopt::status::Status;
@@ -35,7 +36,7 @@ pub(super) struct Evaluator<'a> {
 /// What Ipopt asks about, and who hears of it.
 pub(super) struct Asked<'a> {
     pub(super) nlp: &'a mut dyn Nlp,
-    pub(super) observer: &'a mut dyn FnMut(&Iteration, &[f64]) -> ControlFlow<()>,
+    pub(super) observer: &'a mut dyn FnMut(&Iteration, &Reached<'_>) -> ControlFlow<()>,
     pub(super) structures: &'a Structures,
     /// What is subtracted from g.
     pub(super) right: &'a [f64],
@@ -83,6 +84,16 @@ impl Record {
         self.seconds = Seconds::default();
         self.evaluations = Evaluations::default();
         self.failed = 0;
+    }
+
+    /// Whether multipliers of the latest iterate are known.
+    pub(super) fn knows_multipliers(&self) -> bool {
+        !self.costates.is_empty()
+    }
+
+    /// How many constraints there are, where multipliers are known.
+    pub(super) fn constraints(&self) -> usize {
+        self.costates.len()
     }
 
     /// Multipliers of the latest iterate, where they are known: Ipopt has lost them where it was stopped on the way to the next one. Those of
@@ -221,14 +232,17 @@ impl<'a> Evaluator<'a> {
             objective,
             ..*iteration
         };
-        self.record.iterations.push(*iteration);
-        self.record
-            .latest
-            .copy_from_slice(&self.record.derivatives_at);
-        self.record.costates.clear();
-        let verdict = timed(&mut self.record.seconds.observer, || {
-            (self.asked.observer)(iteration, &self.record.derivatives_at)
-        });
+        let (bounds, mut seconds) = (self.asked.nlp.variables(), 0.0);
+        let reached = Reached {
+            x: &self.record.derivatives_at,
+            before: Before::of(self.record, bounds, self.scale),
+        };
+        let verdict = timed(&mut seconds, || (self.asked.observer)(iteration, &reached));
+        let record = &mut *self.record;
+        record.seconds.observer += seconds;
+        record.iterations.push(*iteration);
+        record.latest.copy_from_slice(&record.derivatives_at);
+        record.costates.clear();
         if verdict.is_break() {
             self.record.stopped = Some(Status::Interrupted);
         }

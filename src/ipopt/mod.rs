@@ -13,6 +13,7 @@ mod known_bounds;
 mod linear_report;
 mod linear_solver;
 mod options;
+mod reached;
 mod session;
 mod solution;
 mod solver;
@@ -26,6 +27,7 @@ pub use error::{IpoptError, VERSION};
 pub use linear_report::{LinearReport, StagesReport};
 pub use linear_solver::LinearSolver;
 pub use options::{MUMPS_ORDERING, OptionValue, Options, Start};
+pub use reached::{Before, Reached};
 pub use solution::{Evaluations, Iteration, Multipliers, Seconds, SolverResult, StartingPoint};
 pub use solver::Solver;
 pub use status::Status;
@@ -43,7 +45,7 @@ pub fn solve(
     nlp: &mut dyn Nlp,
     start: &StartingPoint,
     options: &Options,
-    observer: &mut dyn FnMut(&Iteration, &[f64]) -> ControlFlow<()>,
+    observer: &mut dyn FnMut(&Iteration, &Reached<'_>) -> ControlFlow<()>,
 ) -> Result<SolverResult, IpoptError> {
     let mut solver = Solver::new(nlp, options.clone());
     solver.solve(start, observer)?;

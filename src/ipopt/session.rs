@@ -9,7 +9,7 @@ use std::ffi::c_int;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
-use crate::ipopt::interrupt;
+use crate::ipopt::interrupt::{self, TimeLimit};
 use crate::ipopt::linear_report::StagesReport;
 use crate::ipopt::status::Status;
 use crate::kkt::{Inertia, Plan, Solver, Stopped, Unknown};
@@ -119,7 +119,9 @@ impl Session {
             solver.improve();
         }
         self.tolerance = tolerance;
-        let factored = solver.factor_unless(entries, &|| interrupt::stop().is_some());
+        let limit = interrupt::limit();
+        let is_over = || limit.as_ref().and_then(TimeLimit::reached).is_some();
+        let factored = solver.factor_unless(entries, &is_over);
         if factored.is_err() {
             self.report.stopped = interrupt::stop();
         }

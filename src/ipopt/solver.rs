@@ -11,6 +11,7 @@ use crate::ipopt::ffi::Problem;
 use crate::ipopt::interrupt;
 use crate::ipopt::known_bounds::KnownBounds;
 use crate::ipopt::options::{self, Options, Start};
+use crate::ipopt::reached::Reached;
 use crate::ipopt::session::Session;
 use crate::ipopt::solution::{Iteration, SolverResult, StartingPoint};
 use crate::ipopt::status::Status;
@@ -105,7 +106,7 @@ impl<N: Nlp> Solver<N> {
 
     /// Solves the program from `start`.
     ///
-    /// `observer` hears of every iterate and its x, and may ask to stop; so may Ctrl-C, see [`interrupt`]. A panic of program or observer
+    /// `observer` hears of every iterate, and may ask to stop; so may Ctrl-C, see [`interrupt`]. A panic of program or observer
     /// goes on when Ipopt has returned.
     ///
     /// # Errors
@@ -118,7 +119,7 @@ impl<N: Nlp> Solver<N> {
     pub fn solve(
         &mut self,
         start: &StartingPoint,
-        observer: &mut dyn FnMut(&Iteration, &[f64]) -> ControlFlow<()>,
+        observer: &mut dyn FnMut(&Iteration, &Reached<'_>) -> ControlFlow<()>,
     ) -> Result<&SolverResult, IpoptError> {
         let n = self.program.variables().lower.len();
         assert_eq!(
@@ -145,7 +146,7 @@ impl<N: Nlp> Solver<N> {
     /// As of [`solve`](Self::solve).
     pub fn solve_again(
         &mut self,
-        observer: &mut dyn FnMut(&Iteration, &[f64]) -> ControlFlow<()>,
+        observer: &mut dyn FnMut(&Iteration, &Reached<'_>) -> ControlFlow<()>,
     ) -> Result<&SolverResult, IpoptError> {
         let mut problem = self.known_problem()?;
         let scale = self.program.objective_scale();

@@ -11,17 +11,19 @@
 //! diagonal E and states no curvature of their own, `s = s₀ + S w − A_D⁻¹ E y` and `y = A_D⁻ᵀ (r_s − W w)`: R has `Wᵀ A_D⁻¹ E A_D⁻ᵀ W` in addition, with W
 //! the rows of `H S + Kᵀ` of the states determined.
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
+use std::ops::Range;
+
 use pulp::Arch;
 
-use super::block_lu::BlockLu;
-use super::condense::{Block, Condensation};
+use super::block_lu::{BlockLu, Room};
+use super::condense::{Block, Condensation, Item};
+use super::halves::{halves, middle};
 use super::inertia::Inertia;
 use super::numeric::{Factors, Outcome};
 use super::pivot::Rules;
-use super::products::{Curvature, Product};
+use super::products::Product;
 use super::progress::{Progress, Stopped};
+use super::reduce::{Reduce, Weights};
 
 /// Greatest response of a state against the greatest direct one. Beyond, what is left of R are errors of rounding;
 /// free motions of a thousand stages stay below.
@@ -36,11 +38,15 @@ const RULES: Rules = Rules {
 #[derive(Debug)]
 pub(super) struct Condensed {
     pub(super) parts: Condensation,
-    pub(super) blocks: BlockLu,
+    pub(super) blocks: Vec<BlockLu>,
+    /// How many blocks are the first half of the work, and memory of each half.
+    middle: usize,
+    rooms: [Room; 2],
+    weights: [Weights; 2],
     /// S by rows, one for each state, and where each begins.
     pub(super) responses: Vec<f64>,
     pub(super) starts: Vec<usize>,
-    /// Gᵀ, and H S + Kᵀ, of one block by rows; and right-hand sides of one block by columns.
+    /// Gᵀ of one block by rows, and right-hand sides by columns.
     rows: Vec<f64>,
     columns: Vec<f64>,
     /// Sums of the entries at each place; the first one is of none.
@@ -48,8 +54,6 @@ pub(super) struct Condensed {
     entries: Vec<f64>,
     /// Whether equations of the last matrix had a diagonal.
     pub(super) has_diagonal: bool,
-    /// `Xᵀ E X` of one block.
-    square: Vec<f64>,
     pub(super) factors: Factors,
     pub(super) work: Vec<f64>,
     /// States, gradients by states, multipliers of the equations, and reduced unknowns.
@@ -68,23 +72,27 @@ impl Condensed {
                 starts.push(starts[starts.len() - 1] + block.reach.len());
             }
         }
-        let shapes = parts.blocks.iter();
-        let shapes = shapes.map(|block| (block.equations.len(), block.states.len()));
-        let most = |size: fn(&Block) -> usize| parts.blocks.iter().map(size).max().unwrap_or(0);
-        let most_rows = most(|b| b.states.len() * b.reach.len().max(b.weighted.len()));
-        let most_columns = most(|b| b.equations.len() * b.reach.len().max(b.weighted.len()));
+        let blocks = parts.blocks.iter();
+        let blocks: Vec<BlockLu> = blocks
+            .map(|block| BlockLu::new(block.equations.len(), block.states.len()))
+            .collect();
+        let sizes = parts.blocks.iter();
+        let most = sizes.map(|b| b.equations.len() * b.reach.len()).max();
+        let most = most.unwrap_or(0);
         let plans = parts.plans.iter();
         let entries = plans.map(|plan| plan.pattern().0.len()).max().unwrap_or(0);
         Self {
-            blocks: BlockLu::new(shapes),
+            middle: middle(parts.blocks.iter().map(Block::multiplications)),
+            rooms: [0, 1].map(|_| Room::of(&blocks)),
+            weights: [0, 1].map(|_| Weights::of(&parts.blocks)),
+            blocks,
             responses: vec![0.0; starts[starts.len() - 1]],
             starts,
-            rows: vec![0.0; most_rows],
-            columns: vec![0.0; most_columns],
+            rows: vec![0.0; most],
+            columns: vec![0.0; most],
             values: vec![0.0; parts.count],
             entries: vec![0.0; entries],
             has_diagonal: false,
-            square: vec![0.0; most(|b| b.weighted.len() * b.weighted.len())],
             factors: Factors::default(),
             work: Vec::new(),
             states: vec![0.0; parts.states.len()],
@@ -145,56 +153,91 @@ impl Condensed {
 
     /// Whether the equations of all blocks are independent.
     fn factor_blocks(&mut self, progress: &mut Progress<'_>) -> Result<bool, Stopped> {
-        self.blocks.clear();
-        for (k, block) in self.parts.blocks.iter().enumerate() {
-            progress.add(block.equations.len().pow(2) * block.states.len() / 2)?;
-            for item in &block.own {
-                let equation = item.row as usize - block.equations.start;
-                let state = item.column as usize - block.states.start;
-                let value = self.values[item.value as usize];
-                self.blocks.add(k, equation, state, value);
+        progress.add(0)?;
+        let (parts, values) = (&self.parts.blocks, &self.values);
+        let work = |parts: &[Block],
+                    blocks: &mut [BlockLu],
+                    room: &mut Room,
+                    progress: &mut Progress<'_>| {
+            for (part, block) in parts.iter().zip(blocks) {
+                progress.add(of_factors(part))?;
+                block.clear();
+                for item in &part.own {
+                    let equation = item.row as usize - part.equations.start;
+                    let state = item.column as usize - part.states.start;
+                    block.add(equation, state, values[item.value as usize]);
+                }
+                if !block.factor(room) {
+                    return Ok(false);
+                }
             }
-            if !self.blocks.factor(k) {
-                return Ok(false);
-            }
-        }
-        Ok(true)
+            Ok(true)
+        };
+        let parts_of = parts.split_at(self.middle);
+        let blocks_of = self.blocks.split_at_mut(self.middle);
+        let [room, other] = &mut self.rooms;
+        let [mut first, mut second] = progress.halves();
+        let (a, b) = halves(
+            parts.iter().map(of_factors).sum(),
+            || work(parts_of.0, blocks_of.0, room, &mut first),
+            || work(parts_of.1, blocks_of.1, other, &mut second),
+        );
+        Ok(a? && b?)
     }
 
-    /// S of one block.
+    /// S of one block: by halves of its equations, then of its columns.
     fn respond(&mut self, k: usize) {
-        let block = &self.parts.blocks[k];
-        let (e, width) = (block.equations.len(), block.reach.len());
+        let (part, block) = (&self.parts.blocks[k], &self.blocks[k]);
+        let (e, width) = (part.equations.len(), part.reach.len());
         if width == 0 {
             return;
         }
-        let (direct, rows) = (width - block.free(), &mut self.rows[..e * width]);
-        rows.fill(0.0);
-        Arch::new().dispatch(Product {
-            items: &block.below,
-            values: &self.values,
-            from: &self.responses,
-            starts: &self.starts,
-            to: rows,
-            first: block.equations.start,
-            width,
-        });
-        for item in &block.inputs {
-            let row = item.row as usize - block.equations.start;
-            rows[row * width + item.place as usize] -= self.values[item.value as usize];
-        }
-        let columns = &mut self.columns[..e * width];
-        for (i, row) in rows.chunks_exact(width).enumerate() {
-            for (j, value) in row[..direct].iter().enumerate() {
-                columns[i + j * e] = *value;
+        let direct = width - part.free();
+        let rows = &mut self.rows[..e * width];
+        let half = e / 2;
+        let (values, responses, starts) = (&self.values, &self.responses, &self.starts);
+        let right_hand_sides = |first: usize, rows: &mut [f64]| {
+            let equations =
+                part.equations.start + first..part.equations.start + first + rows.len() / width;
+            rows.fill(0.0);
+            Arch::new().dispatch(Product {
+                items: of_rows(&part.below, &equations),
+                values,
+                from: responses,
+                starts,
+                to: rows,
+                first: equations.start,
+                width,
+            });
+            for item in of_rows(&part.inputs, &equations) {
+                let row = item.row as usize - equations.start;
+                rows[row * width + item.place as usize] -= values[item.value as usize];
             }
-        }
-        let (determined, free) = columns.split_at_mut(e * direct);
-        self.blocks.solve(k, determined);
-        self.blocks.free(k, free);
+        };
+        let (upper, lower) = rows.split_at_mut(half * width);
+        halves(
+            part.below.len() * width,
+            || right_hand_sides(0, upper),
+            || right_hand_sides(half, lower),
+        );
+        let rows = &*rows;
+        let solve = |first: usize, columns: &mut [f64]| {
+            for (j, column) in columns.chunks_exact_mut(e).enumerate() {
+                for (value, row) in column.iter_mut().zip(rows.chunks_exact(width)) {
+                    *value = row[first + j];
+                }
+            }
+            block.solve(columns);
+        };
+        let (determined, free) = self.columns[..e * width].split_at_mut(e * direct);
+        let half = direct / 2;
+        let (left, right) = determined.split_at_mut(e * half);
+        halves(e * e * direct, || solve(0, left), || solve(half, right));
+        block.free(free);
         free.iter_mut().for_each(|value| *value = -*value);
-        for (i, &state) in self.blocks.order(k).iter().enumerate() {
-            let start = self.starts[block.states.start + state];
+        let columns = &self.columns;
+        for (i, &state) in block.order().iter().enumerate() {
+            let start = self.starts[part.states.start + state];
             let row = &mut self.responses[start..start + width];
             row.fill(0.0);
             if i < e {
@@ -221,20 +264,42 @@ impl Condensed {
         greatest > GROWTH * direct || !greatest.is_finite()
     }
 
-    /// R: each block adds `Sᵀ W` and its transpose, with W = ½ H S of its own states, H S of earlier ones, and Kᵀ.
+    /// R: what each block adds, and M.
     fn reduce(&mut self, progress: &mut Progress<'_>) -> Result<(), Stopped> {
+        progress.add(0)?;
+        let (parts, middle) = (&self.parts.blocks, self.middle);
         let plain = self.parts.plans[0].pattern().0.len();
-        let (mut end, mut end_of_diagonals) = (0, plain);
-        for k in 0..self.parts.blocks.len() {
-            let block = &self.parts.blocks[k];
-            progress.add(block.states.len() * block.reach.len() * block.weighted.len())?;
-            self.weigh(k);
-            end = self.add_responses(k, end);
-            if self.has_diagonal {
-                end_of_diagonals = self.add_diagonal(k, end_of_diagonals);
-            }
-        }
-        for (to, item) in self.entries[end..plain].iter_mut().zip(&self.parts.corner) {
+        let counts = [0..middle, middle..parts.len()].map(|half| {
+            let of_half = parts[half].iter();
+            of_half.fold([0, 0], |[responses, diagonals], part| {
+                [responses + part.responses(), diagonals + part.squares()]
+            })
+        });
+        let (entries, diagonals) = self.entries.split_at_mut(plain);
+        let (left, right) = entries.split_at_mut(counts[0][0]);
+        let (right, corner) = right.split_at_mut(counts[1][0]);
+        let (left_diagonals, right_diagonals) = match self.has_diagonal {
+            true => diagonals.split_at_mut(counts[0][1]),
+            false => Default::default(),
+        };
+        let half = |blocks: Range<usize>| Reduce {
+            parts: &parts[blocks.clone()],
+            blocks: &self.blocks[blocks],
+            values: &self.values,
+            responses: &self.responses,
+            starts: &self.starts,
+            has_diagonal: self.has_diagonal,
+        };
+        let (first, second) = (half(0..middle), half(middle..parts.len()));
+        let [weights, other] = &mut self.weights;
+        let [mut before, mut behind] = progress.halves();
+        let (a, b) = halves(
+            parts.iter().map(Reduce::multiplications).sum(),
+            || first.run(weights, left, left_diagonals, &mut before),
+            || second.run(other, right, right_diagonals, &mut behind),
+        );
+        a.and(b)?;
+        for (to, item) in corner.iter_mut().zip(&self.parts.corner) {
             *to = self.values[item.value as usize];
         }
         for &at in &self.parts.twice {
@@ -242,82 +307,15 @@ impl Condensed {
         }
         Ok(())
     }
+}
 
-    /// W of one block, in `rows`.
-    fn weigh(&mut self, k: usize) {
-        let block = &self.parts.blocks[k];
-        let width = block.weighted.len();
-        let rows = &mut self.rows[..block.states.len() * width];
-        rows.fill(0.0);
-        Arch::new().dispatch(Curvature {
-            block,
-            values: &self.values,
-            from: &self.responses,
-            starts: &self.starts,
-            to: rows,
-        });
-        for item in &block.coupling {
-            let row = item.row as usize - block.states.start;
-            rows[row * width + item.place as usize] += self.values[item.value as usize];
-        }
-    }
+/// Multiplications to factor a block.
+fn of_factors(block: &Block) -> usize {
+    block.equations.len().pow(2) * block.states.len() / 2
+}
 
-    /// `Sᵀ W` of one block, the entries from `begin` on; where they end.
-    fn add_responses(&mut self, k: usize, begin: usize) -> usize {
-        let block = &self.parts.blocks[k];
-        let (n, reach, width) = (block.states.len(), block.reach.len(), block.weighted.len());
-        let end = begin + reach * width;
-        let own = self.starts[block.states.start]..self.starts[block.states.end];
-        if begin < end {
-            matmul(
-                MatMut::from_row_major_slice_mut(&mut self.entries[begin..end], reach, width),
-                Accum::Replace,
-                MatRef::from_row_major_slice(&self.responses[own], n, reach).transpose(),
-                MatRef::from_row_major_slice(&self.rows[..n * width], n, width),
-                1.0,
-                Par::Seq,
-            );
-        }
-        end
-    }
-
-    /// `Xᵀ E X` of one block whose equations have the diagonal E, with `X = A_D⁻ᵀ W_D`; where its entries end.
-    fn add_diagonal(&mut self, k: usize, begin: usize) -> usize {
-        let block = &self.parts.blocks[k];
-        let (e, width) = (block.equations.len(), block.weighted.len());
-        if block.diagonal.is_empty() || width == 0 {
-            return begin;
-        }
-        let (rows, columns) = (&mut self.rows, &mut self.columns[..e * width]);
-        for (i, &state) in self.blocks.order(k)[..e].iter().enumerate() {
-            for (j, value) in rows[state * width..][..width].iter().enumerate() {
-                columns[i + j * e] = *value;
-            }
-        }
-        self.blocks.solve_transposed(k, columns);
-        let scaled = &mut rows[..e * width];
-        scaled.fill(0.0);
-        for item in &block.diagonal {
-            let value = self.values[item.value as usize];
-            let first = item.row as usize - block.equations.start;
-            for i in (first..e * width).step_by(e) {
-                scaled[i] = value * columns[i];
-            }
-        }
-        let square = &mut self.square[..width * width];
-        matmul(
-            MatMut::from_row_major_slice_mut(square, width, width),
-            Accum::Replace,
-            MatRef::from_column_major_slice(columns, e, width).transpose(),
-            MatRef::from_column_major_slice(scaled, e, width),
-            1.0,
-            Par::Seq,
-        );
-        let mut end = begin;
-        for (i, row) in square.chunks_exact(width).enumerate() {
-            self.entries[end..=end + i].copy_from_slice(&row[..=i]);
-            end += i + 1;
-        }
-        end
-    }
+/// Items of these rows, of items row by row.
+fn of_rows<'a>(items: &'a [Item], rows: &Range<usize>) -> &'a [Item] {
+    let before = |row: usize| items.partition_point(|item| (item.row as usize) < row);
+    &items[before(rows.start)..before(rows.end)]
 }

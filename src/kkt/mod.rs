@@ -16,9 +16,9 @@
 //! | `graph`, `order`, `tree`, `fronts`, `plan` | once for a pattern: order of elimination, fronts, where each entry goes |
 //! | `pivot`, `dense`, `update`, `eliminate` | one dense front |
 //! | `numeric`, `solve`, `scales` | factors, solutions, equilibration |
-//! | `groups`, `condense`, `condensed`, `products`, `block_lu`, `substitute` | unknowns that equations determine, eliminated before all others |
+//! | `groups`, `condense`, `condensed`, `reduce`, `products`, `block_lu`, `substitute` | unknowns that equations determine, eliminated before all others |
 //! | `solver` | when to scale, how strictly to pivot, whether the factors are good |
-//! | `progress` | whether a long factorisation is to go on |
+//! | `progress`, `halves` | whether a long factorisation is to go on, and that on two cores |
 //!
 //! After the first matrix nothing is allocated, unless more pivots are delayed than ever before.
 
@@ -30,6 +30,7 @@ mod eliminate;
 mod fronts;
 mod graph;
 mod groups;
+mod halves;
 mod inertia;
 mod lanes;
 mod numeric;
@@ -38,6 +39,7 @@ mod pivot;
 mod plan;
 mod products;
 mod progress;
+mod reduce;
 mod scales;
 mod solve;
 mod solver;

@@ -10,13 +10,13 @@ pub struct Stopped;
 
 /// Asks whether to stop: at the beginning, then after so much work that a question costs nothing against it.
 pub(super) struct Progress<'a> {
-    is_over: &'a dyn Fn() -> bool,
+    is_over: &'a (dyn Fn() -> bool + Sync),
     /// Multiplications since the last question.
     since: usize,
 }
 
 impl<'a> Progress<'a> {
-    pub(super) fn new(is_over: &'a dyn Fn() -> bool) -> Self {
+    pub(super) fn new(is_over: &'a (dyn Fn() -> bool + Sync)) -> Self {
         Self {
             is_over,
             since: BETWEEN,
@@ -33,5 +33,11 @@ impl<'a> Progress<'a> {
         }
         self.since += multiplications;
         Ok(())
+    }
+
+    /// That of each half of what comes next, which are done at once.
+    pub(super) fn halves(&self) -> [Self; 2] {
+        let Self { is_over, since } = *self;
+        [0, 1].map(|_| Self { is_over, since })
     }
 }

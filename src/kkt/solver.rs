@@ -179,7 +179,7 @@ impl Solver {
     pub fn factor_unless(
         &mut self,
         entries: &[f64],
-        is_over: &dyn Fn() -> bool,
+        is_over: &(dyn Fn() -> bool + Sync),
     ) -> Result<Inertia, Stopped> {
         assert_eq!(
             entries.len(),

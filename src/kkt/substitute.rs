@@ -74,8 +74,8 @@ impl Condensed {
                 let row = item.row as usize - block.equations.start;
                 right[row] -= value(&self.values, item) * self.states[item.column as usize];
             }
-            self.blocks.solve_one(unit, k, right);
-            for (value, &state) in right.iter().zip(self.blocks.order(k)) {
+            self.blocks[k].solve_one(unit, right);
+            for (value, &state) in right.iter().zip(self.blocks[k].order()) {
                 self.states[block.states.start + state] = *value;
             }
         }
@@ -123,12 +123,12 @@ impl Condensed {
                 continue;
             }
             let equations = block.equations.clone();
-            let order = &self.blocks.order(k)[..equations.len()];
+            let order = &self.blocks[k].order()[..equations.len()];
             let change = &mut self.multipliers[equations.clone()];
             for (change, &state) in change.iter_mut().zip(order) {
                 *change = self.gradient[block.states.start + state];
             }
-            self.blocks.solve_one_transposed(unit, k, change);
+            self.blocks[k].solve_one_transposed(unit, change);
             let before = &mut self.first_multipliers[equations.clone()];
             let mut next = 0;
             for item in &block.diagonal {
@@ -139,7 +139,7 @@ impl Condensed {
                 next = row + 1;
             }
             change[next..].fill(0.0);
-            self.blocks.solve_one(unit, k, change);
+            self.blocks[k].solve_one(unit, change);
             for (change, &state) in change.iter().zip(order) {
                 self.states[block.states.start + state] -= change;
             }
@@ -190,10 +190,10 @@ impl Condensed {
     fn multiply<S: Simd>(&mut self, unit: S) {
         for (k, block) in self.parts.blocks.iter().enumerate().rev() {
             let multipliers = &mut self.multipliers[block.equations.clone()];
-            for (multiplier, &state) in multipliers.iter_mut().zip(self.blocks.order(k)) {
+            for (multiplier, &state) in multipliers.iter_mut().zip(self.blocks[k].order()) {
                 *multiplier = self.gradient[block.states.start + state];
             }
-            self.blocks.solve_one_transposed(unit, k, multipliers);
+            self.blocks[k].solve_one_transposed(unit, multipliers);
             for item in &block.below {
                 let row = item.row as usize - block.equations.start;
                 self.gradient[item.column as usize] -= value(&self.values, item) * multipliers[row];

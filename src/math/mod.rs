@@ -1,10 +1,13 @@
-//! Numbers that carry their derivatives, numbers drawn at random, numbers as people read them, and disjoint sets of them.
+//! Numbers that carry their derivatives, numbers drawn at random, numbers as people read them, disjoint sets of them, and two
+//! computations at once.
 
+mod both;
 mod digits;
 mod jet;
 pub mod random;
 mod sets;
 
+pub(crate) use both::both;
 pub use digits::significant;
 pub use jet::Jet;
 pub use sets::DisjointSets;

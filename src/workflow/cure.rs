@@ -7,7 +7,8 @@ use crate::control::problem::Control;
 use crate::ipopt::interrupt;
 use crate::model::System;
 use crate::workflow::error::WorkflowError;
-use crate::workflow::optimise::{Iterate, Optimum, SolveLimits, optimise};
+use crate::workflow::iterate::Iterate;
+use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
 
 /// How many times the intervals of the problem are tried.
 const TIMES: [usize; 3] = [2, 4, 8];

@@ -11,8 +11,9 @@ use crate::workflow::accuracy::{AccuracyTarget, Attempt, Refined, refine};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::estimate::ErrorSample;
 use crate::workflow::integrate::{Simulated, grid, integrate};
+use crate::workflow::iterate::Iterate;
 use crate::workflow::motion;
-use crate::workflow::optimise::{Iterate, Optimum, SolveLimits, optimise};
+use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
 
 /// The solver's tolerance as a part of the accuracy asked for, where the problem names no smaller one.
 const SOLVER: f64 = 1e-2;

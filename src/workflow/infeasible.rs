@@ -8,7 +8,8 @@ use crate::coordinates::Configuration;
 use crate::dynamics::simulate;
 use crate::math::significant;
 use crate::model::{Model, System, joint_unit};
-use crate::workflow::optimise::{Iterate, Optimum, SolveLimits, optimise};
+use crate::workflow::iterate::Iterate;
+use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
 use crate::workflow::second_start::is_infeasible;
 
 /// Bounds told at most.

@@ -1,19 +1,21 @@
 //! A control problem solved in memory: boundary, guess, program, solver.
 
-use std::fmt;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::control::problem::{Control, Guess};
-use crate::control::{BoundaryConditions, Carried, InitialGuess, Solution, Transcription, guess};
+use crate::control::{
+    BoundaryConditions, Carried, Costates, InitialGuess, Solution, Transcription, guess,
+};
 use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
 use crate::ipopt::{
-    Iteration, Options, Solver, SolverResult, Start, StartingPoint, Status, interrupt,
+    Iteration, Options, Reached, Solver, SolverResult, Start, StartingPoint, Status, interrupt,
 };
 use crate::model::{Model, System};
 use crate::nlp::Nlp;
 use crate::workflow::active::{Active, active};
 use crate::workflow::error::WorkflowError;
+use crate::workflow::iterate::Iterate;
 use crate::workflow::memory;
 use crate::workflow::motion::solved;
 use crate::workflow::ordering::ordering;
@@ -130,22 +132,6 @@ impl Optimum {
     }
 }
 
-/// A point that the solver has come to.
-pub struct Iterate<'a> {
-    /// What the solver tells of it.
-    pub report: &'a Iteration,
-    /// The model.
-    pub model: &'a Model,
-    /// Its motion.
-    pub motion: &'a dyn Fn() -> Solution,
-}
-
-impl fmt::Debug for Iterate<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.report.fmt(f)
-    }
-}
-
 /// Solves a control problem, from an `earlier` solution where one is given; `observer` sees every iterate.
 ///
 /// # Errors
@@ -182,15 +168,25 @@ pub fn optimise(
     let mut solver = Solver::new(program, options.clone());
     let mut solve = |solver: &mut Solver<Transcription<'_>>, point: &StartingPoint| {
         let decoder = solver.program().decoder();
-        let mut observer = |report: &Iteration, x: &[f64]| {
-            let motion = || Solution {
+        let mut observer = |report: &Iteration, reached: &Reached<'_>| {
+            let at = |report: &Iteration, x: &[f64], costates: Option<Costates>| Solution {
                 barrier: Some(report.mu),
-                ..solved(&model, &decoder.decode(x), None)
+                ..solved(&model, &decoder.decode(x), costates)
             };
+            let motion = || at(report, reached.x, None);
+            let before = reached.before.as_ref();
+            let earlier = before.map(|before| {
+                let costates = || decoder.costates(&before.multipliers());
+                move || at(before.report, before.x, Some(costates()))
+            });
+            let earlier = earlier
+                .as_ref()
+                .map(|motion| motion as &dyn Fn() -> Solution);
             observer(&Iterate {
                 report,
                 model: &model,
                 motion: &motion,
+                before: before.map(|before| before.report).zip(earlier),
             })
         };
         let found = solver.solve(point, &mut observer);

@@ -196,7 +196,7 @@ fn a_solver_follows_a_goal_in_few_iterations() {
         let initial = guess(&model, &here, &control, h, None);
         let program = Transcription::new(&model, &here, &control, &initial).unwrap();
         let point = program.start(&initial);
-        let mut go_on = |_: &_, _: &[f64]| ControlFlow::Continue(());
+        let mut go_on = |_: &_, _: &proboscis::ipopt::Reached<'_>| ControlFlow::Continue(());
         let mut solver = Solver::new(program, Options::default());
         let first = solver.solve(&point, &mut go_on).unwrap().clone();
         assert!(first.status.is_solved(), "{name}");

@@ -39,7 +39,13 @@ fn a_solve_that_is_killed_leaves_an_iterate_to_go_on_from() {
     let kept = read(results.join("unfinished.json"));
     // So many numbers stand in arrays beside it.
     let beside = results.join(kept["arrays"]["file"].as_str().unwrap());
-    assert_eq!(arrays(&beside)["time"].len(), 4001);
+    let all = arrays(&beside);
+    assert_eq!(all["time"].len(), 4001);
+    // With multipliers and the barrier parameter, so that a solve goes on where this one was.
+    for name in ["costates/rows", "costates/lower", "costates/upper"] {
+        assert!(all[name].iter().any(|v| v.abs() > 1e-9), "{name}");
+    }
+    assert!(kept["barrier"].as_f64().unwrap() > 0.0);
     // It is a guess like any solution, and goes when a run has written its results.
     let guess = format!(
         "control.guess={{\"solution\":{:?}}}",

@@ -75,7 +75,7 @@ fn a_solve_is_stopped_at_the_next_question() {
         max_seconds: Some(0.15),
         ..Options::default()
     };
-    let mut go_on = |_: &_, _: &[f64]| ControlFlow::Continue(());
+    let mut go_on = |_: &_, _: &proboscis::ipopt::Reached<'_>| ControlFlow::Continue(());
     let solution = solve(&mut slow(), &start, &options, &mut go_on).unwrap();
     assert_eq!(solution.status, Status::TimeLimit);
     assert_eq!(solution.evaluations.hessian, 1);
@@ -117,7 +117,7 @@ fn a_program_that_was_stopped_is_evaluated_anew() {
         max_seconds: Some(0.0),
         ..Options::default()
     };
-    let mut go_on = |_: &_, _: &[f64]| ControlFlow::Continue(());
+    let mut go_on = |_: &_, _: &proboscis::ipopt::Reached<'_>| ControlFlow::Continue(());
     let solution = solve(&mut stopped, &start, &options, &mut go_on).unwrap();
     assert_eq!(solution.status, Status::TimeLimit);
     assert!(solution.constraints.iter().all(|g| g.is_finite()));

@@ -6,13 +6,13 @@ use crate::common::trunk;
 use crate::ipopt::run;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::ipopt::{
-    IpoptError, Iteration, LinearSolver, Options, Solver, SolverResult, Start, StartingPoint,
-    Status,
+    IpoptError, Iteration, LinearSolver, Options, Reached, Solver, SolverResult, Start,
+    StartingPoint, Status,
 };
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-fn go_on(_: &Iteration, _: &[f64]) -> ControlFlow<()> {
+fn go_on(_: &Iteration, _: &Reached<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
@@ -162,7 +162,7 @@ fn a_panic_leaves_a_solver_that_solves() {
     let mut solver = Solver::new(hs071(), Options::default());
     let point = start(&HS071_START);
     let first = solver.solve(&point, &mut go_on).unwrap().clone();
-    let mut fail = |iteration: &Iteration, _: &[f64]| match iteration.iteration {
+    let mut fail = |iteration: &Iteration, _: &Reached<'_>| match iteration.iteration {
         2 => panic!("in an observer"),
         _ => ControlFlow::Continue(()),
     };

@@ -7,7 +7,7 @@ use proboscis::control::{BoundaryConditions, InitialGuess, Transcription, guess}
 use proboscis::dynamics::{DiscreteTrajectory, Start, StepError, simulate};
 use proboscis::functional::{Couplings, Kind, Order, Output, Sample, Term};
 use proboscis::ipopt::{
-    self, Iteration, LinearSolver, Options, SolverResult, StartingPoint, Status,
+    self, Iteration, LinearSolver, Options, Reached, SolverResult, StartingPoint, Status,
 };
 use proboscis::math::Vector;
 use proboscis::model::{Coordinates, Model};
@@ -161,7 +161,7 @@ fn solve(
         linear_solver,
         ..Options::default()
     };
-    let mut observer = |_: &Iteration, _: &[f64]| match faults.strikes(Callback::Observer) {
+    let mut observer = |_: &Iteration, _: &Reached<'_>| match faults.strikes(Callback::Observer) {
         Some(_) => ControlFlow::Break(()),
         None => ControlFlow::Continue(()),
     };

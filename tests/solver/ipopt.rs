@@ -8,8 +8,8 @@ use crate::common::programs::{
     HS071_OPTIMUM, HS071_START, bounds, hs071, one_variable, rosenbrock,
 };
 use proboscis::ipopt::{
-    IpoptError, Iteration, Multipliers, OptionValue, Options, SolverResult, Start, StartingPoint,
-    Status, solve,
+    IpoptError, Iteration, Multipliers, OptionValue, Options, Reached, SolverResult, Start,
+    StartingPoint, Status, solve,
 };
 use proboscis::nlp::{Bounds, Nlp};
 
@@ -31,7 +31,7 @@ pub(crate) fn with(extra: &[(&str, OptionValue)]) -> Options {
     }
 }
 
-fn go_on(_: &Iteration, _: &[f64]) -> ControlFlow<()> {
+fn go_on(_: &Iteration, _: &Reached<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
@@ -102,7 +102,7 @@ fn duplicate_hessian_entries_are_summed() {
 #[test]
 fn the_account_of_a_solve_adds_up() {
     let mut told = Vec::new();
-    let mut observer = |iteration: &Iteration, _: &[f64]| {
+    let mut observer = |iteration: &Iteration, _: &Reached<'_>| {
         told.push(*iteration);
         thread::sleep(Duration::from_millis(2));
         ControlFlow::Continue(())
@@ -370,8 +370,8 @@ fn a_centred_start_lies_on_the_path_of_the_barrier() {
         };
         let mut first = None;
         let mut program = one_variable(bound, f, slope, |_| 3.0);
-        let solution = solve(&mut program, &point, &options, &mut |iteration, x| {
-            first.get_or_insert((x[0], iteration.dual_infeasibility));
+        let solution = solve(&mut program, &point, &options, &mut |iteration, reached| {
+            first.get_or_insert((reached.x[0], iteration.dual_infeasibility));
             ControlFlow::Continue(())
         });
         assert_eq!(solution.expect("can be called").status, Status::Solved);

@@ -2,7 +2,7 @@
 
 use crate::common::programs::{HS071_OPTIMUM, HS071_START, Program, bounds, hs071, rosenbrock};
 use crate::ipopt::{from, run};
-use proboscis::ipopt::{Iteration, Options, Status, solve};
+use proboscis::ipopt::{Iteration, Multipliers, Options, Reached, Status, solve};
 use std::fs;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -86,7 +86,7 @@ fn a_panic_in_any_function_comes_through_and_harms_nothing() {
 
 #[test]
 fn a_panic_of_the_observer_comes_through() {
-    let mut observer = |iteration: &Iteration, _: &[f64]| {
+    let mut observer = |iteration: &Iteration, _: &Reached<'_>| {
         assert!(iteration.iteration < 3, "enough at {}", iteration.iteration);
         ControlFlow::Continue(())
     };
@@ -110,7 +110,7 @@ fn a_panic_of_the_observer_comes_through() {
 
 #[test]
 fn the_observer_can_stop_and_the_iterate_is_returned() {
-    let mut observer = |iteration: &Iteration, _: &[f64]| match iteration.iteration {
+    let mut observer = |iteration: &Iteration, _: &Reached<'_>| match iteration.iteration {
         4 => ControlFlow::Break(()),
         _ => ControlFlow::Continue(()),
     };
@@ -153,7 +153,7 @@ fn a_stop_within_the_restoration_phase_returns_its_iterate() {
         hess: Box::new(|_, _, y, values| values[0] = 2.0 * y[0]),
     };
     let mut restored = 0;
-    let mut observer = |iteration: &Iteration, _: &[f64]| {
+    let mut observer = |iteration: &Iteration, _: &Reached<'_>| {
         restored += usize::from(iteration.restoration);
         if restored == 3 {
             ControlFlow::Break(())
@@ -295,4 +295,51 @@ fn ipopt_is_silent_and_reads_no_file_of_the_working_directory() {
         3,
         "only the lines of the test harness: {printed}"
     );
+}
+
+/// What an observer is told of the iterate before is what Ipopt returns where it is stopped there; multipliers of bounds are near.
+#[test]
+fn the_iterate_before_has_the_multipliers_that_ipopt_returns() {
+    let stopped_at = |last: usize| {
+        let mut observer = |iteration: &Iteration, _: &Reached<'_>| match iteration.iteration < last
+        {
+            true => ControlFlow::Continue(()),
+            false => ControlFlow::Break(()),
+        };
+        let start = from(&HS071_START);
+        solve(&mut hs071(), &start, &Options::default(), &mut observer).unwrap()
+    };
+    let mut told = Vec::new();
+    let mut observer = |_: &Iteration, reached: &Reached<'_>| {
+        let before = reached.before.as_ref();
+        told.push(before.map(|before| (*before.report, before.x.to_vec(), before.multipliers())));
+        ControlFlow::Continue(())
+    };
+    let start = from(&HS071_START);
+    let whole = solve(&mut hs071(), &start, &Options::default(), &mut observer).unwrap();
+    assert!(whole.iterations.len() > 6);
+    assert_eq!(told[0], None);
+    for (k, told) in told.into_iter().enumerate().skip(2) {
+        let (report, x, multipliers) = told.expect("no restoration phase");
+        let expected = stopped_at(k - 1);
+        assert_eq!(expected.status, Status::Interrupted);
+        assert_eq!((report, &x), (whole.iterations[k - 1], &expected.x));
+        let of = |all: &Multipliers| [&all.constraints, &all.lower, &all.upper].map(Vec::clone);
+        let [rows, lower, upper] = of(&multipliers);
+        let [expected_rows, expected_lower, expected_upper] = of(&expected.costates);
+        assert!(expected_rows.iter().all(|y| y.abs() > 1e-3));
+        for (y, expected) in rows.iter().zip(&expected_rows) {
+            assert!(
+                (y - expected).abs() < 1e-12 * expected.abs(),
+                "{k}: {y} {expected}"
+            );
+        }
+        let bounds = lower.iter().chain(&upper);
+        for (z, expected) in bounds.zip(expected_lower.iter().chain(&expected_upper)) {
+            assert!(
+                *z > 0.0 && (0.01..100.0).contains(&(z / expected)),
+                "{k}: {z} {expected}"
+            );
+        }
+    }
 }

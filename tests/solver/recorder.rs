@@ -232,7 +232,7 @@ fn record(name: &str, problem: &str, changes: &[&str], kept: usize) -> usize {
         solver: None,
         matrices: Vec::new(),
     }));
-    let mut go_on = |_: &_, _: &[f64]| ControlFlow::Continue(());
+    let mut go_on = |_: &_, _: &ipopt::Reached<'_>| ControlFlow::Continue(());
     let solution = ipopt::solve(&mut program, &start, &options, &mut go_on).unwrap();
     let restored = solution.iterations.iter().filter(|i| i.restoration).count();
     let recorder = RECORDER.take().unwrap();

@@ -305,7 +305,7 @@ fn ipopt_calls_mumps() -> usize {
         x: HS071_START.to_vec(),
         costates: None,
     };
-    let mut go_on = |_: &ipopt::Iteration, _: &[f64]| ControlFlow::Continue(());
+    let mut go_on = |_: &ipopt::Iteration, _: &ipopt::Reached<'_>| ControlFlow::Continue(());
     let options = Options {
         linear_solver: LinearSolver::Mumps,
         ..Options::default()

@@ -4,11 +4,12 @@ use crate::common::programs::{Program, bounds};
 use crate::horizon::{Horizon, System};
 use crate::ipopt::from;
 use crate::matrices::Random;
-use proboscis::ipopt::{Iteration, Options, Solver, Status};
+use proboscis::ipopt::{Iteration, Options, Reached, Solver, Status};
 use proboscis::kkt::{Plan, Solver as Factors, Stopped};
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::rc::Rc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -47,15 +48,15 @@ fn solution(factors: &mut Factors) -> Vec<f64> {
 
 /// How often a factorisation asks whether to stop.
 fn questions(system: &System) -> usize {
-    let asked = Cell::new(0);
+    let asked = AtomicUsize::new(0);
     let count = || {
-        asked.set(asked.get() + 1);
+        asked.fetch_add(1, Ordering::Relaxed);
         false
     };
     factors(system)
         .factor_unless(&system.entries, &count)
         .unwrap();
-    asked.get()
+    asked.into_inner()
 }
 
 #[test]
@@ -76,8 +77,12 @@ fn a_factorisation_stops_at_any_question_and_leaves_no_trace() {
         assert!(questions >= 3, "{questions}");
         let mut factors = factors(&system);
         for last in [0, 1, questions / 2, questions - 1] {
-            let left = Cell::new(last);
-            let is_over = || left.replace(left.get().saturating_sub(1)) == 0;
+            let left = AtomicUsize::new(last);
+            let is_over = || {
+                let one_less = |left: usize| left.checked_sub(1);
+                left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_less)
+                    .is_err()
+            };
             let stopped = factors.factor_unless(&system.entries, &is_over);
             assert_eq!(stopped, Err(Stopped), "question {last} of {questions}");
             assert!(solution(&mut factors).iter().all(|x| x.is_nan()));
@@ -159,10 +164,10 @@ fn large(order: usize, answer: Answer) -> Program {
 type Heard = Rc<RefCell<Vec<(Iteration, Vec<f64>)>>>;
 
 /// Hears of iterates up to the last one it wants.
-fn observer(heard: &Heard, last: usize) -> impl FnMut(&Iteration, &[f64]) -> ControlFlow<()> {
+fn observer(heard: &Heard, last: usize) -> impl FnMut(&Iteration, &Reached<'_>) -> ControlFlow<()> {
     let heard = heard.clone();
-    move |iteration, x| {
-        heard.borrow_mut().push((*iteration, x.to_vec()));
+    move |iteration, reached| {
+        heard.borrow_mut().push((*iteration, reached.x.to_vec()));
         match iteration.iteration < last {
             true => ControlFlow::Continue(()),
             false => ControlFlow::Break(()),

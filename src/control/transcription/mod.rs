@@ -45,7 +45,7 @@ use segment::Workspace;
 use units::{KILOVOLT, MILLISECOND};
 
 /// A horizon of at least so many intervals is evaluated in two stretches.
-const TWO_STRETCHES: usize = 32;
+const TWO_STRETCHES: usize = 16;
 
 /// An entry of a matrix of the program: where its value is found, and its scale.
 #[derive(Clone, Copy, Debug)]

@@ -8,7 +8,7 @@ use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt;
 
-/// Tells the motion of a point: what is given with what the variables are.
+/// Tells the motion and the costates of a point: what is given with what the variables are.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     z: Vec<Vec<f64>>,
@@ -16,6 +16,7 @@ pub struct Decoder {
     h: f64,
     columns: Vec<Column>,
     scales: Vec<f64>,
+    row_scales: Vec<f64>,
 }
 
 impl Decoder {
@@ -36,6 +37,15 @@ impl Decoder {
             z,
             scalars,
             ..DiscreteTrajectory::default()
+        }
+    }
+
+    /// Unscaled costates of a point.
+    pub fn costates(&self, costates: &ipopt::Multipliers) -> Costates {
+        Costates {
+            rows: times(&costates.constraints, &self.row_scales),
+            lower: divide(&costates.lower, &self.scales),
+            upper: divide(&costates.upper, &self.scales),
         }
     }
 }
@@ -84,6 +94,7 @@ impl Transcription<'_> {
             h: self.h,
             columns: self.unknowns.columns.clone(),
             scales: self.variable_scales.clone(),
+            row_scales: self.row_scales.clone(),
         }
     }
 
@@ -109,11 +120,7 @@ impl Transcription<'_> {
 
     /// Unscaled costates of a solution.
     pub fn costates(&self, costates: &ipopt::Multipliers) -> Costates {
-        Costates {
-            rows: times(&costates.constraints, &self.row_scales),
-            lower: divide(&costates.lower, &self.variable_scales),
-            upper: divide(&costates.upper, &self.variable_scales),
-        }
+        self.decoder().costates(costates)
     }
 
     /// Reads a point, unless it stands there already; a sweep places the instants.

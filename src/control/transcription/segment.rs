@@ -12,9 +12,6 @@ use crate::coordinates::{Configuration, Interval, Reduced, Scratch};
 use crate::functional::{BlockMask, Horizon, Order, Outer, Sample};
 use crate::ipopt::interrupt::TimeLimit;
 use crate::math::Vector;
-use rayon::{ThreadPool, ThreadPoolBuilder};
-use std::cell::OnceCell;
-use std::thread::available_parallelism;
 
 /// What all stretches read.
 #[derive(Clone, Copy, Debug)]
@@ -226,27 +223,4 @@ pub(super) fn instant_of(
         rows.fill(0.0);
         action.rows(instant, scratch, rows);
     }
-}
-
-thread_local! {
-    /// This thread and one helper, where the machine has two cores.
-    static PAIR: OnceCell<Option<ThreadPool>> = const { OnceCell::new() };
-}
-
-/// Runs both, at once where there is a second core.
-pub(super) fn join<A: Send, B: Send>(
-    a: impl FnOnce() -> A + Send,
-    b: impl FnOnce() -> B + Send,
-) -> (A, B) {
-    PAIR.with(|pair| {
-        let pool = pair.get_or_init(|| {
-            let several = available_parallelism().is_ok_and(|n| n.get() > 1);
-            let builder = ThreadPoolBuilder::new().num_threads(2).use_current_thread();
-            several.then(|| builder.build().ok()).flatten()
-        });
-        match pool {
-            Some(pool) => pool.join(a, b),
-            None => (a(), b()),
-        }
-    })
 }

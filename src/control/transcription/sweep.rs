@@ -2,11 +2,15 @@
 
 use crate::control::transcription::limit_rows::{LimitRow, Site};
 use crate::control::transcription::placed::Placed;
-use crate::control::transcription::segment::{Segment, Shared, instant_of, join, needed};
+use crate::control::transcription::segment::{Segment, Shared, instant_of, needed};
 use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
 use crate::functional::{BlockMask, Horizon, Measure, Order, Sample};
 use crate::ipopt::interrupt;
-use crate::math::Vector;
+use crate::math::{Vector, both};
+
+/// Second derivatives of a horizon from which on its stretches are evaluated at once: with fewer, a second core saves less than it
+/// costs to wake it and to read what it wrote.
+const MUCH: usize = 50_000;
 
 impl<'m> Transcription<'m> {
     /// Number of rows of a step: of an instant, then of the scalars of an interval.
@@ -66,13 +70,16 @@ impl<'m> Transcription<'m> {
                 values: values_right,
                 rows: rows_right,
             };
-            join(|| left.run(), || right.run());
+            match layout.values(last) < MUCH {
+                true => (left.run(), right.run()),
+                false => both(|| left.run(), || right.run()),
+            };
             let instant = &mut self.instants[middle];
-            let both = |sum: &mut [Vector], list: &[Vector]| {
+            let add = |sum: &mut [Vector], list: &[Vector]| {
                 sum.iter_mut().zip(list).for_each(|(s, v)| *s += v);
             };
-            both(&mut instant.forces, &self.halo.forces);
-            both(&mut instant.contracted, &self.halo.contracted);
+            add(&mut instant.forces, &self.halo.forces);
+            add(&mut instant.contracted, &self.halo.contracted);
             action.pull_back_last(order, instant, middle, &mut self.benches[0].scratch, values);
             instant_of(
                 shared,

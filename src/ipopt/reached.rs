@@ -1,0 +1,51 @@
+//! An iterate as an observer sees it, and what is known of the one before.
+
+use crate::ipopt::evaluation::Record;
+use crate::ipopt::solution::{Iteration, Multipliers};
+use crate::nlp::Bounds;
+
+/// An accepted iterate.
+#[derive(Debug)]
+pub struct Reached<'a> {
+    /// Its variables.
+    pub x: &'a [f64],
+    /// The iterate before, where its multipliers are known: Ipopt tells those of an iterate on the way to the next one, and none in the
+    /// restoration phase.
+    pub before: Option<Before<'a>>,
+}
+
+/// The iterate before, with its multipliers.
+#[derive(Debug)]
+pub struct Before<'a> {
+    /// What Ipopt told of it.
+    pub report: &'a Iteration,
+    /// Its variables.
+    pub x: &'a [f64],
+    record: &'a Record,
+    bounds: &'a Bounds,
+    /// Factor of f in all that Ipopt sees.
+    scale: f64,
+}
+
+impl<'a> Before<'a> {
+    /// The latest iterate of a record, where its multipliers are known.
+    pub(super) fn of(record: &'a Record, bounds: &'a Bounds, scale: f64) -> Option<Self> {
+        let report = record.iterations.last()?;
+        record.knows_multipliers().then_some(Self {
+            report,
+            x: &record.latest,
+            record,
+            bounds,
+            scale,
+        })
+    }
+
+    /// Its multipliers; those of bounds are the barrier parameter over the distance, to which Ipopt keeps them near.
+    pub fn multipliers(&self) -> Multipliers {
+        let mut multipliers = Multipliers::default();
+        multipliers.reset(self.x.len(), self.record.constraints());
+        self.record.write_multipliers(self.bounds, &mut multipliers);
+        multipliers.scale(self.scale.recip());
+        multipliers
+    }
+}

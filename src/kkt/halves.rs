@@ -1,0 +1,30 @@
+//! Work in two halves, at once on two cores where it is much.
+//!
+//! What belongs to which half depends on the system alone, so that factors are the same for any number of threads.
+
+use crate::math::both;
+
+/// Multiplications below which a second core is not worth being woken: some milliseconds.
+const MUCH: usize = 1 << 23;
+
+/// Does both halves of so many multiplications.
+pub(super) fn halves<A: Send, B: Send>(
+    multiplications: usize,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    match multiplications < MUCH {
+        true => (a(), b()),
+        false => both(a, b),
+    }
+}
+
+/// How many items make the first half, of items with these costs.
+pub(super) fn middle(costs: impl Iterator<Item = f64> + Clone) -> usize {
+    let half = 0.5 * costs.clone().sum::<f64>();
+    let sums = costs.scan(0.0, |sum, cost| {
+        *sum += cost;
+        Some(*sum)
+    });
+    sums.take_while(|sum| *sum <= half).count()
+}
