@@ -6,7 +6,7 @@ use crate::choices::{Engine, Export, View};
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use clap_complete::Shell;
 use proboscis::app::{CommandInput, PageWanted, ProgressDisplay};
-use proboscis::report::Figures;
+use proboscis::report::{Figures, shell};
 use proboscis::study::StudyRequest;
 use proboscis::sweep::{Shard, SweepRequest};
 use proboscis::workflow::accuracy::AccuracyTarget;
@@ -327,12 +327,12 @@ impl Problem {
     }
 }
 
-/// The command as typed.
+/// The command that was typed.
 pub(crate) fn typed() -> String {
     let words = std::env::args_os().skip(1);
     let words = words.map(|word| word.to_string_lossy().into_owned());
     let command = ["proboscis".to_owned()].into_iter().chain(words);
-    command.collect::<Vec<_>>().join(" ")
+    shell::command(command)
 }
 
 fn shown(quiet: bool) -> ProgressDisplay {

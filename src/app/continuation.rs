@@ -13,6 +13,7 @@ use crate::dynamics::DiscreteTrajectory;
 use crate::files::continuation::{Continuation, read};
 use crate::files::{Loaded, is_standard_input};
 use crate::report::origin::Origin;
+use crate::report::shell;
 use crate::workflow::integrate::grid;
 
 /// A simulation that has ended, and one that has not.
@@ -167,15 +168,5 @@ pub(super) fn command(request: &CommandInput, task: &Task) -> Option<String> {
         words.extend(["-o".to_owned(), folder.clone()]);
     }
     words.extend(["--from".to_owned(), folder]);
-    let words: Vec<String> = words.iter().map(|word| quoted(word)).collect();
-    Some(format!("to go on: proboscis {}", words.join(" ")))
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "-_./=:,+@%".contains(c);
-    match !word.is_empty() && word.chars().all(is_plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
-    }
+    Some(format!("to go on: proboscis {}", shell::command(words)))
 }

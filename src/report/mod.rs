@@ -19,6 +19,7 @@ mod parts;
 pub mod pose;
 mod run;
 pub mod sampled;
+pub mod shell;
 pub mod skin;
 pub mod skins;
 mod snapshots;

@@ -8,6 +8,7 @@ use crate::files::lay_out;
 use crate::ipopt;
 use crate::report::atomic::{self, WriteError};
 use crate::report::origin::Origin;
+use crate::report::shell;
 use crate::study::compare::{Judged, common};
 use crate::study::limit::{How, SequenceLimit};
 use crate::study::measure::{StudyMeasure, StudyTask};
@@ -267,23 +268,12 @@ pub(super) fn command(asked: StudyTask, point: &StudyPoint) -> String {
         StudyTask::Motion => "simulate",
         StudyTask::Rest => "equilibrium",
     };
-    let mut command = format!(
-        "proboscis {word} {}",
-        quoted(&point.problem.display().to_string())
-    );
+    let problem = point.problem.display().to_string();
+    let mut words = vec!["proboscis", word, &problem];
     for change in &point.set {
-        command.push_str(&format!(" --set {}", quoted(change)));
+        words.extend(["--set", change]);
     }
-    command
-}
-
-/// A word for the shell.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
-    match !word.is_empty() && word.chars().all(plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', r"'\''")),
-    }
+    shell::command(words)
 }
 
 /// The machine that this runs on.

@@ -5,6 +5,7 @@ use crate::runs::{read, run, workshop};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 pub(crate) fn summary(folder: &Path, results: &str) -> Value {
@@ -366,4 +367,33 @@ fn ctrl_c_keeps_the_files() {
     assert_eq!(child.wait().unwrap().code(), Some(1));
     assert_eq!(summary(folder.path(), "stopped")["status"], "interrupted");
     assert!(folder.path().join("stopped/solution.json").is_file());
+}
+
+/// The command in a summary, typed into a shell, makes the same result again.
+#[test]
+fn the_command_that_is_told_repeats_the_run() {
+    let folder = workshop();
+    let goal = "control.goal={\"rest_at_voltages\": {\"muscle2\": \"1.1 kV\"}}";
+    let out = "results of 'today'";
+    let arguments = ["solve", "problems/pair.json", "--set", goal, "-o", out];
+    let (status, _, err) = run(folder.path(), &arguments);
+    assert_eq!(status, 0, "{err}");
+    let first = summary(folder.path(), out);
+    let solution = || fs::read(folder.path().join(out).join("solution.json")).unwrap();
+    let kept = solution();
+    assert!(first["objective"].as_f64().unwrap() > 1e-3);
+    fs::remove_dir_all(folder.path().join(out)).unwrap();
+    let program = Path::new(env!("CARGO_BIN_EXE_proboscis"));
+    let command = format!(
+        "PATH={}:$PATH; {}",
+        program.parent().unwrap().display(),
+        first["command"].as_str().unwrap()
+    );
+    let again = Command::new("sh")
+        .args(["-c", &command])
+        .current_dir(folder.path())
+        .output();
+    assert!(again.unwrap().status.success(), "{command}");
+    assert_eq!(summary(folder.path(), out)["command"], first["command"]);
+    assert!(solution() == kept);
 }

@@ -7,7 +7,8 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Runs the program until it has written `unfinished.json` and kills it; the folder of its results.
+/// Runs the program until it has written an iterate with its multipliers, which those of the first two are not, and kills it; the folder of
+/// its results.
 fn killed(folder: &Path, arguments: &[&str]) -> PathBuf {
     let results = folder.join("results");
     let mut child = Command::new(env!("CARGO_BIN_EXE_proboscis"))
@@ -18,7 +19,11 @@ fn killed(folder: &Path, arguments: &[&str]) -> PathBuf {
         .spawn()
         .unwrap();
     let began = Instant::now();
-    while !results.join("unfinished.json").exists() {
+    let has_multipliers = || {
+        let arrays = results.join("unfinished.npz");
+        arrays.exists() && self::arrays(&arrays).contains_key("costates/rows")
+    };
+    while !results.join("unfinished.json").exists() || !has_multipliers() {
         let ended = child.try_wait().unwrap();
         assert!(ended.is_none(), "too short a run: {ended:?}");
         assert!(began.elapsed() < Duration::from_secs(120), "nothing kept");
