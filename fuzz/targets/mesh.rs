@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use proboscis::scene::read_scene;
+use proboscis::files::read_scene;
 use proboscis_fuzz::{check, with};
 use std::fs;
 

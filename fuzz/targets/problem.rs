@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use proboscis::scene::read_problem;
+use proboscis::files::read_problem;
 use proboscis_fuzz::{check, with};
 
 fuzz_target!(|bytes: &[u8]| {

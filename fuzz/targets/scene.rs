@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use proboscis::scene::{expand, read_scene};
+use proboscis::files::{expand, read_scene};
 use proboscis_fuzz::{check, with};
 
 fuzz_target!(|bytes: &[u8]| {

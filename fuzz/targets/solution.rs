@@ -2,10 +2,11 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use proboscis::app::CommandError;
 use proboscis::control::problem::Task;
-use proboscis::control::{Boundary, Transcription, guess};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::files::read_problem;
 use proboscis::files::solution;
-use proboscis::scene::read_problem;
 use proboscis_fuzz::{PROBLEM, check, with};
 use std::fs;
 
@@ -20,15 +21,15 @@ fuzz_target!(|bytes: &[u8]| {
             unreachable!("the kept problem is one of control");
         };
         let (model, boundary) =
-            Boundary::resolve(&loaded.system, &control, 10.0).expect("a kept problem");
-        match solution_file::read(&path, &model) {
+            BoundaryConditions::resolve(&loaded.system, &control, 10.0).expect("a kept problem");
+        match solution::read(&path, &model) {
             Ok(earlier) => {
                 let initial = guess(&model, &boundary, &control, 10.0, Some(&earlier));
                 let program = Transcription::new(&model, &boundary, &control, &initial);
                 let point = program.expect("a kept problem").start(&initial);
                 assert!(!point.x.is_empty());
             }
-            Err(error) => check("solution.json", error),
+            Err(error) => check("solution.json", CommandError::Earlier(error.into())),
         }
     });
 });
