@@ -21,10 +21,10 @@ use crate::app::solution_file;
 use crate::app::summary::{self, MEASURED, Seconds, Summary};
 use crate::app::unfinished::{self, Unfinished};
 use crate::app::words::counted;
-use crate::control::Solution;
 use crate::control::problem::{Afterwards, Simulation, Voltages};
+use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
-    DiscreteTrajectory, EnergyExchange, local_error, observations, out_of_domain,
+    DiscreteTrajectory, EnergyExchange, local_error_of, observed, out_of_domain,
 };
 use crate::files::{Loaded, continuation as continuation_file};
 use crate::ipopt::interrupt;
@@ -36,7 +36,7 @@ use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::grids::integrate_to;
 use crate::workflow::integrate::{Simulated, grid, integrate_on};
-use crate::workflow::motion::{solved, trajectory};
+use crate::workflow::motion::{solved, solved_of};
 use crate::workflow::phase::phase;
 use crate::workflow::steps;
 
@@ -135,29 +135,35 @@ pub(super) fn simulation(
         (None, None) => "simulated",
     };
 
-    let kept = solved(&model, &history, None);
     let mut files = FileSet::of(&folder);
     let origin = request.origin(false);
     let integrator = task.solving.integrator;
-    // Of many steps both take long, and neither needs the other.
-    let (seen, written) = rayon::join(
+    let ends = [task.start.voltages(), None];
+    // Of many steps each takes long, and most need no other.
+    let (columns, (motion, written, seen)) = rayon::join(
+        || observed(&model, &history),
         || {
-            (
-                observations(&model, &history),
-                out_of_domain(&model, &history),
-                local_error(&model, &history, integrator.order()),
-            )
-        },
-        || -> Result<_, WriteError> {
-            write_motion(
-                &mut files,
-                (&model, &history, &kept),
-                goes_on.then_some(&problem),
-            )?;
-            fields::write(&mut files, &model, &history, &origin)
+            let motion = Trajectory::from_history(&model, &history);
+            let write = || {
+                let goes_on = goes_on.then_some(&problem);
+                write_motion(&mut files, (&model, &history, &motion), goes_on)?;
+                fields::write(&mut files, &model, &history, &origin)
+            };
+            let see = || {
+                let steps = (&history, &motion);
+                (
+                    out_of_domain(&model, &history),
+                    local_error_of(&model, steps, integrator.order()),
+                    EnergyExchange::new(&model.system, &motion, ends),
+                )
+            };
+            let (written, seen) = rayon::join(write, see);
+            (motion, written, seen)
         },
     );
-    let ((mut observed, outside, neglected), written) = (seen, written?);
+    let ((outside, neglected, exchange), written) = (seen, written?);
+    let mut observed = motion.observe(&model.system);
+    observed.columns.extend(columns);
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = failure.as_ref().map(ToString::to_string);
     summary.accuracy = accuracy;
@@ -172,9 +178,6 @@ pub(super) fn simulation(
         solver: spent,
         ..Seconds::default()
     };
-    let motion = trajectory(&model, &kept);
-    let ends = [task.start.voltages(), None];
-    let exchange = EnergyExchange::new(&model.system, &motion, ends);
     summary.energies = Exchanged::new(&exchange);
     observed.columns.extend(exchange.columns());
     let path = task.voltages.solution();
@@ -279,12 +282,13 @@ pub(super) fn simulation(
 /// Adds the motion to the files of a result, and from what it goes on where it does.
 fn write_motion(
     files: &mut FileSet,
-    (model, history, kept): (&Model, &DiscreteTrajectory, &Solution),
+    (model, history, motion): (&Model, &DiscreteTrajectory, &Trajectory),
     goes_on: Option<&Value>,
 ) -> Result<(), WriteError> {
-    let is_motion = kept.intervals() > 0;
+    let is_motion = motion.intervals() > 0;
     if is_motion {
-        solution_file::add(files, model, kept)?;
+        let kept = solved_of(model, history, motion.clone(), None);
+        solution_file::add(files, model, &kept)?;
     }
     match goes_on.filter(|_| is_motion) {
         Some(asked) => {

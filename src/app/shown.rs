@@ -75,7 +75,7 @@ impl Shown {
         let sampled = (is_asked || is_simulated)
             .then(|| Sampled::of(observations, output.every))
             .flatten();
-        let (trajectory_shown, observations_shown, skins) = match &sampled {
+        let choose = || match &sampled {
             None => (
                 trajectory.clone(),
                 observations.clone(),
@@ -87,6 +87,11 @@ impl Shown {
                 Skins::new(model, &sampled.history(history)),
             ),
         };
+        let is_complete_beside = sampled.is_some() && !is_asked;
+        let complete =
+            || is_complete_beside.then(|| tables(&model.system, trajectory, observations));
+        let ((trajectory_shown, observations_shown, skins), complete) =
+            rayon::join(choose, complete);
         let of = history.times.len();
         let mut shown = Self {
             trajectory: trajectory_shown,
@@ -115,12 +120,11 @@ impl Shown {
                 ));
             }
         }
-        match shown.part {
-            Some(ShownPart { instants, of }) if !is_asked => {
+        match (shown.part, complete) {
+            (Some(ShownPart { instants, of }), Some(bytes)) => {
                 shown.notes.push(format!(
                     "tables, figures and page show {instants} of {of} instants, between which nothing is lost to the eye; {TABLES} and the solution have all, \"output\": {{\"every\": …}} chooses"
                 ));
-                let bytes = tables(&model.system, trajectory, observations);
                 let bytes = bytes.map_err(|cause| WriteError {
                     path: files.folder().join(TABLES),
                     cause,

@@ -55,11 +55,21 @@ pub fn local_error(
     history: &DiscreteTrajectory,
     order: usize,
 ) -> Option<LocalError> {
+    let motion = Trajectory::from_history(model, history);
+    local_error_of(model, (history, &motion), order)
+}
+
+/// The same of a motion whose poses and markers are known.
+pub fn local_error_of(
+    model: &Model,
+    (history, motion): (&DiscreteTrajectory, &Trajectory),
+    order: usize,
+) -> Option<LocalError> {
     let (steps, window) = (history.intervals(), order + 1);
     if steps < window {
         return None;
     }
-    let places = places(model, history);
+    let places = places(model, history, motion);
     let points = places[0].len();
     let constant = constant(order);
     let switches = switches(model, history);
@@ -135,8 +145,7 @@ fn switches(model: &Model, history: &DiscreteTrajectory) -> Vec<usize> {
 
 /// Points that show a motion, by instant, in mm: markers; of each body the centre and the ends of its directors at the radius
 /// of gyration; nodes.
-fn places(model: &Model, history: &DiscreteTrajectory) -> Vec<Vec<Vector>> {
-    let motion = Trajectory::from_history(model, history);
+fn places(model: &Model, history: &DiscreteTrajectory, motion: &Trajectory) -> Vec<Vec<Vector>> {
     let nodes = &model.action.motion.of_nodes;
     let first = model.action.motion.of_bodies;
     let radius: Vec<f64> = model

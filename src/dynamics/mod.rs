@@ -6,7 +6,7 @@
 //! - `step_state`, `resume`: from what a motion goes on.
 //! - `domain`: where the first-order dielectric ends.
 //! - `resolution`, `spans`: which steps are refused; `local_error`: what those neglect that are not.
-//! - `simulate`, `history`, `observe`, `kinetic`: step after step, recorded and observed.
+//! - `simulate`, `history`, `observe`, `interval_energies`, `kinetic`: step after step, recorded and observed.
 //! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
 //! - `statics`: the rows of rest; `ramp`, `equilibrium`, `continuation`: paths of rest under growing loads; `minimum`: minima
 //!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest`: its softest mode.
@@ -19,6 +19,7 @@ mod domain;
 mod equations;
 mod error;
 mod exchange;
+mod interval_energies;
 mod kinetic;
 mod local_error;
 mod midpoint;
@@ -43,10 +44,11 @@ pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
 pub use equations::Equations;
 pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};
-pub use local_error::{LocalError, local_error};
+pub use interval_energies::{Energies, energies};
+pub use local_error::{LocalError, local_error, local_error_of};
 pub use midpoint::{Midpoint, Stepper};
 pub use momenta::last_momentum;
-pub use observe::{Energies, energies, observations};
+pub use observe::{observations, observed};
 pub use resolution::Balance;
 pub use rest::{
     Continuation, Equilibrium, Instability, Load, Mode, Route, Softening, StabilityLoss,

@@ -9,71 +9,71 @@
 
 use crate::coordinates::{Configuration, Interval, Scratch};
 use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
+use crate::dynamics::interval_energies::energies;
 use crate::dynamics::kinetic::Kinetic;
 use crate::dynamics::momenta::{Places, momentum_maps, moving, rates, vector_momenta};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Kind, Order};
 use crate::math::Vector;
 use crate::model::{Model, Role, SolidBlock};
+use rayon::prelude::*;
 use std::ops::Range;
 
-/// Energies of one interval at its midpoint, in mJ.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Energies {
-    /// Kinetic energy.
-    pub kinetic: f64,
-    /// Potential energy of each term that has one, part by part, in the order of the terms.
-    pub potential: Vec<f64>,
-    /// Work that forces without a potential do over the interval.
-    pub work: f64,
-}
-
-impl Energies {
-    /// Kinetic plus potential energy.
-    pub fn total(&self) -> f64 {
-        self.kinetic + self.potential.iter().sum::<f64>()
-    }
-}
-
-/// Energies of the interval of `h` ms between two placed instants under voltages by scalar.
-pub fn energies(
-    model: &Model,
-    a: &Configuration,
-    b: &Configuration,
-    scalars: &[f64],
-    h: f64,
-) -> Energies {
-    let interval = Interval::given(scalars, h);
-    let sample = interval.sample([a, b]);
-    let mut energies = Energies::default();
-    for term in &model.action.intervals.terms {
-        match term.kind() {
-            Kind::Kinetic => energies.kinetic += term.energy(&sample),
-            Kind::Potential => term.energies(&sample, &mut energies.potential),
-            Kind::VirtualWork => energies.work += term.energy(&sample),
-            Kind::Constraint => {}
-        }
-    }
-    energies
-}
+/// Instants that one thread observes in a row.
+const PIECE: usize = 256;
 
 /// All that is observed along a motion, time, joint coordinates and markers first.
 pub fn observations(model: &Model, history: &DiscreteTrajectory) -> Observations {
     let mut observations = Trajectory::from_history(model, history).observe(&model.system);
+    observations.columns.extend(observed(model, history));
+    observations
+}
+
+/// What is observed besides time, joint coordinates and markers; pieces of a long motion at once.
+pub fn observed(model: &Model, history: &DiscreteTrajectory) -> Vec<Column> {
+    let count = history.z.len();
+    let piece = match history.reading {
+        Reading::Intervals => PIECE,
+        // The factorisation of the masses keeps its order from the first instant on.
+        Reading::Instants => count.max(1),
+    };
+    let pieces = count.div_ceil(piece);
+    let rows = |i: usize| {
+        let mut observer = Observer::new(model);
+        let instants = i * piece..count.min((i + 1) * piece);
+        observer.begin(history, instants.start);
+        instants
+            .map(|k| observer.row(history, k))
+            .collect::<Vec<_>>()
+    };
+    let rows: Vec<_> = (0..pieces)
+        .into_par_iter()
+        .with_max_len(1)
+        .map(rows)
+        .collect();
     let mut observer = Observer::new(model);
     let mut columns = observer.columns();
-    for k in 0..history.z.len() {
-        let row = observer.row(history, k);
+    for column in &mut columns {
+        column.values.reserve_exact(count);
+    }
+    for row in rows.iter().flatten() {
         for (column, value) in columns.iter_mut().zip(row) {
-            column.values.push(value);
+            column.values.push(*value);
+        }
+    }
+    let of_intervals = observer.of_intervals();
+    if observer.has(Kind::VirtualWork) {
+        let mut dissipated = 0.0;
+        for work in &mut columns[of_intervals.end].values {
+            dissipated -= *work;
+            *work = dissipated;
         }
     }
     if history.reading == Reading::Intervals && history.times.len() > 1 {
         let last = observer.last(history);
-        to_instants(&history.times, &mut columns[observer.of_intervals()], &last);
+        to_instants(&history.times, &mut columns[of_intervals], &last);
     }
-    observations.columns.extend(columns);
-    observations
+    columns
 }
 
 /// Turns charges, kinetic, potential and total energy in the middle of the intervals that end at the rows into those at the
@@ -121,7 +121,6 @@ struct Observer<'m> {
     scratch: Scratch,
     /// Made where momenta are read at instants.
     kinetic: Option<Kinetic<'m>>,
-    dissipated: f64,
     /// What forces on joint coordinates do to the whole system.
     pulls: Vec<[Vector; 2]>,
 }
@@ -134,8 +133,15 @@ impl<'m> Observer<'m> {
             here: model.action.motion.instant(),
             scratch: model.action.scratch(Order::Gradient),
             kinetic: None,
-            dissipated: 0.0,
             pulls: model.presolved.system.joint_pulls(),
+        }
+    }
+
+    /// Goes to the instant before this one.
+    fn begin(&mut self, history: &DiscreteTrajectory, k: usize) {
+        if let Some(k) = k.checked_sub(1) {
+            self.before.z.copy_from_slice(&history.z[k]);
+            self.model.action.motion.place(&mut self.before);
         }
     }
 
@@ -219,6 +225,7 @@ impl<'m> Observer<'m> {
         columns
     }
 
+    /// The values of the columns at instant k, of the dissipated energy the work of the interval before it.
     fn row(&mut self, history: &DiscreteTrajectory, k: usize) -> Vec<f64> {
         let model = self.model;
         let none = vec![0.0; model.action.intervals.scalars];
@@ -256,7 +263,6 @@ impl<'m> Observer<'m> {
                 (momenta, impulses)
             }
         };
-        self.dissipated -= energies.work;
 
         let mut row = Vec::new();
         let muscles = model.spans.iter().zip(&model.system.muscles);
@@ -271,7 +277,7 @@ impl<'m> Observer<'m> {
         row.extend(&energies.potential);
         row.push(energies.total());
         if self.has(Kind::VirtualWork) {
-            row.push(self.dissipated);
+            row.push(energies.work);
         }
         let poses = model.condensed_poses(&self.here);
         let places = Places {

@@ -3,7 +3,7 @@
 use crate::control::Signal;
 use crate::control::problem::{self, Voltages};
 use crate::dynamics::trajectory::Trajectory;
-use crate::dynamics::{EnergyExchange, Integrator, Newton, Solving, local_error, out_of_domain};
+use crate::dynamics::{EnergyExchange, Integrator, Newton, Solving, local_error_of, out_of_domain};
 use crate::interface::error::{Error, Result, require, source};
 use crate::interface::input::Input;
 use crate::interface::motion::Motion;
@@ -143,8 +143,9 @@ impl Simulation {
 
 /// What is shown of a run.
 fn motion(run: &Simulated, task: &problem::Simulation) -> Motion {
-    let error = local_error(&run.model, &run.history, task.solving.integrator.order());
     let trajectory = Trajectory::from_history(&run.model, &run.history);
+    let order = task.solving.integrator.order();
+    let error = local_error_of(&run.model, (&run.history, &trajectory), order);
     let outside = domain::told(&out_of_domain(&run.model, &run.history));
     let warnings = [
         steps::told(error, &run.history, task),

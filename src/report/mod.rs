@@ -35,6 +35,8 @@ pub mod voltages;
 
 pub use run::{Branch, Figures, Run, Told};
 
+use rayon::prelude::*;
+
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 
@@ -48,7 +50,6 @@ const PAGE: &str = "report.html";
 /// # Errors
 /// A file cannot be written.
 pub fn write_run(files: &mut FileSet, run: &Run<'_>) -> Result<(), WriteError> {
-    // The page takes twice as long as all other files.
     let page = || run.told.map(|told| page::html(run, told));
     let (page, mut texts) = rayon::join(page, || tables_and_figures(run));
     match page {
@@ -62,7 +63,10 @@ pub fn write_run(files: &mut FileSet, run: &Run<'_>) -> Result<(), WriteError> {
     texts.try_for_each(|(name, text)| files.add(name, text.as_bytes()))
 }
 
-/// Names and texts of all files but the page.
+/// Makes a file where there is something to show: its name and its text.
+type Maker<'a> = &'a (dyn Fn() -> Option<(&'static str, String)> + Sync);
+
+/// Names and texts of all files but the page, several at once.
 fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
     let Run {
         system,
@@ -70,57 +74,69 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
         skins,
         observations,
         origin,
+        tracked,
         ..
     } = *run;
+    let view = run.figures.view;
     let mut motions: Vec<_> = run.comparison.into_iter().collect();
     motions.push((run.name, trajectory));
-    let energies = joints::energies(trajectory, observations);
 
-    let mut files = vec![
-        (
-            "trajectory.csv",
-            table::trajectory_csv(run.tabulated, origin),
-        ),
-        (
-            "controls.csv",
-            table::controls_csv(trajectory, system, origin),
-        ),
-        (
-            "configuration.svg",
-            pose::svg(system, trajectory, skins, &run.shown(), origin),
-        ),
+    let makers: [Maker<'_>; 12] = [
+        &|| {
+            let csv = table::trajectory_csv(run.tabulated, origin);
+            Some(("trajectory.csv", csv))
+        },
+        &|| {
+            let csv = table::controls_csv(trajectory, system, origin);
+            Some(("controls.csv", csv))
+        },
+        &|| {
+            let svg = pose::svg(system, trajectory, skins, &run.shown(), origin);
+            Some(("configuration.svg", svg))
+        },
+        &|| {
+            let is_wanted = run.figures.gltf;
+            let animated = is_wanted.then(|| gltf::text(system, trajectory, skins, origin))?;
+            Some(("motion.gltf", animated?))
+        },
+        &|| {
+            let stills = snapshots::svg(system, trajectory, skins, view, origin)?;
+            Some(("snapshots.svg", stills))
+        },
+        &|| {
+            let is_driven = !system.sources().is_empty();
+            is_driven.then(|| ("voltages.svg", voltages::svg(system, trajectory, origin)))
+        },
+        &|| {
+            let is_marked = !system.markers.is_empty();
+            let svg = || tip_path::svg(system, &motions, tracked, view, origin);
+            is_marked.then(|| ("tip_path.svg", svg()))
+        },
+        &|| {
+            let has_any = !trajectory.coordinates(system).is_empty();
+            has_any.then(|| ("joint_angles.svg", joints::svg(system, trajectory, origin)))
+        },
+        &|| {
+            let charges = joints::charges(trajectory, observations);
+            let has_any = !skins.list.is_empty() && !charges.is_empty();
+            has_any.then(|| ("charge.svg", joints::charge_svg(charges, origin)))
+        },
+        &|| {
+            let energies = joints::energies(trajectory, observations);
+            let has_any = !energies.is_empty();
+            has_any.then(|| ("energy.svg", joints::energy_svg(energies, origin)))
+        },
+        &|| {
+            let table = || tracking::table(&trajectory.times, tracked, origin);
+            (!tracked.is_empty()).then(|| ("tracking.csv", table()))
+        },
+        &|| {
+            let svg = || tracking::svg(&trajectory.times, tracked, origin);
+            (!tracked.is_empty()).then(|| ("tracking.svg", svg()))
+        },
     ];
-    if run.figures.gltf {
-        let animated = gltf::text(system, trajectory, skins, origin);
-        files.extend(animated.map(|text| ("motion.gltf", text)));
-    }
-    let stills = snapshots::svg(system, trajectory, skins, run.figures.view, origin);
-    files.extend(stills.map(|svg| ("snapshots.svg", svg)));
-    if !system.sources().is_empty() {
-        files.push(("voltages.svg", voltages::svg(system, trajectory, origin)));
-    }
-    if !system.markers.is_empty() {
-        files.push((
-            "tip_path.svg",
-            tip_path::svg(system, &motions, run.tracked, run.figures.view, origin),
-        ));
-    }
-    if !trajectory.coordinates(system).is_empty() {
-        files.push(("joint_angles.svg", joints::svg(system, trajectory, origin)));
-    }
-    let charges = joints::charges(trajectory, observations);
-    if !skins.list.is_empty() && !charges.is_empty() {
-        files.push(("charge.svg", joints::charge_svg(charges, origin)));
-    }
-    if !energies.is_empty() {
-        files.push(("energy.svg", joints::energy_svg(energies, origin)));
-    }
-    if !run.tracked.is_empty() {
-        let (times, tracked) = (&trajectory.times, run.tracked);
-        files.push(("tracking.csv", tracking::table(times, tracked, origin)));
-        files.push(("tracking.svg", tracking::svg(times, tracked, origin)));
-    }
-    files
+    let each = makers.par_iter().with_max_len(1);
+    each.filter_map(|make| make()).collect()
 }
 
 /// Writes table, figure and page of a state of rest, a motion of one instant.

@@ -11,7 +11,21 @@ use crate::model::{FoundParameter, Model, Role};
 
 /// What is kept of a motion.
 pub fn solved(model: &Model, history: &DiscreteTrajectory, costates: Option<Costates>) -> Solution {
-    let motion = Trajectory::from_history(model, history);
+    solved_of(
+        model,
+        history,
+        Trajectory::from_history(model, history),
+        costates,
+    )
+}
+
+/// The same of a motion whose poses and joint coordinates are known.
+pub(crate) fn solved_of(
+    model: &Model,
+    history: &DiscreteTrajectory,
+    motion: Trajectory,
+    costates: Option<Costates>,
+) -> Solution {
     // One value a joint, zero where a joint has no coordinate.
     let by_joint = |row: Vec<f64>| {
         let mut values = row.into_iter();

@@ -3,7 +3,7 @@
 use crate::common::{at_reference, bare, body, column, columns, joint, motion, placed, trunk};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::dynamics::trajectory::Trajectory;
-use proboscis::dynamics::{DiscreteTrajectory, Start, observations};
+use proboscis::dynamics::{DiscreteTrajectory, Start, observations, observed};
 use proboscis::model::system::{JointKind, VACUUM_PERMITTIVITY};
 use proboscis::model::{Coordinates, Model};
 use std::f64::consts::TAU;
@@ -40,6 +40,42 @@ fn stretches_and_charges_follow_their_formulas() {
                 assert!(exact >= 0.0 && (exact > 0.0) == (voltages[m] > 0.0));
             }
         }
+    }
+}
+
+/// A long motion is observed in pieces; its end alone, whose pieces begin elsewhere, has the same bits.
+#[test]
+fn pieces_of_a_long_motion_join() {
+    let (h, steps, begun) = (5.0, 700, 100);
+    for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
+        let model = Model::new(trunk(2), Some(coordinates), h, &[]).unwrap();
+        let start = Start::at_rest(&model, at_reference(&model));
+        let scalars = model.scalars(&[2000.0, 0.0, 700.0, 1500.0]);
+        let whole = motion(&model, &start, h, steps, &scalars);
+        let end = DiscreteTrajectory {
+            times: whole.times[begun..].to_vec(),
+            z: whole.z[begun..].to_vec(),
+            scalars: whole.scalars[begun..].to_vec(),
+            ..DiscreteTrajectory::default()
+        };
+        let mut moving = 0;
+        for (whole, end) in observed(&model, &whole).iter().zip(observed(&model, &end)) {
+            assert_eq!(whole.values.len(), steps + 1);
+            moving += usize::from(whole.values[begun] != whole.values[steps]);
+            // Dissipated energy counts from the start.
+            let is_sum = end.name == "dissipated_energy";
+            for k in 2..end.values.len() {
+                let [a, b] = [&whole.values[begun..], &end.values].map(|v| match is_sum {
+                    true => v[k] - v[k - 1],
+                    false => v[k],
+                });
+                match is_sum {
+                    true => assert!((a - b).abs() < 1e-12 * whole.values[steps]),
+                    false => assert_eq!(a.to_bits(), b.to_bits(), "{} at {k}", end.name),
+                }
+            }
+        }
+        assert!(moving > 8);
     }
 }
 
