@@ -65,3 +65,54 @@ impl Contraction {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Contraction, Newton, Verdict};
+
+    /// Verdicts on updates `size · rateⁿ` of a tangent that is kept, up to the last one that is made.
+    fn verdicts(size: f64, rate: f64) -> Vec<Verdict> {
+        let mut contraction = Contraction::new(Newton::Modified);
+        let mut found = Vec::new();
+        while !matches!(found.last(), Some(Verdict::Converged | Verdict::Astray)) {
+            assert!(found.len() < 400, "{rate} does not end");
+            let update = size * rate.powi(found.len() as i32);
+            found.push(contraction.judge(update, !found.is_empty(), false));
+        }
+        found
+    }
+
+    /// What is left after n updates of a geometric series is its sum from there on.
+    #[test]
+    fn it_has_converged_where_the_sum_of_all_later_updates_is_small() {
+        for rate in [0.05, 0.3, 0.7, 0.9] {
+            let found = verdicts(0.1, rate);
+            let left = |updates: usize| 0.1 * rate.powi(updates as i32) / (1.0 - rate);
+            assert!(found.len() > 5, "{rate}");
+            assert!(
+                left(found.len()) < 1e-10 && left(found.len() - 1) > 1e-10,
+                "{rate}"
+            );
+            let slow = found.iter().filter(|v| **v == Verdict::Slow).count();
+            assert_eq!(slow > 0, rate > 0.75, "{rate}");
+            assert!(!found.contains(&Verdict::Astray));
+        }
+    }
+
+    #[test]
+    fn a_growing_update_of_an_old_tangent_is_not_made_far_from_the_solution() {
+        assert_eq!(verdicts(0.1, 1.5), [Verdict::Shrinks, Verdict::Astray]);
+        // With the new tangent it begins anew.
+        let mut contraction = Contraction::new(Newton::Modified);
+        contraction.judge(0.1, true, false);
+        assert_eq!(contraction.judge(0.2, true, false), Verdict::Astray);
+        assert_eq!(contraction.judge(0.4, false, false), Verdict::Shrinks);
+        // A tangent of this point may lead to a longer update, and close to the solution rounding does.
+        let mut contraction = Contraction::new(Newton::Full);
+        contraction.judge(0.1, false, false);
+        assert_eq!(contraction.judge(0.2, false, false), Verdict::Slow);
+        let mut contraction = Contraction::new(Newton::Modified);
+        contraction.judge(1e-5, true, false);
+        assert_eq!(contraction.judge(2e-5, true, false), Verdict::Slow);
+    }
+}

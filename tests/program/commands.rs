@@ -342,7 +342,7 @@ fn a_folder_that_cannot_be_made_is_told() {
 #[test]
 fn ctrl_c_keeps_the_files() {
     let folder = workshop();
-    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("proboscis"))
+    let mut child = Command::new(assert_cmd::cargo::cargo_bin("proboscis"))
         .current_dir(folder.path())
         .args([
             "solve",
