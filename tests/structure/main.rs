@@ -10,6 +10,7 @@ mod documents;
 mod floors;
 mod lengths;
 mod numbering;
+mod profiles;
 mod roles;
 mod sources;
 mod trace;
