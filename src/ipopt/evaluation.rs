@@ -5,15 +5,11 @@ use std::time::Instant;
 
 use crate::ipopt::interrupt::{self, Watch};
 use crate::ipopt::reached::{Before, Reached};
+use crate::ipopt::record::Record;
 use crate::ipopt::session;
-use crate::ipopt::solution::{Evaluations, Iteration, Multipliers, Seconds};
+use crate::ipopt::solution::Iteration;
 use crate::ipopt::status::Status;
-use crate::nlp::{Bounds, Entries, Nlp};
-
-/// By how much Ipopt relaxes bounds, of their magnitude and at least of one (`bound_relax_factor`).
-const RELAXED: f64 = 1e-8;
-/// Records of iterations for which room is made beforehand.
-const RESERVED_ITERATIONS: usize = 4096;
+use crate::nlp::{Entries, Nlp};
 
 /// Answers the questions of Ipopt about one nonlinear program.
 ///
@@ -47,72 +43,6 @@ pub(super) struct Asked<'a> {
 pub(super) struct Structures {
     pub(super) jacobian: Entries,
     pub(super) hessian: Entries,
-}
-
-/// What is left of a solve besides the answer of Ipopt.
-#[derive(Debug, Default)]
-pub(super) struct Record {
-    /// One record per iteration.
-    pub(super) iterations: Vec<Iteration>,
-    /// Where derivatives were asked last.
-    derivatives_at: Vec<f64>,
-    /// The latest iterate told; before the first one, the starting point.
-    pub(super) latest: Vec<f64>,
-    /// Multipliers of the constraints there, as the Hessian was asked with; empty until it was.
-    costates: Vec<f64>,
-    /// Why the solve was stopped from outside, if it was.
-    pub(super) stopped: Option<Status>,
-    /// Where the time went; `total` and `solver` are filled in at the end.
-    pub(super) seconds: Seconds,
-    /// How often each quantity was asked for.
-    pub(super) evaluations: Evaluations,
-    /// How many of them met NaN or ±∞.
-    pub(super) failed: usize,
-}
-
-impl Record {
-    /// Nothing is known yet but the start.
-    fn begin(&mut self, start: &[f64]) {
-        self.iterations.clear();
-        self.iterations.reserve(RESERVED_ITERATIONS);
-        for place in [&mut self.derivatives_at, &mut self.latest] {
-            place.clear();
-            place.extend_from_slice(start);
-        }
-        self.costates.clear();
-        self.stopped = None;
-        self.seconds = Seconds::default();
-        self.evaluations = Evaluations::default();
-        self.failed = 0;
-    }
-
-    /// Whether multipliers of the latest iterate are known.
-    pub(super) fn knows_multipliers(&self) -> bool {
-        !self.costates.is_empty()
-    }
-
-    /// How many constraints there are, where multipliers are known.
-    pub(super) fn constraints(&self) -> usize {
-        self.costates.len()
-    }
-
-    /// Multipliers of the latest iterate, where they are known: Ipopt has lost them where it was stopped on the way to the next one. Those of
-    /// bounds are the barrier parameter over the distance, to which Ipopt keeps them near.
-    pub(super) fn write_multipliers(&self, bounds: &Bounds, to: &mut Multipliers) {
-        let (Some(last), false) = (self.iterations.last(), self.costates.is_empty()) else {
-            return;
-        };
-        to.constraints.copy_from_slice(&self.costates);
-        for (i, x) in self.latest.iter().enumerate() {
-            let (lower, upper) = (bounds.lower[i], bounds.upper[i]);
-            let of_bound = |gap: f64, bound: f64| match lower == upper {
-                true => 0.0,
-                false => last.mu / (gap.max(0.0) + RELAXED * bound.abs().max(1.0)),
-            };
-            to.lower[i] = of_bound(x - lower, lower);
-            to.upper[i] = of_bound(upper - x, upper);
-        }
-    }
 }
 
 impl<'a> Evaluator<'a> {

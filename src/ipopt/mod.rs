@@ -14,6 +14,7 @@ mod linear_report;
 mod linear_solver;
 mod options;
 mod reached;
+mod record;
 mod session;
 mod solution;
 mod solver;

@@ -1,6 +1,6 @@
 //! An iterate as an observer sees it, and what is known of the one before.
 
-use crate::ipopt::evaluation::Record;
+use crate::ipopt::record::Record;
 use crate::ipopt::solution::{Iteration, Multipliers};
 use crate::nlp::Bounds;
 

@@ -6,12 +6,13 @@ use std::ops::ControlFlow;
 
 use crate::ipopt::centre::centre;
 use crate::ipopt::error::IpoptError;
-use crate::ipopt::evaluation::{Asked, Evaluator, Record, Structures};
+use crate::ipopt::evaluation::{Asked, Evaluator, Structures};
 use crate::ipopt::ffi::Problem;
 use crate::ipopt::interrupt;
 use crate::ipopt::known_bounds::KnownBounds;
 use crate::ipopt::options::{self, Options, Start};
 use crate::ipopt::reached::Reached;
+use crate::ipopt::record::Record;
 use crate::ipopt::session::Session;
 use crate::ipopt::solution::{Iteration, SolverResult, StartingPoint};
 use crate::ipopt::status::Status;

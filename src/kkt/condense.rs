@@ -66,19 +66,6 @@ impl Block {
         self.states.len() - self.equations.len()
     }
 
-    /// Entries that it adds to the reduced system: pairs of `reach` and `weighted`.
-    pub(super) fn responses(&self) -> usize {
-        self.reach.len() * self.weighted.len()
-    }
-
-    /// Those that it adds where its equations have a diagonal: pairs of two of `weighted`, each once.
-    pub(super) fn squares(&self) -> usize {
-        match self.diagonal.is_empty() {
-            true => 0,
-            false => self.weighted.len() * (self.weighted.len() + 1) / 2,
-        }
-    }
-
     pub(super) fn multiplications(&self) -> f64 {
         let (n, e) = (self.states.len() as f64, self.equations.len() as f64);
         let (reach, weighted) = (self.reach.len() as f64, self.weighted.len() as f64);

@@ -44,6 +44,21 @@ impl Weights {
     }
 }
 
+impl Block {
+    /// Entries that it adds to the reduced system: pairs of `reach` and `weighted`.
+    pub(super) fn responses(&self) -> usize {
+        self.reach.len() * self.weighted.len()
+    }
+
+    /// Those that it adds where its equations have a diagonal: pairs of two of `weighted`, each once.
+    pub(super) fn squares(&self) -> usize {
+        match self.diagonal.is_empty() {
+            true => 0,
+            false => self.weighted.len() * (self.weighted.len() + 1) / 2,
+        }
+    }
+}
+
 impl Reduce<'_> {
     pub(super) fn multiplications(part: &Block) -> usize {
         part.states.len() * part.reach.len() * part.weighted.len()

@@ -7,8 +7,8 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Runs the program until it has written an iterate with its multipliers, which those of the first two are not, and kills it; the folder of
-/// its results.
+/// Runs the program until it has written an iterate with its multipliers, which are unknown at first and zero at the start, and kills it; the
+/// folder of its results.
 fn killed(folder: &Path, arguments: &[&str]) -> PathBuf {
     let results = folder.join("results");
     let mut child = Command::new(env!("CARGO_BIN_EXE_proboscis"))
@@ -21,7 +21,11 @@ fn killed(folder: &Path, arguments: &[&str]) -> PathBuf {
     let began = Instant::now();
     let has_multipliers = || {
         let arrays = results.join("unfinished.npz");
-        arrays.exists() && self::arrays(&arrays).contains_key("costates/rows")
+        let is_there = |rows: &Vec<f64>| rows.iter().any(|y| y.abs() > 1e-9);
+        arrays.exists()
+            && self::arrays(&arrays)
+                .get("costates/rows")
+                .is_some_and(is_there)
     };
     while !results.join("unfinished.json").exists() || !has_multipliers() {
         let ended = child.try_wait().unwrap();

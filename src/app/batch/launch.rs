@@ -9,6 +9,7 @@ use std::time::Instant;
 use super::parent::bind;
 use crate::app::progress::ProgressDisplay;
 use crate::app::request::{CommandInput, PageWanted};
+use crate::report::shell;
 use crate::report::viewpoint::Viewpoint;
 
 /// A solve that runs.
@@ -25,7 +26,7 @@ pub(super) fn as_typed(request: CommandInput) -> CommandInput {
     let typed = typed.iter().map(|word| word.to_string_lossy());
     let typed: Vec<_> = ["proboscis".into()].into_iter().chain(typed).collect();
     CommandInput {
-        command: typed.join(" "),
+        command: shell::command(&typed),
         progress: ProgressDisplay::Never,
         ..request
     }
