@@ -31,7 +31,7 @@ impl<'a> Before<'a> {
     /// The latest iterate of a record, where its multipliers are known.
     pub(super) fn of(record: &'a Record, bounds: &'a Bounds, scale: f64) -> Option<Self> {
         let report = record.iterations.last()?;
-        record.knows_multipliers().then_some(Self {
+        (!record.costates.is_empty()).then_some(Self {
             report,
             x: &record.latest,
             record,
@@ -43,7 +43,7 @@ impl<'a> Before<'a> {
     /// Its multipliers; those of bounds are the barrier parameter over the distance, to which Ipopt keeps them near.
     pub fn multipliers(&self) -> Multipliers {
         let mut multipliers = Multipliers::default();
-        multipliers.reset(self.x.len(), self.record.constraints());
+        multipliers.reset(self.x.len(), self.record.costates.len());
         self.record.write_multipliers(self.bounds, &mut multipliers);
         multipliers.scale(self.scale.recip());
         multipliers

@@ -46,16 +46,6 @@ impl Record {
         self.failed = 0;
     }
 
-    /// Whether multipliers of the latest iterate are known.
-    pub(super) fn knows_multipliers(&self) -> bool {
-        !self.costates.is_empty()
-    }
-
-    /// How many constraints there are, where multipliers are known.
-    pub(super) fn constraints(&self) -> usize {
-        self.costates.len()
-    }
-
     /// Multipliers of the latest iterate, where they are known: Ipopt has lost them where it was stopped on the way to the next one. Those of
     /// bounds are the barrier parameter over the distance, to which Ipopt keeps them near.
     pub(super) fn write_multipliers(&self, bounds: &Bounds, to: &mut Multipliers) {

@@ -13,10 +13,7 @@ pub(super) fn halves<A: Send, B: Send>(
     a: impl FnOnce() -> A + Send,
     b: impl FnOnce() -> B + Send,
 ) -> (A, B) {
-    match multiplications < MUCH {
-        true => (a(), b()),
-        false => both(a, b),
-    }
+    both(multiplications >= MUCH, a, b)
 }
 
 /// How many items make the first half, of items with these costs.

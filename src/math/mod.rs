@@ -8,6 +8,7 @@ pub mod random;
 mod sets;
 
 pub(crate) use both::both;
+pub use both::cores;
 pub use digits::significant;
 pub use jet::Jet;
 pub use sets::DisjointSets;

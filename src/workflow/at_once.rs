@@ -4,20 +4,17 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
-use std::thread::{self, available_parallelism};
+use std::thread;
 
 use rayon::ThreadPoolBuilder;
+
+pub use crate::math::cores;
 
 /// Bytes of the stack of a thread: those that a main thread has.
 const STACK: usize = 8 << 20;
 
 /// An answer, or the message of the panic that came in its place.
 pub type Answered<A> = Result<A, String>;
-
-/// Cores of this machine.
-pub fn cores() -> usize {
-    available_parallelism().map_or(1, usize::from)
-}
 
 /// The answers to all items, in their order, found in at most `threads` threads.
 ///

@@ -42,11 +42,7 @@ impl Decoder {
 
     /// Unscaled costates of a point.
     pub fn costates(&self, costates: &ipopt::Multipliers) -> Costates {
-        Costates {
-            rows: times(&costates.constraints, &self.row_scales),
-            lower: divide(&costates.lower, &self.scales),
-            upper: divide(&costates.upper, &self.scales),
-        }
+        unscaled(costates, &self.row_scales, &self.scales)
     }
 }
 
@@ -120,7 +116,7 @@ impl Transcription<'_> {
 
     /// Unscaled costates of a solution.
     pub fn costates(&self, costates: &ipopt::Multipliers) -> Costates {
-        self.decoder().costates(costates)
+        unscaled(costates, &self.row_scales, &self.variable_scales)
     }
 
     /// Reads a point, unless it stands there already; a sweep places the instants.
@@ -152,6 +148,15 @@ impl Transcription<'_> {
             self.kilovolts[place] = self.variable_scales[column] * x[column] / KILOVOLT;
         }
         self.placed = Placed::Nothing;
+    }
+}
+
+/// Costates without the scales of rows and variables.
+fn unscaled(costates: &ipopt::Multipliers, rows: &[f64], variables: &[f64]) -> Costates {
+    Costates {
+        rows: times(&costates.constraints, rows),
+        lower: divide(&costates.lower, variables),
+        upper: divide(&costates.upper, variables),
     }
 }
 

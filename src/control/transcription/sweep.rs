@@ -70,10 +70,8 @@ impl<'m> Transcription<'m> {
                 values: values_right,
                 rows: rows_right,
             };
-            match layout.values(last) < MUCH {
-                true => (left.run(), right.run()),
-                false => both(|| left.run(), || right.run()),
-            };
+            let are_much = layout.values(last) >= MUCH;
+            both(are_much, || left.run(), || right.run());
             let instant = &mut self.instants[middle];
             let add = |sum: &mut [Vector], list: &[Vector]| {
                 sum.iter_mut().zip(list).for_each(|(s, v)| *s += v);
