@@ -1,17 +1,19 @@
-//! Dense blocks of equations with as many unknowns or more, by `faer`.
+//! Blocks of equations with as many unknowns or more, factored panel by panel within their envelope.
 //!
-//! A block is A = [A_D A_F] with the unknowns exchanged so that `Aᵀ = [L₁; L₂] U`: exchanges of rows of Aᵀ choose the unknowns that the equations
-//! determine. Then `A_D = Uᵀ L₁ᵀ` and `A_D⁻¹ A_F = L₁⁻ᵀ L₂ᵀ`, in which no small pivot of U occurs.
+//! A block is A with its unknowns exchanged so that `P Aᵀ = L [U; 0]`: exchanges of rows of Aᵀ choose the unknowns that the equations
+//! determine, those before the equations' number. A panel exchanges rows once, and L holds what stood there then: it is a product of one
+//! factor for each panel, with exchanges between them.
 
 use std::fmt;
+use std::ops::Range;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::factor;
+use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve as triangular;
-use faer::{MatMut, MatRef, Par};
-use pulp::Simd;
+use faer::{Accum, MatMut, MatRef, Par};
 
-use super::lanes::{dot, subtract};
+use super::envelope::{Envelope, Panel};
 
 /// Least pivot against the entries of its equation; less is an error of rounding.
 const REGULAR: f64 = 1e-14;
@@ -19,19 +21,21 @@ const REGULAR: f64 = 1e-14;
 /// A block with its factors.
 #[derive(Clone, Debug)]
 pub(super) struct BlockLu {
-    unknowns: usize,
-    equations: usize,
-    /// Aᵀ by columns.
+    pub(super) envelope: Envelope,
+    /// Aᵀ by columns, one for each equation.
     values: Vec<f64>,
-    /// Exchanges of unknowns and their inverses.
-    forward: Vec<usize>,
-    inverse: Vec<usize>,
+    /// The row with which each pivot was exchanged.
+    pub(super) exchanges: Vec<u32>,
 }
 
 /// Memory to factor one block after the other.
 pub(super) struct Room {
     /// Greatest entry of each equation.
     largest: Vec<f64>,
+    /// Rows of a panel after its exchanges and where they are, then which row stands where.
+    forward: Vec<u32>,
+    inverse: Vec<u32>,
+    standing: Vec<u32>,
     memory: MemBuffer,
 }
 
@@ -46,28 +50,34 @@ impl fmt::Debug for Room {
 impl Room {
     /// For any of these blocks.
     pub(super) fn of(blocks: &[BlockLu]) -> Self {
-        let scratch = |block: &BlockLu| {
-            let (rows, columns) = (block.unknowns, block.equations);
-            factor::lu_in_place_scratch::<usize, f64>(rows, columns, Par::Seq, Default::default())
+        let panels = blocks.iter().flat_map(|block| &block.envelope.panels);
+        let scratch = panels.map(|panel| {
+            let (rows, columns) = (panel.height(), panel.equations.len());
+            factor::lu_in_place_scratch::<u32, f64>(rows, columns, Par::Seq, Default::default())
+        });
+        let memory = scratch.fold(Default::default(), |all, one| one.or(all));
+        let most = |size: fn(&Envelope) -> usize| {
+            let sizes = blocks.iter().map(|block| size(&block.envelope));
+            sizes.max().unwrap_or(0)
         };
-        let needed = blocks.iter().map(scratch);
-        let equations = blocks.iter().map(|block| block.equations);
+        let rows = most(|envelope| envelope.stride);
         Self {
-            largest: vec![0.0; equations.max().unwrap_or(0)],
-            memory: MemBuffer::new(needed.fold(Default::default(), |all, one| one.or(all))),
+            largest: vec![0.0; most(|envelope| envelope.equations)],
+            forward: vec![0; rows],
+            inverse: vec![0; rows],
+            standing: vec![0; rows],
+            memory: MemBuffer::new(memory),
         }
     }
 }
 
 impl BlockLu {
-    /// A block of so many equations and unknowns.
-    pub(super) fn new(equations: usize, unknowns: usize) -> Self {
+    /// A block with entries in this envelope.
+    pub(super) fn new(envelope: Envelope) -> Self {
         Self {
-            unknowns,
-            equations,
-            values: vec![0.0; equations * unknowns],
-            forward: vec![0; unknowns],
-            inverse: vec![0; unknowns],
+            values: vec![0.0; envelope.len()],
+            exchanges: vec![0; envelope.equations],
+            envelope,
         }
     }
 
@@ -78,100 +88,104 @@ impl BlockLu {
 
     /// Adds to an entry.
     pub(super) fn add(&mut self, equation: usize, unknown: usize, value: f64) {
-        self.values[unknown + equation * self.unknowns] += value;
+        self.values[unknown + equation * self.envelope.stride] += value;
     }
 
     /// Factors it; false where its equations depend on each other, or are no finite numbers.
     pub(super) fn factor(&mut self, room: &mut Room) -> bool {
-        let (n, equations, values) = (self.unknowns, self.equations, &mut self.values);
-        for (largest, column) in room.largest.iter_mut().zip(values.chunks_exact(n)) {
-            *largest = column.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        for panel in &self.envelope.panels {
+            for j in panel.equations.clone() {
+                let column = column(&self.values, self.envelope.stride, panel.rows.clone(), j);
+                let most = column.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+                room.largest[j] = most;
+            }
         }
-        factor::lu_in_place(
-            MatMut::from_column_major_slice_mut(values, n, equations),
-            &mut self.forward,
-            &mut self.inverse,
-            Par::Seq,
-            MemStack::new(&mut room.memory),
-            Default::default(),
-        );
-        let mut pivots = room.largest.iter().zip(values.iter().step_by(n + 1));
-        pivots
-            .by_ref()
-            .take(equations)
-            .all(|(largest, pivot)| pivot.abs() > REGULAR * largest)
-    }
-
-    /// Its unknowns: those that its equations determine, then the free ones.
-    pub(super) fn order(&self) -> &[usize] {
-        &self.forward
-    }
-
-    /// Replaces columns of right-hand sides, one behind the other, by `A_D⁻¹` times them.
-    pub(super) fn solve(&self, right: &mut [f64]) {
-        let (square, _) = self.parts();
-        let mut right = columns(right, self.equations);
-        let par = Par::Seq;
-        triangular::solve_lower_triangular_in_place(square.transpose(), right.as_mut(), par);
-        triangular::solve_unit_upper_triangular_in_place(square.transpose(), right, par);
-    }
-
-    /// The same with `A_D⁻ᵀ`.
-    pub(super) fn solve_transposed(&self, right: &mut [f64]) {
-        let (square, _) = self.parts();
-        let mut right = columns(right, self.equations);
-        let par = Par::Seq;
-        triangular::solve_unit_lower_triangular_in_place(square, right.as_mut(), par);
-        triangular::solve_upper_triangular_in_place(square, right, par);
-    }
-
-    /// `A_D⁻¹` of one column.
-    #[inline(always)]
-    pub(super) fn solve_one<S: Simd>(&self, unit: S, right: &mut [f64]) {
-        let columns = self.values.chunks_exact(self.unknowns);
-        for (j, column) in columns.clone().enumerate() {
-            let known = dot(unit, &column[..j], &right[..j]);
-            right[j] = (right[j] - known) / column[j];
+        for panel in &self.envelope.panels {
+            let exchanges = &mut self.exchanges[panel.equations.clone()];
+            eliminate(
+                panel,
+                &mut self.values,
+                self.envelope.stride,
+                exchanges,
+                room,
+            );
         }
-        let e = right.len();
-        for (j, column) in columns.enumerate().rev() {
-            let (value, known) = right[j..].split_first_mut().expect("a row for each column");
-            *value -= dot(unit, &column[j + 1..e], known);
-        }
+        let pivots = self.values.iter().step_by(self.envelope.stride + 1);
+        let mut pivots = room
+            .largest
+            .iter()
+            .zip(pivots.take(self.envelope.equations));
+        pivots.all(|(largest, pivot)| pivot.abs() > REGULAR * largest)
     }
 
-    /// `A_D⁻ᵀ` of one column.
-    #[inline(always)]
-    pub(super) fn solve_one_transposed<S: Simd>(&self, unit: S, right: &mut [f64]) {
-        let columns = self.values.chunks_exact(self.unknowns);
-        let e = right.len();
-        for (j, column) in columns.clone().enumerate() {
-            let (value, below) = right[j..].split_first_mut().expect("a row for each column");
-            subtract(unit, below, &column[j + 1..e], *value);
-        }
-        for (j, column) in columns.enumerate().rev() {
-            let value = right[j] / column[j];
-            right[j] = value;
-            subtract(unit, &mut right[..j], &column[..j], value);
-        }
+    /// Rows of the column of an equation.
+    pub(super) fn column(&self, rows: Range<usize>, equation: usize) -> &[f64] {
+        column(&self.values, self.envelope.stride, rows, equation)
     }
 
-    /// `A_D⁻¹ A_F`, one column for each free unknown.
-    pub(super) fn free(&self, to: &mut [f64]) {
-        let (square, free) = self.parts();
-        let mut to = columns(to, self.equations);
-        to.copy_from(free.transpose());
-        triangular::solve_unit_upper_triangular_in_place(square.transpose(), to, Par::Seq);
-    }
-
-    /// L₁ and U in one square, and L₂.
-    fn parts(&self) -> (MatRef<'_, f64>, MatRef<'_, f64>) {
-        MatRef::from_column_major_slice(&self.values, self.unknowns, self.equations)
-            .split_at_row(self.equations)
+    /// Rows of the columns of a panel.
+    pub(super) fn rectangle(&self, rows: Range<usize>, panel: &Panel) -> MatRef<'_, f64> {
+        let (start, stride) = (panel.equations.start, self.envelope.stride);
+        let values = &self.values[rows.start + start * stride..];
+        let (rows, columns) = (rows.len(), panel.equations.len());
+        MatRef::from_column_major_slice_with_stride(values, rows, columns, stride)
     }
 }
 
-fn columns(numbers: &mut [f64], rows: usize) -> MatMut<'_, f64> {
-    let count = numbers.len() / rows;
-    MatMut::from_column_major_slice_mut(numbers, rows, count)
+fn column(values: &[f64], stride: usize, rows: Range<usize>, equation: usize) -> &[f64] {
+    &values[rows.start + equation * stride..][..rows.len()]
+}
+
+/// Eliminates the equations of one panel.
+fn eliminate(
+    panel: &Panel,
+    values: &mut [f64],
+    stride: usize,
+    exchanges: &mut [u32],
+    room: &mut Room,
+) {
+    let (start, width, height) = (panel.equations.start, panel.equations.len(), panel.height());
+    let values = &mut values[start + start * stride..];
+    let columns = panel.end - start;
+    let all = MatMut::from_column_major_slice_with_stride_mut(values, height, columns, stride);
+    let (mut factors, mut others) = all.split_at_col_mut(width);
+    let (forward, inverse) = (&mut room.forward[..height], &mut room.inverse[..height]);
+    factor::lu_in_place(
+        factors.as_mut(),
+        forward,
+        inverse,
+        Par::Seq,
+        MemStack::new(&mut room.memory),
+        Default::default(),
+    );
+    // The same as exchanges, one for each pivot.
+    let standing = &mut room.standing[..height];
+    for (i, row) in standing.iter_mut().enumerate() {
+        *row = i as u32;
+        inverse[i] = i as u32;
+    }
+    for (i, exchange) in exchanges.iter_mut().enumerate() {
+        let (now, wanted) = (standing[i], forward[i]);
+        let at = inverse[wanted as usize];
+        standing.swap(i, at as usize);
+        (inverse[now as usize], inverse[wanted as usize]) = (at, i as u32);
+        *exchange = start as u32 + at;
+    }
+    if others.ncols() == 0 {
+        return;
+    }
+    for mut column in others.as_mut().col_iter_mut() {
+        for (i, &exchange) in exchanges.iter().enumerate() {
+            let at = exchange as usize - start;
+            let value = column[i];
+            column[i] = column[at];
+            column[at] = value;
+        }
+    }
+    let (square, below) = factors.as_ref().split_at_row(width);
+    let (mut right, rest) = others.split_at_row_mut(width);
+    triangular::solve_unit_lower_triangular_in_place(square, right.as_mut(), Par::Seq);
+    if below.nrows() > 0 {
+        matmul(rest, Accum::Add, below, right.as_ref(), -1.0, Par::Seq);
+    }
 }

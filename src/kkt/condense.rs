@@ -12,8 +12,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem;
-use std::ops::Range;
 
+use super::arrange::arrange;
+use super::block::{Block, Item};
 use super::fronts::Fronts;
 use super::graph::Graph;
 use super::groups::{self, Group};
@@ -24,55 +25,6 @@ const WORTH: f64 = 0.5;
 /// Least part of the unknowns that equations determine.
 const SHARE: f64 = 0.2;
 const NONE: u32 = u32::MAX;
-
-/// An entry of one of the blocks.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Item {
-    /// Its number among the values; before these are known, among the entries.
-    pub(super) value: u32,
-    pub(super) row: u32,
-    pub(super) column: u32,
-    /// Where the response of the column begins among the columns of the block.
-    pub(super) place: u32,
-}
-
-/// One group. States and equations are counted through all groups, reduced unknowns by themselves.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Block {
-    pub(super) states: Range<usize>,
-    pub(super) equations: Range<usize>,
-    /// Reduced unknowns to which its states respond: by way of earlier groups, directly, and the states that are left over.
-    pub(super) reach: Vec<u32>,
-    /// How many of them by way of earlier groups.
-    pub(super) inherited: usize,
-    /// Reduced unknowns of the columns of H S + Kᵀ.
-    pub(super) weighted: Vec<u32>,
-    /// Entries of A: of its own states, and of earlier ones.
-    pub(super) own: Vec<Item>,
-    pub(super) below: Vec<Item>,
-    /// Entries of Gᵀ, column one of the rest.
-    pub(super) inputs: Vec<Item>,
-    /// Entries of H, each once: row a state of the group, column one of its own or of an earlier one.
-    pub(super) curvature: Vec<Item>,
-    /// Entries of Kᵀ, column one of the rest.
-    pub(super) coupling: Vec<Item>,
-    /// Entries on the diagonal of its equations, where the states of the group bear that.
-    pub(super) diagonal: Vec<Item>,
-}
-
-impl Block {
-    /// States that are left over.
-    pub(super) fn free(&self) -> usize {
-        self.states.len() - self.equations.len()
-    }
-
-    pub(super) fn multiplications(&self) -> f64 {
-        let (n, e) = (self.states.len() as f64, self.equations.len() as f64);
-        let (reach, weighted) = (self.reach.len() as f64, self.weighted.len() as f64);
-        let items = (2 * self.curvature.len() + self.below.len()) as f64;
-        e * e * (n / 2.0 - e / 6.0 + reach) + n * reach * weighted + items * reach
-    }
-}
 
 /// States, their equations and the rest, each numbered by itself.
 #[derive(Clone, Debug, Default)]
@@ -120,7 +72,9 @@ impl Condensation {
         let most = WORTH * multiplications;
         let candidates = [groups::constraints, groups::squares].into_iter();
         let of_groups = |choose: fn(&Graph, &[Unknown]) -> Vec<Group>| {
-            Self::of_groups(&choose(graph, unknowns), unknowns, (rows, cols), most)
+            let mut groups = choose(graph, unknowns);
+            arrange(graph, &mut groups);
+            Self::of_groups(&groups, unknowns, (rows, cols), most)
         };
         let all = candidates.filter_map(of_groups);
         let cheapest = all.min_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -219,6 +173,7 @@ impl Condensation {
             }
         }
         self.sort_diagonals();
+        self.blocks.iter_mut().for_each(Block::fill);
         is_triangular
     }
 

@@ -15,8 +15,9 @@ use std::ops::Range;
 
 use pulp::Arch;
 
+use super::block::{Block, Item};
 use super::block_lu::{BlockLu, Room};
-use super::condense::{Block, Condensation, Item};
+use super::condense::Condensation;
 use super::halves::{halves, middle};
 use super::inertia::Inertia;
 use super::numeric::{Factors, Outcome};
@@ -46,9 +47,10 @@ pub(super) struct Condensed {
     /// S by rows, one for each state, and where each begins.
     pub(super) responses: Vec<f64>,
     pub(super) starts: Vec<usize>,
-    /// Gᵀ of one block by rows, and right-hand sides by columns.
+    /// Gᵀ of one block by rows, S by columns, and one column.
     rows: Vec<f64>,
     columns: Vec<f64>,
+    pub(super) column: Vec<f64>,
     /// Sums of the entries at each place; the first one is of none.
     pub(super) values: Vec<f64>,
     entries: Vec<f64>,
@@ -74,11 +76,9 @@ impl Condensed {
         }
         let blocks = parts.blocks.iter();
         let blocks: Vec<BlockLu> = blocks
-            .map(|block| BlockLu::new(block.equations.len(), block.states.len()))
+            .map(|block| BlockLu::new(block.envelope.clone()))
             .collect();
-        let sizes = parts.blocks.iter();
-        let most = sizes.map(|b| b.equations.len() * b.reach.len()).max();
-        let most = most.unwrap_or(0);
+        let most = |size: fn(&Block) -> usize| parts.blocks.iter().map(size).max().unwrap_or(0);
         let plans = parts.plans.iter();
         let entries = plans.map(|plan| plan.pattern().0.len()).max().unwrap_or(0);
         Self {
@@ -88,8 +88,9 @@ impl Condensed {
             blocks,
             responses: vec![0.0; starts[starts.len() - 1]],
             starts,
-            rows: vec![0.0; most],
-            columns: vec![0.0; most],
+            rows: vec![0.0; most(|b| b.equations.len() * b.reach.len())],
+            columns: vec![0.0; most(|b| b.states.len() * b.reach.len())],
+            column: vec![0.0; most(|b| b.states.len())],
             values: vec![0.0; parts.count],
             entries: vec![0.0; entries],
             has_diagonal: false,
@@ -128,7 +129,7 @@ impl Condensed {
         }
         for k in 0..self.parts.blocks.len() {
             let block = &self.parts.blocks[k];
-            progress.add(block.equations.len().pow(2) * block.reach.len())?;
+            progress.add(block.envelope.of_solution() * block.reach.len())?;
             self.respond(k);
         }
         if self.is_growing() {
@@ -160,7 +161,7 @@ impl Condensed {
                     room: &mut Room,
                     progress: &mut Progress<'_>| {
             for (part, block) in parts.iter().zip(blocks) {
-                progress.add(of_factors(part))?;
+                progress.add(part.envelope.of_factors())?;
                 block.clear();
                 for item in &part.own {
                     let equation = item.row as usize - part.equations.start;
@@ -178,7 +179,7 @@ impl Condensed {
         let [room, other] = &mut self.rooms;
         let [mut first, mut second] = progress.halves();
         let (a, b) = halves(
-            parts.iter().map(of_factors).sum(),
+            parts.iter().map(|part| part.envelope.of_factors()).sum(),
             || work(parts_of.0, blocks_of.0, room, &mut first),
             || work(parts_of.1, blocks_of.1, other, &mut second),
         );
@@ -188,7 +189,7 @@ impl Condensed {
     /// S of one block: by halves of its equations, then of its columns.
     fn respond(&mut self, k: usize) {
         let (part, block) = (&self.parts.blocks[k], &self.blocks[k]);
-        let (e, width) = (part.equations.len(), part.reach.len());
+        let (n, e, width) = (part.states.len(), part.equations.len(), part.reach.len());
         if width == 0 {
             return;
         }
@@ -222,30 +223,27 @@ impl Condensed {
         );
         let rows = &*rows;
         let solve = |first: usize, columns: &mut [f64]| {
-            for (j, column) in columns.chunks_exact_mut(e).enumerate() {
+            for (j, column) in columns.chunks_exact_mut(n).enumerate() {
                 for (value, row) in column.iter_mut().zip(rows.chunks_exact(width)) {
                     *value = row[first + j];
                 }
             }
             block.solve(columns);
         };
-        let (determined, free) = self.columns[..e * width].split_at_mut(e * direct);
+        let columns = &mut self.columns[..n * width];
+        let (determined, free) = columns.split_at_mut(n * direct);
         let half = direct / 2;
-        let (left, right) = determined.split_at_mut(e * half);
-        halves(e * e * direct, || solve(0, left), || solve(half, right));
+        let (left, right) = determined.split_at_mut(n * half);
+        halves(
+            part.envelope.of_solution() * direct,
+            || solve(0, left),
+            || solve(half, right),
+        );
         block.free(free);
-        free.iter_mut().for_each(|value| *value = -*value);
-        let columns = &self.columns;
-        for (i, &state) in block.order().iter().enumerate() {
-            let start = self.starts[part.states.start + state];
-            let row = &mut self.responses[start..start + width];
-            row.fill(0.0);
-            if i < e {
-                for (j, value) in row.iter_mut().enumerate() {
-                    *value = columns[i + j * e];
-                }
-            } else {
-                row[direct + i - e] = 1.0;
+        let own = self.starts[part.states.start]..self.starts[part.states.end];
+        for (i, row) in self.responses[own].chunks_exact_mut(width).enumerate() {
+            for (j, value) in row.iter_mut().enumerate() {
+                *value = columns[i + j * n];
             }
         }
     }
@@ -307,11 +305,6 @@ impl Condensed {
         }
         Ok(())
     }
-}
-
-/// Multiplications to factor a block.
-fn of_factors(block: &Block) -> usize {
-    block.equations.len().pow(2) * block.states.len() / 2
 }
 
 /// Items of these rows, of items row by row.

@@ -16,17 +16,22 @@
 //! | `graph`, `order`, `tree`, `fronts`, `plan` | once for a pattern: order of elimination, fronts, where each entry goes |
 //! | `pivot`, `dense`, `update`, `eliminate` | one dense front |
 //! | `numeric`, `solve`, `scales` | factors, solutions, equilibration |
-//! | `groups`, `condense`, `condensed`, `reduce`, `products`, `block_lu`, `substitute` | unknowns that equations determine, eliminated before all others |
+//! | `groups`, `arrange`, `block`, `condense`, `condensed`, `reduce`, `products`, `substitute` | unknowns that equations determine, eliminated before all others |
+//! | `envelope`, `block_lu`, `block_solve` | the equations of one group |
 //! | `solver` | when to scale, how strictly to pivot, whether the factors are good |
 //! | `progress`, `halves` | whether a long factorisation is to go on, and that on two cores |
 //!
 //! After the first matrix nothing is allocated, unless more pivots are delayed than ever before.
 
+mod arrange;
+mod block;
 mod block_lu;
+mod block_solve;
 mod condense;
 mod condensed;
 mod dense;
 mod eliminate;
+mod envelope;
 mod fronts;
 mod graph;
 mod groups;

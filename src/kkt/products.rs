@@ -2,7 +2,7 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::condense::{Block, Item};
+use super::block::{Block, Item};
 use super::lanes::subtract;
 
 /// `to ← to − B S` for a sparse B: rows of `to` have `width` numbers and begin with row `first`; S stands where each item says.

@@ -5,8 +5,8 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use pulp::Arch;
 
+use super::block::Block;
 use super::block_lu::BlockLu;
-use super::condense::Block;
 use super::products::Curvature;
 use super::progress::{Progress, Stopped};
 
@@ -38,7 +38,7 @@ impl Weights {
         let most = |size: fn(&Block) -> usize| vec![0.0; parts.iter().map(size).max().unwrap_or(0)];
         Self {
             rows: most(|b| b.states.len() * b.weighted.len()),
-            columns: most(|b| b.equations.len() * b.weighted.len()),
+            columns: most(|b| b.states.len() * b.weighted.len()),
             square: most(|b| b.weighted.len().pow(2)),
         }
     }
@@ -126,16 +126,16 @@ impl Reduce<'_> {
 
     /// `Xᵀ E X` of one block whose equations have the diagonal E, with `X = A_D⁻ᵀ W_D`.
     fn add_diagonal(&self, part: &Block, block: &BlockLu, weights: &mut Weights, to: &mut [f64]) {
-        let (e, width) = (part.equations.len(), part.weighted.len());
+        let (n, e, width) = (part.states.len(), part.equations.len(), part.weighted.len());
         let Weights {
             rows,
             columns,
             square,
         } = weights;
-        let columns = &mut columns[..e * width];
-        for (i, &state) in block.order()[..e].iter().enumerate() {
-            for (j, value) in rows[state * width..][..width].iter().enumerate() {
-                columns[i + j * e] = *value;
+        let columns = &mut columns[..n * width];
+        for (i, row) in rows[..n * width].chunks_exact(width).enumerate() {
+            for (j, value) in row.iter().enumerate() {
+                columns[i + j * n] = *value;
             }
         }
         block.solve_transposed(columns);
@@ -144,15 +144,15 @@ impl Reduce<'_> {
         for item in &part.diagonal {
             let value = self.values[item.value as usize];
             let first = item.row as usize - part.equations.start;
-            for i in (first..e * width).step_by(e) {
-                scaled[i] = value * columns[i];
+            for j in 0..width {
+                scaled[first + j * e] = value * columns[first + j * n];
             }
         }
         let square = &mut square[..width * width];
         matmul(
             MatMut::from_row_major_slice_mut(square, width, width),
             Accum::Replace,
-            MatRef::from_column_major_slice(columns, e, width).transpose(),
+            MatRef::from_column_major_slice_with_stride(columns, e, width, n).transpose(),
             MatRef::from_column_major_slice(scaled, e, width),
             1.0,
             Par::Seq,

@@ -2,7 +2,7 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::condense::Item;
+use super::block::Item;
 use super::condensed::Condensed;
 use super::lanes::{dot, subtract};
 use super::solve::solve;
@@ -68,16 +68,15 @@ impl Condensed {
     fn determine<S: Simd>(&mut self, unit: S, x: &[f64]) {
         self.states.fill(0.0);
         for (k, block) in self.parts.blocks.iter().enumerate() {
-            let right = &mut self.multipliers[block.equations.clone()];
-            gather(x, &self.parts.equations[block.equations.clone()], right);
+            let right = &mut self.column[..block.states.len()];
+            let equations = &self.parts.equations[block.equations.clone()];
+            gather(x, equations, right);
             for item in &block.below {
                 let row = item.row as usize - block.equations.start;
                 right[row] -= value(&self.values, item) * self.states[item.column as usize];
             }
             self.blocks[k].solve_one(unit, right);
-            for (value, &state) in right.iter().zip(self.blocks[k].order()) {
-                self.states[block.states.start + state] = *value;
-            }
+            self.states[block.states.clone()].copy_from_slice(right);
         }
     }
 
@@ -123,11 +122,8 @@ impl Condensed {
                 continue;
             }
             let equations = block.equations.clone();
-            let order = &self.blocks[k].order()[..equations.len()];
-            let change = &mut self.multipliers[equations.clone()];
-            for (change, &state) in change.iter_mut().zip(order) {
-                *change = self.gradient[block.states.start + state];
-            }
+            let change = &mut self.column[..block.states.len()];
+            change.copy_from_slice(&self.gradient[block.states.clone()]);
             self.blocks[k].solve_one_transposed(unit, change);
             let before = &mut self.first_multipliers[equations.clone()];
             let mut next = 0;
@@ -140,8 +136,8 @@ impl Condensed {
             }
             change[next..].fill(0.0);
             self.blocks[k].solve_one(unit, change);
-            for (change, &state) in change.iter().zip(order) {
-                self.states[block.states.start + state] -= change;
+            for (state, change) in self.states[block.states.clone()].iter_mut().zip(change) {
+                *state -= *change;
             }
         }
     }
@@ -189,11 +185,11 @@ impl Condensed {
     #[inline(always)]
     fn multiply<S: Simd>(&mut self, unit: S) {
         for (k, block) in self.parts.blocks.iter().enumerate().rev() {
+            let column = &mut self.column[..block.states.len()];
+            column.copy_from_slice(&self.gradient[block.states.clone()]);
+            self.blocks[k].solve_one_transposed(unit, column);
             let multipliers = &mut self.multipliers[block.equations.clone()];
-            for (multiplier, &state) in multipliers.iter_mut().zip(self.blocks[k].order()) {
-                *multiplier = self.gradient[block.states.start + state];
-            }
-            self.blocks[k].solve_one_transposed(unit, multipliers);
+            multipliers.copy_from_slice(&column[..block.equations.len()]);
             for item in &block.below {
                 let row = item.row as usize - block.equations.start;
                 self.gradient[item.column as usize] -= value(&self.values, item) * multipliers[row];

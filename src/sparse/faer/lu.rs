@@ -1,9 +1,9 @@
-//! LU of faer.
+//! LU of faer, supernodal: even small systems are dense enough for it.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::sparse::SparseColMatRef;
-use faer::sparse::linalg::LuError;
 use faer::sparse::linalg::lu::{self, LuRef, NumericLu, SymbolicLu};
+use faer::sparse::linalg::{LuError, SupernodalThreshold};
 use faer::{Conj, Par};
 
 use crate::sparse::faer::{Memory, RIGHT, column, symbolic};
@@ -21,7 +21,11 @@ pub(crate) struct FaerLu {
 
 impl FaerLu {
     pub(crate) fn new(pattern: &Pattern) -> Self {
-        let analysed = lu::factorize_symbolic_lu(symbolic(pattern), Default::default())
+        let params = lu::LuSymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..Default::default()
+        };
+        let analysed = lu::factorize_symbolic_lu(symbolic(pattern), params)
             .expect("memory for the symbolic factorisation");
         let work = StackReq::any_of(&[
             analysed.factorize_numeric_lu_scratch::<f64>(Par::Seq, Default::default()),
