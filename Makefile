@@ -3,7 +3,7 @@
 export PATH := $(PATH):$(or $(CARGO_HOME),$(HOME)/.cargo)/bin
 
 CARGO := cargo
-PROBOSCIS := target/release/proboscis
+PROGRAM := target/release/proboscis
 GALLERY := results/gallery
 STUDIES := $(wildcard problems/studies/*.json)
 
@@ -32,20 +32,20 @@ help:
 	@echo 'make clean         remove what was built'
 
 trunk: build
-	@$(PROBOSCIS) solve problems/elephant_trunk.json
-	@$(PROBOSCIS) simulate problems/elephant_trunk_constant.json
+	@$(PROGRAM) solve problems/elephant_trunk.json
+	@$(PROGRAM) simulate problems/elephant_trunk_constant.json
 	@echo; echo 'Pictures:'; for problem in elephant_trunk elephant_trunk_constant; do ls results/$$problem/*.svg results/$$problem/report.html; done
 
 blocks: build
-	@for problem in $(BLOCKS); do $(PROBOSCIS) solve problems/$$problem.json || exit; done
-	@for problem in $(MOTIONS); do $(PROBOSCIS) simulate problems/$$problem.json || exit; done
+	@for problem in $(BLOCKS); do $(PROGRAM) solve problems/$$problem.json || exit; done
+	@for problem in $(MOTIONS); do $(PROGRAM) simulate problems/$$problem.json || exit; done
 
 gallery: build
-	@for problem in elephant_trunk elephant_trunk_effort elephant_trunk_figure_eight bending_actuator pull_in fe_bending_control fe_trunk_control; do $(PROBOSCIS) solve problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
-	@for problem in elephant_trunk_constant fe_trunk; do $(PROBOSCIS) simulate problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
+	@for problem in elephant_trunk elephant_trunk_effort elephant_trunk_figure_eight bending_actuator pull_in fe_bending_control fe_trunk_control; do $(PROGRAM) solve problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
+	@for problem in elephant_trunk_constant fe_trunk; do $(PROGRAM) simulate problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
 
 build: install-deps
-	@[ -x $(PROBOSCIS) ] || echo 'building (a few minutes the first time)'
+	@[ -x $(PROGRAM) ] || echo 'building (a few minutes the first time)'
 	@$(CARGO) build --release --locked
 
 test: install-deps
@@ -83,7 +83,7 @@ bench: install-deps
 	@$(CARGO) bench --locked --bench block -- 8 16 --write
 
 studies: build
-	@for study in $(STUDIES); do $(PROBOSCIS) study $$study -o $(GALLERY)/studies/$$(basename $$study .json) || exit; done
+	@for study in $(STUDIES); do $(PROGRAM) study $$study -o $(GALLERY)/studies/$$(basename $$study .json) || exit; done
 	@PROBOSCIS_WRITE_PAGES=1 $(CARGO) test --release --locked --test hard -- --include-ignored
 	@$(CARGO) bench --locked --bench effects -- --write
 	@$(CARGO) bench --locked --bench goals -- --write
