@@ -174,7 +174,7 @@ fn solve(group: &Group, goal: usize, it: &Goal, way: &Way) -> Ended {
     command.arg("--set").arg(duration);
     command
         .arg("--set")
-        .arg(format!("solver.linear_solver={:?}", way.name));
+        .arg(format!("control.solver.linear_solver={:?}", way.name));
     command.arg("--max-iterations").arg(ITERATIONS.to_string());
     command.arg("-o").arg(&output).arg("--quiet");
     if starts > 1 {
@@ -185,6 +185,11 @@ fn solve(group: &Group, goal: usize, it: &Goal, way: &Way) -> Ended {
     let summary: Option<Value> = text.and_then(|text| serde_json::from_str(&text).ok());
     let Some(summary) = summary else {
         let told = String::from_utf8_lossy(&done.stderr);
+        assert_ne!(
+            done.status.code(),
+            Some(2),
+            "not the goal is refused: {told}"
+        );
         let word = if told.contains("no equilibrium") {
             "no_equilibrium"
         } else {
