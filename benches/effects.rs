@@ -102,13 +102,13 @@ impl Variant {
         let model = &self.model;
         let (motion, layout) = (&model.action.motion, model.action.layout());
         let (n, algebraic) = (motion.coordinates, model.variables.algebraic());
-        let crossed = |&&(i, j): &&(usize, usize)| (i < n) != (j < n);
-        let of_potential = |&&(_, s): &&(usize, usize)| algebraic.contains(&s);
-        let both = |&&(s, t): &&(usize, usize)| [s, t].iter().all(|s| algebraic.contains(s));
-        let scalars = layout.scalars.entries().iter().filter(both);
+        let crossed = |&(i, j): &(usize, usize)| (i < n) != (j < n);
+        let of_potential = |&(_, s): &(usize, usize)| algebraic.contains(&s);
+        let both = |&(s, t): &(usize, usize)| [s, t].iter().all(|s| algebraic.contains(s));
+        let scalars = layout.scalars.entries().filter(both);
         let entries = layout.cross.entries().len()
-            + layout.same.entries().iter().filter(crossed).count()
-            + 2 * layout.mixed.entries().iter().filter(of_potential).count()
+            + layout.same.entries().filter(crossed).count()
+            + 2 * layout.mixed.entries().filter(of_potential).count()
             + scalars
                 .map(|(s, t)| if s == t { 1 } else { 2 })
                 .sum::<usize>();

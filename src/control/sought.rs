@@ -67,7 +67,7 @@ pub(super) fn check(
     let layout = model.action.layout();
     let scalars = model.variables.range(Role::Parameter);
     for (s, parameter) in scalars.zip(&control.parameters) {
-        if !layout.mixed.entries().iter().any(|&(_, read)| read == s) {
+        if !layout.mixed.entries().any(|(_, read)| read == s) {
             return Err(BoundaryError::Parameter {
                 name: parameter.name.clone(),
                 reason: "nothing that moves reads it".to_owned(),

@@ -4,36 +4,50 @@
 //! over a horizon exist only at (z_k, z_k), (z_{k+1}, z_k), (z_k, z_{k+1}), (z_k, s_k), (z_{k+1}, s_k), (s_k, s_k), and
 //! at the interval length against all of these. One table of slots serves every interval.
 
-use rustc_hash::FxHashMap;
-
 /// Places of the entries of one kind of block, in the order in which they were asked for.
 #[derive(Clone, Debug, Default)]
 pub struct BlockPattern {
-    entries: Vec<(usize, usize)>,
-    slots: FxHashMap<(u32, u32), u32>,
+    entries: Vec<(u32, u32)>,
+    /// (column, slot) of the entries of each row, by column.
+    rows: Vec<Vec<(u32, u32)>>,
 }
 
 impl BlockPattern {
     /// Slot of an entry, which joins the pattern if it is new.
     pub fn slot(&mut self, row: usize, col: usize) -> usize {
-        let entries = &mut self.entries;
-        let slot = self.slots.entry((row as u32, col as u32));
-        *slot.or_insert_with(|| {
-            entries.push((row, col));
-            entries.len() as u32 - 1
-        }) as usize
+        if self.rows.len() <= row {
+            self.rows.resize_with(row + 1, Vec::new);
+        }
+        let of_row = &mut self.rows[row];
+        let at = of_row.partition_point(|&(other, _)| (other as usize) < col);
+        match of_row.get(at) {
+            Some(&(other, slot)) if other as usize == col => slot as usize,
+            _ => {
+                let slot = self.entries.len();
+                of_row.insert(at, (counted(col), counted(slot)));
+                self.entries.push((counted(row), counted(col)));
+                slot
+            }
+        }
     }
 
     /// Slot of an entry of the pattern.
     pub fn find(&self, row: usize, col: usize) -> Option<usize> {
-        let slot = self.slots.get(&(row as u32, col as u32));
-        slot.map(|&slot| slot as usize)
+        let of_row = self.rows.get(row)?;
+        let at = of_row.binary_search_by_key(&col, |&(other, _)| other as usize);
+        Some(of_row[at.ok()?].1 as usize)
     }
 
-    /// All entries, by slot.
-    pub fn entries(&self) -> &[(usize, usize)] {
-        &self.entries
+    /// Row and column of all entries, by slot.
+    pub fn entries(&self) -> impl ExactSizeIterator<Item = (usize, usize)> + Clone + '_ {
+        let entry = |&(row, col): &(u32, u32)| (row as usize, col as usize);
+        self.entries.iter().map(entry)
     }
+}
+
+/// In half of the memory: a mesh has millions of entries.
+fn counted(i: usize) -> u32 {
+    u32::try_from(i).expect("entries can be counted")
 }
 
 /// The blocks of one step and their places in its segment of the values.

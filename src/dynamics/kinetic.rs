@@ -31,7 +31,7 @@ impl<'m> Kinetic<'m> {
         let action = &model.action;
         let (layout, n) = (action.layout(), action.motion.coordinates);
         let mut entries = EntryList::default();
-        for (slot, &(i, j)) in layout.same.entries().iter().enumerate() {
+        for (slot, (i, j)) in layout.same.entries().enumerate() {
             if i < n || j < n {
                 entries.add(slot, (i, j));
             }

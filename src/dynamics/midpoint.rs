@@ -56,10 +56,10 @@ impl<'m> Stepper<'m> {
         let motion = &model.action.motion;
         let (n, layout) = (motion.coordinates, model.action.layout());
         let mut entries = EntryList::default();
-        for (slot, &entry) in layout.cross.entries().iter().enumerate() {
+        for (slot, entry) in layout.cross.entries().enumerate() {
             entries.add(layout.upper_at(0) + slot, entry);
         }
-        for (slot, &(row, col)) in layout.same.entries().iter().enumerate() {
+        for (slot, (row, col)) in layout.same.entries().enumerate() {
             if row < n && col >= n {
                 entries.add(layout.same_at(0) + slot, (row, col));
             }

@@ -19,33 +19,36 @@ pub(super) struct Tangent {
     is_approximate: bool,
 }
 
-/// Pairs of numbers in half of the memory: large blocks have tens of millions of them.
+/// A pair of numbers in half of the memory: large blocks have tens of millions of them.
 ///
 /// # Panics
 /// A number is too large for that.
-fn counted(pairs: &[(usize, usize)]) -> Vec<(u32, u32)> {
+fn counted((i, j): (usize, usize)) -> (u32, u32) {
     let number = |i: usize| u32::try_from(i).expect("entries can be counted");
-    let pair = |&(i, j): &(usize, usize)| (number(i), number(j));
-    pairs.iter().map(pair).collect()
+    (number(i), number(j))
+}
+
+fn uncounted((i, j): (u32, u32)) -> (usize, usize) {
+    (i as usize, j as usize)
 }
 
 /// Lists entries before the factorisation is prepared.
 #[derive(Debug, Default)]
 pub(super) struct EntryList {
-    entries: Vec<(usize, usize)>,
-    gather: Vec<(usize, usize)>,
+    entries: Vec<(u32, u32)>,
+    gather: Vec<(u32, u32)>,
 }
 
 impl EntryList {
     /// A new entry of the matrix that takes the value at a place.
     pub(super) fn add(&mut self, place: usize, entry: (usize, usize)) {
-        self.gather.push((place, self.entries.len()));
-        self.entries.push(entry);
+        self.add_to(place, self.entries.len());
+        self.entries.push(counted(entry));
     }
 
     /// Adds the value at a place to an entry that exists.
     pub(super) fn add_to(&mut self, place: usize, entry: usize) {
-        self.gather.push((place, entry));
+        self.gather.push(counted((place, entry)));
     }
 
     /// Scalars with an equation against the coordinates of the rows (instant `sides[0]`) and of the columns (instant `sides[1]`) of
@@ -53,7 +56,7 @@ impl EntryList {
     pub(super) fn add_scalars(&mut self, model: &Model, sides: &[[usize; 2]]) {
         let layout: &StepPattern = model.action.layout();
         let place = |s: usize| model.variables.place(s);
-        for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
+        for (slot, (i, s)) in layout.mixed.entries().enumerate() {
             let Some(s) = place(s) else {
                 continue;
             };
@@ -62,7 +65,7 @@ impl EntryList {
                 self.add(layout.mixed_at(0, col) + slot, (s, i));
             }
         }
-        for (slot, &(s, t)) in layout.scalars.entries().iter().enumerate() {
+        for (slot, (s, t)) in layout.scalars.entries().enumerate() {
             if let (Some(s), Some(t)) = (place(s), place(t)) {
                 self.add(layout.scalars_at(0) + slot, (s, t));
                 if s != t {
@@ -80,16 +83,13 @@ impl EntryList {
         symmetry: Symmetry,
         backend: Option<Backend>,
     ) -> Tangent {
-        for (row, col) in &mut self.entries {
-            (*row, *col) = (*row - first, *col - first);
+        for entry in &mut self.entries {
+            let (row, col) = uncounted(*entry);
+            *entry = counted((row - first, col - first));
         }
-        Tangent {
-            matrix: vec![0.0; self.entries.len()],
-            solver: Direct::with(size, &self.entries, symmetry, backend),
-            gather: counted(&self.gather),
-            entries: counted(&self.entries),
-            is_approximate: false,
-        }
+        let entries = self.entries.iter().copied().map(uncounted);
+        let solver = Direct::of(size, entries, symmetry, backend);
+        self.tangent_by(solver, false)
     }
 
     /// Prepares a factorisation for an iteration that corrects what it leaves out: of the symmetric part where the matrix has
@@ -97,16 +97,23 @@ impl EntryList {
     pub(super) fn corrected_tangent(self, model: &Model, symmetry: Symmetry) -> Tangent {
         let is_approximate = symmetry == Symmetry::Unsymmetric;
         let places = model.unknown_places();
-        let entries = self.entries.iter();
-        let kept: Vec<_> = match is_approximate {
-            true => entries.map(|&(i, j)| (i.max(j), i.min(j))).collect(),
-            false => entries.copied().collect(),
+        let kept = |entry| match (is_approximate, uncounted(entry)) {
+            (true, (i, j)) => (i.max(j), i.min(j)),
+            (false, entry) => entry,
         };
+        let entries = self.entries.iter().copied().map(kept);
+        let solver = Direct::for_iteration(places.len(), entries, &places);
+        self.tangent_by(solver, is_approximate)
+    }
+
+    fn tangent_by(mut self, solver: Direct, is_approximate: bool) -> Tangent {
+        self.entries.shrink_to_fit();
+        self.gather.shrink_to_fit();
         Tangent {
-            matrix: vec![0.0; kept.len()],
-            solver: Direct::for_iteration(places.len(), &kept, &places),
-            gather: counted(&self.gather),
-            entries: counted(&self.entries),
+            matrix: vec![0.0; self.entries.len()],
+            solver,
+            gather: self.gather,
+            entries: self.entries,
             is_approximate,
         }
     }
@@ -176,9 +183,8 @@ impl Tangent {
         if !std::mem::take(&mut self.is_approximate) {
             return false;
         }
-        let pair = |&(row, col): &(u32, u32)| (row as usize, col as usize);
-        let entries: Vec<_> = self.entries.iter().map(pair).collect();
-        self.solver = Direct::new(self.solver.size(), &entries);
+        let entries = self.entries.iter().copied().map(uncounted);
+        self.solver = Direct::of(self.solver.size(), entries, Symmetry::Unsymmetric, None);
         true
     }
 
@@ -217,10 +223,8 @@ impl Tangent {
 
     /// Entries of the matrix factorised last.
     pub(super) fn entries(&self) -> impl Iterator<Item = ((usize, usize), f64)> + '_ {
-        self.entries
-            .iter()
-            .map(|&(row, col)| (row as usize, col as usize))
-            .zip(self.matrix.iter().copied())
+        let entries = self.entries.iter().copied().map(uncounted);
+        entries.zip(self.matrix.iter().copied())
     }
 
     /// Solves with the last factorisation in place, without a look at the residual.

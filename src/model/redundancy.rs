@@ -27,7 +27,7 @@ impl Model {
         action.evaluate_instant(Order::Hessian, &mut instant, &[], &mut scratch);
         action.pull_back_instant(Order::Hessian, &mut instant, 0, &mut scratch, &mut values);
         let mut gradients = DMatrix::<f64>::zeros(n, m);
-        for (slot, &(row, col)) in layout.same.entries().iter().enumerate() {
+        for (slot, (row, col)) in layout.same.entries().enumerate() {
             if row < n && col >= n {
                 let unit = if self.is_length(row) {
                     self.length()

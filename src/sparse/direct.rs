@@ -7,11 +7,11 @@
 //! but the solution does not come back. Later solutions are refined once where their residual is poor.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use crate::sparse::backend::Backend;
-use crate::sparse::dissection::{self, Places};
-use crate::sparse::faer::FaerLdlt;
-use crate::sparse::mumps;
+use crate::sparse::dissection::Places;
+use crate::sparse::fronts::Fronts;
 use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Precision, Singular, Symmetry};
 
@@ -68,6 +68,16 @@ impl Direct {
         symmetry: Symmetry,
         backend: Option<Backend>,
     ) -> Self {
+        Self::of(size, entries.iter().copied(), symmetry, backend)
+    }
+
+    /// [`with`](Self::with), of entries that are listed in another way.
+    pub(crate) fn of(
+        size: usize,
+        entries: impl Iterator<Item = (usize, usize)> + Clone,
+        symmetry: Symmetry,
+        backend: Option<Backend>,
+    ) -> Self {
         let pattern = Arc::new(Pattern::new(size, entries, symmetry));
         let backend = match pattern.rows.is_empty() {
             // There is nothing to analyse.
@@ -81,23 +91,24 @@ impl Direct {
     /// A solver of symmetric matrices for an iteration that corrects what [`solve_roughly`](Self::solve_roughly) loses: the
     /// factors of large ones are in single precision, where those tell the solution at all.
     ///
-    /// Entries are those of [`with`](Self::with). Unknowns with places in space, one for each unknown or none, are eliminated in
-    /// an order that follows from the places.
+    /// Entries are those of [`with`](Self::with). Unknowns have places in space, from which the order of elimination follows;
+    /// where too many have none, factors are in double precision.
     ///
     /// # Panics
     /// An entry lies outside the matrix.
-    pub fn for_iteration(size: usize, entries: &[(usize, usize)], places: &Places) -> Self {
-        if size <= SINGLE || entries.is_empty() {
-            return Self::with(size, entries, Symmetry::Symmetric, None);
+    pub fn for_iteration(
+        size: usize,
+        entries: impl Iterator<Item = (usize, usize)> + Clone,
+        places: &Places,
+    ) -> Self {
+        // Those without a place come last, in a dense block.
+        let missing = places.iter().filter(|place| place.is_none()).count();
+        if size <= SINGLE || missing.pow(2) > size {
+            return Self::of(size, entries, Symmetry::Symmetric, None);
         }
         let pattern = Arc::new(Pattern::new(size, entries, Symmetry::Symmetric));
-        // Those without a place come last, in a dense block.
-        let placed = places.iter().flatten().count();
-        let order = match (size - placed).pow(2) <= size {
-            true => dissection::order(&pattern, places),
-            false => mumps::order(&pattern),
-        };
-        let factorisation = Box::new(FaerLdlt::<f32>::new(&pattern, &order));
+        let factorisation = Box::new(Fronts::new(&pattern, places));
+        // Scaled like matrices for faer: rows and columns at once.
         Self::by(pattern, Backend::Faer, factorisation)
     }
 
@@ -321,7 +332,10 @@ impl Direct {
 
     /// Factorises, and tries the factor on the known solution.
     pub(super) fn attempt(&mut self) -> Result<(), Singular> {
+        let began = Instant::now();
         self.factorisation.factor(&self.values)?;
+        let (method, rows, seconds) = (self.method(), self.size(), began.elapsed().as_secs_f64());
+        tracing::trace!(method, rows, seconds, "factorised");
         self.residual.copy_from_slice(&self.rhs);
         self.factorisation.solve(&mut self.residual);
         let error =

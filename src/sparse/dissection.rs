@@ -4,31 +4,69 @@
 //! separate the two sides and are eliminated after them, and both sides are cut again (A. George, SIAM J. Numer. Anal. 10, 1973).
 //! Of the three directions the one with the smallest separator is taken. Unknowns without a place, which may be coupled to any
 //! other, come last.
+//!
+//! The parts make a tree: what two sides eliminate does not meet before the rows that separate them.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use rustc_hash::FxBuildHasher;
 
 use crate::sparse::pattern::Pattern;
 
 /// A part of so few vertices is not cut.
-const LEAF: usize = 8;
+const LEAF: usize = 27;
 /// Sides of a cut are of similar size where the smaller one is larger than this part of the other.
 const EVEN: f64 = 0.3;
 
 /// Place in space of each row, where it has one.
 pub type Places = [Option<[f64; 3]>];
 
-/// The rows of a symmetric pattern in an order of elimination.
-pub(super) fn order(pattern: &Pattern, places: &Places) -> Vec<usize> {
-    let graph = Graph::new(pattern, places);
-    let mut order = Vec::with_capacity(pattern.size);
-    let mut side = vec![Side::Outside; graph.places.len()];
-    let mut vertices: Vec<usize> = (0..graph.places.len()).collect();
-    graph.dissect(&mut vertices, &mut side, &mut order);
-    let last = (0..pattern.size).filter(|&row| places[row].is_none());
-    order.extend(last);
-    order
+/// An order of elimination and its parts.
+#[derive(Debug)]
+pub(crate) struct Dissection {
+    /// Rows in the order of elimination.
+    pub(crate) order: Vec<usize>,
+    /// Each part after its sides; the last one is the whole.
+    pub(crate) parts: Vec<Part>,
+}
+
+/// A part of the unknowns: its two sides and what separates them, or unknowns that were not cut.
+#[derive(Debug)]
+pub(crate) struct Part {
+    /// Where the rows of the separator, or of the part that was not cut, stand in the order.
+    pub(crate) own: Range<usize>,
+    /// The parts before and behind the cut.
+    pub(crate) sides: Option<[usize; 2]>,
+}
+
+impl Dissection {
+    /// Of the rows of a symmetric pattern.
+    pub(crate) fn new(pattern: &Pattern, places: &Places) -> Self {
+        let graph = Graph::new(pattern, places);
+        let mut dissection = Self {
+            order: Vec::with_capacity(pattern.size),
+            parts: Vec::new(),
+        };
+        let mut side = vec![Side::Outside; graph.places.len()];
+        let mut vertices: Vec<usize> = (0..graph.places.len()).collect();
+        let whole = graph.dissect(&mut vertices, &mut side, &mut dissection);
+        let last = (0..pattern.size).filter(|&row| places[row].is_none());
+        dissection.order.extend(last);
+        dissection.parts[whole].own.end = pattern.size;
+        dissection
+    }
+
+    /// Appends a part with these rows of its own.
+    fn push(&mut self, sides: Option<[usize; 2]>, rows: impl Iterator<Item = usize>) -> usize {
+        let start = self.order.len();
+        self.order.extend(rows);
+        self.parts.push(Part {
+            own: start..self.order.len(),
+            sides,
+        });
+        self.parts.len() - 1
+    }
 }
 
 /// Where a vertex is while a part is cut.
@@ -108,8 +146,8 @@ impl Graph {
         }
     }
 
-    /// Appends the rows of some vertices to the order; `side` is outside for all before and after.
-    fn dissect(&self, vertices: &mut [usize], side: &mut [Side], order: &mut Vec<usize>) {
+    /// Appends some vertices as a part; `side` is outside for all before and after.
+    fn dissect(&self, vertices: &mut [usize], side: &mut [Side], to: &mut Dissection) -> usize {
         let mut best: Option<Cut> = None;
         let axes = if vertices.len() > LEAF { 0..3 } else { 0..0 };
         for cut in axes.filter_map(|axis| self.cut(vertices, axis, side)) {
@@ -119,12 +157,14 @@ impl Graph {
             }
         }
         let Some(mut cut) = best else {
-            order.extend(vertices.iter().flat_map(|&v| &self.rows[v]));
-            return;
+            return to.push(None, self.rows_of(vertices));
         };
-        self.dissect(&mut cut.before, side, order);
-        self.dissect(&mut cut.behind, side, order);
-        order.extend(cut.between.iter().flat_map(|&v| &self.rows[v]));
+        let sides = [&mut cut.before, &mut cut.behind].map(|part| self.dissect(part, side, to));
+        to.push(Some(sides), self.rows_of(&cut.between))
+    }
+
+    fn rows_of<'a>(&'a self, vertices: &'a [usize]) -> impl Iterator<Item = usize> + 'a {
+        vertices.iter().flat_map(|&v| self.rows[v].iter().copied())
     }
 
     /// Cuts across an axis at the median; `None` where all vertices have one place along it.
@@ -158,7 +198,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use crate::sparse::Symmetry;
-    use crate::sparse::dissection::order;
+    use crate::sparse::dissection::Dissection;
     use crate::sparse::pattern::Pattern;
 
     /// A box of nodes with two unknowns each, coupled to all nodes around them, and one unknown without a place, coupled to all.
@@ -181,7 +221,10 @@ mod tests {
         let mut places = vec![None];
         places.extend(triples.iter().flat_map(|p| [place(p); 2]));
         let size = places.len();
-        (Pattern::new(size, &entries, Symmetry::Symmetric), places)
+        (
+            Pattern::new(size, entries.into_iter(), Symmetry::Symmetric),
+            places,
+        )
     }
 
     /// Numbers below the diagonal of the factor, by elimination of one unknown after the other.
@@ -210,20 +253,24 @@ mod tests {
     #[test]
     fn the_middle_plane_across_the_longest_direction_comes_last() {
         let (pattern, places) = grid([3, 4, 9]);
-        let order = order(&pattern, &places);
+        let Dissection { order, parts } = Dissection::new(&pattern, &places);
         let mut sorted = order.clone();
         sorted.sort_unstable();
         assert!(sorted.into_iter().eq(0..pattern.size));
         assert_eq!(order.last(), Some(&0), "what has no place");
         let plane = &order[pattern.size - 1 - 2 * 12..pattern.size - 1];
         assert!(plane.iter().all(|&row| places[row].unwrap()[2] == 8.0));
+        let whole = parts.last().unwrap();
+        assert_eq!(whole.own, pattern.size - 1 - 2 * 12..pattern.size);
+        assert_eq!(whole.sides.unwrap()[1], parts.len() - 2);
     }
 
     #[test]
     fn dissection_leaves_less_fill_than_the_order_of_the_nodes() {
         let (pattern, places) = grid([6, 6, 6]);
         let by_nodes: Vec<usize> = (1..pattern.size).chain([0]).collect();
-        let [cut, band] = [order(&pattern, &places), by_nodes].map(|order| fill(&pattern, &order));
+        let [cut, band] = [Dissection::new(&pattern, &places).order, by_nodes]
+            .map(|order| fill(&pattern, &order));
         assert!(10 * cut < 9 * band, "{cut} {band}");
     }
 }

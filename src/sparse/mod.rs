@@ -9,6 +9,7 @@ mod direct;
 mod dissection;
 mod factorisation;
 mod faer;
+mod fronts;
 pub(crate) mod mumps;
 mod pattern;
 mod precision;

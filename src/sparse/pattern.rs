@@ -11,53 +11,66 @@ pub(crate) struct Pattern {
     pub(crate) starts: Vec<usize>,
     /// Row of each slot, ascending within a column.
     pub(crate) rows: Vec<usize>,
-    /// (entry, slot), without the entries above the diagonal of a symmetric matrix.
-    gather: Vec<(u32, u32)>,
-    entries: usize,
+    /// Slot of each entry; none of those above the diagonal of a symmetric matrix.
+    slot_of: Vec<u32>,
 }
+
+/// In place of a slot.
+const NONE: u32 = u32::MAX;
 
 impl Pattern {
     /// The pattern of `entries` in a matrix of `size` rows.
     ///
     /// # Panics
     /// An entry lies outside the matrix.
-    pub(crate) fn new(size: usize, entries: &[(usize, usize)], symmetry: Symmetry) -> Self {
-        assert!(
-            entries.iter().all(|&(row, col)| row < size && col < size),
-            "entries lie inside the matrix"
-        );
-        assert!(
-            u32::try_from(entries.len()).is_ok(),
-            "entries can be counted"
-        );
-        let kept = |&(row, col): &(usize, usize)| match symmetry {
-            Symmetry::Symmetric => row >= col,
-            Symmetry::Unsymmetric => true,
-        };
-        let mut order: Vec<usize> = (0..entries.len()).filter(|&k| kept(&entries[k])).collect();
-        order.sort_unstable_by_key(|&k| (entries[k].1, entries[k].0, k));
-        let (mut starts, mut rows) = (vec![0; size + 1], Vec::<usize>::new());
-        let mut gather = Vec::with_capacity(order.len());
-        let mut last = None;
-        for k in order {
-            let (row, col) = entries[k];
-            if last.replace((row, col)) != Some((row, col)) {
-                rows.push(row);
-                starts[col + 1] += 1;
+    pub(crate) fn new(
+        size: usize,
+        entries: impl Iterator<Item = (usize, usize)> + Clone,
+        symmetry: Symmetry,
+    ) -> Self {
+        let kept = |row: usize, col: usize| row >= col || symmetry == Symmetry::Unsymmetric;
+        let (mut count, mut ends) = (0, vec![0; size + 1]);
+        for (row, col) in entries.clone() {
+            assert!(row < size && col < size, "entries lie inside the matrix");
+            ends[col] += usize::from(kept(row, col));
+            count += 1;
+        }
+        assert!(u32::try_from(count).is_ok(), "entries can be counted");
+        let mut sum = 0;
+        for end in &mut ends {
+            (*end, sum) = (sum, sum + *end);
+        }
+        // (row, entry) by column: places before a column grow to those before the next.
+        let mut listed = vec![(0, 0); sum];
+        for (entry, (row, col)) in entries.enumerate() {
+            if kept(row, col) {
+                listed[ends[col]] = (row as u32, entry as u32);
+                ends[col] += 1;
             }
-            gather.push((k as u32, rows.len() as u32 - 1));
         }
-        gather.sort_unstable();
+        let (mut starts, mut rows) = (vec![0; size + 1], Vec::with_capacity(sum));
+        let mut slot_of = vec![NONE; count];
+        let mut start = 0;
         for col in 0..size {
-            starts[col + 1] += starts[col];
+            let of_column = &mut listed[start..ends[col]];
+            of_column.sort_unstable();
+            let mut last = None;
+            for &(row, entry) in &*of_column {
+                if last.replace(row) != Some(row) {
+                    rows.push(row as usize);
+                }
+                slot_of[entry as usize] = rows.len() as u32 - 1;
+            }
+            start = ends[col];
+            starts[col + 1] = rows.len();
         }
+        rows.shrink_to_fit();
         Self {
             size,
             symmetry,
             starts,
             rows,
-            gather,
-            entries: entries.len(),
+            slot_of,
         }
     }
 
@@ -68,10 +81,12 @@ impl Pattern {
 
     /// Adds up the values of entries by slot.
     pub(crate) fn gather(&self, entries: &[f64], values: &mut [f64]) {
-        assert_eq!(entries.len(), self.entries, "one value per entry");
+        assert_eq!(entries.len(), self.slot_of.len(), "one value per entry");
         values.fill(0.0);
-        for &(entry, slot) in &self.gather {
-            values[slot as usize] += entries[entry as usize];
+        for (value, &slot) in entries.iter().zip(&self.slot_of) {
+            if slot != NONE {
+                values[slot as usize] += value;
+            }
         }
     }
 

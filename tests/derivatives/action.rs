@@ -122,11 +122,11 @@ fn dense(system: &System, coordinates: Coordinates) -> nalgebra::DMatrix<f64> {
     }
     let n = action.motion.unknowns();
     let mut matrix = nalgebra::DMatrix::zeros(2 * n, 2 * n);
-    for (slot, &(i, j)) in layout.same.entries().iter().enumerate() {
+    for (slot, (i, j)) in layout.same.entries().enumerate() {
         matrix[(i, j)] += values[layout.same_at(0) + slot];
         matrix[(n + i, n + j)] += values[layout.same_at(1) + slot];
     }
-    for (slot, &(i, j)) in layout.cross.entries().iter().enumerate() {
+    for (slot, (i, j)) in layout.cross.entries().enumerate() {
         matrix[(n + i, j)] += values[layout.lower_at(0) + slot];
         matrix[(i, n + j)] += values[layout.upper_at(0) + slot];
     }

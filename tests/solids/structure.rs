@@ -311,14 +311,14 @@ fn numbers(model: &Model, n: usize) -> Vec<(usize, usize, f64)> {
             .motion
             .pull_back(&instant.columns, &instant.forces, &mut rows);
         out.extend(rows[..n].iter().enumerate().map(|(i, &row)| (i, side, row)));
-        for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
+        for (slot, (i, s)) in layout.mixed.entries().enumerate() {
             out.push((i, s, values[layout.mixed_at(0, side) + slot]));
         }
-        for (slot, &(i, j)) in layout.same.entries().iter().enumerate() {
+        for (slot, (i, j)) in layout.same.entries().enumerate() {
             out.push((i, j, values[layout.same_at(side) + slot]));
         }
     }
-    for (slot, &(i, j)) in layout.cross.entries().iter().enumerate() {
+    for (slot, (i, j)) in layout.cross.entries().enumerate() {
         out.push((i, j, values[layout.upper_at(0) + slot]));
     }
     out.extend(

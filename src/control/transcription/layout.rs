@@ -46,7 +46,7 @@ impl Layout {
         };
         // A node that multipliers hold rests with what they hold it to: its balance gives their last value.
         let mut is_held = vec![false; motion.coordinates];
-        for &(i, j) in model.action.layout().same.entries() {
+        for (i, j) in model.action.layout().same.entries() {
             if i >= motion.coordinates && j < motion.coordinates {
                 is_held[j] = true;
             }

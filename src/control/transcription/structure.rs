@@ -13,7 +13,7 @@ impl Transcription<'_> {
         let u = &self.unknowns;
         let mut list = Vec::new();
         for k in 0..=self.intervals {
-            for (slot, &(i, j)) in layout.same.entries().iter().enumerate() {
+            for (slot, (i, j)) in layout.same.entries().enumerate() {
                 list.push((u.row(k, i), u.unknown(k, j), layout.same_at(k) + slot));
             }
             for i in 0..layout.unknowns {
@@ -22,12 +22,12 @@ impl Transcription<'_> {
             if k == self.intervals {
                 break;
             }
-            for (slot, &(i, j)) in layout.cross.entries().iter().enumerate() {
+            for (slot, (i, j)) in layout.cross.entries().enumerate() {
                 list.push((u.row(k + 1, i), u.unknown(k, j), layout.lower_at(k) + slot));
                 list.push((u.row(k, i), u.unknown(k + 1, j), layout.upper_at(k) + slot));
             }
             for side in 0..2 {
-                for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
+                for (slot, (i, s)) in layout.mixed.entries().enumerate() {
                     list.push((
                         u.row(k + side, i),
                         u.scalar(k, s),
@@ -40,7 +40,7 @@ impl Transcription<'_> {
                     ));
                 }
             }
-            for (slot, &(s, t)) in layout.scalars.entries().iter().enumerate() {
+            for (slot, (s, t)) in layout.scalars.entries().enumerate() {
                 let place = layout.scalars_at(k) + slot;
                 list.push((u.row_of_scalar(k, s), u.scalar(k, t), place));
                 if s != t {
@@ -96,10 +96,9 @@ impl Transcription<'_> {
         let u = &self.unknowns;
         let mut list: Vec<(Option<usize>, Option<usize>, usize)> = Vec::new();
         for k in 0..=self.intervals {
-            for (slot, &(i, j)) in layout
+            for (slot, (i, j)) in layout
                 .same
                 .entries()
-                .iter()
                 .enumerate()
                 .filter(|(_, (i, j))| i >= j)
             {
@@ -111,7 +110,7 @@ impl Transcription<'_> {
             if k == self.intervals {
                 break;
             }
-            for (slot, &(i, j)) in layout.cross.entries().iter().enumerate() {
+            for (slot, (i, j)) in layout.cross.entries().enumerate() {
                 list.push((
                     u.unknown(k + 1, i),
                     u.unknown(k, j),
@@ -119,7 +118,7 @@ impl Transcription<'_> {
                 ));
             }
             for side in 0..2 {
-                for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
+                for (slot, (i, s)) in layout.mixed.entries().enumerate() {
                     list.push((
                         u.scalar(k, s),
                         u.unknown(k + side, i),
@@ -127,7 +126,7 @@ impl Transcription<'_> {
                     ));
                 }
             }
-            for (slot, &(s, t)) in layout.scalars.entries().iter().enumerate() {
+            for (slot, (s, t)) in layout.scalars.entries().enumerate() {
                 list.push((u.scalar(k, s), u.scalar(k, t), layout.scalars_at(k) + slot));
             }
             for s in 0..layout.interval_scalars {

@@ -72,11 +72,11 @@ impl<'m> Statics<'m> {
         let layout = model.action.layout();
         let (n, m) = (motion.coordinates, motion.unknowns());
         let mut entries = EntryList::default();
-        for (slot, &entry) in layout.same.entries().iter().enumerate() {
+        for (slot, entry) in layout.same.entries().enumerate() {
             entries.add(layout.same_at(0) + slot, entry);
             entries.add_to(layout.same_at(1) + slot, slot);
         }
-        for (slot, &(row, col)) in layout.cross.entries().iter().enumerate() {
+        for (slot, (row, col)) in layout.cross.entries().enumerate() {
             let same = layout.same.find(row, col);
             let same = same.expect("what couples neighbouring instants couples within one");
             entries.add_to(layout.lower_at(0) + slot, same);
@@ -214,7 +214,7 @@ impl<'m> Statics<'m> {
     pub(super) fn largest_stiffness(&self) -> f64 {
         let layout = self.model.action.layout();
         let mut diagonal = vec![0.0; self.scales().len()];
-        for (slot, &(i, j)) in layout.same.entries().iter().enumerate() {
+        for (slot, (i, j)) in layout.same.entries().enumerate() {
             if i == j && i < diagonal.len() {
                 diagonal[i] += self.values[layout.same_at(0) + slot];
                 diagonal[i] += self.values[layout.same_at(1) + slot];
@@ -231,16 +231,16 @@ impl<'m> Statics<'m> {
         let layout = self.model.action.layout();
         let n = direction.len();
         let mut sum = 0.0;
-        let mut add = |place: usize, &(i, j): &(usize, usize)| {
+        let mut add = |place: usize, (i, j): (usize, usize)| {
             if i < n && j < n {
                 sum += self.values[place] * direction[i] * direction[j];
             }
         };
-        for (slot, entry) in layout.same.entries().iter().enumerate() {
+        for (slot, entry) in layout.same.entries().enumerate() {
             add(layout.same_at(0) + slot, entry);
             add(layout.same_at(1) + slot, entry);
         }
-        for (slot, entry) in layout.cross.entries().iter().enumerate() {
+        for (slot, entry) in layout.cross.entries().enumerate() {
             add(layout.lower_at(0) + slot, entry);
             add(layout.upper_at(0) + slot, entry);
         }
@@ -265,13 +265,13 @@ impl<'m> Statics<'m> {
         let variables = &self.model.variables;
         let change = &variables.scalars(change);
         for side in 0..2 {
-            for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
+            for (slot, (i, s)) in layout.mixed.entries().enumerate() {
                 if variables.place(s).is_none() {
                     rows[i] += self.values[layout.mixed_at(0, side) + slot] * change[s];
                 }
             }
         }
-        for (slot, &(s, t)) in layout.scalars.entries().iter().enumerate() {
+        for (slot, (s, t)) in layout.scalars.entries().enumerate() {
             if let (Some(row), None) = (variables.place(s), variables.place(t)) {
                 rows[row] += self.values[layout.scalars_at(0) + slot] * change[t];
             }

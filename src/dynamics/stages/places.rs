@@ -49,14 +49,14 @@ impl Places {
                     false => &layout.cross,
                 };
                 let at = places.pair(row, point);
-                for (slot, &(i, j)) in pattern.entries().iter().enumerate() {
+                for (slot, (i, j)) in pattern.entries().enumerate() {
                     if i < n && j < n {
                         entries.add(at + slot, (block(row) + i, block(point) + j));
                     }
                 }
             }
             let (of_rows, of_point) = (places.same(rows[row - 1]), places.same(row));
-            for (slot, &(i, j)) in layout.same.entries().iter().enumerate() {
+            for (slot, (i, j)) in layout.same.entries().enumerate() {
                 // Multipliers act where the rows are, constraints hold at the point.
                 if i < n && j >= n {
                     entries.add(of_rows + slot, (block(row) + i, block(row) + j));
@@ -81,14 +81,14 @@ impl Places {
             for point in 1..=self.rows.len() {
                 let [rows, columns] = self.mixed(sample, point);
                 let block = (point - 1) * m;
-                for (slot, &(i, s)) in layout.mixed.entries().iter().enumerate() {
+                for (slot, (i, s)) in layout.mixed.entries().enumerate() {
                     if let Some(s) = place(s) {
                         entries.add(rows + slot, (block + i, s));
                         entries.add(columns + slot, (s, block + i));
                     }
                 }
             }
-            for (slot, &(s, t)) in layout.scalars.entries().iter().enumerate() {
+            for (slot, (s, t)) in layout.scalars.entries().enumerate() {
                 if let (Some(s), Some(t)) = (place(s), place(t)) {
                     let at = self.scalars(sample) + slot;
                     entries.add(at, (s, t));

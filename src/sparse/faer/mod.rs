@@ -2,7 +2,6 @@
 
 mod ldlt;
 mod lu;
-mod number;
 
 use std::fmt;
 

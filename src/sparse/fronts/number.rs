@@ -20,7 +20,7 @@ pub(crate) trait Number: RealField + Copy + Default {
 
 impl Number for f64 {
     const PRECISION: Precision = Precision::Double;
-    const LDLT: &'static str = "faer LDLᵀ";
+    const LDLT: &'static str = "LDLᵀ by fronts";
 
     fn near(value: f64) -> Self {
         value
@@ -33,7 +33,7 @@ impl Number for f64 {
 
 impl Number for f32 {
     const PRECISION: Precision = Precision::Single;
-    const LDLT: &'static str = "faer LDLᵀ in single precision";
+    const LDLT: &'static str = "LDLᵀ by fronts in single precision";
 
     fn near(value: f64) -> Self {
         value as Self
