@@ -38,6 +38,12 @@ impl BlockPattern {
         Some(of_row[at.ok()?].1 as usize)
     }
 
+    /// Gives back memory that further entries would have taken.
+    fn shrink_to_fit(&mut self) {
+        self.entries.shrink_to_fit();
+        self.rows.iter_mut().for_each(Vec::shrink_to_fit);
+    }
+
     /// Row and column of all entries, by slot.
     pub fn entries(&self) -> impl ExactSizeIterator<Item = (usize, usize)> + Clone + '_ {
         let entry = |&(row, col): &(u32, u32)| (row as usize, col as usize);
@@ -68,6 +74,18 @@ pub struct StepPattern {
 }
 
 impl StepPattern {
+    /// Gives back memory that further entries would have taken.
+    pub(super) fn shrink_to_fit(&mut self) {
+        for pattern in [
+            &mut self.same,
+            &mut self.cross,
+            &mut self.mixed,
+            &mut self.scalars,
+        ] {
+            pattern.shrink_to_fit();
+        }
+    }
+
     /// Places of (z_k, z_k).
     pub fn same_at(&self, k: usize) -> usize {
         k * self.stride()

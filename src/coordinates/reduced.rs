@@ -39,6 +39,7 @@ impl Reduced {
         let curvature = entries
             .map(|(i, k)| [layout.same.slot(i, k), layout.same.slot(k, i)])
             .collect();
+        layout.shrink_to_fit();
         Self {
             motion,
             intervals,

@@ -149,7 +149,13 @@ impl Equations for Midpoint<'_> {
             instant.forces.fill(Vector::zeros());
         }
         if order >= Order::Hessian {
-            values.fill(0.0);
+            // What stands before and behind is read where there are multipliers.
+            let layout = action.layout();
+            let read = match m > n {
+                true => 0..values.len(),
+                false => layout.upper_at(0)..layout.same_at(1),
+            };
+            values[read].fill(0.0);
         }
         residual[..n].copy_from_slice(&self.momentum);
         residual[n..].fill(0.0);

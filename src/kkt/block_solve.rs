@@ -4,35 +4,58 @@ use std::ops::Range;
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve as triangular;
-use faer::{Accum, MatMut, Par};
+use faer::{Accum, MatMut, MatRef, Par};
 use pulp::Simd;
 
 use super::block_lu::BlockLu;
 use super::envelope::Panel;
 use super::lanes::{dot, subtract};
 
+/// Factors of a panel, and the rows of right-hand sides that they meet.
+struct Part<'a> {
+    /// Triangle of its own equations.
+    own: MatRef<'a, f64>,
+    /// The other rows: above it of the upper factor, below it of the lower one.
+    rest: MatRef<'a, f64>,
+    of_own: MatMut<'a, f64>,
+    of_rest: MatMut<'a, f64>,
+}
+
+impl Part<'_> {
+    fn subtract_rest_from_own(&mut self) {
+        let (rest, known) = (self.rest.transpose(), self.of_rest.as_ref());
+        matmul(
+            self.of_own.as_mut(),
+            Accum::Add,
+            rest,
+            known,
+            -1.0,
+            Par::Seq,
+        );
+    }
+
+    fn subtract_own_from_rest(&mut self) {
+        let known = self.of_own.as_ref();
+        matmul(
+            self.of_rest.as_mut(),
+            Accum::Add,
+            self.rest,
+            known,
+            -1.0,
+            Par::Seq,
+        );
+    }
+}
+
 impl BlockLu {
     /// Replaces right-hand sides, each at the beginning of a column of as many numbers as there are unknowns, by the unknowns that they
     /// determine where free ones are zero.
     pub(super) fn solve(&self, right: &mut [f64]) {
         for panel in &self.envelope.panels {
-            let (start, before) = (panel.rows.start, panel.equations.start - panel.rows.start);
-            let factors = self.rectangle(panel.rows.start..panel.equations.end, panel);
-            let (above, square) = factors.split_at_row(before);
-            let values = self.rows(right, start..panel.equations.end);
-            let (known, mut values) = values.split_at_row_mut(before);
-            if before > 0 {
-                let known = known.as_ref();
-                matmul(
-                    values.as_mut(),
-                    Accum::Add,
-                    above.transpose(),
-                    known,
-                    -1.0,
-                    Par::Seq,
-                );
-            }
-            triangular::solve_lower_triangular_in_place(square.transpose(), values, Par::Seq);
+            let mut part = self.upper(panel, right);
+            part.subtract_rest_from_own();
+            let factor = part.own.transpose();
+            triangular::solve_lower_triangular_in_place(factor, part.of_own, Par::Seq);
         }
         for column in right.chunks_exact_mut(self.envelope.unknowns) {
             column[self.envelope.equations..].fill(0.0);
@@ -52,22 +75,10 @@ impl BlockLu {
     /// `L⁻ᵀ`, and the unknowns where they were before the exchanges.
     fn distribute(&self, right: &mut [f64]) {
         for panel in self.envelope.panels.iter().rev() {
-            let factors = self.rectangle(panel.equations.start..panel.rows.end, panel);
-            let (square, below) = factors.split_at_row(panel.equations.len());
-            let values = self.rows(right, panel.equations.start..panel.rows.end);
-            let (mut values, known) = values.split_at_row_mut(panel.equations.len());
-            if below.nrows() > 0 {
-                let known = known.as_ref();
-                matmul(
-                    values.as_mut(),
-                    Accum::Add,
-                    below.transpose(),
-                    known,
-                    -1.0,
-                    Par::Seq,
-                );
-            }
-            triangular::solve_unit_upper_triangular_in_place(square.transpose(), values, Par::Seq);
+            let mut part = self.lower(panel, right);
+            part.subtract_rest_from_own();
+            let factor = part.own.transpose();
+            triangular::solve_unit_upper_triangular_in_place(factor, part.of_own, Par::Seq);
             for column in right.chunks_exact_mut(self.envelope.unknowns) {
                 self.exchange_back(panel, column);
             }
@@ -81,25 +92,43 @@ impl BlockLu {
             for column in right.chunks_exact_mut(self.envelope.unknowns) {
                 self.exchange(panel, column);
             }
-            let factors = self.rectangle(panel.equations.start..panel.rows.end, panel);
-            let (square, below) = factors.split_at_row(panel.equations.len());
-            let values = self.rows(right, panel.equations.start..panel.rows.end);
-            let (mut known, values) = values.split_at_row_mut(panel.equations.len());
-            triangular::solve_unit_lower_triangular_in_place(square, known.as_mut(), Par::Seq);
-            if below.nrows() > 0 {
-                matmul(values, Accum::Add, below, known.as_ref(), -1.0, Par::Seq);
-            }
+            let mut part = self.lower(panel, right);
+            let values = part.of_own.as_mut();
+            triangular::solve_unit_lower_triangular_in_place(part.own, values, Par::Seq);
+            part.subtract_own_from_rest();
         }
         for panel in self.envelope.panels.iter().rev() {
-            let (start, before) = (panel.rows.start, panel.equations.start - panel.rows.start);
-            let factors = self.rectangle(start..panel.equations.end, panel);
-            let (above, square) = factors.split_at_row(before);
-            let values = self.rows(right, start..panel.equations.end);
-            let (values, mut known) = values.split_at_row_mut(before);
-            triangular::solve_upper_triangular_in_place(square, known.as_mut(), Par::Seq);
-            if before > 0 {
-                matmul(values, Accum::Add, above, known.as_ref(), -1.0, Par::Seq);
-            }
+            let mut part = self.upper(panel, right);
+            let values = part.of_own.as_mut();
+            triangular::solve_upper_triangular_in_place(part.own, values, Par::Seq);
+            part.subtract_own_from_rest();
+        }
+    }
+
+    /// The part of a panel in the upper factor.
+    fn upper<'a>(&'a self, panel: &Panel, right: &'a mut [f64]) -> Part<'a> {
+        let rows = panel.rows.start..panel.equations.end;
+        let before = panel.equations.start - rows.start;
+        let (rest, own) = self.rectangle(rows.clone(), panel).split_at_row(before);
+        let (of_rest, of_own) = self.rows(right, rows).split_at_row_mut(before);
+        Part {
+            own,
+            rest,
+            of_own,
+            of_rest,
+        }
+    }
+
+    /// The part of a panel in the lower factor.
+    fn lower<'a>(&'a self, panel: &Panel, right: &'a mut [f64]) -> Part<'a> {
+        let (rows, width) = (panel.equations.start..panel.rows.end, panel.equations.len());
+        let (own, rest) = self.rectangle(rows.clone(), panel).split_at_row(width);
+        let (of_own, of_rest) = self.rows(right, rows).split_at_row_mut(width);
+        Part {
+            own,
+            rest,
+            of_own,
+            of_rest,
         }
     }
 

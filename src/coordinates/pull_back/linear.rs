@@ -48,6 +48,12 @@ impl Linear {
         });
     }
 
+    /// Gives back memory that further pairs would have taken.
+    pub(super) fn shrink_to_fit(&mut self) {
+        self.full.shrink_to_fit();
+        self.isotropic.shrink_to_fit();
+    }
+
     /// Adds the blocks to the values.
     pub(super) fn add(
         &self,

@@ -50,6 +50,7 @@ impl PullBack {
         for (slot, &(a, s)) in couplings.mixed.iter().enumerate() {
             plan.mixed.add(slot, a, s, motion, layout, site);
         }
+        plan.linear.shrink_to_fit();
         if site == Site::Intervals {
             let place =
                 |(slot, &(s, t)): (usize, &(usize, usize))| (slot, layout.scalars.slot(s, t));
