@@ -4,6 +4,8 @@
 //! over a horizon exist only at (z_k, z_k), (z_{k+1}, z_k), (z_k, z_{k+1}), (z_k, s_k), (z_{k+1}, s_k), (s_k, s_k), and
 //! at the interval length against all of these. One table of slots serves every interval.
 
+use crate::math::counted;
+
 /// Places of the entries of one kind of block, in the order in which they were asked for.
 #[derive(Clone, Debug, Default)]
 pub struct BlockPattern {
@@ -49,11 +51,6 @@ impl BlockPattern {
         let entry = |&(row, col): &(u32, u32)| (row as usize, col as usize);
         self.entries.iter().map(entry)
     }
-}
-
-/// In half of the memory: a mesh has millions of entries.
-fn counted(i: usize) -> u32 {
-    u32::try_from(i).expect("entries can be counted")
 }
 
 /// The blocks of one step and their places in its segment of the values.

@@ -4,6 +4,7 @@
 
 use crate::coordinates::StepPattern;
 use crate::dynamics::step_state::TangentState;
+use crate::math::counted;
 use crate::model::Model;
 use crate::sparse::{Backend, Direct, Precision, Singular, Symmetry};
 
@@ -19,13 +20,8 @@ pub(super) struct Tangent {
     is_approximate: bool,
 }
 
-/// A pair of numbers in half of the memory: large blocks have tens of millions of them.
-///
-/// # Panics
-/// A number is too large for that.
-fn counted((i, j): (usize, usize)) -> (u32, u32) {
-    let number = |i: usize| u32::try_from(i).expect("entries can be counted");
-    (number(i), number(j))
+fn pair((i, j): (usize, usize)) -> (u32, u32) {
+    (counted(i), counted(j))
 }
 
 fn uncounted((i, j): (u32, u32)) -> (usize, usize) {
@@ -43,12 +39,12 @@ impl EntryList {
     /// A new entry of the matrix that takes the value at a place.
     pub(super) fn add(&mut self, place: usize, entry: (usize, usize)) {
         self.add_to(place, self.entries.len());
-        self.entries.push(counted(entry));
+        self.entries.push(pair(entry));
     }
 
     /// Adds the value at a place to an entry that exists.
     pub(super) fn add_to(&mut self, place: usize, entry: usize) {
-        self.gather.push(counted((place, entry)));
+        self.gather.push(pair((place, entry)));
     }
 
     /// Scalars with an equation against the coordinates of the rows (instant `sides[0]`) and of the columns (instant `sides[1]`) of
@@ -85,7 +81,7 @@ impl EntryList {
     ) -> Tangent {
         for entry in &mut self.entries {
             let (row, col) = uncounted(*entry);
-            *entry = counted((row - first, col - first));
+            *entry = pair((row - first, col - first));
         }
         let entries = self.entries.iter().copied().map(uncounted);
         let solver = Direct::of(size, entries, symmetry, backend);

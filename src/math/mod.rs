@@ -2,6 +2,7 @@
 //! computations at once.
 
 mod both;
+mod counted;
 mod digits;
 mod jet;
 pub mod random;
@@ -9,6 +10,7 @@ mod sets;
 
 pub(crate) use both::both;
 pub use both::cores;
+pub(crate) use counted::counted;
 pub use digits::significant;
 pub use jet::Jet;
 pub use sets::DisjointSets;

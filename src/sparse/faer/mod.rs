@@ -24,7 +24,8 @@ fn symbolic(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
     SymbolicSparseColMatRef::new_checked(*size, *size, starts, None, rows)
 }
 
-fn column<T>(rhs: &mut [T]) -> MatMut<'_, T> {
+/// A right-hand side as a matrix.
+pub(crate) fn column<T>(rhs: &mut [T]) -> MatMut<'_, T> {
     let size = rhs.len();
     MatMut::from_column_major_slice_mut(rhs, size, RIGHT)
 }

@@ -79,12 +79,12 @@ impl<T: Number> Factorisation for Fronts<T> {
     }
 
     fn factor(&mut self, values: &[f64]) -> Result<(), Singular> {
+        let last = self.last();
         let elimination = Elimination {
             tree: &self.tree,
             values,
         };
         let mut memory = elimination.memory::<T>();
-        let last = self.tree.fronts.len() - 1;
         elimination.run(last, &mut self.panels, &mut self.space, &mut memory)
     }
 

@@ -6,9 +6,10 @@ use faer::linalg::triangular_solve::{
 };
 use faer::prelude::{Reborrow, ReborrowMut};
 use faer::traits::ext::ComplexFieldExt;
-use faer::{Accum, MatMut, MatRef, Par};
+use faer::{Accum, MatRef, Par};
 
 use crate::math::both;
+use crate::sparse::faer::column;
 use crate::sparse::fronts::number::Number;
 use crate::sparse::fronts::tree::{Front, Tree};
 
@@ -141,9 +142,4 @@ impl<'a, T: Number> Passage<'a, T> {
             passed: self.passed,
         }
     }
-}
-
-fn column<T>(values: &mut [T]) -> MatMut<'_, T> {
-    let size = values.len();
-    MatMut::from_column_major_slice_mut(values, size, 1)
 }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::math::counted;
 use crate::sparse::dissection::{Dissection, Part};
 use crate::sparse::pattern::Pattern;
 
@@ -215,9 +216,4 @@ impl Tree {
     pub(super) fn whole(&self) -> &Front {
         self.fronts.last().expect("a front")
     }
-}
-
-/// In half of the memory.
-fn counted(i: usize) -> u32 {
-    u32::try_from(i).expect("places can be counted")
 }
