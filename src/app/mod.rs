@@ -25,6 +25,7 @@ mod folder;
 mod followed;
 mod forward;
 mod inspect;
+mod linear_systems;
 mod multistart;
 mod page;
 mod path;

@@ -10,6 +10,7 @@ use crate::app::error::CommandError;
 use crate::app::exchanged::Exchanged;
 use crate::app::fields;
 use crate::app::folder::make_folder;
+use crate::app::linear_systems::LinearSystems;
 use crate::app::page;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
@@ -18,7 +19,7 @@ use crate::app::solution_file;
 use crate::app::solve_page::{convergence, describe, goal, rows, targets};
 use crate::app::solve_words::{carried, meaning, redundancy, restarted, unresolved};
 use crate::app::summary::{
-    Evaluations, LinearSystems, MEASURED, PerInterval, Program, Seconds, SoughtValue, Summary,
+    Evaluations, MEASURED, PerInterval, Program, Seconds, SoughtValue, Summary,
 };
 use crate::app::tracking_words;
 use crate::app::unfinished::{self, Unfinished};
@@ -167,6 +168,7 @@ pub(super) fn control(
     summary.notes.extend(note.into_iter().chain(coarse));
     summary.notes.extend(not_kept.filter(|_| is_solved));
     summary.notes.extend(holding::free_end(control));
+    summary.notes.extend(solution.linear.note());
     summary.notes.extend(carried(&optimum.carried));
     summary.notes.extend(optimum.restarted.map(restarted));
     if is_infeasible(solution.status) {

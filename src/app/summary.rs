@@ -10,13 +10,14 @@ use crate::app::comparison::Comparison;
 use crate::app::error::CommandError;
 use crate::app::exchanged::Exchanged;
 use crate::app::followed::Followed;
+use crate::app::linear_systems::LinearSystems;
 use crate::app::request::CommandInput;
 use crate::app::rest_words::Rest;
 use crate::app::shown::ShownPart;
 use crate::control::problem;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
 use crate::files::lay_out;
-use crate::ipopt::{self, LinearReport};
+use crate::ipopt;
 use crate::math::significant;
 use crate::model::FoundParameter;
 use crate::report::atomic::WriteError;
@@ -138,56 +139,6 @@ impl SoughtValue {
         match self.at_bound {
             true => format!("{}, at its bound", value.trim_end()),
             false => value.trim_end().to_owned(),
-        }
-    }
-}
-
-/// The linear systems of the solver.
-#[derive(Debug, Serialize)]
-pub(super) struct LinearSystems {
-    /// `stages`, or the name of another one.
-    name: String,
-    #[serde(flatten)]
-    stages: Option<Stages>,
-}
-
-/// What the linear solver along the horizon did.
-#[derive(Debug, Serialize)]
-struct Stages {
-    factorisations: usize,
-    solutions: usize,
-    /// Pivots that were found later than expected.
-    delays: usize,
-    /// Factorisations of condensed systems, of few inputs for many states.
-    condensed: usize,
-    equilibrations: usize,
-    /// Factorisations that were repeated under a stricter rule.
-    repeated: usize,
-    /// Greatest one of the factors that were used.
-    backward_error: f64,
-    analysis_seconds: f64,
-    factorisation_seconds: f64,
-    solution_seconds: f64,
-}
-
-impl LinearSystems {
-    /// Of a solve.
-    pub(super) fn new(report: &LinearReport) -> Self {
-        let stages = report.stages.map(|stages| Stages {
-            factorisations: stages.statistics.factorisations,
-            solutions: stages.statistics.solutions,
-            delays: stages.statistics.delays,
-            condensed: stages.statistics.condensed,
-            equilibrations: stages.statistics.equilibrations,
-            repeated: stages.statistics.repeated,
-            backward_error: stages.statistics.backward_error,
-            analysis_seconds: stages.analysis,
-            factorisation_seconds: stages.factorisation,
-            solution_seconds: stages.solution,
-        });
-        Self {
-            name: report.solver.clone(),
-            stages,
         }
     }
 }

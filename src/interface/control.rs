@@ -216,6 +216,7 @@ impl Control {
             holding::warning(&control, model, &found.boundary, tested),
             domain::note(&outside, true),
             holding::free_end(&control),
+            found.solution.linear.note(),
         ];
         let trajectory = trajectory(model, &found.motion);
         let ends = found.boundary.rest.each_ref().map(Option::as_deref);

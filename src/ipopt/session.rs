@@ -125,7 +125,11 @@ impl Session {
         if factored.is_err() {
             self.report.stopped = interrupt::stop();
         }
-        self.report.factorisation += began.elapsed().as_secs_f64();
+        let seconds = began.elapsed().as_secs_f64();
+        self.report.factorisation += seconds;
+        if solver.is_whole() {
+            self.report.whole += seconds;
+        }
         factored
     }
 

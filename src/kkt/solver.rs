@@ -28,6 +28,8 @@ const MANY: usize = 20;
 const KEPT: usize = 4;
 /// Multiplications for each entry above which scales cost little.
 const EXPENSIVE: f64 = 200.0;
+/// Multiplications of a factorisation that a user waits for: some ten seconds.
+const LONG: f64 = 3e10;
 /// Backward error that calls for a stricter rule.
 const ERROR: f64 = 1e-3;
 
@@ -97,6 +99,8 @@ pub struct Solver {
     /// Factorisations that this while lasts.
     kept: usize,
     is_factored: bool,
+    /// Whether it was told that a factorisation takes long.
+    is_told: bool,
     entries: Vec<f64>,
     scaled: Vec<f64>,
     work: Vec<f64>,
@@ -122,6 +126,7 @@ impl Solver {
             lately: least,
             kept: 0,
             is_factored: false,
+            is_told: false,
             entries: Vec::new(),
             scaled: Vec::new(),
             work: Vec::new(),
@@ -148,6 +153,7 @@ impl Solver {
         self.least = begin(&self.plan);
         self.kept = 0;
         self.is_factored = false;
+        self.is_told = false;
         self.statistics = Statistics::default();
     }
 
@@ -206,7 +212,10 @@ impl Solver {
                 Ok(outcome) => break outcome,
                 // Growth hides zeros, so that no weak rule counts them all.
                 Err(Doubt::Zeros) => self.care = Care::Strict,
-                Err(Doubt::Structure) => self.care = self.care.stricter(),
+                Err(Doubt::Structure) => {
+                    self.care = self.care.stricter();
+                    self.tell_whole();
+                }
                 Err(Doubt::Growth) => {
                     self.care = self.care.stricter();
                     (self.lately, self.kept) = (self.care, KEPT + 1);
@@ -293,6 +302,24 @@ impl Solver {
         let rules = rules(self.care);
         let (factors, fronts) = (&mut self.factors, &self.plan.fronts);
         factors.factor(fronts, &self.scaled, rules, most_delays, progress)
+    }
+
+    /// Whether the last matrix was factored as a whole although others of its pattern are condensed.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.condensed.is_some() && self.care != Care::Condensed
+    }
+
+    /// Tells, once between two restarts, that a factorisation takes long, and why.
+    fn tell_whole(&mut self) {
+        let multiplications = self.plan.multiplications();
+        if self.condensed.is_some() && multiplications > LONG && !self.is_told {
+            self.is_told = true;
+            tracing::warn!(
+                "a linear system cannot be condensed, as in the restoration phase of Ipopt: it is factorised as a whole, which takes \
+                 {multiplications:.0e} multiplications, and longer than most"
+            );
+        }
     }
 
     /// Replaces a right-hand side by the solution; by NaN if the matrix was not finite.

@@ -5,8 +5,9 @@ use crate::common::programs::{HS071_OPTIMUM, HS071_START, hs071};
 use crate::common::random_goals::{self, Goals, Kind, Solved};
 use crate::common::trunk;
 use crate::ipopt::run;
-use proboscis::control::problem::{Control, Duration, Objective, PathConstraint};
+use proboscis::control::problem::{Control, Duration, Objective, PathConstraint, Task};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::files::read_problem;
 use proboscis::ipopt::{LinearSolver, OptionValue, Options, SolverResult, Status};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
@@ -97,6 +98,47 @@ fn iterations_and_optima_are_those_of_mumps() {
         }
     }
     assert!(solved >= 3, "{solved} of the cases are solved");
+}
+
+/// A goal that cannot be reached, so that Ipopt enters its restoration phase, where every equation has a diagonal.
+#[test]
+fn systems_of_restoration_are_factored_as_a_whole_and_a_note_says_when_that_was_felt() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/problems/fe_bending_control.json"
+    );
+    let changes = [
+        "scene.solids[0].box.elements=[3,1,2]",
+        "control.intervals=3",
+        r#"control.goal.markers.tip=["29.98 mm",0,"24.2 mm"]"#,
+    ];
+    let loaded = read_problem(path.as_ref(), &changes.map(str::to_owned)).unwrap();
+    let Task::Control(control) = loaded.task else {
+        panic!("a problem of control");
+    };
+    let found = solve(&loaded.system, &control, LinearSolver::Stages);
+    assert!(found.iterations.iter().any(|i| i.restoration));
+    let mut linear = found.linear;
+    let report = linear.stages.as_mut().unwrap();
+    let (condensed, all) = (
+        report.statistics.condensed,
+        report.statistics.factorisations,
+    );
+    assert!(0 < condensed && condensed < all, "{condensed} of {all}");
+    assert!(0.0 < report.whole && report.whole < report.factorisation);
+    (report.whole, report.factorisation) = (100.0, 104.0);
+    let note = linear.note().expect("that was felt");
+    let told = format!(
+        "100 of 104 s in factorisations went into {} of {all}",
+        all - condensed
+    );
+    assert!(note.starts_with(&told), "{note}");
+    // Not where it was short, or the smaller part.
+    for (whole, factorisation) in [(1.0, 1.5), (100.0, 300.0)] {
+        let report = linear.stages.as_mut().unwrap();
+        (report.whole, report.factorisation) = (whole, factorisation);
+        assert_eq!(linear.note(), None);
+    }
 }
 
 /// Goals that can be reached, some of them in haste.

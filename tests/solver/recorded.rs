@@ -98,7 +98,9 @@ fn recordings() -> BTreeMap<String, Recording> {
         let bytes = fs::read(file.path()).unwrap();
         (name, Recording::from_bytes(&bytes))
     };
-    files.map(|file| recording(file.unwrap())).collect()
+    let files = files.map(Result::unwrap);
+    let is_recording = |file: &fs::DirEntry| file.path().extension().is_some_and(|e| e == "bin");
+    files.filter(is_recording).map(recording).collect()
 }
 
 /// The matrix with its rows and columns multiplied until the largest entry of each is one: no sign of an eigenvalue changes.
@@ -150,18 +152,20 @@ impl Signs {
     }
 }
 
-/// Greatest backward error of the rows after one refinement: `|b − A x| / (|A| |x| + |b|)`.
-fn refined_error(a: &DMatrix<f64>, solver: &mut Solver) -> f64 {
+/// Greatest backward errors of the rows after one refinement and after two: `|b − A x| / (|A| |x| + |b|)`.
+fn refined_errors(a: &DMatrix<f64>, solver: &mut Solver) -> [f64; 2] {
     let right = DVector::from_fn(a.nrows(), |i, _| (1.0 + i as f64).sin());
     let mut x = right.clone();
     solver.solve(x.as_mut_slice());
-    let mut correction = &right - a * &x;
-    solver.solve(correction.as_mut_slice());
-    x += correction;
     assert!(x.amax() > 0.0);
-    let residual = (&right - a * &x).abs();
-    let terms = a.abs() * x.abs() + right.abs();
-    residual.component_div(&terms).max()
+    [(); 2].map(|()| {
+        let mut correction = &right - a * &x;
+        solver.solve(correction.as_mut_slice());
+        x += correction;
+        let residual = (&right - a * &x).abs();
+        let terms = a.abs() * x.abs() + right.abs();
+        residual.component_div(&terms).max()
+    })
 }
 
 #[test]
@@ -185,8 +189,12 @@ fn recorded_systems_have_the_inertia_of_dense_eigenvalues_and_small_errors() {
                 told += usize::from(found.zero > 0);
                 assert!(expected.are(found), "{name} {k}: {expected:?} {found:?}");
                 if expected.is_regular() {
-                    let error = refined_error(&a, &mut solver);
-                    assert!(error < 1e-12, "{name} {k}: {error:e}");
+                    let errors = refined_errors(&a, &mut solver);
+                    // Problems without a solution are worse conditioned at their ends than all others.
+                    let is_hard = ["loop.bin", "out_of_reach.bin"].contains(&name.as_str());
+                    let most = if is_hard { 1e-7 } else { 1e-12 };
+                    let are_small = errors[0] < most && errors[1] < 1e-12;
+                    assert!(are_small, "{name} {k}: {errors:?}");
                 }
             }
             if !expected.is_regular() {
@@ -211,5 +219,5 @@ fn recorded_systems_have_the_inertia_of_dense_eigenvalues_and_small_errors() {
     }
     let counts = [regular, told, compared];
     println!("{counts:?}");
-    assert!(regular >= 15 && told >= 2 && compared >= 15, "{counts:?}");
+    assert!(regular >= 18 && told >= 4 && compared >= 15, "{counts:?}");
 }

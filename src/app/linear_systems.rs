@@ -1,0 +1,58 @@
+//! What `summary.json` says about the linear systems of a solve.
+
+use serde::Serialize;
+
+use crate::ipopt::LinearReport;
+
+/// The linear systems of the solver.
+#[derive(Debug, Serialize)]
+pub(super) struct LinearSystems {
+    /// `stages`, or the name of another one.
+    name: String,
+    #[serde(flatten)]
+    stages: Option<Stages>,
+}
+
+/// What the linear solver along the horizon did.
+#[derive(Debug, Serialize)]
+struct Stages {
+    factorisations: usize,
+    solutions: usize,
+    /// Pivots that were found later than expected.
+    delays: usize,
+    /// Factorisations of condensed systems, of few inputs for many states.
+    condensed: usize,
+    equilibrations: usize,
+    /// Factorisations that were repeated under a stricter rule.
+    repeated: usize,
+    /// Greatest one of the factors that were used.
+    backward_error: f64,
+    analysis_seconds: f64,
+    factorisation_seconds: f64,
+    /// Of these in systems that could not be condensed where others could.
+    whole_seconds: f64,
+    solution_seconds: f64,
+}
+
+impl LinearSystems {
+    /// Of a solve.
+    pub(super) fn new(report: &LinearReport) -> Self {
+        let stages = report.stages.map(|stages| Stages {
+            factorisations: stages.statistics.factorisations,
+            solutions: stages.statistics.solutions,
+            delays: stages.statistics.delays,
+            condensed: stages.statistics.condensed,
+            equilibrations: stages.statistics.equilibrations,
+            repeated: stages.statistics.repeated,
+            backward_error: stages.statistics.backward_error,
+            analysis_seconds: stages.analysis,
+            factorisation_seconds: stages.factorisation,
+            whole_seconds: stages.whole,
+            solution_seconds: stages.solution,
+        });
+        Self {
+            name: report.solver.clone(),
+            stages,
+        }
+    }
+}
