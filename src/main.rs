@@ -3,7 +3,8 @@
 mod arguments;
 mod choices;
 
-use std::io::{self, Write};
+use std::env;
+use std::io::{self, IsTerminal, Stderr, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -23,10 +24,7 @@ const NAME: &str = "proboscis";
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     app::end_with_parent();
-    tracing_subscriber::fmt()
-        .with_writer(io::stderr)
-        .with_env_filter(events(arguments.verbose))
-        .init();
+    show_events(arguments.verbose);
     match answer(arguments.command) {
         Ok(told) => {
             for note in &told.notes {
@@ -46,13 +44,31 @@ fn main() -> ExitCode {
     }
 }
 
-/// The events that are shown: those that the environment names, or all of the program's own.
-fn events(verbose: bool) -> EnvFilter {
-    match EnvFilter::try_from_default_env() {
-        Ok(named) => named,
-        Err(_) if verbose => EnvFilter::new("proboscis=debug"),
-        Err(_) => EnvFilter::default(),
+/// Shows the events that the environment names, or all of the program's own, or its warnings.
+fn show_events(verbose: bool) {
+    let named = EnvFilter::try_from_default_env();
+    let is_plain = named.is_err() && !verbose;
+    let is_coloured = io::stderr().is_terminal() && env::var_os("NO_COLOR").is_none();
+    let level = if verbose { "debug" } else { "warn" };
+    let shown = named.unwrap_or_else(|_| EnvFilter::new(format!("proboscis={level}")));
+    let events = tracing_subscriber::fmt()
+        .with_writer(on_a_new_line)
+        .with_ansi(is_coloured)
+        .with_env_filter(shown);
+    match is_plain {
+        true => events.without_time().with_target(false).init(),
+        false => events.init(),
     }
+}
+
+/// Standard error, in a terminal without the line that shows progress.
+fn on_a_new_line() -> Stderr {
+    let mut errors = io::stderr();
+    if errors.is_terminal() {
+        // What cannot be cleared stays.
+        let _ = errors.write_all(b"\r\x1b[2K");
+    }
+    errors
 }
 
 fn answer(command: Command) -> Result<CommandOutput, CommandError> {

@@ -28,8 +28,8 @@ const MANY: usize = 20;
 const KEPT: usize = 4;
 /// Multiplications for each entry above which scales cost little.
 const EXPENSIVE: f64 = 200.0;
-/// Multiplications of a factorisation that a user waits for: some ten seconds.
-const LONG: f64 = 3e10;
+/// Multiplications of a factorisation that a user waits for: some seconds.
+const LONG: f64 = 1e10;
 /// Backward error that calls for a stricter rule.
 const ERROR: f64 = 1e-3;
 

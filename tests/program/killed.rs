@@ -69,3 +69,25 @@ fn a_solve_that_is_killed_leaves_an_iterate_to_go_on_from() {
     assert!(results.join("solution.json").exists());
     assert!(!results.join("unfinished.json").exists() && !beside.exists());
 }
+
+/// Warnings are shown without being asked for, as lines without time and colours where nobody watches.
+#[test]
+fn an_iterate_that_cannot_be_kept_is_told_during_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("results");
+    std::fs::create_dir_all(out.join("unfinished.json")).unwrap();
+    let fine = ["--set", "control.intervals=4000"];
+    let limit = ["--max-seconds", "5", "--no-report"];
+    let problem = problem("elephant_trunk_effort");
+    let words = [
+        &["solve", &problem, "-o", out.to_str().unwrap()][..],
+        &fine,
+        &limit,
+    ]
+    .concat();
+    let (_, _, errors) = run(folder.path(), &words);
+    let told = errors.lines().find(|line| line.contains("unfinished.json"));
+    let told = told.unwrap_or_else(|| panic!("{errors}"));
+    assert!(told.trim_start().starts_with("WARN"), "{told:?}");
+    assert!(!errors.contains('\u{1b}'), "{errors:?}");
+}
