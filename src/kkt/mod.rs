@@ -19,6 +19,7 @@
 //! | `groups`, `arrange`, `block`, `condense`, `condensed`, `reduce`, `products`, `substitute` | unknowns that equations determine, eliminated before all others |
 //! | `envelope`, `block_lu`, `block_solve` | the equations of one group |
 //! | `solver` | when to scale, how strictly to pivot, whether the factors are good |
+//! | `trial` | how exact factors are, by a system solved with them |
 //! | `progress`, `halves` | whether a long factorisation is to go on, and that on two cores |
 //!
 //! After the first matrix nothing is allocated, unless more pivots are delayed than ever before.
@@ -50,6 +51,7 @@ mod solve;
 mod solver;
 mod substitute;
 mod tree;
+mod trial;
 mod update;
 
 pub use inertia::Inertia;

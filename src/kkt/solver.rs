@@ -17,6 +17,7 @@ use super::plan::Plan;
 use super::progress::{Progress, Stopped};
 use super::scales::Scales;
 use super::solve::solve;
+use super::trial::Trial;
 
 /// Threshold of pivots for each [`Care`].
 const THRESHOLDS: [f64; 5] = [0.1, 1e-8, 1e-4, 1e-2, 0.1];
@@ -104,9 +105,7 @@ pub struct Solver {
     entries: Vec<f64>,
     scaled: Vec<f64>,
     work: Vec<f64>,
-    solution: Vec<f64>,
-    /// Residual, and the sum of the magnitudes of its terms.
-    residual: Vec<[f64; 2]>,
+    trial: Trial,
     statistics: Statistics,
 }
 
@@ -114,7 +113,7 @@ impl Solver {
     /// A solver for matrices of a plan.
     #[must_use]
     pub fn new(plan: Plan) -> Self {
-        let n = plan.order();
+        let trial = Trial::new(plan.order());
         let least = begin(&plan);
         Self {
             condensed: plan.condensation.clone().map(Condensed::new),
@@ -130,8 +129,7 @@ impl Solver {
             entries: Vec::new(),
             scaled: Vec::new(),
             work: Vec::new(),
-            solution: vec![0.0; n],
-            residual: vec![[0.0; 2]; n],
+            trial,
             statistics: Statistics::default(),
         }
     }
@@ -351,34 +349,13 @@ impl Solver {
         }
     }
 
-    /// The smallest relative change of entries with which a solution for `b = (1, −1, 1, …)` is exact (Oettli and Prager, 1964):
-    /// the greatest of `|b − A x| / (|A| |x| + |b|)`.
+    /// The backward error of a solution with the factors.
     fn backward_error(&mut self) -> f64 {
-        let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let mut x = std::mem::take(&mut self.solution);
-        x.iter_mut().enumerate().for_each(|(i, x)| *x = sign(i));
-        self.substitute(&mut x);
-        let sums = &mut self.residual;
-        sums.iter_mut()
-            .enumerate()
-            .for_each(|(i, sum)| *sum = [sign(i), 1.0]);
-        let mut add = |row: u32, term: f64| {
-            let [residual, magnitude] = &mut sums[row as usize];
-            *residual -= term;
-            *magnitude += term.abs();
-        };
-        let (rows, cols) = self.plan.pattern();
-        for ((&row, &col), &entry) in rows.iter().zip(cols).zip(&self.entries) {
-            add(row, entry * x[col as usize]);
-            if row != col {
-                add(col, entry * x[row as usize]);
-            }
-        }
-        self.solution = x;
-        let errors = self.residual.iter().map(|[r, m]| r.abs() / m);
-        let is_known = errors.clone().all(f64::is_finite);
-        let greatest = errors.fold(0.0, f64::max);
-        if is_known { greatest } else { f64::INFINITY }
+        let mut trial = std::mem::take(&mut self.trial);
+        self.substitute(trial.begin());
+        let error = trial.backward_error(self.plan.pattern(), &self.entries);
+        self.trial = trial;
+        error
     }
 }
 
