@@ -66,7 +66,7 @@ fn on_a_new_line() -> Stderr {
     let mut errors = io::stderr();
     if errors.is_terminal() {
         // What cannot be cleared stays.
-        let _ = errors.write_all(b"\r\x1b[2K");
+        errors.write_all(b"\r\x1b[2K").ok();
     }
     errors
 }

@@ -25,7 +25,9 @@ pub struct StagesReport {
     pub analysis: f64,
     /// Seconds in factorisations.
     pub factorisation: f64,
-    /// Of these in factorisations of whole systems where others were condensed.
+    /// Factorisations of whole systems where others were condensed.
+    pub wholes: usize,
+    /// Seconds in these.
     pub whole: f64,
     /// Seconds in solutions.
     pub solution: f64,
@@ -39,15 +41,10 @@ impl LinearReport {
     #[must_use]
     pub fn note(&self) -> Option<String> {
         let report = self.stages?;
-        let Statistics {
-            condensed,
-            factorisations,
-            ..
-        } = report.statistics;
         (report.whole > FELT && 2.0 * report.whole > report.factorisation).then(|| {
             format!(
-                "{:.0} of {:.0} s in factorisations went into {} of {factorisations} linear systems that could not be condensed, as in the restoration phase of Ipopt, which seeks a point that violates the equations less",
-                report.whole, report.factorisation, factorisations.saturating_sub(condensed)
+                "{:.0} of {:.0} s in factorisations went into {} of {} linear systems that could not be condensed, as in the restoration phase of Ipopt, which seeks a point that violates the equations less",
+                report.whole, report.factorisation, report.wholes, report.statistics.factorisations
             )
         })
     }

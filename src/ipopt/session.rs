@@ -128,6 +128,7 @@ impl Session {
         let seconds = began.elapsed().as_secs_f64();
         self.report.factorisation += seconds;
         if solver.is_whole() {
+            self.report.wholes += 1;
             self.report.whole += seconds;
         }
         factored

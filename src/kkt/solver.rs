@@ -100,7 +100,7 @@ pub struct Solver {
     /// Factorisations that this while lasts.
     kept: usize,
     is_factored: bool,
-    /// Whether it was told that a factorisation takes long.
+    /// Whether it was told how long a factorisation takes, should that be long.
     is_told: bool,
     entries: Vec<f64>,
     scaled: Vec<f64>,
@@ -206,14 +206,12 @@ impl Solver {
             _ => self.least.max(self.lately),
         };
         let outcome = loop {
+            self.tell_whole();
             match self.attempt(progress)? {
                 Ok(outcome) => break outcome,
                 // Growth hides zeros, so that no weak rule counts them all.
                 Err(Doubt::Zeros) => self.care = Care::Strict,
-                Err(Doubt::Structure) => {
-                    self.care = self.care.stricter();
-                    self.tell_whole();
-                }
+                Err(Doubt::Structure) => self.care = self.care.stricter(),
                 Err(Doubt::Growth) => {
                     self.care = self.care.stricter();
                     (self.lately, self.kept) = (self.care, KEPT + 1);
@@ -302,17 +300,20 @@ impl Solver {
         factors.factor(fronts, &self.scaled, rules, most_delays, progress)
     }
 
-    /// Whether the last matrix was factored as a whole although others of its pattern are condensed.
+    /// Whether the matrix at hand is factored as a whole although others of its pattern are condensed.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.condensed.is_some() && self.care != Care::Condensed
     }
 
-    /// Tells, once between two restarts, that a factorisation takes long, and why.
+    /// Tells, once between two restarts, that the factorisation to come takes long, and why.
     fn tell_whole(&mut self) {
+        if self.is_told || !self.is_whole() {
+            return;
+        }
+        self.is_told = true;
         let multiplications = self.plan.multiplications();
-        if self.condensed.is_some() && multiplications > LONG && !self.is_told {
-            self.is_told = true;
+        if multiplications > LONG {
             tracing::warn!(
                 "a linear system cannot be condensed, as in the restoration phase of Ipopt: it is factorised as a whole, which takes \
                  {multiplications:.0e} multiplications, and longer than most"

@@ -78,8 +78,8 @@ mod tests {
                     magnitudes[(j, i)] += entry.abs();
                 }
             }
-            let [rows, cols] = [0, 1].map(|k| places.iter().map(|p| p[k] as u32).collect());
-            let (rows, cols): (Vec<u32>, Vec<u32>) = (rows, cols);
+            let side = |k: usize| places.iter().map(|p| p[k] as u32).collect::<Vec<_>>();
+            let [rows, cols] = [0, 1].map(side);
             let mut trial = Trial::new(n);
             // The second time nothing of the first is left.
             for scale in [3.0, 1.0] {

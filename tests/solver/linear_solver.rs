@@ -125,13 +125,15 @@ fn systems_of_restoration_are_factored_as_a_whole_and_a_note_says_when_that_was_
         report.statistics.factorisations,
     );
     assert!(0 < condensed && condensed < all, "{condensed} of {all}");
+    // Some were condensed, but not well enough.
+    assert!(report.wholes >= all - condensed && report.wholes < all);
     assert!(0.0 < report.whole && report.whole < report.factorisation);
     (report.whole, report.factorisation) = (100.0, 104.0);
-    let note = linear.note().expect("that was felt");
     let told = format!(
         "100 of 104 s in factorisations went into {} of {all}",
-        all - condensed
+        report.wholes
     );
+    let note = linear.note().expect("that was felt");
     assert!(note.starts_with(&told), "{note}");
     // Not where it was short, or the smaller part.
     for (whole, factorisation) in [(1.0, 1.5), (100.0, 300.0)] {
