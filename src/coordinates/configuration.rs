@@ -31,6 +31,10 @@ pub struct Configuration {
 pub struct TreeState {
     /// Pose of each frame: the bodies, then the frames between screws.
     pub poses: Vec<Pose>,
+    /// Screw of each link: (ω, velocity of the origin) where its coordinate changes by one a second.
+    pub screws: Vec<[Vector; 2]>,
+    /// Derivatives of the screws along l.
+    pub screws_l: Vec<[Vector; 2]>,
     /// Axis a of each link, in the ground frame.
     pub axes: Vec<Vector>,
     /// Point c of each link.

@@ -4,6 +4,7 @@ use crate::coordinates::map::LinearPart;
 use crate::coordinates::pattern::StepPattern;
 use crate::coordinates::pull_back::articulated::Ends;
 use crate::coordinates::pull_back::destination::{Destination, Site};
+use crate::coordinates::pull_back::pair::BlockKind;
 use crate::coordinates::tree::TangentColumns;
 use crate::functional::BlockMask;
 use crate::math::{Matrix, Vector};
@@ -31,18 +32,11 @@ pub(super) struct Joined {
     isotropic: Vec<Entry>,
 }
 
-/// Which kind of block a pair has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Block {
-    Full,
-    Isotropic,
-}
-
 impl Joined {
     /// Adds a pair in the order of its block; `row_is_articulated` says which of both vectors is first.
     pub(super) fn add(
         &mut self,
-        block: Block,
+        kind: BlockKind,
         [slot, transposed]: [usize; 2],
         (packed, parts): (&TangentColumns, &[LinearPart]),
         row_is_articulated: bool,
@@ -71,9 +65,9 @@ impl Joined {
                     same: layout.same.slot(row, col),
                     cross,
                 };
-                match block {
-                    Block::Full => self.full.push(entry),
-                    Block::Isotropic => self.isotropic.push(entry),
+                match kind {
+                    BlockKind::Full => self.full.push(entry),
+                    BlockKind::Isotropic => self.isotropic.push(entry),
                 }
             }
         }

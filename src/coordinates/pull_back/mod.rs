@@ -2,27 +2,31 @@
 
 mod articulated;
 mod destination;
+mod group;
+mod images;
 mod joined;
-mod lanes;
 mod linear;
 mod mixed;
+mod pair;
+mod product;
 
 use crate::coordinates::configuration::Configuration;
 use crate::coordinates::map::{CoordinateMap, Dependence};
 use crate::coordinates::pattern::StepPattern;
 use crate::functional::{BlockMask, Couplings, Part};
-use articulated::{BlockDestination, Ends, Groups, Pair};
+use crate::math::counted;
+use articulated::{BlockDestination, Ends, Groups};
 pub use destination::Destination;
 pub(super) use destination::Site;
-use joined::{Block, Joined};
+use joined::Joined;
 use linear::Linear;
 use mixed::Mixed;
+use pair::{BlockKind, Pair};
 
 /// The plan of a pull-back: which blocks go where.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PullBack {
-    full: Groups,
-    isotropic: Groups,
+    articulated: Groups,
     linear: Linear,
     joined: Joined,
     mixed: Mixed,
@@ -41,11 +45,11 @@ impl PullBack {
         let mut plan = Self::default();
         for (slot, &pair) in couplings.full.iter().enumerate() {
             let slots = [slot, couplings.transposed_full(slot)];
-            plan.pair(Block::Full, slots, pair, motion, layout, site);
+            plan.pair(BlockKind::Full, slots, pair, motion, layout, site);
         }
         for (slot, &pair) in couplings.isotropic.iter().enumerate() {
             let slots = [slot, couplings.transposed_isotropic(slot)];
-            plan.pair(Block::Isotropic, slots, pair, motion, layout, site);
+            plan.pair(BlockKind::Isotropic, slots, pair, motion, layout, site);
         }
         for (slot, &(a, s)) in couplings.mixed.iter().enumerate() {
             plan.mixed.add(slot, a, s, motion, layout, site);
@@ -62,7 +66,7 @@ impl PullBack {
     /// Plans the block of one pair of vectors.
     fn pair(
         &mut self,
-        block: Block,
+        kind: BlockKind,
         slots: [usize; 2],
         (a, b): (usize, usize),
         motion: &CoordinateMap,
@@ -74,34 +78,29 @@ impl PullBack {
         match (&motion.vectors[a], &motion.vectors[b]) {
             (Articulated(a), Articulated(b)) => {
                 let pair = Pair {
-                    slot,
-                    transposed,
-                    first: [a.first, b.first],
+                    slot: counted(slot),
+                    transposed: counted(transposed),
+                    first: [counted(a.first), counted(b.first)],
                 };
-                let groups = match block {
-                    Block::Full => &mut self.full,
-                    Block::Isotropic => &mut self.isotropic,
-                };
-                groups.add(pair, [a, b], layout, site);
+                self.articulated.add((kind, pair), [a, b], layout, site);
             }
-            (Linear { parts: s, .. }, Linear { parts: t, .. }) => match block {
-                Block::Full => self.linear.add_full(slot, [s, t], layout, site),
-                Block::Isotropic => self.linear.add_isotropic(slot, [s, t], layout, site),
+            (Linear { parts: s, .. }, Linear { parts: t, .. }) => match kind {
+                BlockKind::Full => self.linear.add_full(slot, [s, t], layout, site),
+                BlockKind::Isotropic => self.linear.add_isotropic(slot, [s, t], layout, site),
             },
             (Articulated(a), Linear { parts, .. }) => {
-                self.joined
-                    .add(block, slots, (a, parts), true, layout, site);
+                self.joined.add(kind, slots, (a, parts), true, layout, site);
             }
             (Linear { parts, .. }, Articulated(b)) => {
                 self.joined
-                    .add(block, slots, (b, parts), false, layout, site);
+                    .add(kind, slots, (b, parts), false, layout, site);
             }
         }
     }
 
     /// Size of the local storage that an evaluation needs.
     pub(super) fn local(&self) -> usize {
-        self.full.local().max(self.isotropic.local())
+        self.articulated.local()
     }
 
     /// Adds Pᵀ H P.
@@ -116,26 +115,12 @@ impl PullBack {
     ) {
         let (columns, columns_l) = columns(ends);
         let (ends, blocks) = (Ends { columns, columns_l }, &part.blocks);
-        self.full.full(
-            ends,
-            &blocks.full,
-            sides,
-            BlockDestination {
-                target,
-                local,
-                values,
-            },
-        );
-        self.isotropic.isotropic(
-            ends,
-            &blocks.isotropic,
-            sides,
-            BlockDestination {
-                target,
-                local,
-                values,
-            },
-        );
+        let place = BlockDestination {
+            target,
+            local,
+            values,
+        };
+        self.articulated.hessian(ends, blocks, sides, place);
         self.linear
             .add(&blocks.full, &blocks.isotropic, sides, target, values);
         self.joined
@@ -167,26 +152,12 @@ impl PullBack {
             &plain.blocks,
             &contracted.blocks,
         );
-        self.full.full_along(
-            ends,
-            [&h.full, &hw.full],
-            lower,
-            BlockDestination {
-                target,
-                local,
-                values,
-            },
-        );
-        self.isotropic.isotropic_along(
-            ends,
-            [&h.isotropic, &hw.isotropic],
-            lower,
-            BlockDestination {
-                target,
-                local,
-                values,
-            },
-        );
+        let place = BlockDestination {
+            target,
+            local,
+            values,
+        };
+        self.articulated.third(ends, [h, hw], lower, place);
         self.linear
             .add(&hw.full, &hw.isotropic, lower, target, values);
         self.joined.along(

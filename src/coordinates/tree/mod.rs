@@ -22,7 +22,7 @@ mod motion;
 
 use crate::coordinates::configuration::{Moments, TreeState};
 use crate::kinematics::{Carrier, MaterialVector, Pose, VectorTerm};
-use crate::math::{Matrix, Vector};
+use crate::math::{Matrix, Vector, counted};
 
 /// What a link of a tree lets move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,12 +65,11 @@ pub const CHART: usize = 4;
 /// A column of an articulated vector: the link, and the part of the vector that the link moves.
 #[derive(Clone, Copy, Debug)]
 struct Column {
-    link: usize,
+    link: u32,
     /// The moved part.
-    arm: usize,
-    /// Where its first component is stored; the others follow at the stride of the vector.
-    place: usize,
-    stride: usize,
+    arm: u32,
+    /// Sum of its centre coefficients.
+    centre: f64,
 }
 
 /// A sum of terms of one vector that the same links move.
@@ -132,6 +131,7 @@ pub struct Tree {
     constants: Vec<Vector>,
     terms: Vec<FlatTerm>,
     moved_parts: Vec<MovedPart>,
+    /// Columns of all vectors, one vector after the other.
     columns: Vec<Column>,
     packed: Vec<TangentColumns>,
     size: usize,
@@ -244,17 +244,16 @@ impl Tree {
             stride,
             support,
         });
-        for (place, (link, _, arm)) in moved.into_iter().enumerate() {
-            let known = self.moved_parts.iter().rposition(|a| *a == arm);
+        for (link, _, part) in moved {
+            let known = self.moved_parts.iter().rposition(|a| *a == part);
             let arm = known.unwrap_or_else(|| {
-                self.moved_parts.push(arm);
+                self.moved_parts.push(part);
                 self.moved_parts.len() - 1
             });
             self.columns.push(Column {
-                link,
-                arm,
-                place: first + place,
-                stride,
+                link: counted(link),
+                arm: counted(arm),
+                centre: part.centre,
             });
         }
     }
@@ -314,6 +313,8 @@ impl Tree {
         let links = self.links.len();
         TreeState {
             poses: vec![Pose::GROUND; links],
+            screws: vec![[Vector::zeros(); 2]; links],
+            screws_l: vec![[Vector::zeros(); 2]; links],
             axes: vec![Vector::zeros(); links],
             points: vec![Vector::zeros(); links],
             axes_l: vec![Vector::zeros(); links],

@@ -2,7 +2,7 @@
 
 use crate::coordinates::configuration::{Configuration, TreeState};
 use crate::coordinates::tree::charts::rotation;
-use crate::coordinates::tree::{CHART, Column, LinkKind, Tree};
+use crate::coordinates::tree::{CHART, LinkKind, Tree};
 use crate::kinematics::Pose;
 use crate::math::Vector;
 use nalgebra::{Rotation3, Unit};
@@ -32,6 +32,10 @@ impl Tree {
                 LinkKind::Slide => pose.centre += axis * value,
                 LinkKind::Fixed => {}
             }
+            state.screws[j] = match link.kind {
+                LinkKind::Turn => [axis, point.cross(&axis)],
+                _ => [Vector::zeros(), axis],
+            };
             state.axes[j] = axis;
             state.points[j] = point;
             state.poses[link.child] = pose;
@@ -48,21 +52,30 @@ impl Tree {
         }
     }
 
-    /// Columns of P.
+    /// Columns of P: `ω_j × v + c ν_j` for the screw (ω_j, ν_j) of a link and the part v of a vector that it moves, with c centres.
     pub fn tangent(&self, state: &mut TreeState, columns: &mut [f64]) {
         for (arm, value) in self.moved_parts.iter().zip(&mut state.arms) {
             *value = sum(&state.terms[arm.first..arm.first + arm.count]);
         }
-        for column in &self.columns {
-            let axis = state.axes[column.link];
-            let centre = self.moved_parts[column.arm].centre;
-            let value = match self.links[column.link].kind {
-                LinkKind::Turn => {
-                    axis.cross(&(state.arms[column.arm] - state.points[column.link] * centre))
-                }
-                _ => axis * centre,
-            };
-            column.store(&value, columns);
+        self.each_column(columns, |link, arm, centre| {
+            let [angular, linear] = &state.screws[link];
+            angular.cross(&state.arms[arm]) + linear * centre
+        });
+    }
+
+    /// Writes the columns of all vectors, each made of its link, the part that moves, and the centres in this part.
+    #[inline(always)]
+    fn each_column(&self, columns: &mut [f64], value: impl Fn(usize, usize, f64) -> Vector) {
+        let mut others = self.columns.as_slice();
+        for packed in &self.packed {
+            let own = others.split_off(..packed.support.len()).unwrap_or_default();
+            let rows = &mut columns[packed.first..packed.first + 3 * packed.stride];
+            let (x, rest) = rows.split_at_mut(packed.stride);
+            let (y, z) = rest.split_at_mut(packed.stride);
+            for (column, (x, (y, z))) in own.iter().zip(x.iter_mut().zip(y.iter_mut().zip(z))) {
+                let (link, arm) = (column.link as usize, column.arm as usize);
+                [*x, *y, *z] = value(link, arm, column.centre).into();
+            }
         }
     }
 
@@ -80,12 +93,13 @@ impl Tree {
             let (axis, point) = (tree.axes[j], tree.points[j]);
             tree.axes_l[j] = omega.cross(&axis);
             tree.points_l[j] = origin + omega.cross(&point);
+            let [angular, linear] = tree.screws[j];
+            tree.screws_l[j] = [
+                omega.cross(&angular),
+                omega.cross(&linear) + origin.cross(&angular),
+            ];
             let rate = link.coordinate.map_or(0.0, |c| l[c]);
-            tree.twists[link.child] = match link.kind {
-                LinkKind::Turn => [omega + axis * rate, origin + point.cross(&axis) * rate],
-                LinkKind::Slide => [omega, origin + axis * rate],
-                LinkKind::Fixed => [omega, origin],
-            };
+            tree.twists[link.child] = [omega + angular * rate, origin + linear * rate];
         }
         w.fill(Vector::zeros());
         for ((term, value), rate) in self.terms.iter().zip(&tree.terms).zip(&mut tree.terms_l) {
@@ -96,32 +110,14 @@ impl Tree {
         for (arm, rate) in self.moved_parts.iter().zip(&mut tree.arms_l) {
             *rate = sum(&tree.terms_l[arm.first..arm.first + arm.count]);
         }
-        for column in &self.columns {
-            let (j, arm) = (column.link, column.arm);
-            let centre = self.moved_parts[arm].centre;
-            let value = match self.links[j].kind {
-                LinkKind::Turn => {
-                    let reach = tree.arms[arm] - tree.points[j] * centre;
-                    let reach_l = tree.arms_l[arm] - tree.points_l[j] * centre;
-                    tree.axes_l[j].cross(&reach) + tree.axes[j].cross(&reach_l)
-                }
-                _ => tree.axes_l[j] * centre,
-            };
-            column.store(&value, columns_l);
-        }
+        self.each_column(columns_l, |link, arm, centre| {
+            let ([angular, _], [angular_l, linear_l]) = (&tree.screws[link], &tree.screws_l[link]);
+            angular_l.cross(&tree.arms[arm]) + angular.cross(&tree.arms_l[arm]) + linear_l * centre
+        });
     }
 }
 
 #[inline]
 fn sum(vectors: &[Vector]) -> Vector {
     vectors[1..].iter().fold(vectors[0], |sum, v| sum + v)
-}
-
-impl Column {
-    #[inline]
-    fn store(&self, value: &Vector, columns: &mut [f64]) {
-        columns[self.place] = value.x;
-        columns[self.place + self.stride] = value.y;
-        columns[self.place + 2 * self.stride] = value.z;
-    }
 }
