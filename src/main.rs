@@ -22,6 +22,7 @@ use tracing_subscriber::EnvFilter;
 const NAME: &str = "proboscis";
 
 fn main() -> ExitCode {
+    app::end_idle_threads();
     let arguments = Arguments::parse();
     app::end_with_parent();
     show_events(arguments.verbose);

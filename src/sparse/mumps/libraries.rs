@@ -36,6 +36,19 @@ fn use_one_blas_thread() {
     }
 }
 
+/// Ends the threads of OpenBLAS, if it is loaded, in a process where nothing else works with them: from the time it is loaded they
+/// wait for work in a loop, which keeps a core busy for a tenth of a second.
+pub(crate) fn end_blas_threads() {
+    use_one_blas_thread();
+    if let Some(symbol) = loaded(c"blas_thread_shutdown_") {
+        // SAFETY: OpenBLAS declares `int blas_thread_shutdown_(void)`, which it calls itself before a process forks.
+        let shut_down =
+            unsafe { mem::transmute::<NonNull<c_void>, unsafe extern "C" fn() -> c_int>(symbol) };
+        // SAFETY: the caller has no work in other threads; should one thread not be enough later, OpenBLAS starts others.
+        unsafe { shut_down() };
+    }
+}
+
 /// Makes SCOTCH order in one thread, unless the environment says otherwise: from several threads, as many as there are cores, the order
 /// differs from run to run, and with it the last digits of every solution.
 ///

@@ -11,6 +11,7 @@ use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Singular, Symmetry};
 
 use ffi::{Instance, Job};
+pub(crate) use libraries::end_blas_threads;
 pub(crate) use lock::{Exclusive, exclusive};
 
 /// Ordering of the elimination, ICNTL(7), as measured by `benches/factorisation.rs`: SCOTCH.
