@@ -2,11 +2,12 @@
 
 use crate::coordinates::pattern::StepPattern;
 use crate::coordinates::pull_back::destination::{Destination, Site};
+use crate::coordinates::pull_back::dispatch::{Task, dispatch};
 use crate::coordinates::pull_back::group::Group;
 use crate::coordinates::pull_back::pair::{BlockKind, Pair};
 use crate::coordinates::tree::TangentColumns;
 use crate::functional::{BlockMask, Blocks};
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 use rustc_hash::FxHashMap;
 
 /// Groups of pairs by the supports of both vectors.
@@ -76,7 +77,7 @@ impl Groups {
         sides: BlockMask,
         place: BlockDestination<'_>,
     ) {
-        Arch::new().dispatch(Plain {
+        dispatch(Plain {
             groups: self,
             ends,
             blocks,
@@ -93,7 +94,7 @@ impl Groups {
         sides: BlockMask,
         place: BlockDestination<'_>,
     ) {
-        Arch::new().dispatch(Along {
+        dispatch(Along {
             groups: self,
             ends,
             blocks,
@@ -112,11 +113,9 @@ struct Plain<'a> {
     place: BlockDestination<'a>,
 }
 
-impl WithSimd for Plain<'_> {
-    type Output = ();
-
+impl Task for Plain<'_> {
     #[inline(always)]
-    fn with_simd<S: Simd>(self, unit: S) {
+    fn run<S: Simd>(self, unit: S) {
         let BlockDestination {
             target,
             local,
@@ -145,11 +144,9 @@ struct Along<'a> {
     place: BlockDestination<'a>,
 }
 
-impl WithSimd for Along<'_> {
-    type Output = ();
-
+impl Task for Along<'_> {
     #[inline(always)]
-    fn with_simd<S: Simd>(self, unit: S) {
+    fn run<S: Simd>(self, unit: S) {
         let BlockDestination {
             target,
             local,

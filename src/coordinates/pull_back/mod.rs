@@ -2,6 +2,7 @@
 
 mod articulated;
 mod destination;
+mod dispatch;
 mod group;
 mod images;
 mod joined;
