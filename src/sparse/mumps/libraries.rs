@@ -38,6 +38,7 @@ fn use_one_blas_thread() {
 
 /// Ends the threads of OpenBLAS, if it is loaded, in a process where nothing else works with them: from the time it is loaded they
 /// wait for work in a loop, which keeps a core busy for a tenth of a second.
+#[cfg(feature = "cli")]
 pub(crate) fn end_blas_threads() {
     use_one_blas_thread();
     if let Some(symbol) = loaded(c"blas_thread_shutdown_") {

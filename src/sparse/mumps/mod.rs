@@ -11,6 +11,7 @@ use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Singular, Symmetry};
 
 use ffi::{Instance, Job};
+#[cfg(feature = "cli")]
 pub(crate) use libraries::end_blas_threads;
 pub(crate) use lock::{Exclusive, exclusive};
 
