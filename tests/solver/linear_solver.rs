@@ -143,15 +143,12 @@ fn systems_of_restoration_are_factored_as_a_whole_and_a_note_says_when_that_was_
     }
 }
 
-/// Iterations from which on two solves do not take the same ones.
-const LONG: usize = 60;
-
 /// Goals that can be reached, some of them in haste.
 #[test]
 fn random_goals_have_the_same_ends_as_with_mumps() {
     let mut goals = Goals::new(5);
-    let (mut solved, mut compared) = (0, 0);
-    for round in 0..10 {
+    let (mut solved, mut apart) = (0, 0);
+    for round in 0..30 {
         let kind = [Kind::Rest, Kind::Tip][round % 2];
         let duration = [0.6, 0.6, 0.3][round % 3];
         let goal = goals.draw(kind).json;
@@ -169,15 +166,7 @@ fn random_goals_have_the_same_ends_as_with_mumps() {
         // On a coarse grid a simulation does not reproduce all of them.
         if ["solved", "not_reproduced"].contains(&stages.word) {
             solved += 1;
-            // A solve of many iterations goes back and forth, and where it does so hangs on the last digits.
-            let [least, most] = [
-                stages.iterations.min(mumps.iterations),
-                stages.iterations.max(mumps.iterations),
-            ];
-            if least < LONG {
-                compared += 1;
-                assert!(most - least <= 1, "{told}: {least} and {most} iterations");
-            }
+            apart += usize::from(stages.iterations.abs_diff(mumps.iterations) > 1);
             let [one, other] = [&stages, &mumps].map(|one| f64::from_bits(one.objective));
             assert!(
                 one > 0.0 && (one / other - 1.0).abs() < 1e-9,
@@ -185,7 +174,8 @@ fn random_goals_have_the_same_ends_as_with_mumps() {
             );
         }
     }
-    assert!(solved >= 8 && compared >= 6, "{solved}, {compared}");
+    // A solve that goes back and forth for long may part at the last digits of a step.
+    assert!(solved >= 25 && apart <= 2, "{solved}, {apart}");
 }
 
 /// The pattern is analysed once in a thread, and a solve with a kept one is the same to the last bit.
