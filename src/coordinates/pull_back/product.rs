@@ -84,8 +84,9 @@ impl Product<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use pulp::{Arch, Scalar, WithSimd};
+    use crate::coordinates::pull_back::pair::Pair;
+    use crate::coordinates::pull_back::product::Product;
+    use pulp::{Arch, Scalar, Simd, WithSimd};
 
     impl WithSimd for Product<'_> {
         type Output = ();
