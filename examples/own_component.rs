@@ -12,7 +12,9 @@ struct Hardening {
 }
 
 impl Energy<3> for Hardening {
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
+    type Local<const ORDER: usize> = Jet<3, ORDER>;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
         let square = Jet::dot(0, 0, p, w);
         square * square * (0.25 * self.stiffness)
     }

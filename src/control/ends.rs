@@ -13,7 +13,7 @@ use crate::control::transcription::Site;
 use crate::coordinates::Configuration;
 use crate::energy::{Energy, OutsideBox, SquaredDistance};
 use crate::functional::Sample;
-use crate::math::significant;
+use crate::math::{Local, significant};
 use crate::model::{Coordinates, Model, Quantity, Region, Time};
 
 /// Refuses limits that contradict each other, and a start or goal of which it is known that it breaks a limit. `scalars` are voltages and potentials of states of
@@ -220,12 +220,12 @@ fn region_value(region: &Region, place: &Vector3<f64>) -> f64 {
         Region::Sphere { centre, radius } => {
             let scale = radius;
             let energy = SquaredDistance { centre, scale };
-            energy.jet::<1>(place, &still).value
+            energy.at::<1>(place, &still).value()
         }
         Region::Box { min, max } => {
             let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
             let energy = OutsideBox { centre, half };
-            energy.jet::<1>(place, &still).value
+            energy.at::<1>(place, &still).value()
         }
     }
 }

@@ -1,7 +1,6 @@
 //! The capacitance of a lumped muscle.
 
-use crate::energy::{DielectricCell, Energy};
-use crate::math::Jet;
+use crate::energy::{DielectricCell, Energy, OfSquare};
 use nalgebra::SVector;
 
 /// Capacitance `C = −2 V₀ [c₁ + c₂ I − ε/(2I)]/t²` in mC/V with I = |r|²/L₀², arguments: span r. Not finite for r = 0.
@@ -27,9 +26,11 @@ impl Capacitance {
 }
 
 impl Energy<3> for Capacitance {
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
+    type Local<const ORDER: usize> = OfSquare;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> OfSquare {
         let length = self.cell.elastic.length;
-        let i = Jet::dot(0, 0, p, w) * (1.0 / (length * length));
-        i.map(self.of_squared_stretch(i.value))
+        let scale = 1.0 / (length * length);
+        OfSquare::new((p, w), scale, |i| self.of_squared_stretch(i), |_| [0.0; 4])
     }
 }

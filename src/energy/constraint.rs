@@ -14,6 +14,8 @@ pub struct Orthogonality {
 }
 
 impl Energy<7> for Orthogonality {
+    type Local<const ORDER: usize> = Jet<7, ORDER>;
+
     const DEGREE: usize = 3;
     const ISOTROPIC: bool = true;
 
@@ -22,7 +24,7 @@ impl Energy<7> for Orthogonality {
     }
 
     #[inline]
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 7>, w: &SVector<f64, 7>) -> Jet<7, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 7>, w: &SVector<f64, 7>) -> Jet<7, ORDER> {
         let product = Jet::dot(0, 3, p, w) + -self.product;
         product * Jet::argument(6, p, w) * self.factor
     }
@@ -33,6 +35,8 @@ impl Energy<7> for Orthogonality {
 pub struct Coincidence;
 
 impl Energy<6> for Coincidence {
+    type Local<const ORDER: usize> = Jet<6, ORDER>;
+
     const DEGREE: usize = 2;
 
     fn couples(_i: usize, _j: usize) -> bool {
@@ -40,7 +44,7 @@ impl Energy<6> for Coincidence {
     }
 
     #[inline]
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
         Jet::dot(0, 3, p, w)
     }
 }

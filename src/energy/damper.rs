@@ -15,6 +15,9 @@ pub struct CoordinateDamper {
 }
 
 impl Energy<6> for CoordinateDamper {
+    type Local<const ORDER: usize> = Jet<6, ORDER>;
+
+    const READINGS: usize = 2;
     const DEGREE: usize = 2;
     const VIRTUAL: usize = 1;
     const ISOTROPIC: bool = true;
@@ -23,7 +26,7 @@ impl Energy<6> for CoordinateDamper {
         i != j
     }
 
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
         Jet::dot(0, 3, p, w) * -self.coefficient
     }
 }
@@ -39,13 +42,12 @@ pub struct AngularDamper {
 }
 
 impl Energy<27> for AngularDamper {
+    type Local<const ORDER: usize> = Jet<27, ORDER>;
+
+    const READINGS: usize = 3;
     const VIRTUAL: usize = 3;
 
-    fn jet<const ORDER: usize>(
-        &self,
-        p: &SVector<f64, 27>,
-        w: &SVector<f64, 27>,
-    ) -> Jet<27, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 27>, w: &SVector<f64, 27>) -> Jet<27, ORDER> {
         // Rate of a product of two vectors: one factor varies (at `shift`), the other stands.
         let rate =
             |a: usize, shift: usize| Jet::dot(a + shift, 15, p, w) + Jet::dot(a, 15 + shift, p, w);
@@ -79,13 +81,12 @@ pub struct LinearDamper {
 }
 
 impl Energy<18> for LinearDamper {
+    type Local<const ORDER: usize> = Jet<18, ORDER>;
+
+    const READINGS: usize = 3;
     const VIRTUAL: usize = 2;
 
-    fn jet<const ORDER: usize>(
-        &self,
-        p: &SVector<f64, 18>,
-        w: &SVector<f64, 18>,
-    ) -> Jet<18, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 18>, w: &SVector<f64, 18>) -> Jet<18, ORDER> {
         let virtual_rate = Jet::dot(0, 9, p, w) + Jet::dot(6, 3, p, w);
         let rate = Jet::dot(12, 9, p, w) + Jet::dot(6, 15, p, w);
         rate * virtual_rate * -self.coefficient

@@ -12,9 +12,11 @@ pub struct Gravity {
 }
 
 impl Energy<3> for Gravity {
+    type Local<const ORDER: usize> = Jet<3, ORDER>;
+
     const DEGREE: usize = 1;
 
-    fn jet<const ORDER: usize>(&self, x: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
+    fn at<const ORDER: usize>(&self, x: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
         let mut jet = Jet::constant(-self.weight.dot(x));
         jet.gradient = -self.weight;
         jet.value_w = -self.weight.dot(w);

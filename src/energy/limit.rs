@@ -1,6 +1,6 @@
 //! Quantities that path limits and goals bound.
 
-use crate::energy::Energy;
+use crate::energy::{Energy, OfSquare};
 use crate::math::{Jet, Vector};
 use nalgebra::SVector;
 
@@ -14,9 +14,11 @@ pub struct PositionComponent {
 }
 
 impl Energy<3> for PositionComponent {
+    type Local<const ORDER: usize> = Jet<3, ORDER>;
+
     const DEGREE: usize = 1;
 
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
         let mut jet = Jet::constant((p - self.origin).dot(&self.normal));
         jet.gradient = self.normal;
         jet.value_w = self.normal.dot(w);
@@ -34,11 +36,15 @@ pub struct SquaredDistance {
 }
 
 impl Energy<3> for SquaredDistance {
+    type Local<const ORDER: usize> = OfSquare;
+
     const DEGREE: usize = 2;
     const ISOTROPIC: bool = true;
 
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
-        Jet::dot(0, 0, &(p - self.centre), w) * (1.0 / (self.scale * self.scale))
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> OfSquare {
+        let scale = 1.0 / (self.scale * self.scale);
+        let itself = |i| [i, 1.0, 0.0, 0.0];
+        OfSquare::new((&(p - self.centre), w), scale, itself, |_| [0.0; 4])
     }
 }
 
@@ -52,7 +58,9 @@ pub struct OutsideBox {
 }
 
 impl Energy<3> for OutsideBox {
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
+    type Local<const ORDER: usize> = Jet<3, ORDER>;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
         let axis = |i: usize| {
             let x = (Jet::argument(i, p, w) + -self.centre[i]) * (1.0 / self.half[i]);
             x.powi(16)
@@ -71,10 +79,16 @@ pub struct SquaredField {
 }
 
 impl Energy<4> for SquaredField {
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> Jet<4, ORDER> {
-        let i = Jet::dot(0, 0, p, w) * (1.0 / (self.length * self.length));
-        let v = Jet::argument(3, p, w) * (1.0 / self.voltage);
-        v.squared() * i.recip()
+    type Local<const ORDER: usize> = OfSquare;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> OfSquare {
+        let factor = 1.0 / (self.voltage * self.voltage);
+        let inverse = |i: f64| {
+            let r = 1.0 / i;
+            [r, -r * r, 2.0 * r * r * r, -6.0 * r * r * r * r].map(|e| factor * e)
+        };
+        let scale = 1.0 / (self.length * self.length);
+        OfSquare::new((p, w), scale, |_| [0.0; 4], inverse)
     }
 }
 
@@ -88,7 +102,9 @@ pub struct Angle {
 }
 
 impl Energy<9> for Angle {
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 9>, w: &SVector<f64, 9>) -> Jet<9, ORDER> {
+    type Local<const ORDER: usize> = Jet<9, ORDER>;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 9>, w: &SVector<f64, 9>) -> Jet<9, ORDER> {
         let cosine = Jet::dot(0, 6, p, w);
         let sine = Jet::dot(3, 6, p, w);
         // With the reference angle β: angle = β + atan2(s cos β − c sin β, c cos β + s sin β), and atan2(y, x) = atan(y/x) for x > 0.
@@ -107,6 +123,8 @@ impl Energy<9> for Angle {
 pub struct Projection;
 
 impl Energy<6> for Projection {
+    type Local<const ORDER: usize> = Jet<6, ORDER>;
+
     const DEGREE: usize = 2;
     const ISOTROPIC: bool = true;
 
@@ -114,7 +132,7 @@ impl Energy<6> for Projection {
         i != j
     }
 
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
         Jet::dot(0, 3, p, w)
     }
 }

@@ -1,12 +1,14 @@
 //! Energies and virtual works: pure formulas, without index, mesh or time.
 
 mod affine;
+mod along_span;
 mod capacitance;
 mod constraint;
 mod damper;
 mod gravity;
 mod limit;
 mod muscle;
+mod of_square;
 mod sought_damper;
 mod sought_muscle;
 mod sought_spring;
@@ -15,12 +17,14 @@ mod tendon;
 mod viscosity;
 
 pub use affine::Affine;
+pub use along_span::AlongSpan;
 pub use capacitance::Capacitance;
 pub use constraint::{Coincidence, Orthogonality};
 pub use damper::{AngularDamper, CoordinateDamper, LinearDamper};
 pub use gravity::Gravity;
 pub use limit::{Angle, OutsideBox, PositionComponent, Projection, SquaredDistance, SquaredField};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
+pub use of_square::OfSquare;
 pub use sought_damper::SoughtDamper;
 pub use sought_muscle::{SoughtCell, SoughtDielectric, SoughtShape, SoughtViscousCell};
 pub use sought_spring::{SoughtSpanDamper, SoughtSpring};
@@ -28,7 +32,7 @@ pub use spring::{LinearSpring, SpanDamper};
 pub use tendon::Cable;
 pub use viscosity::ViscousCell;
 
-use crate::math::Jet;
+use crate::math::{Jet, Local};
 use nalgebra::SVector;
 
 /// A scalar of `M` arguments, differentiated exactly: vectors first, three arguments each, then scalars.
@@ -40,6 +44,9 @@ pub trait Energy<const M: usize>: Send + Sync {
     /// δx·f, linear in them, whose scalar arguments are sought parameters.
     const VIRTUAL: usize = 0;
 
+    /// How many arguments read each of its n vectors: argument i reads vector i mod n.
+    const READINGS: usize = 1;
+
     /// Whether second derivatives between two vectors are multiples of the identity.
     const ISOTROPIC: bool = false;
 
@@ -47,6 +54,22 @@ pub trait Energy<const M: usize>: Send + Sync {
     fn couples(_i: usize, _j: usize) -> bool {
         true
     }
+
+    /// How its derivatives up to an order are kept: as a [`Jet`](crate::math::Jet), or in fewer numbers.
+    type Local<const ORDER: usize>: Local;
+
+    /// Its derivatives at `p` up to `ORDER`, with rates along `w` when that is 3.
+    fn at<const ORDER: usize>(
+        &self,
+        p: &SVector<f64, M>,
+        w: &SVector<f64, M>,
+    ) -> Self::Local<ORDER>;
+}
+
+/// A scalar of `M` arguments some of which are sought constants: span vectors first, three arguments each, then scalars.
+pub trait SoughtEnergy<const M: usize>: Send + Sync {
+    /// How many leading vectors are virtual displacements, as in [`Energy`].
+    const VIRTUAL: usize = 0;
 
     /// The jet at `p`, with rates along `w` when `ORDER` is 3.
     fn jet<const ORDER: usize>(&self, p: &SVector<f64, M>, w: &SVector<f64, M>) -> Jet<M, ORDER>;

@@ -2,8 +2,8 @@
 //!
 //! All through the polynomial invariant I = Λ² = |r|²/L₀² of the span r (docs/theory.md, 3.1 to 3.3).
 
-use crate::energy::Energy;
-use crate::math::{Jet, Vector};
+use crate::energy::{Energy, OfSquare};
+use crate::math::Jet;
 use nalgebra::SVector;
 
 /// Elastic energy `V₀ μ/2 (2/√I + I − 3)` of a muscle, arguments: span r. Not finite for r = 0.
@@ -19,7 +19,7 @@ pub struct ElasticCell {
 
 impl ElasticCell {
     /// μ/2 V₀ (2/√I + I − 3) as a function of I: value and three derivatives.
-    #[inline]
+    #[inline(always)]
     fn of_squared_stretch(&self, i: f64) -> [f64; 4] {
         let c = 0.5 * self.shear_modulus * self.volume;
         let r = 1.0 / i;
@@ -34,10 +34,12 @@ impl ElasticCell {
 }
 
 impl Energy<3> for ElasticCell {
-    #[inline]
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
-        let i = Jet::dot(0, 0, p, w) * (1.0 / (self.length * self.length));
-        i.map(self.of_squared_stretch(i.value))
+    type Local<const ORDER: usize> = OfSquare;
+
+    #[inline(always)]
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> OfSquare {
+        let scale = 1.0 / (self.length * self.length);
+        OfSquare::new((p, w), scale, |i| self.of_squared_stretch(i), |_| [0.0; 4])
     }
 }
 
@@ -60,7 +62,7 @@ pub struct DielectricCell {
 
 impl DielectricCell {
     /// Factor of (V/t)² V₀ as a function of I: value and three derivatives.
-    #[inline]
+    #[inline(always)]
     pub(super) fn electric_of_squared_stretch(&self, i: f64) -> [f64; 4] {
         let k = self.elastic.volume / (self.layer * self.layer);
         let r = 1.0 / i;
@@ -74,53 +76,15 @@ impl DielectricCell {
     }
 }
 
-/// With u(I) + e(I) V² and I = |r|²/L₀² written out: `∂W/∂r = a r` with a = 2 W_I/L₀², `∂²W/∂r² = a 1 + b r rᵀ` with
-/// b = 4 W_II/L₀⁴, `∂²W/∂r∂V = c r` with c = 2 W_IV/L₀², and the rates of a, b, c along w.
 impl Energy<4> for DielectricCell {
-    #[inline]
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> Jet<4, ORDER> {
-        let s = 1.0 / (self.elastic.length * self.elastic.length);
-        let (r, v) = (Vector::new(p[0], p[1], p[2]), p[3]);
-        let i = r.norm_squared() * s;
-        let u = self.elastic.of_squared_stretch(i);
-        let e = self.electric_of_squared_stretch(i);
-        let mut jet = Jet::constant(u[0] + e[0] * v * v);
-        let a = 2.0 * s * (u[1] + e[1] * v * v);
-        let grad = r * a;
-        jet.gradient = [grad.x, grad.y, grad.z, 2.0 * e[0] * v].into();
-        if ORDER >= 2 {
-            let b = 4.0 * s * s * (u[2] + e[2] * v * v);
-            let c = 4.0 * s * e[1] * v;
-            for m in 0..3 {
-                for n in 0..3 {
-                    jet.hessian[(m, n)] = b * r[m] * r[n];
-                }
-                jet.hessian[(m, m)] += a;
-                jet.hessian[(m, 3)] = c * r[m];
-                jet.hessian[(3, m)] = c * r[m];
-            }
-            jet.hessian[(3, 3)] = 2.0 * e[0];
-            if ORDER >= 3 {
-                let (wr, wv) = (Vector::new(w[0], w[1], w[2]), w[3]);
-                let iw = 2.0 * s * r.dot(&wr);
-                let aw = 2.0 * s * ((u[2] + e[2] * v * v) * iw + 2.0 * e[1] * v * wv);
-                let bw = 4.0 * s * s * ((u[3] + e[3] * v * v) * iw + 2.0 * e[2] * v * wv);
-                let cw = 4.0 * s * (e[2] * v * iw + e[1] * wv);
-                jet.value_w = jet.gradient.dot(w);
-                jet.gradient_w = jet.hessian * w;
-                for m in 0..3 {
-                    for n in 0..3 {
-                        jet.hessian_w[(m, n)] =
-                            bw * r[m] * r[n] + b * (r[m] * wr[n] + wr[m] * r[n]);
-                    }
-                    jet.hessian_w[(m, m)] += aw;
-                    jet.hessian_w[(m, 3)] = cw * r[m] + c * wr[m];
-                    jet.hessian_w[(3, m)] = cw * r[m] + c * wr[m];
-                }
-                jet.hessian_w[(3, 3)] = 2.0 * e[1] * iw;
-            }
-        }
-        jet
+    type Local<const ORDER: usize> = OfSquare;
+
+    #[inline(always)]
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> OfSquare {
+        let elastic = |i| self.elastic.of_squared_stretch(i);
+        let electric = |i| self.electric_of_squared_stretch(i);
+        let scale = 1.0 / (self.elastic.length * self.elastic.length);
+        OfSquare::new((p, w), scale, elastic, electric)
     }
 }
 
@@ -134,7 +98,11 @@ pub struct SectionInertia {
 }
 
 impl Energy<6> for SectionInertia {
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
+    type Local<const ORDER: usize> = Jet<6, ORDER>;
+
+    const READINGS: usize = 2;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
         let scale = 1.0 / (self.length * self.length);
         let i = Jet::dot(0, 0, p, w) * scale;
         let rate = Jet::dot(0, 3, p, w) * (2.0 * scale);

@@ -11,6 +11,9 @@ pub struct SoughtDamper<E>(pub E);
 macro_rules! sought_damper {
     ($damper:ty, $own:literal, $all:literal) => {
         impl Energy<$all> for SoughtDamper<$damper> {
+            type Local<const ORDER: usize> = Jet<$all, ORDER>;
+
+            const READINGS: usize = <$damper as Energy<$own>>::READINGS;
             const VIRTUAL: usize = <$damper as Energy<$own>>::VIRTUAL;
             const ISOTROPIC: bool = <$damper as Energy<$own>>::ISOTROPIC;
 
@@ -18,13 +21,13 @@ macro_rules! sought_damper {
                 <$damper as Energy<$own>>::couples(i, j)
             }
 
-            fn jet<const ORDER: usize>(
+            fn at<const ORDER: usize>(
                 &self,
                 p: &SVector<f64, $all>,
                 w: &SVector<f64, $all>,
             ) -> Jet<$all, ORDER> {
                 let own = |x: &SVector<f64, $all>| x.fixed_rows::<$own>(0).into_owned();
-                let jet: Jet<$own, ORDER> = self.0.jet(&own(p), &own(w));
+                let jet: Jet<$own, ORDER> = self.0.at(&own(p), &own(w));
                 let mut work = Jet::<$all, ORDER>::constant(jet.value);
                 work.value_w = jet.value_w;
                 work.gradient

@@ -2,8 +2,8 @@
 //!
 //! Arguments: vectors, three each, then scalars; each constant says on which of them it depends.
 
-use crate::energy::viscosity::of_invariants;
-use crate::energy::{Affine, Energy};
+use crate::energy::along_span::of_invariants;
+use crate::energy::{Affine, SoughtEnergy};
 use crate::math::Jet;
 use nalgebra::SVector;
 
@@ -54,7 +54,7 @@ pub struct SoughtCell {
     pub electric: Option<SoughtDielectric>,
 }
 
-impl<const M: usize> Energy<M> for SoughtCell {
+impl<const M: usize> SoughtEnergy<M> for SoughtCell {
     fn jet<const ORDER: usize>(&self, p: &SVector<f64, M>, w: &SVector<f64, M>) -> Jet<M, ORDER> {
         let [square, volume] = self.shape.length_and_volume::<M, ORDER>(p, w);
         let i = Jet::dot(0, 0, p, w) * square.recip();
@@ -80,7 +80,7 @@ pub struct SoughtViscousCell {
     pub viscosity: Affine,
 }
 
-impl<const M: usize> Energy<M> for SoughtViscousCell {
+impl<const M: usize> SoughtEnergy<M> for SoughtViscousCell {
     const VIRTUAL: usize = 1;
 
     fn jet<const ORDER: usize>(&self, p: &SVector<f64, M>, w: &SVector<f64, M>) -> Jet<M, ORDER> {

@@ -1,7 +1,7 @@
 //! Springs and dampers with constants that are arguments.
 
-use crate::energy::viscosity::of_invariants;
-use crate::energy::{Affine, Energy};
+use crate::energy::along_span::of_invariants;
+use crate::energy::{Affine, SoughtEnergy};
 use crate::math::Jet;
 use nalgebra::SVector;
 
@@ -14,7 +14,7 @@ pub struct SoughtSpring {
     pub length: Affine,
 }
 
-impl<const M: usize> Energy<M> for SoughtSpring {
+impl<const M: usize> SoughtEnergy<M> for SoughtSpring {
     fn jet<const ORDER: usize>(&self, p: &SVector<f64, M>, w: &SVector<f64, M>) -> Jet<M, ORDER> {
         let extension = Jet::dot(0, 0, p, w).sqrt() - self.length.jet(p, w);
         extension.squared() * self.stiffness.jet(p, w) * 0.5
@@ -28,7 +28,7 @@ pub struct SoughtSpanDamper {
     pub coefficient: Affine,
 }
 
-impl<const M: usize> Energy<M> for SoughtSpanDamper {
+impl<const M: usize> SoughtEnergy<M> for SoughtSpanDamper {
     const VIRTUAL: usize = 1;
 
     fn jet<const ORDER: usize>(&self, p: &SVector<f64, M>, w: &SVector<f64, M>) -> Jet<M, ORDER> {

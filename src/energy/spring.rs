@@ -1,8 +1,6 @@
 //! A spring and a damper between two points.
 
-use crate::energy::Energy;
-use crate::energy::viscosity::of_invariants;
-use crate::math::Jet;
+use crate::energy::{AlongSpan, Energy, OfSquare};
 use nalgebra::SVector;
 
 /// Elastic energy `½ k (|r| − ℓ)²`, arguments: span r. Not finite for r = 0 unless ℓ = 0.
@@ -16,7 +14,7 @@ pub struct LinearSpring {
 
 impl LinearSpring {
     /// ½ k (√I − ℓ)² as a function of I = |r|²: value and three derivatives.
-    #[inline]
+    #[inline(always)]
     fn of_squared_length(&self, i: f64) -> [f64; 4] {
         let (k, l) = (self.stiffness, self.length);
         if l == 0.0 {
@@ -35,10 +33,11 @@ impl LinearSpring {
 }
 
 impl Energy<3> for LinearSpring {
-    #[inline]
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
-        let i = Jet::dot(0, 0, p, w);
-        i.map(self.of_squared_length(i.value))
+    type Local<const ORDER: usize> = OfSquare;
+
+    #[inline(always)]
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> OfSquare {
+        OfSquare::new((p, w), 1.0, |i| self.of_squared_length(i), |_| [0.0; 4])
     }
 }
 
@@ -50,12 +49,21 @@ pub struct SpanDamper {
 }
 
 impl Energy<9> for SpanDamper {
+    type Local<const ORDER: usize> = AlongSpan;
+
+    const READINGS: usize = 3;
     const VIRTUAL: usize = 1;
 
-    #[inline]
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 9>, w: &SVector<f64, 9>) -> Jet<9, ORDER> {
-        of_invariants(p, w, |[alpha, beta, gamma]| {
-            alpha * beta * gamma.recip() * -self.coefficient
+    fn couples(i: usize, j: usize) -> bool {
+        i != j || i == 1
+    }
+
+    #[inline(always)]
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 9>, _: &SVector<f64, 9>) -> AlongSpan {
+        AlongSpan::new(p, |gamma| {
+            let r = 1.0 / gamma;
+            let k = -self.coefficient * r;
+            [k, -k * r, 2.0 * k * r * r]
         })
     }
 }

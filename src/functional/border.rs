@@ -6,8 +6,8 @@
 //! ∂G/∂h = E − ∇E·Πv,     ∂/∂h (∇G) = ∇E − ∇²E Πv − Π∇E  (through the stencil weights),     ∂²G/∂h² = Πv·∇²E Πv / h.
 //! ```
 
-use crate::functional::{Derivatives, Kernel, Sample, Stencil};
-use crate::math::Vector;
+use crate::functional::{Kernel, Sample, Stencil};
+use crate::math::{Derivatives, Vector};
 
 /// Rates that an element reads.
 pub(super) struct Rates<'a, K: Kernel> {

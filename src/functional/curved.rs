@@ -1,7 +1,7 @@
 //! Curved functions of a quantity: their derivatives by all that the quantity reads.
 
-use crate::functional::{Derivatives, Kernel, Order, Outer, Sample, Scatter, VectorArg};
-use crate::math::{Matrix, Vector};
+use crate::functional::{Kernel, Order, Outer, Sample, Scatter, VectorArg};
+use crate::math::{Derivatives, Matrix, Vector};
 use std::marker::PhantomData;
 
 /// Derivatives of c(m) from those of m.

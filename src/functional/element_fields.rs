@@ -1,10 +1,8 @@
 //! The true electric field at a point of a finite element: a quantity of the intervals.
 
 use crate::element::{FieldPoint, SpatialField};
-use crate::functional::{
-    Derivatives, Kernel, Order, Sample, ScalarArg, Scatter, Stencil, VectorArg,
-};
-use crate::math::{Matrix, Vector};
+use crate::functional::{Kernel, Order, Sample, ScalarArg, Scatter, Stencil, VectorArg};
+use crate::math::{Derivatives, Matrix, Vector};
 
 /// |e|²/E² at a point of an element, with the nodes at one time of an interval and the potentials of the interval.
 #[derive(Clone, Debug)]

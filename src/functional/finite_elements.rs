@@ -3,10 +3,8 @@
 //! Nodes are read at the midpoint of an interval, potentials are scalars of the interval.
 
 use crate::element::{Dielectric, Elastomer, ElementGeometry, Field, Local, Passive};
-use crate::functional::{
-    Derivatives, Kernel, Order, Sample, ScalarArg, Scatter, Stencil, VectorArg,
-};
-use crate::math::{Matrix, Vector};
+use crate::functional::{Kernel, Order, Sample, ScalarArg, Scatter, Stencil, VectorArg};
+use crate::math::{Derivatives, Matrix, Vector};
 use std::fmt;
 use std::marker::PhantomData;
 

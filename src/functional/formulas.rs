@@ -1,9 +1,9 @@
-//! Elements of a formula: a fixed number of arguments, and jets on the stack.
+//! Elements of a formula: a fixed number of arguments, and derivatives on the stack.
 
 use crate::energy::Energy;
-use crate::functional::{Derivatives, Kernel, Order, Sample, Scatter, Stencil, VectorArg};
-use crate::math::{Jet, Matrix, Vector};
-use nalgebra::{SMatrix, SVector};
+use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
+use crate::math::{Derivatives, Local, Vector};
+use nalgebra::SVector;
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -27,42 +27,12 @@ impl<E, const M: usize, const NV: usize, const NS: usize> fmt::Debug for Formula
     }
 }
 
-/// Gradient and Hessian by M arguments, NV vectors first.
-struct OfJet<'a, const M: usize, const NV: usize>(&'a SVector<f64, M>, &'a SMatrix<f64, M, M>);
-
-impl<const M: usize, const NV: usize> Derivatives for OfJet<'_, M, NV> {
-    #[inline(always)]
-    fn force(&self, i: usize) -> Vector {
-        self.0.fixed_rows::<3>(3 * i).into()
-    }
-
-    #[inline(always)]
-    fn row(&self, s: usize) -> f64 {
-        self.0[3 * NV + s]
-    }
-
-    #[inline(always)]
-    fn block(&self, i: usize, j: usize) -> Matrix {
-        self.1.fixed_view::<3, 3>(3 * i, 3 * j).into()
-    }
-
-    #[inline(always)]
-    fn column(&self, i: usize, s: usize) -> Vector {
-        self.1.fixed_view::<3, 1>(3 * i, 3 * NV + s).into()
-    }
-
-    #[inline(always)]
-    fn entry(&self, s: usize, t: usize) -> f64 {
-        self.1[(3 * NV + s, 3 * NV + t)]
-    }
-}
-
 impl<E, const M: usize, const NV: usize, const NS: usize> Formulas<E, M, NV, NS>
 where
     E: Energy<M>,
 {
     /// Arguments at the sample and their rates along its direction; a virtual displacement takes the rate as value.
-    #[inline]
+    #[inline(always)]
     fn arguments(
         element: &Element<E, NV, NS>,
         order: Order,
@@ -100,8 +70,8 @@ where
         to: &mut impl Scatter,
     ) {
         let (p, w) = Self::arguments(element, order, sample);
-        let jet: Jet<M, ORDER> = element.energy.jet(&p, &w);
-        let plain = OfJet::<M, NV>(&jet.gradient, &jet.hessian);
+        let local = element.energy.at::<ORDER>(&p, &w);
+        let plain = local.plain::<NV>();
         to.plain(&plain);
         if order < Order::Third {
             return;
@@ -110,8 +80,7 @@ where
             // At δx = w the virtual work itself is the contraction with the costates.
             to.along(&plain, &plain);
         } else {
-            let along = OfJet::<M, NV>(&jet.gradient_w, &jet.hessian_w);
-            to.along(&plain, &along);
+            to.along(&plain, &local.along::<NV>());
         }
     }
 }
@@ -125,6 +94,7 @@ where
 
     const DEGREE: usize = E::DEGREE;
     const VIRTUAL: usize = E::VIRTUAL;
+    const READINGS: usize = E::READINGS;
     const ISOTROPIC: bool = E::ISOTROPIC;
 
     fn couples(i: usize, j: usize) -> bool {
@@ -133,7 +103,8 @@ where
 
     #[inline(always)]
     fn vectors(_: &Self::Element) -> usize {
-        NV
+        const { assert!(NV.is_multiple_of(E::READINGS)) };
+        NV / E::READINGS
     }
 
     #[inline(always)]
@@ -143,7 +114,9 @@ where
 
     #[inline(always)]
     fn vector(element: &Self::Element, i: usize) -> VectorArg {
-        element.vectors[i]
+        let arg = element.vectors[i];
+        debug_assert_eq!(arg.vector, element.vectors[i % (NV / E::READINGS)].vector);
+        arg
     }
 
     #[inline(always)]
@@ -157,7 +130,7 @@ where
             let step = sample.vectors[1][arg.vector] - sample.vectors[0][arg.vector];
             p.fixed_rows_mut::<3>(3 * i).copy_from(&step);
         }
-        element.energy.jet::<1>(&p, &w).value
+        element.energy.at::<1>(&p, &w).value()
     }
 
     fn momentum(
@@ -173,10 +146,11 @@ where
             let value = if is_rate(arg) { v } else { x }[arg.vector];
             p.fixed_rows_mut::<3>(3 * i).copy_from(&value);
         }
-        let gradient = element.energy.jet::<1>(&p, &SVector::zeros()).gradient;
+        let local = element.energy.at::<1>(&p, &SVector::zeros());
+        let gradient = local.plain::<NV>();
         for (i, arg) in element.vectors.iter().enumerate() {
             if is_rate(arg) {
-                out[arg.vector] += gradient.fixed_rows::<3>(3 * i) * scale;
+                out[arg.vector] += gradient.force(i) * scale;
             }
         }
     }

@@ -4,10 +4,9 @@ use crate::functional::batches::Batches;
 use crate::functional::border::{Border, BorderAlong, Rates};
 use crate::functional::scatter::{ALL, Places};
 use crate::functional::slots::{self, Slots};
-use crate::functional::{
-    Couplings, Derivatives, Horizon, Kernel, Kind, Order, Output, Sample, Scatter, Term,
-};
-use crate::math::Vector;
+use crate::functional::{Couplings, Horizon, Kernel, Kind, Order, Output, Sample, Scatter, Term};
+use crate::math::{Derivatives, Vector};
+use pulp::{Arch, Simd, WithSimd};
 use std::fmt;
 use std::ops::Range;
 
@@ -236,16 +235,53 @@ impl<K: Kernel> Term for Group<K> {
         };
         let is_free =
             K::BY_DURATION && sample.horizon == Horizon::Free && self.site == Site::Intervals;
-        self.each(order, sample, slots, |element, places, storage| {
+        Arch::new().dispatch(All {
+            group: self,
+            c,
+            order,
+            sample,
+            slots,
+            is_free,
+            out,
+        });
+    }
+}
+
+/// The elements of a group at a sample.
+struct All<'a, K: Kernel> {
+    group: &'a Group<K>,
+    /// Factor of E, with the length of the interval.
+    c: f64,
+    order: Order,
+    sample: &'a Sample<'a>,
+    slots: &'a [u32],
+    /// Whether derivatives by the length of the interval are asked for.
+    is_free: bool,
+    out: &'a mut Output,
+}
+
+/// Adds the derivatives of all elements, compiled for the vector unit of the machine; sums are the same on any.
+impl<K: Kernel> WithSimd for All<'_, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self {
+            group,
+            order,
+            sample,
+            ..
+        } = self;
+        group.each(order, sample, self.slots, |element, places, storage| {
             let mut action = Action {
                 element,
                 places,
-                c,
-                scale: self.scale,
+                c: self.c,
+                scale: group.scale,
                 order,
                 sample,
-                is_free,
-                out: &mut *out,
+                is_free: self.is_free,
+                out: &mut *self.out,
             };
             K::derivatives(element, order, sample, storage, &mut action);
         });

@@ -1,7 +1,7 @@
 //! Kinetic energy of constant masses: the one term whose second derivative never changes.
 
 use crate::functional::{BlockMask, Couplings, Horizon, Kind, Order, Output, Sample, Term};
-use crate::math::Vector;
+use crate::math::{Vector, counted};
 
 /// A mass m on a material vector, ½ m |ẋ|², or between two, m ẋ·ẏ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,10 +20,6 @@ impl Mass {
             mass,
         }
     }
-
-    fn is_point(&self) -> bool {
-        self.vectors[0] == self.vectors[1]
-    }
 }
 
 /// `h ½ Σ m_ij v_i·v_j`, v = (x_{k+1} − x_k)/h.
@@ -34,15 +30,43 @@ impl Mass {
 #[derive(Clone, Debug)]
 pub struct Inertia {
     name: String,
-    masses: Vec<Mass>,
+    masses: usize,
+    entries: Vec<Entry>,
+}
+
+/// One entry of the mass matrix.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    row: u32,
+    column: u32,
+    mass: f64,
+}
+
+impl Entry {
+    /// The two vectors.
+    fn vectors(self) -> [usize; 2] {
+        [self.row as usize, self.column as usize]
+    }
 }
 
 impl Inertia {
     /// Masses under one name.
     pub fn new(name: &str, masses: Vec<Mass>) -> Self {
+        let mut entries = Vec::new();
+        for m in &masses {
+            let [a, b] = m.vectors;
+            let pairs = [(a, b), (b, a)];
+            let count = if a == b { 1 } else { 2 };
+            entries.extend(pairs[..count].iter().map(|&(row, column)| Entry {
+                row: counted(row),
+                column: counted(column),
+                mass: m.mass,
+            }));
+        }
         Self {
             name: name.to_owned(),
-            masses,
+            masses: masses.len(),
+            entries,
         }
     }
 }
@@ -53,13 +77,12 @@ impl Term for Inertia {
     }
 
     fn elements(&self) -> usize {
-        self.masses.len()
+        self.masses
     }
 
     fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
-        for m in &self.masses {
-            let slot = couplings.add_isotropic(m.vectors[0], m.vectors[1]);
-            slots.extend([slot, couplings.transposed_isotropic(slot)].map(|slot| slot as u32));
+        for [a, b] in self.entries.iter().map(|e| e.vectors()) {
+            slots.push(couplings.add_isotropic(a, b) as u32);
         }
     }
 
@@ -69,21 +92,17 @@ impl Term for Inertia {
 
     fn energy(&self, sample: &Sample<'_>) -> f64 {
         let [x, y] = sample.vectors;
-        let product = |m: &Mass| {
-            let [a, b] = m.vectors;
-            let once = m.mass * (y[a] - x[a]).dot(&(y[b] - x[b]));
-            if m.is_point() { once } else { 2.0 * once }
+        let product = |e: &Entry| {
+            let [a, b] = e.vectors();
+            e.mass * (y[a] - x[a]).dot(&(y[b] - x[b]))
         };
-        self.masses.iter().map(product).sum::<f64>() * 0.5 / (sample.h * sample.h)
+        self.entries.iter().map(product).sum::<f64>() * 0.5 / (sample.h * sample.h)
     }
 
     fn momentum(&self, _x: &[Vector], v: &[Vector], out: &mut [Vector]) {
-        for m in &self.masses {
-            let [a, b] = m.vectors;
-            out[a] += v[b] * m.mass;
-            if !m.is_point() {
-                out[b] += v[a] * m.mass;
-            }
+        for e in &self.entries {
+            let [a, b] = e.vectors();
+            out[a] += v[b] * e.mass;
         }
     }
 
@@ -110,19 +129,6 @@ impl Term for Inertia {
 }
 
 impl Inertia {
-    /// Each row of the mass matrix, by its vector, with the other vector and the mass.
-    #[inline(always)]
-    fn each_row(&self, mut row: impl FnMut(usize, usize, f64)) {
-        for m in &self.masses {
-            let [a, b] = m.vectors;
-            let rows = [(a, b), (b, a)];
-            let count = if m.is_point() { 1 } else { 2 };
-            for &(a, b) in &rows[..count] {
-                row(a, b, m.mass);
-            }
-        }
-    }
-
     /// Adds ∓c m r (y − x) to the forces at both instants.
     fn add_momenta(
         &self,
@@ -131,23 +137,24 @@ impl Inertia {
         c: f64,
         [here, next]: &mut [Vec<Vector>; 2],
     ) {
-        self.each_row(|a, b, mass| {
-            let momentum = (y[b] - x[b]) * (mass * r) * c;
+        for e in &self.entries {
+            let [a, b] = e.vectors();
+            let momentum = (y[b] - x[b]) * (e.mass * r) * c;
             here[a] -= momentum;
             next[a] += momentum;
-        });
+        }
     }
 
     /// Adds ±r m to the blocks that are asked for.
     fn add_blocks(&self, r: f64, mask: BlockMask, slots: &[u32], blocks: &mut [[f64; 4]]) {
         const SIGNS: [f64; 4] = [1.0, -1.0, -1.0, 1.0];
+        let mut factors = [0.0; 4];
         for side in (0..4).filter(|&side| mask.blocks[side]) {
-            for (m, slots) in self.masses.iter().zip(slots.chunks_exact(2)) {
-                let c = SIGNS[side] * (m.mass * r);
-                blocks[slots[0] as usize][side] += c;
-                if !m.is_point() {
-                    blocks[slots[1] as usize][side] += c;
-                }
+            factors[side] = SIGNS[side] * r;
+        }
+        for (e, &slot) in self.entries.iter().zip(slots) {
+            for (entry, factor) in blocks[slot as usize].iter_mut().zip(factors) {
+                *entry += factor * e.mass;
             }
         }
     }
@@ -155,8 +162,9 @@ impl Inertia {
     /// Adds 2 r³ Σ m_ij (y − x)_j·w_i of the differences y − x of the vectors and w of the direction.
     fn add_horizon(&self, r: f64, sample: &Sample<'_>, sum: &mut f64) {
         let [[x, y], [wx, wy]] = [sample.vectors, sample.along];
-        self.each_row(|a, b, mass| {
-            *sum += 2.0 * mass * (y[b] - x[b]).dot(&(wy[a] - wx[a])) * r * r * r;
-        });
+        for e in &self.entries {
+            let [a, b] = e.vectors();
+            *sum += 2.0 * e.mass * (y[b] - x[b]).dot(&(wy[a] - wx[a])) * r * r * r;
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Elements of one kind: what one reads, and how its derivatives are made.
 
-use crate::functional::{Derivatives, Order, Sample, VectorArg};
-use crate::math::Vector;
+use crate::functional::{Order, Sample, VectorArg};
+use crate::math::{Derivatives, Vector};
 use std::fmt::Debug;
 
 /// Receives the derivatives of one element.

@@ -3,10 +3,8 @@
 use crate::functional::curved::OfQuantity;
 use crate::functional::scatter::{ALL, Places};
 use crate::functional::slots::Slots;
-use crate::functional::{
-    Couplings, Derivatives, Group, Kernel, Measure, Order, Outer, Part, Sample, Scatter,
-};
-use crate::math::Vector;
+use crate::functional::{Couplings, Group, Kernel, Measure, Order, Outer, Part, Sample, Scatter};
+use crate::math::{Derivatives, Vector};
 
 /// The gradient of a quantity.
 struct Gradient<'a, K: Kernel> {

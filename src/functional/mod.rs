@@ -10,13 +10,12 @@
 //! summands on one interval: forces ∂Ŝ/∂x, the blocks of ∂²Ŝ/∂x², and both contracted with a direction. How vectors follow from
 //! coordinates is none of its business.
 //!
-//! All terms but [`Inertia`] are a [`Group`] of elements of one kind, a [`Kernel`], whose [`Derivatives`] one loop adds up.
+//! All terms but [`Inertia`] are a [`Group`] of elements of one kind, a [`Kernel`], whose [derivatives](crate::math::Derivatives) one loop adds up.
 
 mod batches;
 mod border;
 mod couplings;
 mod curved;
-mod derivatives;
 mod element_fields;
 mod finite_elements;
 mod formulas;
@@ -36,7 +35,6 @@ mod viscous_elements;
 
 pub use couplings::{BlockMask, Blocks, Couplings, Part};
 pub use curved::Curved;
-pub use derivatives::Derivatives;
 pub use element_fields::{ElementField, ElementFields};
 pub use finite_elements::{Electrical, FiniteElement, FiniteElements, Variations};
 pub use formulas::{Element, Formulas};

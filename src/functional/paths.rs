@@ -13,8 +13,8 @@
 //! ```
 
 use crate::energy::Cable;
-use crate::functional::{Derivatives, Kernel, Order, Sample, Scatter, Stencil, VectorArg};
-use crate::math::{Matrix, Vector};
+use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
+use crate::math::{Derivatives, Matrix, Vector};
 use std::cell::Cell;
 
 /// A path and the energy of its length.

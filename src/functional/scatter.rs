@@ -1,8 +1,8 @@
 //! The one loop that adds derivatives of elements to forces, blocks and couplings.
 
 use crate::functional::slots::Slots;
-use crate::functional::{BlockMask, Derivatives, Kernel, Part, Sample};
-use crate::math::{Matrix, Vector};
+use crate::functional::{BlockMask, Kernel, Part, Sample};
+use crate::math::{Derivatives, Matrix, Vector};
 use std::ops::Range;
 
 /// All arguments.
@@ -65,15 +65,8 @@ impl<'a, K: Kernel> Places<'a, K> {
         d: &D,
         part: &mut Part,
     ) {
+        self.blocks(c, (rows.clone(), columns), d, part);
         let vectors = K::vectors(self.element);
-        let sides = self.mask.blocks.iter().filter(|&&side| side).count();
-        if K::READINGS == 1 && sides > 1 {
-            self.single_blocks(c, (rows.clone(), columns), d, part);
-        } else {
-            for side in (0..4).filter(|&side| self.mask.blocks[side]) {
-                self.blocks(c, (rows.clone(), columns.clone()), side, d, part);
-            }
-        }
         for i in 0..vectors * K::READINGS {
             if rows.contains(&i) {
                 self.columns(c, i, d, part);
@@ -84,9 +77,9 @@ impl<'a, K: Kernel> Places<'a, K> {
         }
     }
 
-    /// Adds the blocks of all pairs of arguments where each vector is read once: each block is made once for all sides.
+    /// Adds the blocks of all pairs of vectors, each the sum over what is read of both.
     #[inline(always)]
-    fn single_blocks<D: Derivatives>(
+    fn blocks<D: Derivatives>(
         &self,
         c: f64,
         (rows, columns): (Range<usize>, Range<usize>),
@@ -94,65 +87,43 @@ impl<'a, K: Kernel> Places<'a, K> {
         part: &mut Part,
     ) {
         let vectors = K::vectors(self.element);
-        let weights = |i: usize| K::vector(self.element, i).stencil.weights(self.h);
-        for i in (0..vectors).filter(|i| rows.contains(i)) {
-            for j in (0..vectors).filter(|j| columns.contains(j)) {
-                let slot = self.slots.vectors(i, j);
-                let Some(slot) = slot.filter(|_| K::couples(i, j)) else {
+        for a in 0..vectors {
+            for b in 0..vectors {
+                let Some(slot) = self.slots.vectors(a, b) else {
                     continue;
                 };
-                let (wi, wj) = (weights(i), weights(j));
-                let block = d.block(i, j);
-                for side in 0..4 {
-                    let weight = c * wi[side / 2] * wj[side % 2];
-                    if !self.mask.blocks[side] || weight == 0.0 {
+                let mut sums = [Matrix::zeros(); 4];
+                for k in 0..K::READINGS {
+                    for l in 0..K::READINGS {
+                        let (i, j) = (k * vectors + a, l * vectors + b);
+                        if rows.contains(&i) && columns.contains(&j) && K::couples(i, j) {
+                            self.add_block(c, (i, j), &d.block(i, j), &mut sums);
+                        }
+                    }
+                }
+                for (side, sum) in sums.iter().enumerate() {
+                    if !self.mask.blocks[side] {
                         continue;
                     }
                     if K::ISOTROPIC {
-                        part.blocks.isotropic[slot][side] += weight * block[(0, 0)];
+                        part.blocks.isotropic[slot][side] += sum[(0, 0)];
                     } else {
-                        part.blocks.full[slot][side] += block * weight;
+                        part.blocks.full[slot][side] += sum;
                     }
                 }
             }
         }
     }
 
-    /// Adds the blocks of all pairs of arguments on one side: rows of the instant `side / 2`, columns of `side % 2`.
+    /// Adds c times the block of two arguments to the sums of the sides: rows of the instant `side / 2`, columns of `side % 2`.
     #[inline(always)]
-    fn blocks<D: Derivatives>(
-        &self,
-        c: f64,
-        (rows, columns): (Range<usize>, Range<usize>),
-        side: usize,
-        d: &D,
-        part: &mut Part,
-    ) {
-        let vectors = K::vectors(self.element);
-        let weight = |i: usize, at: usize| {
-            let stencil = K::vector(self.element, i).stencil;
-            stencil.weights(self.h)[at]
-        };
-        for a in 0..vectors {
-            for b in 0..vectors {
-                let Some(slot) = self.slots.vectors(a, b) else {
-                    continue;
-                };
-                let mut sum = Matrix::zeros();
-                for k in 0..K::READINGS {
-                    for l in 0..K::READINGS {
-                        let (i, j) = (k * vectors + a, l * vectors + b);
-                        if rows.contains(&i) && columns.contains(&j) && K::couples(i, j) {
-                            let weight = c * weight(i, side / 2) * weight(j, side % 2);
-                            sum += d.block(i, j) * weight;
-                        }
-                    }
-                }
-                if K::ISOTROPIC {
-                    part.blocks.isotropic[slot][side] += sum[(0, 0)];
-                } else {
-                    part.blocks.full[slot][side] += sum;
-                }
+    fn add_block(&self, c: f64, (i, j): (usize, usize), block: &Matrix, sums: &mut [Matrix; 4]) {
+        let weights = |i: usize| K::vector(self.element, i).stencil.weights(self.h);
+        let (wi, wj) = (weights(i), weights(j));
+        for (side, sum) in sums.iter_mut().enumerate() {
+            let weight = c * wi[side / 2] * wj[side % 2];
+            if self.mask.blocks[side] && weight != 0.0 {
+                *sum += block * weight;
             }
         }
     }

@@ -8,9 +8,9 @@
 //! ∂/∂v_a = c_a ∂/∂r,     ∂/∂π_a = ∂/∂π_a of the formula + e_a·∂/∂r,     c₀ = 1, c_a = π_a − π_a⁰.
 //! ```
 
-use crate::energy::Energy;
-use crate::functional::{Derivatives, Kernel, Order, Sample, Scatter, Stencil, VectorArg};
-use crate::math::{Jet, Matrix, Vector};
+use crate::energy::SoughtEnergy;
+use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
+use crate::math::{Derivatives, Jet, Matrix, Vector};
 use nalgebra::{SMatrix, SVector};
 use std::fmt;
 use std::marker::PhantomData;
@@ -189,7 +189,7 @@ impl<const M: usize, const R: usize, const N: usize> Derivatives for Along<'_, M
 
 impl<E, const M: usize, const R: usize, const N: usize> SoughtFormulas<E, M, R, N>
 where
-    E: Energy<M>,
+    E: SoughtEnergy<M>,
 {
     /// How the span is read: at the midpoint; as a virtual displacement, at the midpoint and as a rate.
     fn stencil(reading: usize) -> Stencil {
@@ -324,7 +324,7 @@ where
 
 impl<E, const M: usize, const R: usize, const N: usize> Kernel for SoughtFormulas<E, M, R, N>
 where
-    E: Energy<M> + 'static,
+    E: SoughtEnergy<M> + 'static,
 {
     type Element = SoughtElement<E, N>;
     type Storage = ();

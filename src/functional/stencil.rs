@@ -19,7 +19,7 @@ pub enum Stencil {
 
 impl Stencil {
     /// Weights of the two instants for the interval length h.
-    #[inline]
+    #[inline(always)]
     pub fn weights(self, h: f64) -> [f64; 2] {
         match self {
             Self::Here => [1.0, 0.0],
@@ -31,6 +31,7 @@ impl Stencil {
     }
 
     /// Whether it reads the instant k + side.
+    #[inline(always)]
     pub fn reads(self, side: usize) -> bool {
         match self {
             Self::Here => side == 0,
@@ -51,7 +52,7 @@ pub struct VectorArg {
 
 impl VectorArg {
     /// Its value, from the vectors at both instants of an interval of length h.
-    #[inline]
+    #[inline(always)]
     pub fn read(self, h: f64, vectors: [&[Vector]; 2]) -> Vector {
         let [a, b] = self.stencil.weights(h);
         match self.stencil {

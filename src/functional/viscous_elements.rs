@@ -5,8 +5,8 @@
 
 use crate::element::{ElementGeometry, Viscosity, ViscousContraction, ViscousLocal};
 use crate::functional::finite_elements::middle;
-use crate::functional::{Derivatives, Kernel, Order, Sample, Scatter, Stencil, VectorArg};
-use crate::math::{Matrix, Vector};
+use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
+use crate::math::{Derivatives, Matrix, Vector};
 
 /// One viscous finite element.
 #[derive(Clone, Debug)]

@@ -3,6 +3,7 @@
 
 mod both;
 mod counted;
+mod derivatives;
 mod digits;
 mod jet;
 pub mod random;
@@ -11,6 +12,7 @@ mod sets;
 pub(crate) use both::both;
 pub use both::cores;
 pub(crate) use counted::counted;
+pub use derivatives::{Derivatives, Local};
 pub use digits::significant;
 pub use jet::Jet;
 pub use sets::DisjointSets;

@@ -1,7 +1,7 @@
 //! Where components hand over their terms: what reads nothing that moves is left out, what is of one kind is collected, and the
 //! reasons are written down.
 
-use crate::energy::{Energy, Gravity};
+use crate::energy::{Energy, Gravity, SoughtEnergy};
 use crate::functional::{
     Electrical, Element, FiniteElement, FiniteElements, Formulas, Group, Inertia, Mass, Path,
     Paths, SoughtElement, SoughtFormulas, Stencil, Term, VectorArg, ViscousElement,
@@ -112,7 +112,7 @@ struct OfSought<E, const M: usize, const R: usize, const N: usize>(SoughtElement
 
 impl<E, const M: usize, const R: usize, const N: usize> Member for OfSought<E, M, R, N>
 where
-    E: Energy<M> + 'static,
+    E: SoughtEnergy<M> + 'static,
 {
     fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         let scale = if E::VIRTUAL > 0 { 1.0 } else { -1.0 };
@@ -216,7 +216,7 @@ impl<'a> Terms<'a> {
         of: &str,
         element: SoughtElement<E, N>,
     ) where
-        E: Energy<M> + 'static,
+        E: SoughtEnergy<M> + 'static,
     {
         self.collect(term, why, of, OfSought::<_, M, R, N>(element));
     }

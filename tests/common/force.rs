@@ -17,9 +17,11 @@ pub struct Force {
 }
 
 impl Energy<4> for Force {
+    type Local<const ORDER: usize> = Jet<4, ORDER>;
+
     const DEGREE: usize = 2;
 
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> Jet<4, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> Jet<4, ORDER> {
         let along = |i: usize| Jet::argument(i, p, w) * self.direction[i];
         (along(0) + along(1) + along(2)) * Jet::argument(3, p, w) * -UNIT
     }

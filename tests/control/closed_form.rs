@@ -23,7 +23,9 @@ use std::ops::ControlFlow;
 struct Torque;
 
 impl Energy<4> for Torque {
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> Jet<4, ORDER> {
+    type Local<const ORDER: usize> = Jet<4, ORDER>;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> Jet<4, ORDER> {
         // Relative to the direction now, where atan(t) has the derivatives 1, 0, −2.
         let (sin, cos) = p[1].atan2(p[0]).sin_cos();
         let (x, y) = (Jet::argument(0, p, w), Jet::argument(1, p, w));

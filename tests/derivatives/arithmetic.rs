@@ -11,7 +11,9 @@ use proboscis::math::Jet;
 struct Arithmetic;
 
 impl Energy<6> for Arithmetic {
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
+    type Local<const ORDER: usize> = Jet<6, ORDER>;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
         let (aa, ab, bb) = (
             Jet::dot(0, 0, p, w),
             Jet::dot(0, 3, p, w),
@@ -45,4 +47,9 @@ impl Formula<6> for Arithmetic {
 #[test]
 fn jet_arithmetic_is_the_chain_rule() {
     law("arithmetic", &Arithmetic, 0.1, 0.9);
+    // What is not asked for stays zero.
+    let (p, w) = (SVector::repeat(0.3), SVector::repeat(0.2));
+    let (one, two): (Jet<6, 1>, Jet<6, 2>) = (Arithmetic.at(&p, &w), Arithmetic.at(&p, &w));
+    assert!(one.gradient.amax() > 0.1 && two.hessian.amax() > 0.1);
+    assert_eq!((one.hessian.amax(), two.hessian_w.amax()), (0.0, 0.0));
 }

@@ -3,10 +3,10 @@
 
 use crate::common::random::Random;
 use proboscis::functional::{
-    BlockMask, Derivatives, Functional, Group, Horizon, Kernel, Order, Part, Sample, ScalarArg,
-    Scatter, Stencil, VectorArg,
+    BlockMask, Functional, Group, Horizon, Kernel, Order, Part, Sample, ScalarArg, Scatter,
+    Stencil, VectorArg,
 };
-use proboscis::math::{Matrix, Vector};
+use proboscis::math::{Derivatives, Matrix, Vector};
 
 /// `sin u` of a weighted sum u of midpoints, rates and scalars.
 struct Wave {

@@ -9,6 +9,7 @@ mod costs;
 mod differences;
 mod energies;
 mod formulas;
+mod gathered;
 mod hexahedron;
 mod hexahedron_states;
 mod hexahedron_viscosity;
