@@ -11,7 +11,8 @@ use crate::dynamics::step_report::StepperReport;
 use crate::dynamics::tangent::Tangent;
 use crate::dynamics::updates::Updates;
 use crate::functional::Order;
-use crate::ipopt::interrupt;
+use crate::ipopt::Status;
+use crate::ipopt::interrupt::{self, TimeLimit};
 use std::time::Instant;
 
 /// Limit of Newton iterations in one step.
@@ -225,7 +226,6 @@ impl<E: Equations> Steps<E> {
             }
             if !reused {
                 self.updates.start();
-                self.go_on(h)?;
                 self.factor(h)?;
                 self.go_on(h)?;
             }
@@ -260,16 +260,16 @@ impl<E: Equations> Steps<E> {
 
     /// Whether there is time for what comes next in a step.
     fn go_on(&mut self, h: f64) -> Result<(), StepError> {
-        let Some(status) = interrupt::stop() else {
-            return Ok(());
-        };
+        match interrupt::stop() {
+            Some(status) => Err(self.stopped(h, status)),
+            None => Ok(()),
+        }
+    }
+
+    fn stopped(&mut self, step: f64, status: Status) -> StepError {
         self.equations.restore();
         let time = self.equations.time();
-        Err(StepError::Stopped {
-            time,
-            step: h,
-            status,
-        })
+        StepError::Stopped { time, step, status }
     }
 
     /// Makes a solution the instant now; not where the momentum does not exist, nor where the step does not resolve the
@@ -347,10 +347,16 @@ impl<E: Equations> Steps<E> {
     /// Factorises the tangent evaluated last.
     fn factor(&mut self, h: f64) -> Result<(), StepError> {
         let began = Instant::now();
-        let done = self.updates.factor(self.equations.values());
+        let limit = interrupt::limit();
+        let reached = || limit.as_ref().and_then(TimeLimit::reached);
+        let values = self.equations.values();
+        let done = self.updates.factor_unless(values, &|| reached().is_some());
         self.report.factorisation += began.elapsed().as_secs_f64();
+        self.factored = (done == Ok(Ok(()))).then_some(h);
+        let Ok(done) = done else {
+            return Err(self.stopped(h, reached().unwrap_or(Status::Interrupted)));
+        };
         self.report.factorisations += 1;
-        self.factored = done.is_ok().then_some(h);
         done.map_err(|singular| {
             self.equations.restore();
             let [start, _] = self.equations.ends();

@@ -6,7 +6,7 @@ use crate::coordinates::StepPattern;
 use crate::dynamics::step_state::TangentState;
 use crate::math::counted;
 use crate::model::Model;
-use crate::sparse::{Backend, Direct, Precision, Singular, Symmetry};
+use crate::sparse::{Backend, Direct, IsOver, Precision, Singular, Stopped, Symmetry};
 
 /// Places in the values of the action, summed into the entries of a matrix.
 #[derive(Debug)]
@@ -137,6 +137,16 @@ impl Tangent {
 
     /// Factorises the matrix of these values.
     pub(super) fn factor(&mut self, values: &[f64]) -> Result<(), Singular> {
+        let done = self.factor_unless(values, &|| false);
+        done.expect("it is never time to stop")
+    }
+
+    /// The same, unless it is time to stop before it is done.
+    pub(super) fn factor_unless(
+        &mut self,
+        values: &[f64],
+        is_over: IsOver<'_>,
+    ) -> Result<Result<(), Singular>, Stopped> {
         self.matrix.fill(0.0);
         for &(place, entry) in &self.gather {
             self.matrix[entry as usize] += values[place as usize];
@@ -146,7 +156,7 @@ impl Tangent {
                 *value *= if row == col { 1.0 } else { 0.5 };
             }
         }
-        self.solver.factor(&self.matrix)
+        self.solver.factor_unless(&self.matrix, is_over)
     }
 
     /// Whether the factors are those of the symmetric part of a matrix without symmetry, or in single precision.

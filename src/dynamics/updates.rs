@@ -4,7 +4,7 @@ use crate::dynamics::anderson::Anderson;
 use crate::dynamics::solving::Newton;
 use crate::dynamics::step_state::TangentState;
 use crate::dynamics::tangent::Tangent;
-use crate::sparse::Singular;
+use crate::sparse::{IsOver, Singular, Stopped};
 
 /// Part of an update that the factors of a symmetric part may leave out; beyond it the whole tangent is factorised.
 const LEFT_OUT: f64 = 0.3;
@@ -58,12 +58,16 @@ impl Updates {
         self.anderson.start();
     }
 
-    /// Factorises the tangent of these values; the whole of it where its symmetric part is singular.
-    pub(super) fn factor(&mut self, values: &[f64]) -> Result<(), Singular> {
-        let done = self.tangent.factor(values);
+    /// Factorises the tangent of these values, unless it is time to stop; the whole of it where its symmetric part is singular.
+    pub(super) fn factor_unless(
+        &mut self,
+        values: &[f64],
+        is_over: IsOver<'_>,
+    ) -> Result<Result<(), Singular>, Stopped> {
+        let done = self.tangent.factor_unless(values, is_over)?;
         match done.is_err() && self.tangent.make_exact() {
-            true => self.tangent.factor(values),
-            false => done,
+            true => self.tangent.factor_unless(values, is_over),
+            false => Ok(done),
         }
     }
 

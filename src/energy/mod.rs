@@ -55,7 +55,7 @@ pub trait Energy<const M: usize>: Send + Sync {
         true
     }
 
-    /// How its derivatives up to an order are kept: as a [`Jet`](crate::math::Jet), or in fewer numbers.
+    /// How its derivatives up to an order are kept: as a [`Jet`], or in fewer numbers.
     type Local<const ORDER: usize>: Local;
 
     /// Its derivatives at `p` up to `ORDER`, with rates along `w` when that is 3.

@@ -46,7 +46,7 @@ impl Direct {
         self.rehearse();
         let outcome = match self.backend {
             Backend::Dense => self.factorisation.factor(&self.values),
-            _ => self.attempt(),
+            _ => self.attempt(&|| false).expect("it is never time to stop"),
         };
         self.factored = outcome.is_ok();
         outcome

@@ -13,7 +13,7 @@ use crate::sparse::backend::Backend;
 use crate::sparse::dissection::Places;
 use crate::sparse::fronts::Fronts;
 use crate::sparse::pattern::Pattern;
-use crate::sparse::{Factorisation, Precision, Singular, Symmetry};
+use crate::sparse::{Factorisation, IsOver, Precision, Singular, Stopped, Symmetry};
 
 /// Above this size, factors for an iteration are in single precision, as `benches/block.rs` measures.
 const SINGLE: usize = 5_000;
@@ -23,9 +23,6 @@ const RETRIES: usize = 2;
 const NEARBY: f64 = 1e-10;
 /// A residual above this, relative to the largest term of the equations, is refined.
 const POOR: f64 = 1e-13;
-/// Scaling of rows and columns at once ends when their largest entries are between this and its inverse, or after so many
-/// rounds.
-const BALANCED: (f64, usize) = (4.0, 12);
 
 /// A direct solver for one pattern.
 #[derive(Debug)]
@@ -36,11 +33,11 @@ pub struct Direct {
     /// The scaled matrix, by slot.
     pub(super) values: Vec<f64>,
     /// Factors of rows, and of columns.
-    scales: [Vec<f64>; 2],
+    pub(super) scales: [Vec<f64>; 2],
     /// Largest entry of each row, and of each column, of the scaled matrix.
-    largest: [Vec<f64>; 2],
-    rhs: Vec<f64>,
-    residual: Vec<f64>,
+    pub(super) largest: [Vec<f64>; 2],
+    pub(super) rhs: Vec<f64>,
+    pub(super) residual: Vec<f64>,
     pub(super) factored: bool,
     /// Matrices in a row that needed double precision in place of single.
     pub(super) doubled: usize,
@@ -171,24 +168,37 @@ impl Direct {
     /// # Errors
     /// The matrix is singular to working precision, or not finite.
     pub fn factor(&mut self, values: &[f64]) -> Result<(), Singular> {
+        let done = self.factor_unless(values, &|| false);
+        done.expect("it is never time to stop")
+    }
+
+    /// The same, unless it is time to stop before it is done.
+    ///
+    /// # Errors
+    /// It was time to stop: no matrix is factorised now.
+    pub fn factor_unless(
+        &mut self,
+        values: &[f64],
+        is_over: IsOver<'_>,
+    ) -> Result<Result<(), Singular>, Stopped> {
         self.factored = false;
         self.pattern.gather(values, &mut self.values);
         self.measure();
         let lost = |peak: &f64| *peak == 0.0 || !peak.is_finite();
         if let Some(column) = self.largest[1].iter().position(lost) {
-            return Err(Singular { column });
+            return Ok(Err(Singular { column }));
         }
         self.equilibrate();
         if self.backend == Backend::Dense {
             let outcome = self.factorisation.factor(&self.values);
             self.factored = outcome.is_ok();
-            return outcome;
+            return Ok(outcome);
         }
         self.rehearse();
         self.return_to_single();
-        let mut outcome = self.attempt();
+        let mut outcome = self.attempt(is_over);
         let mut first = None;
-        while outcome.is_err()
+        while let Ok(Err(_)) = outcome
             && let Some(other) = self.factorisation.more_robust()
         {
             let failed = std::mem::replace(&mut self.factorisation, other);
@@ -197,14 +207,16 @@ impl Direct {
                 Precision::Single => drop(failed),
                 Precision::Double => _ = first.get_or_insert(failed),
             }
-            outcome = self.attempt();
+            outcome = self.attempt(is_over);
         }
-        outcome = outcome.map_err(|singular| self.undetermined(singular));
+        if let Ok(Err(singular)) = outcome {
+            outcome = Ok(Err(self.undetermined(singular)));
+        }
+        self.factored = outcome == Ok(Ok(()));
         // A singular matrix says nothing against the way in which the next one is factorised.
-        if let (Err(_), Some(first)) = (outcome, first) {
+        if let (false, Some(first)) = (self.factored, first) {
             self.factorisation = first;
         }
-        self.factored = outcome.is_ok();
         outcome
     }
 
@@ -253,66 +265,6 @@ impl Direct {
             .flatten()
     }
 
-    /// Finds the largest entry of each row and column.
-    pub(super) fn measure(&mut self) {
-        let [rows, cols] = &mut self.largest;
-        rows.fill(0.0);
-        cols.fill(0.0);
-        // Unlike `f64::max`, this keeps NaN.
-        let grow = |peak: &mut f64, value: f64| {
-            if value.abs() > *peak || value.is_nan() {
-                *peak = value.abs();
-            }
-        };
-        self.pattern.visit(&self.values, |row, col, value| {
-            grow(&mut rows[row], value);
-            grow(&mut cols[col], value);
-        });
-    }
-
-    /// Multiplies rows and columns by functions of their largest entries.
-    fn scale(&mut self, functions: [fn(f64) -> f64; 2]) {
-        let Self {
-            pattern,
-            values,
-            scales,
-            largest,
-            rhs,
-            residual,
-            ..
-        } = self;
-        for (i, factors) in [&mut *residual, &mut *rhs].into_iter().enumerate() {
-            let lists = factors.iter_mut().zip(&largest[i]).zip(&mut scales[i]);
-            for ((factor, &peak), scale) in lists {
-                *factor = if peak > 0.0 { functions[i](peak) } else { 1.0 };
-                *scale *= *factor;
-            }
-        }
-        pattern.scale(values, residual, rhs);
-        self.measure();
-    }
-
-    /// Brings the largest entries near 1.
-    pub(super) fn equilibrate(&mut self) {
-        self.scales.iter_mut().for_each(|scale| scale.fill(1.0));
-        if self.pattern.symmetry == Symmetry::Unsymmetric && self.backend != Backend::Mumps {
-            // Exchanges of rows see the scales of rows alone; a power of two rounds nothing.
-            self.scale([f64::recip, |_| 1.0]);
-            self.scale([|_| 1.0, |peak| peak.log2().round().exp2().recip()]);
-            return;
-        }
-        // Each round halves the orders of magnitude that are left.
-        let (enough, rounds) = BALANCED;
-        let far = |peak: &f64| *peak > enough || *peak < 1.0 / enough;
-        for _ in 0..rounds {
-            if !self.largest.iter().flatten().any(far) {
-                break;
-            }
-            // Powers of two round nothing.
-            self.scale([|peak| (0.5 * peak.log2()).round().exp2().recip(); 2]);
-        }
-    }
-
     /// The known solution at a column.
     fn known(&self, col: usize) -> f64 {
         (1.0 + col as f64 / self.pattern.size as f64) / self.largest[1][col]
@@ -331,9 +283,11 @@ impl Direct {
     }
 
     /// Factorises, and tries the factor on the known solution.
-    pub(super) fn attempt(&mut self) -> Result<(), Singular> {
+    pub(super) fn attempt(&mut self, is_over: IsOver<'_>) -> Result<Result<(), Singular>, Stopped> {
         let began = Instant::now();
-        self.factorisation.factor(&self.values)?;
+        if let Err(singular) = self.factorisation.factor_unless(&self.values, is_over)? {
+            return Ok(Err(singular));
+        }
         let (method, rows, seconds) = (self.method(), self.size(), began.elapsed().as_secs_f64());
         tracing::trace!(method, rows, seconds, "factorised");
         self.residual.copy_from_slice(&self.rhs);
@@ -345,11 +299,11 @@ impl Direct {
         let worst = (0..self.pattern.size)
             .filter(lost)
             .max_by(|&a, &b| error(a).total_cmp(&error(b)));
-        worst.map_or(Ok(()), |column| {
+        Ok(worst.map_or(Ok(()), |column| {
             let (method, lost) = (self.method(), error(column));
             tracing::debug!(method, lost, "factors do not give a known solution");
             Err(Singular { column })
-        })
+        }))
     }
 
     /// The unknown that nothing determines in a matrix whose factor failed, perhaps with infinite numbers.
@@ -359,7 +313,10 @@ impl Direct {
         for (slot, value) in self.values.iter_mut().enumerate() {
             *value += NEARBY * (1.0 + slot as f64).sin();
         }
-        self.attempt().err().unwrap_or(singular)
+        match self.attempt(&|| false) {
+            Ok(Err(found)) => found,
+            _ => singular,
+        }
     }
 
     /// Leaves the residual of `x` in `self.residual`, and returns its size relative to the largest term of the equations.

@@ -14,6 +14,14 @@ pub struct Singular {
     pub column: usize,
 }
 
+/// The matrix is not factorised, because it was time to stop.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[error("stopped within a factorisation")]
+pub struct Stopped;
+
+/// Whether it is time to stop; asked on any thread.
+pub type IsOver<'a> = &'a (dyn Fn() -> bool + Sync);
+
 /// A factorisation of square matrices with one pattern.
 pub trait Factorisation: Debug + Send {
     /// The method, as a table names it.
@@ -29,6 +37,22 @@ pub trait Factorisation: Debug + Send {
     /// # Errors
     /// The method breaks down; that it does not, says nothing about the accuracy of its factors.
     fn factor(&mut self, values: &[f64]) -> Result<(), Singular>;
+
+    /// The same, left undone where it turns out in its midst that it is time to stop; methods that are a single call of a library ask
+    /// once, at the beginning.
+    ///
+    /// # Errors
+    /// It was time to stop.
+    fn factor_unless(
+        &mut self,
+        values: &[f64],
+        is_over: IsOver<'_>,
+    ) -> Result<Result<(), Singular>, Stopped> {
+        match is_over() {
+            true => Err(Stopped),
+            false => Ok(self.factor(values)),
+        }
+    }
 
     /// Solves with the last factorisation, in place.
     fn solve(&mut self, rhs: &mut [f64]);

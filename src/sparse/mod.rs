@@ -13,12 +13,13 @@ mod fronts;
 pub(crate) mod mumps;
 mod pattern;
 mod precision;
+mod scaling;
 mod symmetry;
 
 pub use again::MethodState;
 pub use backend::{Backend, DENSE};
 pub use direct::Direct;
 pub use dissection::Places;
-pub use factorisation::{Factorisation, Singular};
+pub use factorisation::{Factorisation, IsOver, Singular, Stopped};
 pub use precision::Precision;
 pub use symmetry::Symmetry;

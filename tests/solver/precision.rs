@@ -1,7 +1,8 @@
 //! Factors in single precision, for iterations that correct what they lose.
 
 use crate::matrices::{Matrix, distance};
-use proboscis::sparse::{Backend, Direct, Precision, Symmetry};
+use proboscis::sparse::{Backend, Direct, Precision, Stopped, Symmetry};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Nodes along each side of a cube; above 5 000 unknowns in all.
 const SIDE: usize = 18;
@@ -127,6 +128,28 @@ fn double_precision_stays_where_three_matrices_in_a_row_needed_it() {
         };
         assert_eq!(direct.precision(), expected, "{in_a_row}");
         let [x, mut found] = known(&fair);
+        direct.solve_roughly(&mut found);
+        assert!(distance(&found, &x) < 1e-3);
+    }
+}
+
+#[test]
+fn a_factorisation_that_is_stopped_is_no_reason_for_double_precision() {
+    let matrix = cube(0.1, false);
+    let [x, rhs] = known(&matrix);
+    let asked = AtomicUsize::new(0);
+    for first in [0, 20] {
+        let mut direct = for_iteration(&matrix);
+        asked.store(0, Ordering::Relaxed);
+        let is_over = || asked.fetch_add(1, Ordering::Relaxed) >= first;
+        let done = direct.factor_unless(&matrix.values, &is_over);
+        assert_eq!(done, Err(Stopped));
+        // Each thread asks once more.
+        assert!(asked.load(Ordering::Relaxed) < first + 10);
+        assert_eq!(direct.negative_pivots(), None);
+        direct.factor(&matrix.values).unwrap();
+        assert_eq!(direct.precision(), Precision::Single);
+        let mut found = rhs.clone();
         direct.solve_roughly(&mut found);
         assert!(distance(&found, &x) < 1e-3);
     }

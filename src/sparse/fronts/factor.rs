@@ -9,15 +9,22 @@ use faer::traits::ext::ComplexFieldExt;
 use faer::{Accum, MatMut, Par};
 
 use crate::math::both;
-use crate::sparse::Singular;
 use crate::sparse::fronts::number::Number;
 use crate::sparse::fronts::tree::{Front, STRIP, Tree};
+use crate::sparse::{IsOver, Singular};
 
 /// A factorisation of one matrix.
 pub(super) struct Elimination<'a> {
     pub(super) tree: &'a Tree,
     /// Values of the matrix by slot.
     pub(super) values: &'a [f64],
+    pub(super) is_over: IsOver<'a>,
+}
+
+/// Why a front is not eliminated.
+pub(super) enum Undone {
+    Singular(Singular),
+    Stopped,
 }
 
 impl Elimination<'_> {
@@ -38,7 +45,7 @@ impl Elimination<'_> {
         panels: &mut [T],
         space: &mut [T],
         memory: &mut MemBuffer,
-    ) -> Result<(), Singular> {
+    ) -> Result<(), Undone> {
         let front = &self.tree.fronts[f];
         let (below, panel) = panels.split_at_mut(panels.len() - front.panel());
         let mut start = 0;
@@ -71,8 +78,74 @@ impl Elimination<'_> {
             assemble(a, taken, front, panel, update);
             assemble(b, &taken[sides.second..], front, panel, update);
         }
-        eliminate(front, panel, update, strip, memory)?;
+        self.eliminate(front, panel, update, strip, memory)?;
         pack(front.boundary.len(), start, space);
+        Ok(())
+    }
+
+    fn go_on(&self) -> Result<(), Undone> {
+        match (self.is_over)() {
+            true => Err(Undone::Stopped),
+            false => Ok(()),
+        }
+    }
+
+    /// Eliminates the rows of a front and subtracts what that makes of its update, the lower triangle of it.
+    fn eliminate<T: Number>(
+        &self,
+        front: &Front,
+        panel: &mut [T],
+        update: &mut [T],
+        strip: &mut [T],
+        memory: &mut MemBuffer,
+    ) -> Result<(), Undone> {
+        let (own, kept) = (front.own, front.boundary.len());
+        if own == 0 {
+            return Ok(());
+        }
+        self.go_on()?;
+        let panel = MatMut::from_column_major_slice_mut(panel, own + kept, own);
+        let (mut pivots, mut rest) = panel.split_at_row_mut(own);
+        let factor = cholesky_in_place(
+            pivots.rb_mut(),
+            Default::default(),
+            Par::Seq,
+            MemStack::new(memory),
+            Default::default(),
+        );
+        // A zero pivot tells no column: the matrix may be regular, and its order unlucky.
+        factor.map_err(|_| Undone::Singular(Singular { column: 0 }))?;
+        if kept == 0 {
+            return Ok(());
+        }
+        let pivots = pivots.rb();
+        solve_unit_lower_triangular_in_place(pivots, rest.rb_mut().transpose_mut(), Par::Seq);
+        let mut update = MatMut::from_column_major_slice_mut(update, kept, kept);
+        for start in (0..own).step_by(STRIP) {
+            self.go_on()?;
+            let width = STRIP.min(own - start);
+            let mut columns = rest.rb_mut().subcols_mut(start, width);
+            let strip = &mut strip[..kept * width];
+            let mut products = MatMut::from_column_major_slice_mut(strip, kept, width);
+            products.copy_from(&columns);
+            for j in 0..width {
+                let inverse = pivots[(start + j, start + j)].recip();
+                let column = columns.rb_mut().col_mut(j).try_as_col_major_mut();
+                let column = column.expect("contiguous columns").as_slice_mut();
+                column.iter_mut().for_each(|value| *value *= inverse);
+            }
+            matmul(
+                update.rb_mut(),
+                BlockStructure::TriangularLower,
+                Accum::Add,
+                columns.rb(),
+                BlockStructure::Rectangular,
+                products.rb().transpose(),
+                BlockStructure::Rectangular,
+                -faer::traits::math_utils::one::<T>(),
+                Par::Seq,
+            );
+        }
         Ok(())
     }
 }
@@ -110,60 +183,4 @@ fn assemble<T: Number>(
             to[row as usize - skipped] += *value;
         }
     }
-}
-
-/// Eliminates the rows of a front and subtracts what that makes of its update, the lower triangle of it.
-fn eliminate<T: Number>(
-    front: &Front,
-    panel: &mut [T],
-    update: &mut [T],
-    strip: &mut [T],
-    memory: &mut MemBuffer,
-) -> Result<(), Singular> {
-    let (own, kept) = (front.own, front.boundary.len());
-    if own == 0 {
-        return Ok(());
-    }
-    let panel = MatMut::from_column_major_slice_mut(panel, own + kept, own);
-    let (mut pivots, mut rest) = panel.split_at_row_mut(own);
-    let factor = cholesky_in_place(
-        pivots.rb_mut(),
-        Default::default(),
-        Par::Seq,
-        MemStack::new(memory),
-        Default::default(),
-    );
-    // A zero pivot tells no column: the matrix may be regular, and its order unlucky.
-    factor.map_err(|_| Singular { column: 0 })?;
-    if kept == 0 {
-        return Ok(());
-    }
-    let pivots = pivots.rb();
-    solve_unit_lower_triangular_in_place(pivots, rest.rb_mut().transpose_mut(), Par::Seq);
-    let mut update = MatMut::from_column_major_slice_mut(update, kept, kept);
-    for start in (0..own).step_by(STRIP) {
-        let width = STRIP.min(own - start);
-        let mut columns = rest.rb_mut().subcols_mut(start, width);
-        let strip = &mut strip[..kept * width];
-        let mut products = MatMut::from_column_major_slice_mut(strip, kept, width);
-        products.copy_from(&columns);
-        for j in 0..width {
-            let inverse = pivots[(start + j, start + j)].recip();
-            let column = columns.rb_mut().col_mut(j).try_as_col_major_mut();
-            let column = column.expect("contiguous columns").as_slice_mut();
-            column.iter_mut().for_each(|value| *value *= inverse);
-        }
-        matmul(
-            update.rb_mut(),
-            BlockStructure::TriangularLower,
-            Accum::Add,
-            columns.rb(),
-            BlockStructure::Rectangular,
-            products.rb().transpose(),
-            BlockStructure::Rectangular,
-            -faer::traits::math_utils::one::<T>(),
-            Par::Seq,
-        );
-    }
-    Ok(())
 }

@@ -15,9 +15,9 @@ use std::sync::Arc;
 use crate::sparse::dissection::{Dissection, Places};
 use crate::sparse::mumps::Mumps;
 use crate::sparse::pattern::Pattern;
-use crate::sparse::{Factorisation, Precision, Singular};
+use crate::sparse::{Factorisation, IsOver, Precision, Singular, Stopped};
 
-use factor::Elimination;
+use factor::{Elimination, Undone};
 use number::Number;
 use solve::Passage;
 use tree::Tree;
@@ -79,13 +79,27 @@ impl<T: Number> Factorisation for Fronts<T> {
     }
 
     fn factor(&mut self, values: &[f64]) -> Result<(), Singular> {
+        let done = self.factor_unless(values, &|| false);
+        done.expect("it is never time to stop")
+    }
+
+    fn factor_unless(
+        &mut self,
+        values: &[f64],
+        is_over: IsOver<'_>,
+    ) -> Result<Result<(), Singular>, Stopped> {
         let last = self.last();
         let elimination = Elimination {
             tree: &self.tree,
             values,
+            is_over,
         };
         let mut memory = elimination.memory::<T>();
-        elimination.run(last, &mut self.panels, &mut self.space, &mut memory)
+        match elimination.run(last, &mut self.panels, &mut self.space, &mut memory) {
+            Ok(()) => Ok(Ok(())),
+            Err(Undone::Singular(singular)) => Ok(Err(singular)),
+            Err(Undone::Stopped) => Err(Stopped),
+        }
     }
 
     fn solve(&mut self, rhs: &mut [f64]) {
@@ -134,13 +148,14 @@ impl<T: Number> Factorisation for Fronts<T> {
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     use nalgebra::{DMatrix, DVector};
     use rayon::ThreadPoolBuilder;
 
     use crate::sparse::fronts::Fronts;
     use crate::sparse::pattern::Pattern;
-    use crate::sparse::{Factorisation, Symmetry};
+    use crate::sparse::{Factorisation, Stopped, Symmetry};
 
     /// A symmetric matrix, whose every third diagonal entry is negative, and places of its unknowns.
     struct System {
@@ -253,6 +268,27 @@ mod tests {
         let pool = ThreadPoolBuilder::new().num_threads(1).build().unwrap();
         assert!(pool.install(solve) == several);
         assert!(several.1.iter().all(|value| *value != 0.0));
+    }
+
+    #[test]
+    fn a_factorisation_that_was_stopped_can_be_made() {
+        let system = System::boxes([10, 10, 16], 1);
+        let mut fronts = system.fronts();
+        let asked = AtomicUsize::new(0);
+        let ask = || asked.fetch_add(1, Ordering::Relaxed);
+        let never = || ask() == usize::MAX;
+        assert_eq!(fronts.factor_unless(&system.values, &never), Ok(Ok(())));
+        let (questions, panels) = (asked.load(Ordering::Relaxed), fronts.panels.clone());
+        assert!(questions > 50);
+        for first in [0, questions / 2, questions - 1] {
+            asked.store(0, Ordering::Relaxed);
+            let is_over = || ask() >= first;
+            let done = fronts.factor_unless(&system.values, &is_over);
+            assert_eq!(done, Err(Stopped));
+            assert!(asked.load(Ordering::Relaxed) < first + questions / 4);
+        }
+        fronts.factor(&system.values).unwrap();
+        assert!(fronts.panels == panels);
     }
 
     #[test]
