@@ -1,6 +1,7 @@
 //! Which vectors and scalars meet in second derivatives, and the blocks they meet in.
 
 use crate::math::{Matrix, Vector};
+use nalgebra::SMatrix;
 use rustc_hash::FxHashMap;
 
 /// The pairs that couple at one site; laid down once by the terms, the same for every interval.
@@ -144,21 +145,24 @@ impl Part {
 
     /// Back to zero, first derivatives alone or second ones too.
     pub fn clear(&mut self, second: bool) {
-        for side in &mut self.forces {
-            side.fill(Vector::zeros());
-        }
+        self.forces.iter_mut().for_each(|side| clear(side));
         self.rows.fill(0.0);
         if !second {
             return;
         }
-        self.blocks.full.fill([Matrix::zeros(); 4]);
-        self.blocks.isotropic.fill([0.0; 4]);
-        self.blocks.mixed.fill([Vector::zeros(); 2]);
+        clear(self.blocks.full.as_flattened_mut());
+        self.blocks.isotropic.as_flattened_mut().fill(0.0);
+        clear(self.blocks.mixed.as_flattened_mut());
         self.blocks.scalars.fill(0.0);
-        for side in &mut self.horizon_forces {
-            side.fill(Vector::zeros());
-        }
+        self.horizon_forces.iter_mut().for_each(|side| clear(side));
         self.horizon_rows.fill(0.0);
         self.horizon = 0.0;
+    }
+}
+
+/// Number by number, which is one call for all bytes.
+fn clear<const R: usize, const C: usize>(list: &mut [SMatrix<f64, R, C>]) {
+    for one in list {
+        one.as_mut_slice().fill(0.0);
     }
 }
