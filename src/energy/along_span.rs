@@ -33,6 +33,11 @@ impl AlongSpan {
             k: k(r.norm_squared()),
         }
     }
+
+    /// Whether two of the arguments meet in second derivatives: δr and ṙ do not meet themselves.
+    pub(super) fn couples(i: usize, j: usize) -> bool {
+        i != j || i == 1
+    }
 }
 
 /// The jet of any function of the same invariants of the first arguments δr, r̄, ṙ, where constants are arguments too.

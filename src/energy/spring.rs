@@ -55,7 +55,7 @@ impl Energy<9> for SpanDamper {
     const VIRTUAL: usize = 1;
 
     fn couples(i: usize, j: usize) -> bool {
-        i != j || i == 1
+        AlongSpan::couples(i, j)
     }
 
     #[inline(always)]

@@ -19,7 +19,7 @@ impl Energy<9> for ViscousCell {
     const VIRTUAL: usize = 1;
 
     fn couples(i: usize, j: usize) -> bool {
-        i != j || i == 1
+        AlongSpan::couples(i, j)
     }
 
     #[inline(always)]
