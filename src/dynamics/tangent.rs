@@ -4,9 +4,9 @@
 
 use crate::coordinates::StepPattern;
 use crate::dynamics::step_state::TangentState;
-use crate::math::counted;
+use crate::math::{IsOver, Stopped, counted};
 use crate::model::Model;
-use crate::sparse::{Backend, Direct, IsOver, Precision, Singular, Stopped, Symmetry};
+use crate::sparse::{Backend, Direct, Precision, Singular, Symmetry};
 
 /// Places in the values of the action, summed into the entries of a matrix.
 #[derive(Debug)]

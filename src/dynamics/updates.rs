@@ -4,7 +4,8 @@ use crate::dynamics::anderson::Anderson;
 use crate::dynamics::solving::Newton;
 use crate::dynamics::step_state::TangentState;
 use crate::dynamics::tangent::Tangent;
-use crate::sparse::{IsOver, Singular, Stopped};
+use crate::math::{IsOver, Stopped};
+use crate::sparse::Singular;
 
 /// Part of an update that the factors of a symmetric part may leave out; beyond it the whole tangent is factorised.
 const LEFT_OUT: f64 = 0.3;

@@ -23,8 +23,9 @@ use super::inertia::Inertia;
 use super::numeric::{Factors, Outcome};
 use super::pivot::Rules;
 use super::products::Product;
-use super::progress::{Progress, Stopped};
+use super::progress::Progress;
 use super::reduce::{Reduce, Weights};
+use crate::math::Stopped;
 
 /// Greatest response of a state against the greatest direct one. Beyond, what is left of R are errors of rounding;
 /// free motions of a thousand stages stay below.

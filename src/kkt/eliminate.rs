@@ -7,8 +7,9 @@ use pulp::{Simd, WithSimd};
 
 use super::dense::Dense;
 use super::pivot::{Pivot, Rules};
-use super::progress::{Progress, Stopped};
+use super::progress::Progress;
 use super::update::{Packed, Panel, update};
+use crate::math::Stopped;
 
 /// Columns of a panel: wide, so that good pairs are found in it.
 const PANEL: usize = 32;

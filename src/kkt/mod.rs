@@ -54,8 +54,8 @@ mod tree;
 mod trial;
 mod update;
 
+pub use crate::math::Stopped;
 pub use inertia::Inertia;
 pub use order::Unknown;
 pub use plan::Plan;
-pub use progress::Stopped;
 pub use solver::{Solver, Statistics};

@@ -8,7 +8,8 @@ use super::fronts::{Front, Fronts};
 use super::inertia::Inertia;
 use super::lanes::padded;
 use super::pivot::Rules;
-use super::progress::{Progress, Stopped};
+use super::progress::Progress;
+use crate::math::Stopped;
 
 /// Rows of a leaf of one column that is eliminated without a front.
 const SHORT: usize = 32;

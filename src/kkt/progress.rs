@@ -1,22 +1,19 @@
-//! Long work that may be told to stop in its midst.
+//! Factorisations along the horizon that may be told to stop in their midst.
+
+use crate::math::{IsOver, Stopped};
 
 /// Multiplications between two questions: about a millisecond, and more than a small system takes.
 const BETWEEN: usize = 1 << 22;
 
-/// The matrix is not factored, because it was time to stop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("stopped within a factorisation")]
-pub struct Stopped;
-
 /// Asks whether to stop: at the beginning, then after so much work that a question costs nothing against it.
 pub(super) struct Progress<'a> {
-    is_over: &'a (dyn Fn() -> bool + Sync),
+    is_over: IsOver<'a>,
     /// Multiplications since the last question.
     since: usize,
 }
 
 impl<'a> Progress<'a> {
-    pub(super) fn new(is_over: &'a (dyn Fn() -> bool + Sync)) -> Self {
+    pub(super) fn new(is_over: IsOver<'a>) -> Self {
         Self {
             is_over,
             since: BETWEEN,

@@ -8,7 +8,8 @@ use pulp::Arch;
 use super::block::Block;
 use super::block_lu::BlockLu;
 use super::products::Curvature;
-use super::progress::{Progress, Stopped};
+use super::progress::Progress;
+use crate::math::Stopped;
 
 /// Blocks one behind the other, whose responses are known.
 #[derive(Clone, Copy)]

@@ -14,10 +14,11 @@ use super::inertia::Inertia;
 use super::numeric::{Factors, Outcome};
 use super::pivot::Rules;
 use super::plan::Plan;
-use super::progress::{Progress, Stopped};
+use super::progress::Progress;
 use super::scales::Scales;
 use super::solve::solve;
 use super::trial::Trial;
+use crate::math::{IsOver, Stopped};
 
 /// Threshold of pivots for each [`Care`].
 const THRESHOLDS: [f64; 5] = [0.1, 1e-8, 1e-4, 1e-2, 0.1];
@@ -183,7 +184,7 @@ impl Solver {
     pub fn factor_unless(
         &mut self,
         entries: &[f64],
-        is_over: &(dyn Fn() -> bool + Sync),
+        is_over: IsOver<'_>,
     ) -> Result<Inertia, Stopped> {
         assert_eq!(
             entries.len(),

@@ -1,5 +1,5 @@
-//! Numbers that carry their derivatives, numbers drawn at random, numbers as people read them, disjoint sets of them, and two
-//! computations at once.
+//! Numbers that carry their derivatives, numbers drawn at random, numbers as people read them, disjoint sets of them, two
+//! computations at once, and when to stop them.
 
 mod both;
 mod counted;
@@ -8,6 +8,7 @@ mod digits;
 mod jet;
 pub mod random;
 mod sets;
+mod stopped;
 
 pub(crate) use both::both;
 pub use both::cores;
@@ -16,6 +17,7 @@ pub use derivatives::{Derivatives, Local};
 pub use digits::significant;
 pub use jet::Jet;
 pub use sets::DisjointSets;
+pub use stopped::{IsOver, Stopped};
 
 /// A vector of space.
 pub type Vector = nalgebra::Vector3<f64>;

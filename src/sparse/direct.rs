@@ -9,11 +9,12 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::math::{IsOver, Stopped};
 use crate::sparse::backend::Backend;
 use crate::sparse::dissection::Places;
 use crate::sparse::fronts::Fronts;
 use crate::sparse::pattern::Pattern;
-use crate::sparse::{Factorisation, IsOver, Precision, Singular, Stopped, Symmetry};
+use crate::sparse::{Factorisation, Precision, Singular, Symmetry};
 
 /// Above this size, factors for an iteration are in single precision, as `benches/block.rs` measures.
 const SINGLE: usize = 5_000;

@@ -4,6 +4,7 @@ use std::fmt::Debug;
 
 use thiserror::Error;
 
+use crate::math::{IsOver, Stopped};
 use crate::sparse::Precision;
 
 /// The matrix is singular to working precision.
@@ -13,14 +14,6 @@ pub struct Singular {
     /// The column without a pivot.
     pub column: usize,
 }
-
-/// The matrix is not factorised, because it was time to stop.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-#[error("stopped within a factorisation")]
-pub struct Stopped;
-
-/// Whether it is time to stop; asked on any thread.
-pub type IsOver<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// A factorisation of square matrices with one pattern.
 pub trait Factorisation: Debug + Send {

@@ -20,6 +20,6 @@ pub use again::MethodState;
 pub use backend::{Backend, DENSE};
 pub use direct::Direct;
 pub use dissection::Places;
-pub use factorisation::{Factorisation, IsOver, Singular, Stopped};
+pub use factorisation::{Factorisation, Singular};
 pub use precision::Precision;
 pub use symmetry::Symmetry;

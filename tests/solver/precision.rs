@@ -1,7 +1,8 @@
 //! Factors in single precision, for iterations that correct what they lose.
 
 use crate::matrices::{Matrix, distance};
-use proboscis::sparse::{Backend, Direct, Precision, Stopped, Symmetry};
+use proboscis::math::Stopped;
+use proboscis::sparse::{Backend, Direct, Precision, Symmetry};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Nodes along each side of a cube; above 5 000 unknowns in all.

@@ -8,10 +8,10 @@ use faer::prelude::{Reborrow, ReborrowMut};
 use faer::traits::ext::ComplexFieldExt;
 use faer::{Accum, MatMut, Par};
 
-use crate::math::both;
+use crate::math::{IsOver, both};
+use crate::sparse::Singular;
 use crate::sparse::fronts::number::Number;
 use crate::sparse::fronts::tree::{Front, STRIP, Tree};
-use crate::sparse::{IsOver, Singular};
 
 /// A factorisation of one matrix.
 pub(super) struct Elimination<'a> {

@@ -12,10 +12,11 @@ mod tree;
 
 use std::sync::Arc;
 
+use crate::math::{IsOver, Stopped};
 use crate::sparse::dissection::{Dissection, Places};
 use crate::sparse::mumps::Mumps;
 use crate::sparse::pattern::Pattern;
-use crate::sparse::{Factorisation, IsOver, Precision, Singular, Stopped};
+use crate::sparse::{Factorisation, Precision, Singular};
 
 use factor::{Elimination, Undone};
 use number::Number;
@@ -153,9 +154,10 @@ mod tests {
     use nalgebra::{DMatrix, DVector};
     use rayon::ThreadPoolBuilder;
 
+    use crate::math::Stopped;
     use crate::sparse::fronts::Fronts;
     use crate::sparse::pattern::Pattern;
-    use crate::sparse::{Factorisation, Stopped, Symmetry};
+    use crate::sparse::{Factorisation, Symmetry};
 
     /// A symmetric matrix, whose every third diagonal entry is negative, and places of its unknowns.
     struct System {
