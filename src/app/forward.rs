@@ -94,7 +94,7 @@ pub(super) fn simulation(
             // The steps so far are final; those of a finer grid begin anew.
             unfinished.consider(0.0, |path| match goes_on {
                 true => write_continuation(path, history, &problem),
-                false => solution_file::write(path, model, &solved(model, history, None)),
+                false => solution_file::replace(path, model, &solved(model, history, None)),
             });
             match unwritable {
                 Some(_) => ControlFlow::Break(()),

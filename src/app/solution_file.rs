@@ -1,27 +1,27 @@
 //! `solution.json`, of a long motion with `solution.npz` beside it.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::control::Solution;
-use crate::files::solution::{Written, written};
+use crate::files::solution::{self, Written};
 use crate::model::Model;
 use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
 
 /// The file of a result.
 pub(super) const NAME: &str = "solution.json";
-/// That of a solve that has not ended.
-pub(super) const UNFINISHED: &str = "unfinished.json";
 /// Its arrays.
 pub(super) const ARRAYS: &str = "solution.npz";
+/// The file of a solve that has not ended.
+pub(super) const UNFINISHED: &str = "unfinished.json";
 
 /// Writes a solution as files of a result.
 ///
 /// # Errors
 /// A file cannot be written.
 pub(super) fn add(files: &mut FileSet, model: &Model, solved: &Solution) -> Result<(), WriteError> {
-    let texts = written(model, solved, ARRAYS);
+    let texts = solution::written(model, solved, ARRAYS);
     let Written { json, arrays } = texts.map_err(|cause| WriteError {
         path: files.folder().join(ARRAYS),
         cause,
@@ -33,14 +33,21 @@ pub(super) fn add(files: &mut FileSet, model: &Model, solved: &Solution) -> Resu
     files.add(NAME, json.as_bytes())
 }
 
-/// Writes a solution by itself.
+/// Replaces a solution that stands by itself in one step: whenever the program is killed, the file and the arrays that it names are of one solution.
+///
+/// The arrays take the name that the file does not give. Those before stay until the next time, for who has just read the file.
 ///
 /// # Errors
 /// A file cannot be written.
-pub(super) fn write(path: &Path, model: &Model, solved: &Solution) -> Result<(), WriteError> {
-    let beside = path.with_extension("npz");
+pub(super) fn replace(path: &Path, model: &Model, solved: &Solution) -> Result<(), WriteError> {
+    let before = solution::file_beside(path).map(|name| path.with_file_name(name));
+    let [first, second] = arrays_beside(path);
+    let beside = match before.as_ref() == Some(&first) {
+        true => second,
+        false => first,
+    };
     let name = beside.file_name().unwrap_or_default().to_string_lossy();
-    let texts = written(model, solved, &name);
+    let texts = solution::written(model, solved, &name);
     let Written { json, arrays } = texts.map_err(|cause| WriteError {
         path: beside.clone(),
         cause,
@@ -51,8 +58,15 @@ pub(super) fn write(path: &Path, model: &Model, solved: &Solution) -> Result<(),
     atomic::write(path, json.as_bytes())
 }
 
-/// Removes a solution that was written by itself.
+/// Removes a solution that stands by itself.
 pub(super) fn remove(path: &Path) {
     fs::remove_file(path).ok();
-    fs::remove_file(path.with_extension("npz")).ok();
+    for arrays in arrays_beside(path) {
+        fs::remove_file(arrays).ok();
+    }
+}
+
+/// The two files that its arrays stand in by turns.
+fn arrays_beside(path: &Path) -> [PathBuf; 2] {
+    ["1.npz", "2.npz"].map(|ending| path.with_extension(ending))
 }

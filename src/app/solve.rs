@@ -91,7 +91,7 @@ pub(super) fn control(
                 }
                 let (kept, motion) = iterate.before.unwrap_or((report, iterate.motion));
                 unfinished.consider(kept.primal_infeasibility, |path| {
-                    solution_file::write(path, model, &motion())
+                    solution_file::replace(path, model, &motion())
                 });
                 match unwritable {
                     Some(_) => ControlFlow::Break(()),

@@ -2,14 +2,23 @@
 
 use crate::output::arrays;
 use crate::runs::{problem, read, run};
+use std::collections::BTreeMap;
+use std::fs;
+use std::mem;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Runs the program until it has written an iterate with its multipliers, which are unknown at first and zero at the start, and kills it; the
-/// folder of its results.
-fn killed(folder: &Path, arguments: &[&str]) -> PathBuf {
+/// The arrays of the iterate that is kept in a folder, in the file that it names; also of a run that goes on.
+fn kept(results: &Path) -> BTreeMap<String, Vec<f64>> {
+    let iterate = read(results.join("unfinished.json"));
+    arrays(&results.join(iterate["arrays"]["file"].as_str().unwrap()))
+}
+
+/// Runs the program until it has written one iterate after another, the last with its multipliers, which are unknown at first and zero at the
+/// start, and kills it; the folder of its results and what its `unfinished.json` said of the iterate before.
+fn killed(folder: &Path, arguments: &[&str]) -> (PathBuf, Vec<u8>) {
     let results = folder.join("results");
     let mut child = Command::new(env!("CARGO_BIN_EXE_proboscis"))
         .args(arguments)
@@ -19,15 +28,16 @@ fn killed(folder: &Path, arguments: &[&str]) -> PathBuf {
         .spawn()
         .unwrap();
     let began = Instant::now();
-    let has_multipliers = || {
-        let arrays = results.join("unfinished.npz");
+    let (mut before, mut latest) = (Vec::new(), Vec::new());
+    let mut is_kept = || {
         let is_there = |rows: &Vec<f64>| rows.iter().any(|y| y.abs() > 1e-9);
-        arrays.exists()
-            && self::arrays(&arrays)
-                .get("costates/rows")
-                .is_some_and(is_there)
+        match fs::read(results.join("unfinished.json")) {
+            Ok(now) if now != latest => before = mem::replace(&mut latest, now),
+            _ => return false,
+        }
+        !before.is_empty() && kept(&results).get("costates/rows").is_some_and(is_there)
     };
-    while !results.join("unfinished.json").exists() || !has_multipliers() {
+    while !is_kept() {
         let ended = child.try_wait().unwrap();
         assert!(ended.is_none(), "too short a run: {ended:?}");
         assert!(began.elapsed() < Duration::from_secs(120), "nothing kept");
@@ -36,7 +46,7 @@ fn killed(folder: &Path, arguments: &[&str]) -> PathBuf {
     child.kill().unwrap();
     child.wait().unwrap();
     assert!(!results.join("solution.json").exists());
-    results
+    (results, before)
 }
 
 #[test]
@@ -44,7 +54,7 @@ fn a_solve_that_is_killed_leaves_an_iterate_to_go_on_from() {
     let folder = tempfile::tempdir().unwrap();
     let problem = problem("elephant_trunk_effort");
     let fine = ["--set", "control.intervals=4000"];
-    let results = killed(folder.path(), &[&["solve", &problem][..], &fine].concat());
+    let (results, before) = killed(folder.path(), &[&["solve", &problem][..], &fine].concat());
     let kept = read(results.join("unfinished.json"));
     // So many numbers stand in arrays beside it.
     let beside = results.join(kept["arrays"]["file"].as_str().unwrap());
@@ -55,17 +65,18 @@ fn a_solve_that_is_killed_leaves_an_iterate_to_go_on_from() {
         assert!(all[name].iter().any(|v| v.abs() > 1e-9), "{name}");
     }
     assert!(kept["barrier"].as_f64().unwrap() > 0.0);
+    let goes_on_from = |unfinished: &Path, out: &Path| {
+        let guess = format!("control.guess={{\"solution\":{unfinished:?}}}");
+        let out = out.to_str().unwrap();
+        let words = ["solve", &problem, "--set", &guess, "-o", out];
+        let (status, said, errors) = run(folder.path(), &words);
+        assert_eq!(status, 0, "{said}{errors}");
+    };
+    // Also where the program is killed when it has written the arrays of the next iterate, but not the file that names them.
+    fs::write(results.join("before.json"), before).unwrap();
+    goes_on_from(&results.join("before.json"), &folder.path().join("other"));
     // It is a guess like any solution, and goes when a run has written its results.
-    let guess = format!(
-        "control.guess={{\"solution\":{:?}}}",
-        results.join("unfinished.json")
-    );
-    let out = results.to_str().unwrap();
-    let (status, said, errors) = run(
-        folder.path(),
-        &["solve", &problem, "--set", &guess, "-o", out],
-    );
-    assert_eq!(status, 0, "{said}{errors}");
+    goes_on_from(&results.join("unfinished.json"), &results);
     assert!(results.join("solution.json").exists());
     assert!(!results.join("unfinished.json").exists() && !beside.exists());
 }
@@ -75,7 +86,7 @@ fn a_solve_that_is_killed_leaves_an_iterate_to_go_on_from() {
 fn an_iterate_that_cannot_be_kept_is_told_during_the_run() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("results");
-    std::fs::create_dir_all(out.join("unfinished.json")).unwrap();
+    fs::create_dir_all(out.join("unfinished.json")).unwrap();
     let fine = ["--set", "control.intervals=4000"];
     let limit = ["--max-seconds", "5", "--no-report"];
     let problem = problem("elephant_trunk_effort");

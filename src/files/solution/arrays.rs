@@ -1,5 +1,6 @@
 //! The arrays of a long solution in a file of their own.
 
+use std::fs;
 use std::io;
 use std::mem;
 use std::path::Path;
@@ -65,6 +66,12 @@ pub(super) fn taken(file: &mut File, name: &str) -> io::Result<Vec<u8>> {
 struct WithArrays {
     #[serde(default)]
     arrays: Option<ArraysOf>,
+}
+
+/// The name of the file of arrays that the solution at `path` has, where there is a solution with one.
+pub(crate) fn file_beside(path: &Path) -> Option<String> {
+    let read: WithArrays = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
+    Some(read.arrays?.file)
 }
 
 /// Puts the arrays that are wanted back to where they would stand in the solution at `path`; nothing where it has no file of arrays.

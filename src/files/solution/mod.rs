@@ -17,7 +17,7 @@ mod read;
 mod record;
 mod write;
 
-pub(crate) use arrays::complete;
+pub(crate) use arrays::{complete, file_beside};
 pub use error::{Reason, SolutionError};
 pub use read::{SolutionFile, read};
 pub use write::{Written, written};
