@@ -10,7 +10,6 @@ mod documents;
 mod floors;
 mod lengths;
 mod numbering;
-mod profiles;
 mod roles;
 mod sources;
 mod trace;

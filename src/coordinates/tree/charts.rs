@@ -9,6 +9,9 @@ use nalgebra::{Quaternion, Rotation3, Unit, UnitQuaternion, Vector3};
 /// A part of a mean: its weight, and the coordinates and charts of a configuration.
 pub(in crate::coordinates) type Weighted<'a> = (f64, [&'a [f64]; 2]);
 
+/// Most steps of the search for a nearest rotation, which goes on without end where round-off moves its last digit to and fro.
+const SEARCH: usize = 100;
+
 /// The rotation of a chart.
 pub(super) fn rotation(chart: &[f64]) -> UnitQuaternion<f64> {
     UnitQuaternion::new_unchecked(Quaternion::new(chart[0], chart[1], chart[2], chart[3]))
@@ -19,6 +22,13 @@ pub(in crate::coordinates) fn write(mut rotation: UnitQuaternion<f64>, chart: &m
     rotation.renormalize();
     let q = rotation.quaternion();
     chart.copy_from_slice(&[q.w, q.i, q.j, q.k]);
+}
+
+/// The rotation nearest to a matrix that is nearly one.
+fn nearest_rotation(matrix: &Matrix) -> Rotation3<f64> {
+    let near = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*matrix));
+    let near = UnitQuaternion::new_normalize(near.into_inner()).to_rotation_matrix();
+    Rotation3::from_matrix_eps(matrix, f64::EPSILON, SEARCH, near)
 }
 
 impl Tree {
@@ -91,7 +101,7 @@ impl Tree {
             let parent = link.parent.map_or(Pose::GROUND, |b| poses[b]);
             let child = &poses[last.child];
             let turned = parent.directors.tr_mul(&child.directors) * last.directors.transpose();
-            let rotation = Rotation3::from_matrix(&turned);
+            let rotation = nearest_rotation(&turned);
             write(UnitQuaternion::from_rotation_matrix(&rotation), chart);
             let point = child.centre - parent.directors * (rotation * last.centre);
             let moved = parent.local(&point) - link.point;
