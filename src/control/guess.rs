@@ -9,7 +9,7 @@ use crate::control::solution::{Costates, Solution};
 use crate::dynamics::{DiscreteTrajectory, simulate};
 use crate::kinematics::Pose;
 use crate::model::{Coordinates, Graph, Model, Role};
-use nalgebra::Rotation3;
+use nalgebra::{Rotation3, UnitQuaternion};
 use std::ops::ControlFlow;
 
 /// Added to the rest voltages, in their unit: at zero the motion does not depend on a voltage to first order.
@@ -172,7 +172,10 @@ fn joints_of(model: &Model, z: &[f64]) -> Option<Vec<f64>> {
 fn between(from: &[Pose], to: &[Pose], part: f64) -> Vec<Pose> {
     let pose = |(a, b): (&Pose, &Pose)| {
         let [p, q] = [a, b].map(|pose| Rotation3::from_matrix_unchecked(pose.directors));
-        let turn = Rotation3::from_scaled_axis((p.inverse() * q).scaled_axis() * part);
+        // By a quaternion: the trace of a matrix that hardly turns may tell a cosine above one.
+        let turn = UnitQuaternion::from_rotation_matrix(&(p.inverse() * q));
+        let turn = UnitQuaternion::new_normalize(turn.into_inner()).scaled_axis();
+        let turn = Rotation3::from_scaled_axis(turn * part);
         Pose {
             centre: a.centre + (b.centre - a.centre) * part,
             directors: (p * turn).into_inner(),
@@ -267,5 +270,33 @@ fn from_solution(
             .then(|| resample::costates(model, boundary, control, solved, grids))
             .flatten(),
         carried,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::between;
+    use crate::kinematics::Pose;
+    use crate::math::Vector;
+    use nalgebra::Rotation3;
+
+    #[test]
+    fn a_pose_between_two_that_hardly_differ_is_theirs() {
+        let pose = |turn: Vector| Pose {
+            centre: Vector::zeros(),
+            directors: Rotation3::from_scaled_axis(turn).into_inner(),
+        };
+        for i in 0..2000 {
+            let [a, b, c] = [1.0, 2.0, 3.0].map(|factor| (f64::from(i) * factor).sin());
+            let turn = Vector::new(a, b, c);
+            let ends = [turn, turn * (1.0 + 1e-12)].map(|turn| [pose(turn)]);
+            for part in [0.0, 0.3, 1.0] {
+                let [found] = between(&ends[0], &ends[1], part)[..] else {
+                    panic!("one pose")
+                };
+                let error = (found.directors - ends[0][0].directors).norm();
+                assert!(error < 1e-11, "{error} at {turn:?}");
+            }
+        }
     }
 }
