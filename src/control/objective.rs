@@ -58,6 +58,11 @@ impl Cost {
         self.weights.rate != 0.0 && self.intervals > 1
     }
 
+    /// Whether voltages enter by their squares alone.
+    pub fn is_of_squares(&self) -> bool {
+        self.weights.rate == 0.0
+    }
+
     /// Voltage s of interval k, where k = 0 is the rest before the first.
     fn jump(&self, v: &[f64], k: usize, s: usize) -> Option<f64> {
         let at = |k: usize| v[k * self.scalars + s];

@@ -81,6 +81,8 @@ pub struct SquaredField {
 impl Energy<4> for SquaredField {
     type Local<const ORDER: usize> = OfSquare;
 
+    const OF_SQUARES: bool = true;
+
     fn at<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> OfSquare {
         let factor = 1.0 / (self.voltage * self.voltage);
         let inverse = |i: f64| {

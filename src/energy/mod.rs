@@ -50,6 +50,9 @@ pub trait Energy<const M: usize>: Send + Sync {
     /// Whether second derivatives between two vectors are multiples of the identity.
     const ISOTROPIC: bool = false;
 
+    /// Whether it is a sum of functions of the vectors alone, each times a constant or the square of one scalar.
+    const OF_SQUARES: bool = false;
+
     /// Whether the vector arguments `i` and `j` meet in second derivatives.
     fn couples(_i: usize, _j: usize) -> bool {
         true

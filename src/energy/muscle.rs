@@ -79,6 +79,8 @@ impl DielectricCell {
 impl Energy<4> for DielectricCell {
     type Local<const ORDER: usize> = OfSquare;
 
+    const OF_SQUARES: bool = true;
+
     #[inline(always)]
     fn at<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> OfSquare {
         let elastic = |i| self.elastic.of_squared_stretch(i);

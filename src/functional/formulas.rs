@@ -96,6 +96,7 @@ where
     const VIRTUAL: usize = E::VIRTUAL;
     const READINGS: usize = E::READINGS;
     const ISOTROPIC: bool = E::ISOTROPIC;
+    const OF_SQUARES: bool = E::OF_SQUARES;
 
     fn couples(i: usize, j: usize) -> bool {
         E::couples(i, j)

@@ -62,6 +62,24 @@ impl<K: Kernel> Group<K> {
         }
     }
 
+    /// Scalars of the site that elements read, each once.
+    pub(super) fn scalars_read(&self) -> Vec<usize> {
+        let of = |e| (0..K::scalars(e)).filter_map(move |s| K::scalar(e, s));
+        let scalars = self.elements.iter().flat_map(of).map(|(scalar, _)| scalar);
+        let mut scalars: Vec<usize> = scalars.collect();
+        scalars.sort_unstable();
+        scalars.dedup();
+        scalars
+    }
+
+    /// Those of them that enter otherwise than by their squares.
+    pub(super) fn scalars_not_by_squares(&self) -> Vec<usize> {
+        match K::OF_SQUARES {
+            true => Vec::new(),
+            false => self.scalars_read(),
+        }
+    }
+
     /// Hands over the derivatives of each element, with the slots of its couplings, in their order.
     #[inline(always)]
     pub(super) fn each(
@@ -186,6 +204,10 @@ impl<K: Kernel> Term for Group<K> {
 
     fn is_dead_load(&self) -> bool {
         self.kind() == Kind::Potential && K::DEGREE == 1
+    }
+
+    fn not_by_squares(&self) -> Vec<usize> {
+        self.scalars_not_by_squares()
     }
 
     fn kind(&self) -> Kind {

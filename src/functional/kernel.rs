@@ -39,6 +39,9 @@ pub trait Kernel: Debug + Send + Sync + 'static {
     /// Whether second derivatives between two vectors are multiples of the identity.
     const ISOTROPIC: bool = false;
 
+    /// Whether E is a sum of functions of the vectors alone, each times a constant or the square of one scalar.
+    const OF_SQUARES: bool = false;
+
     /// Whether h E over an interval depends on its length h where places are kept: not where E is of degree one in rates.
     const BY_DURATION: bool = true;
 

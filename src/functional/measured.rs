@@ -71,12 +71,11 @@ impl<K: Kernel> Measure for Group<K> {
     }
 
     fn scalars(&self) -> Vec<usize> {
-        let of = |e| (0..K::scalars(e)).filter_map(move |s| K::scalar(e, s));
-        let scalars = self.elements.iter().flat_map(of).map(|(scalar, _)| scalar);
-        let mut scalars: Vec<usize> = scalars.collect();
-        scalars.sort_unstable();
-        scalars.dedup();
-        scalars
+        self.scalars_read()
+    }
+
+    fn not_by_squares(&self) -> Vec<usize> {
+        self.scalars_not_by_squares()
     }
 
     fn reads(&self, side: usize) -> bool {

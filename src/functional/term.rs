@@ -102,6 +102,11 @@ pub trait Term: Debug + Send + Sync {
         false
     }
 
+    /// Scalars that enter otherwise than by their squares, to the first power.
+    fn not_by_squares(&self) -> Vec<usize> {
+        Vec::new()
+    }
+
     /// Kinetic or potential energy at the midpoint of an interval in mJ; the work that a virtual work does over it.
     fn energy(&self, sample: &Sample<'_>) -> f64;
 
@@ -132,6 +137,9 @@ pub trait Measure: Debug + Send + Sync {
 
     /// Scalars it reads.
     fn scalars(&self) -> Vec<usize>;
+
+    /// Scalars that enter otherwise than by their squares, to the first power.
+    fn not_by_squares(&self) -> Vec<usize>;
 
     /// Whether it reads the instant k + side.
     fn reads(&self, side: usize) -> bool;

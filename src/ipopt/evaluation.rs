@@ -1,5 +1,6 @@
 //! The nonlinear program as Ipopt asks for it: timed, counted, refused where it does not exist, and remembered.
 
+use std::mem;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -8,6 +9,7 @@ use crate::ipopt::reached::{Before, Reached};
 use crate::ipopt::record::Record;
 use crate::ipopt::session;
 use crate::ipopt::solution::Iteration;
+use crate::ipopt::squares::Squares;
 use crate::ipopt::status::Status;
 use crate::nlp::{Entries, Nlp};
 
@@ -36,6 +38,8 @@ pub(super) struct Asked<'a> {
     pub(super) structures: &'a Structures,
     /// What is subtracted from g.
     pub(super) right: &'a [f64],
+    /// Which unknowns are squares of what the observer sees.
+    pub(super) squares: &'a Squares,
 }
 
 /// Structures of a program.
@@ -163,12 +167,16 @@ impl<'a> Evaluator<'a> {
             ..*iteration
         };
         let (bounds, mut seconds) = (self.asked.nlp.variables(), 0.0);
-        let reached = Reached {
-            x: &self.record.derivatives_at,
-            before: Before::of(self.record, bounds, self.scale),
-        };
+        let mut shown = mem::take(&mut self.record.shown);
+        let [now, before] = &mut shown;
+        let squares = self.asked.squares;
+        let x = squares.point(&self.record.derivatives_at, now);
+        let before = squares.point(&self.record.latest, before);
+        let before = Before::of(self.record, before, (bounds, squares), self.scale);
+        let reached = Reached { x, before };
         let verdict = timed(&mut seconds, || (self.asked.observer)(iteration, &reached));
         let record = &mut *self.record;
+        record.shown = shown;
         record.seconds.observer += seconds;
         record.iterations.push(*iteration);
         record.latest.copy_from_slice(&record.derivatives_at);

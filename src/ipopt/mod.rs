@@ -18,6 +18,7 @@ mod record;
 mod session;
 mod solution;
 mod solver;
+mod squares;
 mod status;
 
 use std::ops::ControlFlow;

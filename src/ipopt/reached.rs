@@ -2,6 +2,7 @@
 
 use crate::ipopt::record::Record;
 use crate::ipopt::solution::{Iteration, Multipliers};
+use crate::ipopt::squares::Squares;
 use crate::nlp::Bounds;
 
 /// An accepted iterate.
@@ -23,19 +24,26 @@ pub struct Before<'a> {
     pub x: &'a [f64],
     record: &'a Record,
     bounds: &'a Bounds,
+    squares: &'a Squares,
     /// Factor of f in all that Ipopt sees.
     scale: f64,
 }
 
 impl<'a> Before<'a> {
     /// The latest iterate of a record, where its multipliers are known.
-    pub(super) fn of(record: &'a Record, bounds: &'a Bounds, scale: f64) -> Option<Self> {
+    pub(super) fn of(
+        record: &'a Record,
+        x: &'a [f64],
+        (bounds, squares): (&'a Bounds, &'a Squares),
+        scale: f64,
+    ) -> Option<Self> {
         let report = record.iterations.last()?;
         (!record.costates.is_empty()).then_some(Self {
             report,
-            x: &record.latest,
+            x,
             record,
             bounds,
+            squares,
             scale,
         })
     }
@@ -45,6 +53,7 @@ impl<'a> Before<'a> {
         let mut multipliers = Multipliers::default();
         multipliers.reset(self.x.len(), self.record.costates.len());
         self.record.write_multipliers(self.bounds, &mut multipliers);
+        self.squares.of_roots(self.x, &mut multipliers);
         multipliers.scale(self.scale.recip());
         multipliers
     }

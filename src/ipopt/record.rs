@@ -1,11 +1,12 @@
 //! What a solve leaves besides the answer of Ipopt: its iterations, the latest iterate with its multipliers, times and counts.
 
 use crate::ipopt::solution::{Evaluations, Iteration, Multipliers, Seconds};
+use crate::ipopt::squares::RELAXED;
 use crate::ipopt::status::Status;
 use crate::nlp::Bounds;
 
-/// By how much Ipopt relaxes bounds, of their magnitude and at least of one (`bound_relax_factor`).
-const RELAXED: f64 = 1e-8;
+/// Distance from a relaxed bound that is told from zero, in parts of what it is relaxed by.
+const CLOSEST: f64 = 1e-6;
 /// Records of iterations for which room is made beforehand.
 const RESERVED_ITERATIONS: usize = 4096;
 
@@ -18,6 +19,8 @@ pub(super) struct Record {
     pub(super) derivatives_at: Vec<f64>,
     /// The latest iterate told; before the first one, the starting point.
     pub(super) latest: Vec<f64>,
+    /// Room for an iterate and the one before, where they are shown as other points than Ipopt has them.
+    pub(super) shown: [Vec<f64>; 2],
     /// Multipliers of the constraints there, as the Hessian was asked with; empty until it was.
     pub(super) costates: Vec<f64>,
     /// Why the solve was stopped from outside, if it was.
@@ -57,7 +60,10 @@ impl Record {
             let (lower, upper) = (bounds.lower[i], bounds.upper[i]);
             let of_bound = |gap: f64, bound: f64| match lower == upper {
                 true => 0.0,
-                false => last.mu / (gap.max(0.0) + RELAXED * bound.abs().max(1.0)),
+                false => {
+                    let relaxed = RELAXED * bound.abs().max(1.0);
+                    last.mu / (gap + relaxed).max(CLOSEST * relaxed)
+                }
             };
             to.lower[i] = of_bound(x - lower, lower);
             to.upper[i] = of_bound(upper - x, upper);

@@ -15,8 +15,9 @@ use crate::ipopt::reached::Reached;
 use crate::ipopt::record::Record;
 use crate::ipopt::session::Session;
 use crate::ipopt::solution::{Iteration, SolverResult, StartingPoint};
+use crate::ipopt::squares::{InSquares, Squares};
 use crate::ipopt::status::Status;
-use crate::nlp::{Bounds, Entries, Nlp};
+use crate::nlp::{Entries, Nlp};
 
 /// A program that is solved again and again.
 ///
@@ -25,7 +26,8 @@ use crate::nlp::{Bounds, Entries, Nlp};
 /// [`Start::Centred`] allocates too. Where other bounds or options change, Ipopt begins with a new problem. With MUMPS, which a process has
 /// once, a problem lasts for one solve.
 pub struct Solver<N> {
-    program: N,
+    program: InSquares<N>,
+    squares: Squares,
     options: Options,
     structures: Structures,
     bounds: KnownBounds,
@@ -60,8 +62,10 @@ impl<N: Nlp> Solver<N> {
             places.all(|(row, col)| row >= col),
             "lower triangle of the Hessian"
         );
+        let squares = Squares::of(&program);
         Self {
-            program,
+            program: InSquares::new(program, squares.clone(), jacobian, hessian),
+            squares,
             options,
             structures,
             bounds: KnownBounds::default(),
@@ -75,12 +79,12 @@ impl<N: Nlp> Solver<N> {
 
     /// The program.
     pub const fn program(&self) -> &N {
-        &self.program
+        &self.program.program
     }
 
     /// The program, whose bounds and values may be changed between solves.
     pub const fn program_mut(&mut self) -> &mut N {
-        &mut self.program
+        &mut self.program.program
     }
 
     /// Other options for the solves from now on.
@@ -97,7 +101,7 @@ impl<N: Nlp> Solver<N> {
 
     /// The program.
     pub fn into_program(self) -> N {
-        self.program
+        self.program.program
     }
 
     /// The result of the last solve.
@@ -149,6 +153,7 @@ impl<N: Nlp> Solver<N> {
         &mut self,
         observer: &mut dyn FnMut(&Iteration, &Reached<'_>) -> ControlFlow<()>,
     ) -> Result<&SolverResult, IpoptError> {
+        self.program.take_bounds();
         let mut problem = self.known_problem()?;
         let scale = self.program.objective_scale();
         assert!(scale > 0.0, "a positive scale of the objective");
@@ -159,6 +164,8 @@ impl<N: Nlp> Solver<N> {
             true => costates.scale(scale),
             false => costates.reset(n, m),
         }
+        self.squares.of_squares(&x, &mut costates);
+        self.squares.square(&mut x);
         if self.options.start == Start::Centred {
             centre(&mut self.program, &self.structures, &mut x, &mut costates);
         }
@@ -169,6 +176,7 @@ impl<N: Nlp> Solver<N> {
             observer,
             structures: &self.structures,
             right: &self.bounds.right,
+            squares: &self.squares,
         };
         let mut evaluator = Evaluator::new(asked, &mut self.record, &x, self.options.max_seconds);
         let mut solve = || problem.solve(&mut evaluator, &mut x, &mut costates);
@@ -187,10 +195,16 @@ impl<N: Nlp> Solver<N> {
         let within = stages.and_then(|stages| stages.stopped);
         let stopped = self.record.stopped.or(within);
         let status = Status::from_code(code);
-        if stopped.is_some() && !status.is_solved() && status != Status::Interrupted {
+        self.squares.root(&mut x);
+        let is_left_off = stopped.is_some() && !status.is_solved() && status != Status::Interrupted;
+        if is_left_off {
             let bounds = &self.bounds.variables;
             self.record.write_multipliers(bounds, &mut costates);
         }
+        let latest = &mut self.record.latest;
+        self.squares.root(latest);
+        let multiplied_at = if is_left_off { &*latest } else { &x };
+        self.squares.of_roots(multiplied_at, &mut costates);
         costates.scale(scale.recip());
         let (record, result) = (&mut self.record, &mut self.result);
         (result.x, result.costates) = (x, costates);
@@ -258,7 +272,9 @@ impl<N: Nlp> Solver<N> {
 
     /// Puts the latest iterate in the place of the point where Ipopt gave up, if it violates less.
     fn end(&mut self) {
-        let (program, result) = (&mut self.program, &mut self.result);
+        let (program, result) = (&mut self.program.program, &mut self.result);
+        // Iterates may leave the bounds by 1e-8 (`bound_relax_factor`).
+        program.variables().keep(&mut result.x);
         let (objective, violation) = measure(program, &result.x, &mut result.constraints);
         result.objective = objective;
         if result.status.is_solved() && violation == f64::INFINITY {
@@ -267,12 +283,8 @@ impl<N: Nlp> Solver<N> {
         if result.status.is_solved() {
             return;
         }
-        // Iterates may leave the bounds by 1e-8 (`bound_relax_factor`); the point that Ipopt returns does not.
         let latest = &mut self.record.latest;
-        let Bounds { lower, upper } = program.variables();
-        for ((x, lower), upper) in latest.iter_mut().zip(lower).zip(upper) {
-            *x = x.max(*lower).min(*upper);
-        }
+        program.variables().keep(latest);
         let (objective, of_latest) = measure(program, latest, &mut self.latest);
         if of_latest < violation {
             result.objective = objective;

@@ -12,6 +12,17 @@ pub struct Bounds {
 }
 
 impl Bounds {
+    /// Moves values that are outside to the nearest bound.
+    pub fn keep(&self, values: &mut [f64]) {
+        for ((x, lower), upper) in values.iter_mut().zip(&self.lower).zip(&self.upper) {
+            if *x < *lower {
+                *x = *lower;
+            } else if *x > *upper {
+                *x = *upper;
+            }
+        }
+    }
+
     /// Distance of entry `i` from its bounds with a value; infinite of a value that is no finite number.
     pub fn excess(&self, i: usize, value: f64) -> f64 {
         match value.is_finite() {
@@ -78,6 +89,11 @@ pub trait Nlp {
     fn stages(&self) -> Option<Vec<Stage>> {
         None
     }
+    /// Variables x ≥ 0 that enter f and g by their squares alone, to the first power: a solver may take the squares as unknowns. A bound that x
+    /// reaches at zero, where no function has a slope by x, is then one like any other.
+    fn squares(&self) -> Vec<usize> {
+        Vec::new()
+    }
     /// What variable `i` is, for messages.
     fn variable_name(&self, i: usize) -> String {
         format!("x[{i}]")
@@ -131,6 +147,10 @@ impl<N: Nlp + ?Sized> Nlp for &mut N {
 
     fn stages(&self) -> Option<Vec<Stage>> {
         (**self).stages()
+    }
+
+    fn squares(&self) -> Vec<usize> {
+        (**self).squares()
     }
 
     fn variable_name(&self, i: usize) -> String {

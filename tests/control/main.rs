@@ -21,5 +21,6 @@ mod optimality;
 mod reference;
 mod resample;
 mod sought;
+mod squares;
 mod tracking;
 mod verdicts;

@@ -90,6 +90,15 @@ fn flags<E: Formula<M>, const M: usize>(name: &str, p: &SVector<f64, M>, jet: &J
             }
         }
     }
+    if E::OF_SQUARES {
+        for s in 3 * E::VECTORS..M {
+            let (once, twice) = (jet.gradient[s], p[s] * jet.hessian[(s, s)]);
+            assert!(
+                once != 0.0 && (once - twice).abs() <= TOLERANCE * once.abs(),
+                "{name}: scalar {s} enters by its square to the first power"
+            );
+        }
+    }
     if E::VIRTUAL > 0 {
         let work = (0..3 * E::VIRTUAL)
             .map(|i| p[i] * jet.gradient[i])

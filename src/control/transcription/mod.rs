@@ -20,6 +20,7 @@ mod point;
 mod program;
 mod scaling;
 mod segment;
+mod squares;
 mod structure;
 mod sweep;
 mod units;

@@ -122,6 +122,10 @@ impl Nlp for Transcription<'_> {
         }
     }
 
+    fn squares(&self) -> Vec<usize> {
+        self.voltages_by_squares()
+    }
+
     fn stages(&self) -> Option<Vec<Stage>> {
         let role = |column: &Column| column.of(&self.model.variables).role;
         let stage = |column: &Column| match *column {
