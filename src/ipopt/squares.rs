@@ -140,6 +140,11 @@ impl<N: Nlp> InSquares<N> {
         let (given, Bounds { lower, upper }) = (self.program.variables(), &mut self.bounds);
         lower.clone_from(&given.lower);
         upper.clone_from(&given.upper);
+        let mut squares = self.squares.list.iter();
+        assert!(
+            squares.all(|&(i, _)| lower[i] >= 0.0),
+            "a square of a variable that is not negative"
+        );
         self.squares.square(lower);
         self.squares.square(upper);
         for &(i, _) in &self.squares.list {
