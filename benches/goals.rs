@@ -1,7 +1,8 @@
 //! Random goals of the elephant trunk: how many are solved, how fast, and what several starting points add.
 //!
-//! `cargo bench --bench goals -- [GOALS] [--write]`: so many goals of rest, 200 where not said, half as many places of the tip
-//! and an eighth as many goals on a short horizon; with `--write` tables and figure go to `results/gallery/random_goals/`. Each solve is a process, as a user starts it.
+//! `cargo bench --bench goals -- [GOALS] [--before PROGRAM] [--write]`: so many goals of rest, 200 where not said, half as many places of the tip
+//! and an eighth as many goals on a short horizon, also by an earlier program where one is named; with `--write` tables and figure go to
+//! `results/gallery/random_goals/`. Each solve is a process, as a user starts it.
 
 #[path = "../tests/common/random_goals.rs"]
 mod random_goals;
@@ -62,8 +63,21 @@ const GROUPS: [Group; 3] = [
     },
 ];
 
-/// The linear solver along the horizon, and the one beside which it is measured.
-const SOLVERS: [&str; 2] = ["stages", "mumps"];
+/// This program.
+const PROGRAM: &str = env!("CARGO_BIN_EXE_proboscis");
+/// With the linear solver along the horizon, and with the one beside which it is measured.
+const SOLVERS: [Way<'_>; 2] = [
+    Way {
+        program: PROGRAM,
+        linear_solver: Some("stages"),
+        starts: 1,
+    },
+    Way {
+        program: PROGRAM,
+        linear_solver: Some("mumps"),
+        starts: 1,
+    },
+];
 
 /// How a solve of a goal ended.
 #[derive(Clone, Debug)]
@@ -84,9 +98,12 @@ struct Ended {
 fn main() {
     let mut count = 200;
     let mut writes = false;
-    for argument in std::env::args().skip(1) {
+    let mut before = None;
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--write" => writes = true,
+            "--before" => before = Some(arguments.next().expect("a program after --before")),
             "--bench" => {}
             number => count = number.parse().expect("a number of goals, or --write"),
         }
@@ -97,14 +114,19 @@ fn main() {
         .flat_map(|group| (1..=count / group.part).map(move |number| (group, number)))
         .map(|(group, number)| (group, number, goals.draw(group.kind)))
         .collect();
-    // Both solvers in turn, so that what else the machine does meets both.
-    let both = in_parallel(&plan, |(group, goal, it)| {
-        SOLVERS.map(|name| solve(group, *goal, it, &Way { name, starts: 1 }))
+    let mut ways = SOLVERS.to_vec();
+    ways.extend(before.as_deref().map(|program| Way {
+        program,
+        linear_solver: None,
+        starts: 1,
+    }));
+    // All ways in turn, so that what else the machine does meets each.
+    let all = in_parallel(&plan, |(group, goal, it)| {
+        let each = ways.iter().map(|way| solve(group, *goal, it, way));
+        each.collect::<Vec<_>>()
     });
-    let (once, by_mumps): (Vec<_>, Vec<_>) = both
-        .into_iter()
-        .map(|[ours, theirs]| (ours, theirs))
-        .unzip();
+    let of_way = |way: usize| -> Vec<Ended> { all.iter().map(|each| each[way].clone()).collect() };
+    let once = of_way(0);
     let mut chosen = Vec::new();
     for group in &GROUPS {
         let of_group = |solved: bool| {
@@ -120,14 +142,21 @@ fn main() {
         .map(|&index| {
             let (group, goal, it) = &plan[index];
             let way = Way {
-                name: SOLVERS[0],
                 starts: STARTS,
+                ..SOLVERS[0]
             };
             solve(group, *goal, it, &way)
         })
         .collect();
     let mut text = report(&once, &several, &chosen);
-    text += &beside_mumps(&once, &by_mumps);
+    text += "\n## Beside MUMPS\n\n\
+         The same goals from the guess of the problem, both linear solvers in turn; seconds of all goals together, solved or not, without the start of a process.\n\n";
+    text += &beside(&once, "with MUMPS", &of_way(1));
+    if before.is_some() {
+        text += "\n## Beside the program with MUMPS alone and voltages as unknowns\n\n\
+             An earlier program, before the linear solver along the horizon and before squares of voltages were unknowns, in the same run.\n\n";
+        text += &beside(&once, "the earlier program", &of_way(2));
+    }
     println!("{text}");
     if writes {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/gallery/random_goals");
@@ -152,29 +181,32 @@ fn in_parallel<T: Sync, A: Send>(items: &[T], answer: impl Fn(&T) -> A + Sync) -
 }
 
 /// How a goal is solved.
-#[derive(Debug)]
-struct Way {
-    /// The linear solver.
-    name: &'static str,
+#[derive(Clone, Copy, Debug)]
+struct Way<'a> {
+    program: &'a str,
+    /// The linear solver, where the program can be told.
+    linear_solver: Option<&'a str>,
     /// Number of starting points.
     starts: usize,
 }
 
 /// Solves the trunk problem for a goal in a process.
-fn solve(group: &Group, goal: usize, it: &Goal, way: &Way) -> Ended {
+fn solve(group: &Group, goal: usize, it: &Goal, way: &Way<'_>) -> Ended {
     let starts = way.starts;
     let folder = tempfile::tempdir().expect("a temporary folder");
     let output = folder.path().join("out");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_proboscis"));
+    let mut command = Command::new(way.program);
     command.arg("solve").arg(trunk());
     command
         .arg("--set")
         .arg(format!("control.goal={}", it.json));
     let duration = format!("control.duration={} s", group.duration);
     command.arg("--set").arg(duration);
-    command
-        .arg("--set")
-        .arg(format!("control.solver.linear_solver={:?}", way.name));
+    if let Some(name) = way.linear_solver {
+        command
+            .arg("--set")
+            .arg(format!("control.solver.linear_solver={name:?}"));
+    }
     command.arg("--max-iterations").arg(ITERATIONS.to_string());
     command.arg("-o").arg(&output).arg("--quiet");
     if starts > 1 {
@@ -239,18 +271,21 @@ fn quantiles(mut values: Vec<f64>, digits: usize) -> String {
     told.join(", ")
 }
 
+/// Median of the iterations of what is solved.
+fn median<'a>(all: impl Iterator<Item = &'a Ended>) -> Option<usize> {
+    let solved = all.filter(|one| one.is_solved).map(|one| one.iterations);
+    let mut solved: Vec<usize> = solved.collect();
+    solved.sort_unstable();
+    solved.get(solved.len() / 2).copied()
+}
+
 /// What the tables say: how many goals are solved from the guess of the problem, and how many more from several starts.
 fn conclusion(once: &[Ended], several: &[Ended], chosen: &[usize]) -> String {
     let each = GROUPS.iter().map(|group| {
         let of_group: Vec<&Ended> = once.iter().filter(|one| one.group == group.name).collect();
-        let mut solved: Vec<usize> = of_group
-            .iter()
-            .filter(|one| one.is_solved)
-            .map(|one| one.iterations)
-            .collect();
-        solved.sort_unstable();
-        let middle = solved.get(solved.len() / 2);
-        let median = middle.map_or(String::new(), |n| format!(" (median {n} iterations)"));
+        let solved = of_group.iter().filter(|one| one.is_solved).count();
+        let median = median(of_group.iter().copied())
+            .map_or(String::new(), |n| format!(" (median {n} iterations)"));
         let more = (chosen.iter().zip(several))
             .filter(|(index, now)| {
                 now.group == group.name && now.is_solved && !once[**index].is_solved
@@ -262,7 +297,7 @@ fn conclusion(once: &[Ended], several: &[Ended], chosen: &[usize]) -> String {
         };
         format!(
             "{} of {} goals of {}{median}{more}",
-            solved.len(),
+            solved,
             of_group.len(),
             group.name
         )
@@ -371,13 +406,12 @@ fn report(once: &[Ended], several: &[Ended], chosen: &[usize]) -> String {
     out
 }
 
-/// What both linear solvers take for the same goals, whole processes.
-fn beside_mumps(ours: &[Ended], theirs: &[Ended]) -> String {
-    let mut out = "\n## Beside MUMPS\n\n\
-         The same goals from the guess of the problem, both linear solvers in turn; seconds of all goals together, solved or not, without the start of a process.\n\n\
-         | goals | solved along the horizon, with MUMPS | seconds along the horizon, with MUMPS | ratio |\n\
-         |:--|--:|--:|--:|\n"
-        .to_owned();
+/// What two ways take for the same goals, whole processes: the first, and another one with its name.
+fn beside(ours: &[Ended], name: &str, theirs: &[Ended]) -> String {
+    let mut out = format!(
+        "| goals | solved, {name} | median of iterations, {name} | seconds, {name} | ratio |\n\
+         |:--|--:|--:|--:|--:|\n"
+    );
     for group in &GROUPS {
         let of = |all: &[Ended]| {
             let all = all.iter().filter(|one| one.group == group.name);
@@ -385,12 +419,15 @@ fn beside_mumps(ours: &[Ended], theirs: &[Ended]) -> String {
                 (solved + usize::from(one.is_solved), seconds + one.seconds)
             })
         };
+        let median = |all: &[Ended]| median(all.iter().filter(|one| one.group == group.name));
+        let medians = [median(ours), median(theirs)].map(|n| n.unwrap_or_default());
         let [(ours, fast), (theirs, slow)] = [of(ours), of(theirs)];
+        let [few, many] = medians;
         let ratio = slow / fast;
         let name = group.name;
         writeln!(
             out,
-            "| {name} | {ours}, {theirs} | {fast:.1}, {slow:.1} | {ratio:.2} |"
+            "| {name} | {ours}, {theirs} | {few}, {many} | {fast:.1}, {slow:.1} | {ratio:.2} |"
         )
         .expect("a text grows");
     }

@@ -25,7 +25,6 @@ const MARKS: [&str; 2] = ["<!-- tables -->", "<!-- end of tables -->"];
 const JACOBIAN: f64 = 12.0;
 const HESSIAN: f64 = 25.0;
 const STEP: f64 = 60.0;
-const CALLBACKS: f64 = 0.5;
 const CASADI_JACOBIAN: f64 = 27.0;
 const CASADI_HESSIAN: f64 = 60.0;
 const CASADI_STEP: f64 = 1900.0;
@@ -228,9 +227,8 @@ fn tables() -> String {
     writeln!(
         out,
         "\nA forward step has {newton:.1} Newton iterations and takes {:.3} of CasADi's. Callbacks take {ratio:.2} of the time \
-         inside Ipopt, {:.2} of the target.",
-        reduced_step / CASADI_STEP,
-        ratio / CALLBACKS
+         inside Ipopt.",
+        reduced_step / CASADI_STEP
     )
     .expect("a text grows");
     out
