@@ -36,6 +36,9 @@ impl fmt::Display for OptionValue {
     }
 }
 
+/// `bound_relax_factor` where nothing else is asked for.
+const RELAXED: f64 = 1e-8;
+
 /// What the starting point is worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Start {
@@ -130,6 +133,15 @@ impl Options {
         }
         let solver = self.linear_solver.resolve()?;
         Some((solver.name(), solver == LinearSolver::Stages))
+    }
+
+    /// By how much Ipopt relaxes bounds, of their magnitude and at least of one.
+    pub(super) fn relaxed(&self) -> f64 {
+        match self.extra.get("bound_relax_factor") {
+            Some(&OptionValue::Number(factor)) => factor,
+            Some(&OptionValue::Integer(factor)) => f64::from(factor),
+            _ => RELAXED,
+        }
     }
 
     /// Whether solves with these options run in several threads at once: those with the linear solver along the horizon.

@@ -1,18 +1,19 @@
 //! What a solve leaves besides the answer of Ipopt: its iterations, the latest iterate with its multipliers, times and counts.
 
 use crate::ipopt::solution::{Evaluations, Iteration, Multipliers, Seconds};
-use crate::ipopt::squares::RELAXED;
 use crate::ipopt::status::Status;
 use crate::nlp::Bounds;
 
-/// Distance from a relaxed bound that is told from zero, in parts of what it is relaxed by.
-const CLOSEST: f64 = 1e-6;
+/// Distance from a relaxed bound that is told from zero, of its magnitude and at least of one.
+const CLOSEST: f64 = 1e-14;
 /// Records of iterations for which room is made beforehand.
 const RESERVED_ITERATIONS: usize = 4096;
 
 /// What is left of a solve besides the answer of Ipopt.
 #[derive(Debug, Default)]
 pub(super) struct Record {
+    /// By how much bounds are relaxed, of their magnitude and at least of one.
+    pub(super) relaxed: f64,
     /// One record per iteration.
     pub(super) iterations: Vec<Iteration>,
     /// Where derivatives were asked last.
@@ -61,8 +62,8 @@ impl Record {
             let of_bound = |gap: f64, bound: f64| match lower == upper {
                 true => 0.0,
                 false => {
-                    let relaxed = RELAXED * bound.abs().max(1.0);
-                    last.mu / (gap + relaxed).max(CLOSEST * relaxed)
+                    let size = bound.abs().max(1.0);
+                    last.mu / (gap + self.relaxed * size).max(CLOSEST * size)
                 }
             };
             to.lower[i] = of_bound(x - lower, lower);

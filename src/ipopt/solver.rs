@@ -126,7 +126,7 @@ impl<N: Nlp> Solver<N> {
         start: &StartingPoint,
         observer: &mut dyn FnMut(&Iteration, &Reached<'_>) -> ControlFlow<()>,
     ) -> Result<&SolverResult, IpoptError> {
-        let n = self.program.variables().lower.len();
+        let n = self.program().variables().lower.len();
         assert_eq!(
             start.x.len(),
             n,
@@ -153,7 +153,9 @@ impl<N: Nlp> Solver<N> {
         &mut self,
         observer: &mut dyn FnMut(&Iteration, &Reached<'_>) -> ControlFlow<()>,
     ) -> Result<&SolverResult, IpoptError> {
-        self.program.take_bounds();
+        let relaxed = self.options.relaxed();
+        self.program.take_bounds(relaxed);
+        self.record.relaxed = relaxed;
         let mut problem = self.known_problem()?;
         let scale = self.program.objective_scale();
         assert!(scale > 0.0, "a positive scale of the objective");
@@ -273,7 +275,7 @@ impl<N: Nlp> Solver<N> {
     /// Puts the latest iterate in the place of the point where Ipopt gave up, if it violates less.
     fn end(&mut self) {
         let (program, result) = (&mut self.program.program, &mut self.result);
-        // Iterates may leave the bounds by 1e-8 (`bound_relax_factor`).
+        // Iterates may leave the bounds by what they are relaxed.
         program.variables().keep(&mut result.x);
         let (objective, violation) = measure(program, &result.x, &mut result.constraints);
         result.objective = objective;

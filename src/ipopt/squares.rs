@@ -14,8 +14,6 @@
 use crate::ipopt::solution::Multipliers;
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
 
-/// By how much Ipopt relaxes bounds, of their magnitude and at least of one (`bound_relax_factor`).
-pub(super) const RELAXED: f64 = 1e-8;
 /// Least w, for slopes that are finite.
 const LEAST: f64 = 1e-18;
 
@@ -119,7 +117,7 @@ impl<N: Nlp> InSquares<N> {
         } else {
             is_square.len()
         };
-        let mut out = Self {
+        Self {
             jacobian: columns.filter(|&(_, col)| is_square[col]).collect(),
             hessian: places
                 .enumerate()
@@ -130,13 +128,11 @@ impl<N: Nlp> InSquares<N> {
             bounds: Bounds::default(),
             x: vec![0.0; length],
             slopes: vec![1.0; length],
-        };
-        out.take_bounds();
-        out
+        }
     }
 
-    /// Takes over the bounds of the program. Ipopt relaxes that at zero to zero.
-    pub(super) fn take_bounds(&mut self) {
+    /// Takes over the bounds of the program. That at zero is at what Ipopt relaxes it by, to zero.
+    pub(super) fn take_bounds(&mut self, relaxed: f64) {
         let (given, Bounds { lower, upper }) = (self.program.variables(), &mut self.bounds);
         lower.clone_from(&given.lower);
         upper.clone_from(&given.upper);
@@ -148,8 +144,8 @@ impl<N: Nlp> InSquares<N> {
         self.squares.square(lower);
         self.squares.square(upper);
         for &(i, _) in &self.squares.list {
-            if lower[i] == 0.0 {
-                lower[i] = RELAXED;
+            if lower[i] == 0.0 && upper[i] > relaxed {
+                lower[i] = relaxed;
             }
         }
     }
