@@ -18,7 +18,7 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 README = HERE.parent / "README.md"
-# The tolerance of all, and bounds that none relaxes: what is left between the objectives is rounding.
+# The tolerance of all, and bounds that none relaxes: what is left between the objectives is what the barrier leaves.
 TOLERANCE = 1e-10
 CALLBACKS = ("objective", "gradient", "constraints", "jacobian", "hessian")
 SOLVERS = {"stages": "proboscis, along the horizon", "mumps": "proboscis, MUMPS"}
@@ -154,8 +154,8 @@ def page(rows, about):
         "",
         f"{about['processor']}, one core shared with other programs; proboscis {about['proboscis']}, CasADi {about['casadi']}; load of the "
         f"machine {about['load'][0]:.1f} before and {about['load'][1]:.1f} after. Times are processor time, the least of the repeats, which took turns; that of the C compiler is real time. All "
-        f"solve the same program to {TOLERANCE:g} from the same guess; Fatrop has the momenta as further unknowns and another interior-point "
-        "method, hence other iterations. Written by `benches/peers/run.sh`.",
+        f"solve the same program to {TOLERANCE:g} from the same guess; proboscis has squares of voltages as unknowns, which a program written with CasADi could have too, "
+        "and Fatrop the momenta as further ones and another interior-point method, hence other iterations. Written by `benches/peers/run.sh`.",
         "",
         "Solve / of which solver without callbacks in ms (ratios to the first column), iterations:",
         "",
