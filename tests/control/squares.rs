@@ -6,12 +6,14 @@ use proboscis::files::read_problem;
 use proboscis::ipopt::{self, OptionValue, Options, SolverResult};
 use proboscis::model::system::System;
 use proboscis::nlp::{Bounds, Entries, Nlp, Stage};
+use serde_json::{Value, json};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// A kept problem of control with changes.
+/// A problem of control with changes, a kept one or one in a file.
 fn problem(name: &str, changes: &[&str]) -> (System, Control) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/{name}.json"));
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/{name}.json"));
+    let path = if kept.exists() { kept } else { name.into() };
     let changes: Vec<String> = changes.iter().map(|&change| change.to_owned()).collect();
     let loaded = read_problem(&path, &changes).unwrap();
     let Task::Control(control) = loaded.task else {
@@ -122,6 +124,61 @@ fn voltages_that_enter_otherwise_are_no_squares() {
         let columns = program.unknowns().columns.clone();
         let are_of_intervals = |&i: &usize| matches!(columns[i], Column::Interval { .. });
         assert!(!squares.is_empty() && squares.iter().all(are_of_intervals));
+    });
+}
+
+#[test]
+fn beside_a_muscle_of_finite_elements_only_the_voltages_of_the_lumped_one_are_squares() {
+    let muscle = |name: &str, x: f64, more: Value| {
+        let ends = [("from", "ground", -20), ("to", "segment1", 20)];
+        let mut muscle = json!({
+            "name": name, "material": "silicone",
+            "cross_section": ["10 mm", "10 mm"], "layer_thickness": "50 um",
+        });
+        for (end, body, y) in ends {
+            muscle[end] = json!({ "body": body, "at": [x, f64::from(y) * 1e-3, 0.0] });
+        }
+        for (key, value) in more.as_object().unwrap() {
+            muscle[key] = value.clone();
+        }
+        muscle
+    };
+    let meshed = json!({ "model": "finite_elements", "elements": [1, 1, 2] });
+    let problem = json!({
+        "scene": {
+            "name": "one of each",
+            "materials": { "silicone": {
+                "density": "1000 kg/m^3", "shear_modulus": "100 kPa", "lame_lambda": "400 kPa",
+                "relative_permittivity": 3.0, "viscosity": "1000 Pa s",
+            } },
+            "bodies": [ {
+                "name": "segment1", "mass": "30 g", "position": ["0 mm", "25 mm", "0 mm"],
+                "cylinder": { "length": "50 mm", "radius": "20 mm", "axis": [0, 1, 0] },
+            } ],
+            "joints": [ {
+                "name": "joint1", "revolute": { "axis": [0, 0, 1] }, "parent": "ground", "child": "segment1",
+                "at": [0, 0, 0],
+            } ],
+            "muscles": [muscle("lumped", 15e-3, json!({})), muscle("meshed", -15e-3, meshed)],
+        },
+        "control": {
+            "duration": "0.2 s", "intervals": 4, "start": { "rest_at_voltages": {} },
+            "goal": "free", "voltage_bounds": ["0 V", "3 kV"],
+            "objective": { "effort": 1.0 }, "guess": "interpolate",
+        },
+    });
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("problem.json");
+    std::fs::write(&path, problem.to_string()).unwrap();
+    of_program(path.to_str().unwrap(), &[], |program, _| {
+        let squares = program.squares();
+        let names = squares.iter().map(|&i| program.variable_name(i));
+        let names: Vec<String> = names.collect();
+        assert_eq!(names.len(), 4, "{names:?}");
+        assert!(
+            names.iter().all(|name| name.contains("lumped")),
+            "{names:?}"
+        );
     });
 }
 
