@@ -18,12 +18,11 @@ use crate::nlp::{Bounds, Nlp};
 
 /// Range of the barrier parameter.
 ///
-/// Iterations of seventeen starts on other grids and one of another duration, trunks and pairs: 199, always 1e-4 218, always 1e-5 221 and a worse
-/// optimum once; not centred 365, cold 406.
+/// Iterations of seventeen starts on other grids and one of another duration, trunks and pairs: 216; not centred 365, cold 406.
 const RANGE: [f64; 2] = [1e-4, 3e-4];
-/// Least curvature, in the scaled program. The Lagrangian is linear in squares of voltages ([`Nlp::squares`]), which have to stay where they are
-/// inside their bounds: with 0.1, 0.3, 1 and 3 these starts take 202, 199, 200 and 207 iterations (with 1 to a worse optimum once), with 1e-8 216.
-const FLAT: f64 = 0.3;
+/// Least curvature: a variable in which the Lagrangian is flat, as the square of a voltage ([`Nlp::squares`]), goes no farther than the middle of
+/// its bounds. With 1 the starts above take 200 iterations, one of them to a worse optimum.
+const FLAT: f64 = 1e-8;
 /// Least distance from a bound.
 const LEAST: f64 = 1e-14;
 

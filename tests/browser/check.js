@@ -103,11 +103,8 @@ async function look(browser, run, screen, file) {
     await keyboard(page, told);
     if (run.variants) await sweep(page, run, told);
     else await charts(page, run, told, screen);
-    await page.evaluate(() => window.scrollTo(0, 0));
-    // For a person to look at; long pages take a slow machine more time than the test has.
-    const all = { path: join(folder, `${run.name}-${screen.name}-all.png`), fullPage: true, timeout: 30000 };
-    await page.screenshot(all).catch(() => console.error(`browser: ${told}: no picture of the whole page`));
   }
+  await page.evaluate(() => window.scrollTo(0, 0));
   await page.evaluate(axe);
   const found = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
   for (const violation of found.violations) {
@@ -117,7 +114,12 @@ async function look(browser, run, screen, file) {
   expect(found.passes.length > 10, `${told}: axe checked nothing`);
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
   expect(wide <= 0, `${told}: ${wide} px wider than the screen`);
-  await context.close();
+  if (!screen.still) {
+    // For a person to look at, and last: long pages take a slow machine more time than the test has, and the page does nothing else meanwhile.
+    const all = { path: join(folder, `${run.name}-${screen.name}-all.png`), fullPage: true, timeout: 30000 };
+    await page.screenshot(all).catch(() => console.error(`browser: ${told}: no picture of the whole page`));
+  }
+  await Promise.race([context.close(), new Promise((resolve) => setTimeout(resolve, 10000))]);
 }
 
 /** The robot is framed at every instant, and large. */
