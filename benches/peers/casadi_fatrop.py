@@ -6,7 +6,8 @@ of two instants. So the same equations stand in position-momentum form. The stat
     x_{k+1} = (w_k, D2 L(q_k, w_k, V_k)),    p_k + D1 L(q_k, w_k, V_k) = 0,
 
 where L holds the virtual work of the viscosity as well. Given angles and the momentum at rest are constants: the first stage has
-no state, the last one no w, and its momentum at the end is zero. Eliminating p and w gives the program of casadi_ipopt.py.
+no state, the last one no w, and its momentum at the end is zero. Eliminating p and w gives the program of casadi_ipopt.py, with
+voltages as unknowns in place of their squares: with squares Fatrop 1.1.8 finds no first search direction and goes on for ever.
 """
 
 import casadi as ca

@@ -1,7 +1,7 @@
 """The optimal control problem of the trunk as a nonlinear program for the Ipopt with MUMPS that CasADi brings.
 
-The same program as proboscis writes: DMOCC in joint angles, the same objective, boundary conditions, bounds, guess and scale of
-the rows, with exact derivatives. `map` maps the functions of one interval over all of them and puts the blocks into Jacobian
+The same program as proboscis writes: DMOCC in joint angles, squares of voltages as unknowns, the same objective, boundary conditions, bounds, guess
+and scale of the rows, with exact derivatives. `map` maps the functions of one interval over all of them and puts the blocks into Jacobian
 and Hessian; `sx` writes the whole program as one expression of scalars and leaves the derivatives to CasADi.
 """
 
@@ -33,10 +33,15 @@ def placed(blocks, rows, cols, shape, upper=False):
     return pattern, ca.DM(sums, 1.0)
 
 
-class Program:
-    """Variables instant by instant, voltages in kV between the angles; rows of all instants."""
+def unit(control):
+    """The greatest voltage in kV, by which squares of voltages are divided."""
+    return quantity(control["voltage_bounds"][1]) / KILOVOLT
 
-    def __init__(self, trunk, control, intervals):
+
+class Program:
+    """Variables instant by instant, V²/unit in kV between the angles, or V in kV without a unit; rows of all instants."""
+
+    def __init__(self, trunk, control, intervals, unit):
         for key in ("limits",):
             refuse(key in control, f"control.{key}")
         refuse(control["objective"].keys() != {"effort"}, "an objective other than effort")
@@ -48,16 +53,18 @@ class Program:
         self.start = trunk.equilibrium(rest(trunk, control["start"]))
         self.goal = trunk.equilibrium(hold)
         n, m = self.n, self.m
-        held = (hold + LIFT) / KILOVOLT
+        self.unit = unit
+        unknown = lambda volts: (volts / KILOVOLT) ** 2 / unit if unit else volts / KILOVOLT
+        held = unknown(hold + LIFT)
         guess, low, high = [held], [], []
         for k in range(1, intervals):
             s = k / intervals
             guess += [self.start + s * s * (3 - 2 * s) * (self.goal - self.start), held]
         self.guess = np.concatenate(guess)
-        bounds = [quantity(value) / KILOVOLT for value in control["voltage_bounds"]]
-        free, volts = np.full(n, np.inf), np.ones(m)
-        self.low = np.concatenate([bounds[0] * volts] + (intervals - 1) * [-free, bounds[0] * volts])
-        self.high = np.concatenate([bounds[1] * volts] + (intervals - 1) * [free, bounds[1] * volts])
+        bounds = [unknown(quantity(value)) for value in control["voltage_bounds"]]
+        free, each = np.full(n, np.inf), np.ones(m)
+        self.low = np.concatenate([bounds[0] * each] + (intervals - 1) * [-free, bounds[0] * each])
+        self.high = np.concatenate([bounds[1] * each] + (intervals - 1) * [free, bounds[1] * each])
 
     def angles(self, k):
         """Indices of the variables of instant k; −1 where they are given."""
@@ -65,19 +72,18 @@ class Program:
             return np.full(self.n, -1)
         return self.m + (k - 1) * (self.n + self.m) + np.arange(self.n)
 
-    def volts(self, k):
+    def inputs(self, k):
         return k * (self.n + self.m) + np.arange(self.m)
 
     def parts(self, x):
-        """Angles of both ends and voltages of every interval as columns."""
+        """Angles of both ends, and squares of voltages or voltages, of every interval as columns."""
         n, m, count = self.n, self.m, self.intervals
         inner = ca.reshape(x[m:], n + m, count - 1)
         ends = ca.horzcat(self.start, inner[:n, :], self.goal)
         return ends[:, :-1], ends[:, 1:], ca.horzcat(x[:m], inner[n:, :])
 
     def objective(self, x):
-        volts = ca.vec(self.parts(x)[2])
-        return self.weight * ca.dot(volts, volts)
+        return self.weight * self.unit * ca.sum1(ca.vec(self.parts(x)[2]))
 
     def rows(self, early, late):
         zero = ca.DM.zeros(self.n, 1)
@@ -94,7 +100,7 @@ def by_blocks(program, functions, scale):
     early, late = rows.map(count)(*parts, program.h)
     f, g = program.objective(x), program.rows(early, late) * s
     of_rows = [np.arange(k * n, (k + 2) * n) for k in range(count)]
-    of_z = [np.concatenate([program.angles(k), program.angles(k + 1), program.volts(k)]) for k in range(count)]
+    of_z = [np.concatenate([program.angles(k), program.angles(k + 1), program.inputs(k)]) for k in range(count)]
 
     early, late, blocks = jacobian.map(count)(*parts, program.h)
     pattern, sums = placed(jacobian.sparsity_out(2), of_rows, of_z, (row_count, size))
@@ -107,11 +113,8 @@ def by_blocks(program, functions, scale):
     along = ca.reshape(costates * s, n, count + 1)
     blocks, _ = hessian.map(count)(*parts, program.h, along[:, :-1], along[:, 1:])
     pattern, sums = placed(hessian.sparsity_out(0), of_z, of_z, (size, size), upper=True)
-    values = ca.mtimes(sums, blocks.nz[:])
-    is_voltage = np.zeros(size)
-    is_voltage[np.concatenate([program.volts(k) for k in range(count)])] = 2 * program.weight
-    of_voltages = ca.diag(ca.DM(is_voltage))
-    matrix = ca.MX(pattern, values) + sigma * ca.sparsify(of_voltages)
+    # The objective is linear in squares of voltages.
+    matrix = ca.MX(pattern, ca.mtimes(sums, blocks.nz[:]))
     hess = ca.Function(
         "nlp_hess_l", [x, p, sigma, costates], [matrix], ["x", "p", "lam_f", "lam_g"], ["hess_gamma_x_x"]
     )
@@ -132,8 +135,11 @@ def row_scales(program, jacobian):
     count, n = program.intervals, program.n
     x = ca.DM(program.guess)
     largest = np.zeros(n)
-    for k, (a, b, v) in enumerate(zip(*(ca.horzsplit(part) for part in program.parts(x)))):
-        block = np.abs(np.array(jacobian(a, b, v, program.h)[2]))
+    for k, (a, b, w) in enumerate(zip(*(ca.horzsplit(part) for part in program.parts(x)))):
+        block = np.abs(np.array(jacobian(a, b, w, program.h)[2]))
+        # proboscis takes derivatives by voltages there: ∂w/∂V = 2 V/unit.
+        if program.unit:
+            block[:, 2 * n :] *= 2 * np.sqrt(np.array(w).ravel() / program.unit)
         for end, columns in ((k, slice(0, n)), (k + 1, slice(n, 2 * n))):
             if end in (0, count):
                 block[:, columns] = 0

@@ -1,6 +1,6 @@
 """Solves the elephant trunk through CasADi, once, and prints what came out and what it took; or compiles an interval.
 
-    python casadi_solve.py scene.json --compile interval.so
+    python casadi_solve.py scene.json --problem problem.json --variant map --compile interval.so
     python casadi_solve.py scene.json --problem problem.json --intervals 40 --variant map --library interval.so
 """
 
@@ -23,7 +23,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("scene")
     parser.add_argument("--compile", metavar="LIBRARY")
-    parser.add_argument("--problem")
+    parser.add_argument("--problem", required=True)
     parser.add_argument("--intervals", type=int)
     parser.add_argument("--variant", choices=("map", "sx", "fatrop"), default="map")
     parser.add_argument("--library", help="the compiled functions of one interval")
@@ -32,14 +32,15 @@ def main():
     began = time.perf_counter()
     with open(arguments.scene) as scene:
         trunk = Trunk(json.load(scene))
-    if arguments.compile:
-        compile_interval(trunk, arguments.compile)
-        json.dump({"seconds": time.perf_counter() - began}, sys.stdout)
-        return 0
     with open(arguments.problem) as problem:
         control = json.load(problem)["control"]
-    functions = compiled_interval(arguments.library) if arguments.library else interval_functions(trunk)
-    program = casadi_ipopt.Program(trunk, control, arguments.intervals)
+    unit = None if arguments.variant == "fatrop" else casadi_ipopt.unit(control)
+    if arguments.compile:
+        compile_interval(trunk, unit, arguments.compile)
+        json.dump({"seconds": time.perf_counter() - began}, sys.stdout)
+        return 0
+    functions = compiled_interval(arguments.library) if arguments.library else interval_functions(trunk, unit)
+    program = casadi_ipopt.Program(trunk, control, arguments.intervals, unit)
     limits = arguments.tolerance, control["solver"]["max_iterations"]
     if arguments.variant == "fatrop":
         solver, given = casadi_fatrop.build(program, functions, *limits)

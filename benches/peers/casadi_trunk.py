@@ -112,20 +112,20 @@ class Trunk:
         spans = [b - a for a, b in ends]
         return centres, axes, middles, spans
 
-    def energy(self, spans, voltages):
-        """Electro-elastic energy of all muscles."""
+    def energy(self, spans, squares):
+        """Electro-elastic energy of all muscles, by squares of their voltages in V²."""
         total = 0
-        for muscle, r, v in zip(self.muscles, spans, ca.vertsplit(voltages)):
+        for muscle, r, square in zip(self.muscles, spans, ca.vertsplit(squares)):
             i = ca.dot(r, r) / muscle["length"] ** 2
             elastic = muscle["mu"] / 2 * (2 / ca.sqrt(i) + i - 3)
             electric = muscle["c1"] + muscle["c2"] * i - VACUUM_PERMITTIVITY / (2 * i)
-            total += muscle["volume"] * (elastic + electric * (v / muscle["layer"]) ** 2)
+            total += muscle["volume"] * (elastic + electric * square / muscle["layer"] ** 2)
         return total
 
     def interval(self):
-        """Rows that an interval adds to its two instants, as functions of both angles and of its voltages in V."""
+        """Rows that an interval adds to its two instants, as functions of both angles and of squares of its voltages in V²."""
         n, m = len(self.joints), len(self.muscles)
-        a, b, v, h = ca.SX.sym("a", n), ca.SX.sym("b", n), ca.SX.sym("v", m), ca.SX.sym("h")
+        a, b, squares, h = ca.SX.sym("a", n), ca.SX.sym("b", n), ca.SX.sym("squares", m), ca.SX.sym("h")
         xa, xb = self.vectors(a), self.vectors(b)
         rates = [[(q - p) / h for p, q in zip(*lists)] for lists in zip(xa, xb)]
         means = [(p + q) / 2 for p, q in zip(xa[3], xb[3])]
@@ -136,19 +136,19 @@ class Trunk:
                 kinetic += euler[i] * ca.dot(axes[:, i], axes[:, i]) / 2
         for muscle, middle, span in zip(self.muscles, rates[2], rates[3]):
             kinetic += muscle["mass"] / 2 * (ca.dot(middle, middle) + ca.dot(span, span) / 12)
-        action = h * (kinetic - self.energy(means, v))
+        action = h * (kinetic - self.energy(means, squares))
         rows = [ca.gradient(action, a), ca.gradient(action, b)]
         for muscle, r, rate, ra, rb in zip(self.muscles, means, rates[3], xa[3], xb[3]):
             force = -1.5 * muscle["viscosity"] * muscle["volume"] * ca.dot(r, rate) / ca.dot(r, r) ** 2 * r
             rows[0] += ca.jtimes(ra, a, h / 2 * force, True)
             rows[1] += ca.jtimes(rb, b, h / 2 * force, True)
-        return ca.Function("interval", [a, b, v, h], rows)
+        return ca.Function("interval", [a, b, squares, h], rows)
 
     def equilibrium(self, voltages):
         """Joint angles at rest under voltages in V, by Newton from the straight trunk."""
         n, m = len(self.joints), len(self.muscles)
         theta, v = ca.SX.sym("theta", n), ca.SX.sym("v", m)
-        energy = self.energy(self.vectors(theta)[3], v)
+        energy = self.energy(self.vectors(theta)[3], v**2)
         hessian, gradient = ca.hessian(energy, theta)
         step = ca.Function("step", [theta, v], [gradient, hessian])
         at = np.zeros(n)
@@ -171,26 +171,27 @@ def rest(trunk, state):
 INTERVAL = ("rows", "rows_jacobian", "rows_hessian")
 
 
-def interval_functions(trunk):
-    """Rows of an interval, their Jacobian, and Hessian and gradient along costates, of both ends and voltages in kV."""
+def interval_functions(trunk, unit):
+    """Rows of an interval, their Jacobian, and Hessian and gradient along costates, of both ends and of V²/unit in kV, or V in kV without a unit."""
     n, m = len(trunk.joints), len(trunk.muscles)
-    a, b, v, h = ca.SX.sym("a", n), ca.SX.sym("b", n), ca.SX.sym("v", m), ca.SX.sym("h")
+    a, b, w, h = ca.SX.sym("a", n), ca.SX.sym("b", n), ca.SX.sym("w", m), ca.SX.sym("h")
     la, lb = ca.SX.sym("la", n), ca.SX.sym("lb", n)
-    early, late = ca.cse(list(trunk.interval()(a, b, v * KILOVOLT, h)))
-    z, rows = ca.vertcat(a, b, v), ca.vertcat(early, late)
+    squares = w * unit if unit else w**2
+    early, late = ca.cse(list(trunk.interval()(a, b, squares * KILOVOLT**2, h)))
+    z, rows = ca.vertcat(a, b, w), ca.vertcat(early, late)
     hessian, gradient = ca.hessian(ca.dot(ca.vertcat(la, lb), rows), z)
     jacobian, hessian, gradient = ca.cse([ca.jacobian(rows, z), hessian, ca.densify(gradient)])
-    given = [a, b, v, h]
+    given = [a, b, w, h]
     outputs = [early, late], [early, late, jacobian], [hessian, gradient]
     inputs = given, given, given + [la, lb]
     return tuple(ca.Function(*each) for each in zip(INTERVAL, inputs, outputs))
 
 
-def compile_interval(trunk, library):
+def compile_interval(trunk, unit, library):
     """Hands the functions of one interval to the C compiler; they hold for any number of intervals."""
     library = Path(library)
     generator = ca.CodeGenerator(library.stem + ".c")
-    for function in interval_functions(trunk):
+    for function in interval_functions(trunk, unit):
         generator.add(function)
     generator.generate(f"{library.parent}/")
     subprocess.run(["gcc", "-O1", "-fPIC", "-shared", library.with_suffix(".c"), "-o", library], check=True)

@@ -18,7 +18,7 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 README = HERE.parent / "README.md"
-# The tolerance of all, and bounds that none relaxes: what is left between the objectives is what the barrier leaves.
+# The tolerance of all, and bounds that none relaxes: what is left between the objectives is rounding.
 TOLERANCE = 1e-10
 CALLBACKS = ("objective", "gradient", "constraints", "jacobian", "hessian")
 SOLVERS = {"stages": "proboscis, along the horizon", "mumps": "proboscis, MUMPS"}
@@ -113,7 +113,7 @@ def conclusion(rows, compilation):
     return [f"**Conclusion.** Objectives agree to {max(row['apart'] for row in rows):.0e}. Against {SOLVERS['stages']}, which sets up in "
             f"{span([row['setup'] for row in own.values()], '.1g')} s and takes {span([row['iterations'] for row in own.values()], 'd')} iterations:",
             "", *parts, "",
-            f"The compiled ones need the C compiler once besides, for all numbers of intervals, here for {compilation:.0f} s."]
+            f"Each compiled one needs the C compiler once besides, for all numbers of intervals, here for {span(compilation, '.0f')} s."]
 
 
 def short_table(rows):
@@ -154,8 +154,8 @@ def page(rows, about):
         "",
         f"{about['processor']}, one core shared with other programs; proboscis {about['proboscis']}, CasADi {about['casadi']}; load of the "
         f"machine {about['load'][0]:.1f} before and {about['load'][1]:.1f} after. Times are processor time, the least of the repeats, which took turns; that of the C compiler is real time. All "
-        f"solve the same program to {TOLERANCE:g} from the same guess; proboscis has squares of voltages as unknowns, which a program written with CasADi could have too, "
-        "and Fatrop the momenta as further ones and another interior-point method, hence other iterations. Written by `benches/peers/run.sh`.",
+        f"solve the same program to {TOLERANCE:g} from the same guess, with squares of voltages as unknowns; Fatrop has voltages, since it finds no search direction with their squares, the momenta as further "
+        "unknowns and another interior-point method, hence other iterations. Written by `benches/peers/run.sh`.",
         "",
         "Solve / of which solver without callbacks in ms (ratios to the first column), iterations:",
         "",
@@ -181,21 +181,23 @@ def main():
     parser.add_argument("--intervals", type=int, nargs="+", default=[20, 40, 80, 160])
     parser.add_argument("--repeats", type=int, default=10)
     parser.add_argument("--interpreted-repeats", type=int, default=1)
-    parser.add_argument("--library", type=Path, help="functions compiled before by casadi_solve.py --compile, which prints what it took into the same name with .json")
+    parser.add_argument("--library", type=Path, help="folder for the compiled functions, of an earlier run or for the next one")
     arguments = parser.parse_args()
     binary, problem = arguments.proboscis.resolve(), arguments.problem.resolve()
     load = [os.getloadavg()[0]]
     rows = []
     with tempfile.TemporaryDirectory() as folder:
-        scene, library = Path(folder) / "scene.json", arguments.library
+        scene, libraries = Path(folder) / "scene.json", arguments.library or Path(folder)
         clock = Path(folder) / "processor_clock.so"
         subprocess.run(["gcc", "-O1", "-fPIC", "-shared", HERE / "processor_clock.c", "-o", clock], check=True)
         scene.write_text(subprocess.run([binary, "expand", arguments.scene], check=True, capture_output=True, text=True).stdout)
-        if library is None:
-            library = Path(folder) / "interval.so"
-            compilation = casadi("", scene, "--compile", library)["seconds"]
-        else:
-            compilation = json.loads(library.with_suffix(".json").read_text())["seconds"]
+        compilation = []
+        for variant in COMPILED:
+            library = libraries.resolve() / f"{variant}.so"
+            told = library.with_suffix(".json")
+            if not told.exists():
+                told.write_text(json.dumps(casadi("", scene, "--problem", problem, "--variant", variant, "--compile", library)))
+            compilation.append(json.loads(told.read_text())["seconds"])
         for intervals in arguments.intervals:
             given = "--problem", problem, "--intervals", intervals, "--tolerance", TOLERANCE, "--variant"
             programs, repeats = {}, {}
@@ -203,7 +205,7 @@ def main():
                 programs[name] = lambda solver=solver: proboscis(binary, clock, problem, intervals, solver)
                 repeats[name] = arguments.repeats
             for variant, name in COMPILED.items():
-                programs[name] = lambda variant=variant: casadi(clock, scene, *given, variant, "--library", library.resolve())
+                programs[name] = lambda variant=variant: casadi(clock, scene, *given, variant, "--library", libraries.resolve() / f"{variant}.so")
                 repeats[name] = arguments.repeats
             for variant, name in INTERPRETED.items():
                 programs[name] = lambda variant=variant: casadi(clock, scene, *given, variant)
