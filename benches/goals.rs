@@ -153,8 +153,7 @@ fn main() {
          The same goals from the guess of the problem, both linear solvers in turn; seconds of all goals together, solved or not, without the start of a process.\n\n";
     text += &beside(&once, "with MUMPS", &of_way(1));
     if before.is_some() {
-        text += "\n## Beside the program with MUMPS alone and voltages as unknowns\n\n\
-             An earlier program, before the linear solver along the horizon and before squares of voltages were unknowns, in the same run.\n\n";
+        text += "\n## Beside an earlier program\n\nThe same goals in the same run by the program that `--before` names.\n\n";
         text += &beside(&once, "the earlier program", &of_way(2));
     }
     println!("{text}");
@@ -296,8 +295,7 @@ fn conclusion(once: &[Ended], several: &[Ended], chosen: &[usize]) -> String {
             more => format!(" and {more} more from {STARTS} starting points"),
         };
         format!(
-            "{} of {} goals of {}{median}{more}",
-            solved,
+            "{solved} of {} goals of {}{median}{more}",
             of_group.len(),
             group.name
         )
