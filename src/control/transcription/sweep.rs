@@ -10,7 +10,7 @@ use crate::math::{Vector, both};
 
 /// Second derivatives of a horizon from which on its stretches are evaluated at once: with fewer, a second core saves less than it
 /// costs to wake it and to read what it wrote.
-const MUCH: usize = 50_000;
+const MUCH: usize = 8_000;
 
 impl<'m> Transcription<'m> {
     /// Number of rows of a step: of an instant, then of the scalars of an interval.
