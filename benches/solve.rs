@@ -180,7 +180,7 @@ fn tables() -> String {
     let [(reduced_step, newton), (redundant_step, _)] = [step(Reduced), step(Redundant)];
     let ratio = costs[0].callbacks / costs[0].solver;
     out.push_str(
-        "\nAgainst targets and rivals, as ratios; below 1 is faster.\n\n\
+        "\nAgainst targets and rivals on one core, as ratios; below 1 is faster. Callbacks here use two cores where there are two.\n\n\
          | N = 40                          | reduced | / target | / rival          | redundant | redundant / reduced |\n\
          |:--------------------------------|--------:|---------:|-----------------:|----------:|--------------------:|\n",
     );
