@@ -1,4 +1,4 @@
-//! Evaluating a program, and solving it again, allocates nothing after the first time.
+//! Evaluating a program, and solving it again, allocates nothing after the first time; threads leave no memory behind.
 #![expect(unsafe_code, reason = "a global allocator that counts")]
 
 mod common;
@@ -15,30 +15,39 @@ use proboscis::kkt::{Plan, Solver, Unknown};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
 use proboscis::nlp::Nlp;
+use proboscis::workflow::at_once;
 use std::alloc::{GlobalAlloc, Layout, System as Heap};
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicIsize, AtomicUsize, Ordering};
+use std::{iter, thread, time};
 
 /// Counts what it is asked for.
 struct Counting;
 
 static ASKED: AtomicUsize = AtomicUsize::new(0);
 
+/// Bytes that are in use.
+static KEPT: AtomicIsize = AtomicIsize::new(0);
+
 // SAFETY: every call goes to the allocator of the system with unchanged arguments.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ASKED.fetch_add(1, Ordering::Relaxed);
+        KEPT.fetch_add(layout.size().cast_signed(), Ordering::Relaxed);
         // SAFETY: as asked of this function.
         unsafe { Heap.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        KEPT.fetch_sub(layout.size().cast_signed(), Ordering::Relaxed);
         // SAFETY: as asked of this function; the memory came from `Heap`.
         unsafe { Heap.dealloc(memory, layout) }
     }
 
     unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         ASKED.fetch_add(1, Ordering::Relaxed);
+        let more = size.cast_signed() - layout.size().cast_signed();
+        KEPT.fetch_add(more, Ordering::Relaxed);
         // SAFETY: as asked of this function; the memory came from `Heap`.
         unsafe { Heap.realloc(memory, layout, size) }
     }
@@ -232,6 +241,26 @@ fn allocations_of_solves() -> usize {
     fewest
 }
 
+/// Bytes that a thread leaves behind which evaluates a horizon long enough for both cores, after those before it have left theirs.
+fn bytes_left_by_a_thread() -> isize {
+    let rounds = iter::repeat_with(|| {
+        let before = KEPT.load(Ordering::Relaxed);
+        let work = || allocations(&trunk(3), &rest_to_rest(3, 160, 1500.0));
+        at_once::begin(work).unwrap().join().expect("no panic");
+        // Threads of a pool end some time after it.
+        let mut left = isize::MAX;
+        for _ in 0..200 {
+            left = KEPT.load(Ordering::Relaxed) - before;
+            if left <= 0 {
+                break;
+            }
+            thread::sleep(time::Duration::from_millis(5));
+        }
+        left
+    });
+    rounds.skip(2).take(3).max().expect("three rounds")
+}
+
 /// The only test of its binary: the count belongs to the process.
 #[test]
 fn evaluations_allocate_nothing() {
@@ -244,6 +273,8 @@ fn evaluations_allocate_nothing() {
         ASKED.load(Ordering::Relaxed) > before,
         "the allocator counts"
     );
+    assert!(KEPT.load(Ordering::Relaxed) > 0, "and has something in use");
+    assert_eq!(bytes_left_by_a_thread(), 0, "bytes left by a thread");
     let free = Duration::Free {
         min: 10.0,
         max: 1e3,

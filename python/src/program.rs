@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::mpsc::{self, Sender};
-use std::thread;
 
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use proboscis::Nlp;
 use proboscis::app::with_program;
 use proboscis::nlp::{Bounds, Entries};
+use proboscis::workflow::at_once;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
@@ -102,7 +102,7 @@ impl Program {
                 failed.send(Err(mistake)).ok();
             }
         };
-        thread::Builder::new().stack_size(8 << 20).spawn(work)?;
+        at_once::begin(work)?;
         let waiting = &mut told;
         let sizes = py.detach(move || waiting.recv());
         let sizes = sizes

@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 use std::sync::mpsc::{self, RecvTimeoutError};
-use std::thread;
 use std::time::Duration;
 
 use proboscis::app::{
@@ -11,13 +10,12 @@ use proboscis::app::{
 use proboscis::ipopt::interrupt::{self, StopRequest};
 use proboscis::report::Figures;
 use proboscis::workflow::accuracy::AccuracyTarget;
+use proboscis::workflow::at_once;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 use crate::error;
 
-/// Bytes of the stack of a run: those that a main thread has.
-const STACK: usize = 8 << 20;
 /// How often Python is asked for signals.
 const PERIOD: Duration = Duration::from_millis(50);
 
@@ -102,7 +100,7 @@ pub(crate) fn run(
             }
         })
     };
-    let thread = thread::Builder::new().stack_size(STACK).spawn(work)?;
+    let thread = at_once::begin(work)?;
     let mut failure = None;
     loop {
         let waiting = &mut told;

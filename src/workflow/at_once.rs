@@ -1,10 +1,11 @@
 //! Pieces of work at once, each on its share of the cores.
 
 use std::any::Any;
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
-use std::thread;
+use std::thread::{self, JoinHandle};
 
 use rayon::ThreadPoolBuilder;
 
@@ -47,14 +48,7 @@ pub fn at_once<T: Sync, A: Send>(
             let work = move || {
                 let all =
                     || std::iter::from_fn(take).for_each(|one| sender.send(one).unwrap_or(()));
-                let pool = ThreadPoolBuilder::new()
-                    .num_threads(share)
-                    .stack_size(STACK);
-                // A pool of which this thread were a part would never be freed.
-                match pool.build() {
-                    Ok(pool) => pool.install(all),
-                    Err(_) => all(),
-                }
+                on_cores(share, all);
             };
             let thread = thread::Builder::new().stack_size(STACK);
             if thread.spawn_scoped(scope, work).is_err() {
@@ -68,6 +62,29 @@ pub fn at_once<T: Sync, A: Send>(
     std::iter::from_fn(take).for_each(keep);
     let answers = answers.into_iter();
     answers.map(|one| one.expect("all are taken")).collect()
+}
+
+/// Begins work in a thread of its own that has all cores for what is parallel within it, and leaves no memory behind.
+///
+/// # Errors
+///
+/// That of the system, where it has no more threads.
+pub fn begin<A: Send + 'static>(
+    work: impl FnOnce() -> A + Send + 'static,
+) -> io::Result<JoinHandle<A>> {
+    let thread = thread::Builder::new().stack_size(STACK);
+    thread.spawn(|| on_cores(cores(), work))
+}
+
+/// Does work in a pool of so many threads, which ends with it: one of which this thread were a part would never be freed.
+fn on_cores<A: Send>(count: usize, work: impl FnOnce() -> A + Send) -> A {
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(count)
+        .stack_size(STACK);
+    match pool.build() {
+        Ok(pool) => pool.install(work),
+        Err(_) => work(),
+    }
 }
 
 fn message(panic: &(dyn Any + Send)) -> String {
