@@ -29,7 +29,7 @@ struct Stages {
     backward_error: f64,
     analysis_seconds: f64,
     factorisation_seconds: f64,
-    /// Of these in systems that could not be condensed where others could.
+    /// Of these in systems that were not condensed where others were.
     whole_seconds: f64,
     solution_seconds: f64,
 }

@@ -37,14 +37,19 @@ pub struct StagesReport {
 const FELT: f64 = 10.0;
 
 impl LinearReport {
-    /// Why factorisations took long, where most of their time went into systems that could not be condensed.
+    /// Why factorisations took long, where most of their time went into systems that were not condensed although others were.
     #[must_use]
     pub fn note(&self) -> Option<String> {
         let report = self.stages?;
+        let statistics = report.statistics;
         (report.whole > FELT && 2.0 * report.whole > report.factorisation).then(|| {
+            let why = match statistics.repeated < report.wholes {
+                true => "could not be condensed, as in the restoration phase of Ipopt, which seeks a point that violates the equations less",
+                false => "needed factors that are more exact than condensed ones",
+            };
             format!(
-                "{:.0} of {:.0} s in factorisations went into {} of {} linear systems that could not be condensed, as in the restoration phase of Ipopt, which seeks a point that violates the equations less",
-                report.whole, report.factorisation, report.wholes, report.statistics.factorisations
+                "{:.0} of {:.0} s in factorisations went into {} of {} linear systems that {why}",
+                report.whole, report.factorisation, report.wholes, statistics.factorisations
             )
         })
     }

@@ -18,7 +18,7 @@
 //! | `numeric`, `solve`, `scales` | factors, solutions, equilibration |
 //! | `groups`, `arrange`, `block`, `condense`, `condensed`, `reduce`, `products`, `substitute` | unknowns that equations determine, eliminated before all others |
 //! | `envelope`, `block_lu`, `block_solve` | the equations of one group |
-//! | `solver` | when to scale, how strictly to pivot, whether the factors are good |
+//! | `solver`, `care` | when to scale, how strictly to pivot, whether the factors are good |
 //! | `trial` | how exact factors are, by a system solved with them |
 //! | `progress`, `halves` | whether a long factorisation is to go on, and that on two cores |
 //!
@@ -28,6 +28,7 @@ mod arrange;
 mod block;
 mod block_lu;
 mod block_solve;
+mod care;
 mod condense;
 mod condensed;
 mod dense;

@@ -9,10 +9,10 @@
 //! * Long work asks now and then whether it is to stop; there are no factors then.
 //! * Zero pivots are counted in an equilibrated matrix under the strictest rule.
 
+use super::care::Care;
 use super::condensed::Condensed;
 use super::inertia::Inertia;
 use super::numeric::{Factors, Outcome};
-use super::pivot::Rules;
 use super::plan::Plan;
 use super::progress::Progress;
 use super::scales::Scales;
@@ -20,10 +20,6 @@ use super::solve::solve;
 use super::trial::Trial;
 use crate::math::{IsOver, Stopped};
 
-/// Threshold of pivots for each [`Care`].
-const THRESHOLDS: [f64; 5] = [0.1, 1e-8, 1e-4, 1e-2, 0.1];
-/// Largest entry of a column that counts as zero: of a matrix as it is, and of an equilibrated one.
-const ZEROS: [f64; 2] = [1e-20, 1e-14];
 /// Delays, as a part of the unknowns, that call for scales.
 const MANY: usize = 20;
 /// Factorisations for which scales are kept.
@@ -54,28 +50,8 @@ pub struct Statistics {
     pub backward_error: f64,
 }
 
-/// A matrix condensed, as it is, or equilibrated and under stricter and stricter rules for pivots.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-enum Care {
-    Condensed,
-    #[default]
-    Plain,
-    Scaled,
-    Careful,
-    Strict,
-}
-
-impl Care {
-    const fn stricter(self) -> Self {
-        match self {
-            Self::Condensed | Self::Plain => Self::Scaled,
-            Self::Scaled => Self::Careful,
-            Self::Careful | Self::Strict => Self::Strict,
-        }
-    }
-}
-
 /// Why a factorisation is repeated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Doubt {
     /// What is not condensed: equations with a diagonal, dependent ones, growth along the horizon.
     Structure,
@@ -96,7 +72,7 @@ pub struct Solver {
     care: Care,
     /// With which a factorisation begins.
     least: Care,
-    /// With which it begins for a while.
+    /// With which one that is not condensed begins for a while.
     lately: Care,
     /// Factorisations that this while lasts.
     kept: usize,
@@ -202,27 +178,41 @@ impl Solver {
             });
         }
         let progress = &mut Progress::new(is_over);
-        self.care = match self.kept {
-            0 => self.least,
-            _ => self.least.max(self.lately),
+        // Condensed factors cost so much less than others that they are tried whatever the matrices before needed.
+        self.care = match self.least {
+            Care::Condensed => Care::Condensed,
+            least => least.max(self.lately()),
         };
+        let mut why = None;
         let outcome = loop {
-            self.tell_whole();
-            match self.attempt(progress)? {
+            self.tell_whole(why);
+            let doubt = match self.attempt(progress)? {
                 Ok(outcome) => break outcome,
+                Err(doubt) => doubt,
+            };
+            let was = self.care;
+            self.care = match doubt {
                 // Growth hides zeros, so that no weak rule counts them all.
-                Err(Doubt::Zeros) => self.care = Care::Strict,
-                Err(Doubt::Structure) => self.care = self.care.stricter(),
-                Err(Doubt::Growth) => {
-                    self.care = self.care.stricter();
-                    (self.lately, self.kept) = (self.care, KEPT + 1);
-                }
+                Doubt::Zeros => Care::Strict,
+                Doubt::Structure | Doubt::Growth => was.stricter().max(self.lately()),
+            };
+            if doubt == Doubt::Growth && was != Care::Condensed {
+                (self.lately, self.kept) = (self.care, KEPT + 1);
             }
+            why = Some(doubt);
         };
         self.kept = self.kept.saturating_sub(1);
         self.is_factored = true;
         self.statistics.delays += outcome.delays;
         Ok(outcome.inertia)
+    }
+
+    /// With which care one that is not condensed begins at least, by the matrices before.
+    const fn lately(&self) -> Care {
+        match self.kept {
+            0 => Care::Condensed,
+            _ => self.lately,
+        }
     }
 
     /// A factorisation with the care at hand, unless a stricter one may be better.
@@ -266,7 +256,7 @@ impl Solver {
     /// The matrix as it is, if there are few delays.
     fn plain(&mut self, progress: &mut Progress<'_>) -> Result<Option<Outcome>, Stopped> {
         let few = self.plan.order() / MANY;
-        let rules = rules(self.care);
+        let rules = self.care.rules();
         self.factors
             .factor(&self.plan.fronts, &self.entries, rules, few, progress)
     }
@@ -296,7 +286,7 @@ impl Solver {
     ) -> Result<Option<Outcome>, Stopped> {
         self.scales
             .scale(self.plan.pattern(), &self.entries, &mut self.scaled);
-        let rules = rules(self.care);
+        let rules = self.care.rules();
         let (factors, fronts) = (&mut self.factors, &self.plan.fronts);
         factors.factor(fronts, &self.scaled, rules, most_delays, progress)
     }
@@ -307,17 +297,26 @@ impl Solver {
         self.condensed.is_some() && self.care != Care::Condensed
     }
 
-    /// Tells, once between two restarts, that the factorisation to come takes long, and why.
-    fn tell_whole(&mut self) {
+    /// Tells, once between two restarts, that the factorisation to come takes long, and why it is made.
+    fn tell_whole(&mut self, why: Option<Doubt>) {
         if self.is_told || !self.is_whole() {
             return;
         }
         self.is_told = true;
         let multiplications = self.plan.multiplications();
         if multiplications > LONG {
+            let why = match why {
+                Some(Doubt::Structure) => {
+                    "cannot be condensed, as in the restoration phase of Ipopt"
+                }
+                Some(Doubt::Zeros) => "seems to be singular",
+                Some(Doubt::Growth) | None => {
+                    "needs factors that are more exact than condensed ones"
+                }
+            };
             tracing::warn!(
-                "a linear system cannot be condensed, as in the restoration phase of Ipopt: it is factorised as a whole, which takes \
-                 {multiplications:.0e} multiplications, and longer than most"
+                "a linear system {why}: it is factorised as a whole, which takes {multiplications:.0e} multiplications, and longer \
+                 than most"
             );
         }
     }
@@ -368,12 +367,5 @@ fn begin(plan: &Plan) -> Care {
         _ if plan.condensation.is_some() => Care::Condensed,
         true => Care::Scaled,
         false => Care::Plain,
-    }
-}
-
-fn rules(care: Care) -> Rules {
-    Rules {
-        threshold: THRESHOLDS[care as usize],
-        zero: ZEROS[usize::from(care != Care::Plain)],
     }
 }

@@ -285,6 +285,21 @@ fn many_states_and_few_inputs_are_condensed() {
     }
 }
 
+/// Multiplies what equations hold of earlier stages.
+fn grow(system: &mut System, shape: Horizon, factor: f64) {
+    let width = (shape.states + shape.inputs) as u32;
+    for e in 0..system.entries.len() {
+        let (row, col) = (system.rows[e], system.cols[e]);
+        let first = shape.intervals as u32 * width;
+        if row >= first && col < first {
+            let stage = (row - first) / shape.states as u32;
+            if col / width < stage {
+                system.entries[e] *= factor;
+            }
+        }
+    }
+}
+
 /// An unstable motion multiplies an input by about 100 from stage to stage: in the ninth no digit is right.
 #[test]
 fn growth_along_the_horizon_is_noticed() {
@@ -294,17 +309,7 @@ fn growth_along_the_horizon_is_noticed() {
         ..CONDENSED
     };
     let mut system = System::of_horizon(shape, 1.0, &mut random);
-    let width = (shape.states + shape.inputs) as u32;
-    for e in 0..system.entries.len() {
-        let (row, col) = (system.rows[e], system.cols[e]);
-        let first = shape.intervals as u32 * width;
-        if row >= first && col < first {
-            let stage = (row - first) / shape.states as u32;
-            if col / width < stage {
-                system.entries[e] *= 400.0;
-            }
-        }
-    }
+    grow(&mut system, shape, 400.0);
     let mut solver = solver(&system, Some(&system.unknowns));
     let inertia = solver.factor(&system.entries);
     // As many negative eigenvalues as equations, but for those of a curvature that is negative in the inputs that are left.
@@ -314,6 +319,47 @@ fn growth_along_the_horizon_is_noticed() {
     assert_eq!(solver.statistics().condensed, 0);
     let error = error(&system, &mut solver);
     assert!(error < 1e-9, "{error:e}");
+}
+
+/// Growth that a great direct response hides shows in what is solved. The matrix is factorised as a whole, and says nothing of the next one.
+#[test]
+fn a_matrix_behind_one_that_is_not_condensed_exactly_is_condensed() {
+    let mut random = Random(12);
+    let shape = Horizon {
+        intervals: 9,
+        ..CONDENSED
+    };
+    let mut system = System::of_horizon(shape, 1.0, &mut random);
+    let harmless = system.entries.clone();
+    let first = (shape.intervals * (shape.states + shape.inputs)) as u32;
+    let mut places = system.rows.iter().zip(&system.cols);
+    let is_of_input =
+        |(&row, &col): (&u32, &u32)| row >= first && col < first && is_input(shape, col);
+    let last = places.rposition(is_of_input).expect("inputs in equations");
+    grow(&mut system, shape, 60.0);
+    system.entries[last] *= 1e14;
+    let mut solver = solver(&system, Some(&system.unknowns));
+    for known in 1..4 {
+        solver.factor(&system.entries);
+        let statistics = solver.statistics();
+        assert_eq!(
+            (statistics.condensed, statistics.repeated),
+            (2 * known - 1, known)
+        );
+        assert!(solver.is_whole());
+        let error = error(&system, &mut solver);
+        assert!(error < 1e-9, "{error:e}");
+        let mut other = system.clone();
+        other.entries.clone_from(&harmless);
+        assert_eq!(solver.factor(&other.entries), other.inertia());
+        assert!(!solver.is_whole());
+        let error = self::error(&other, &mut solver);
+        assert!(error < 1e-12, "{error:e}");
+    }
+}
+
+fn is_input(shape: Horizon, variable: u32) -> bool {
+    (variable as usize) % (shape.states + shape.inputs) < shape.inputs
 }
 
 #[test]
