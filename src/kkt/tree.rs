@@ -117,8 +117,9 @@ struct Build<'a> {
     next_column: Vec<u32>,
     /// Next child of the same part.
     next_child: Vec<u32>,
-    /// Column that saw a row last.
+    /// Column that saw a row last, and the last one that gathered rows.
     seen: Vec<u32>,
+    mark: u32,
     /// Children of each column that is still to come, linked by `next_child`.
     waiting: Vec<u32>,
 }
@@ -136,18 +137,20 @@ impl<'a> Build<'a> {
             next_column: vec![NONE; n],
             next_child: vec![NONE; n],
             seen: vec![NONE; n],
+            mark: NONE,
             waiting: vec![NONE; n],
         }
     }
 
     /// Makes the part of a column, one a column, and joins children to it.
     fn add(&mut self, column: usize, parents: &[u32]) {
-        let begin = self.gather(column);
+        let rows = self.inherited(column);
+        let rows = rows.unwrap_or_else(|| self.gather(column));
         let unknown = self.order[column] as usize;
         let mut part = Part {
             columns: (column as u32, column as u32),
             count: 1,
-            rows: (begin, self.rows.len()),
+            rows,
             child: NONE,
             zeros: 0,
             is_alive: true,
@@ -169,10 +172,27 @@ impl<'a> Build<'a> {
         }
     }
 
-    /// Appends the rows below a column to all rows, and returns where they begin.
-    fn gather(&mut self, column: usize) -> usize {
+    /// The rows of its child where a column reaches no others and has no other child: those of a dense front are listed once.
+    fn inherited(&self, column: usize) -> Option<(usize, usize)> {
+        let child = self.waiting[column];
+        let is_only = child != NONE && self.next_child[child as usize] == NONE;
+        // No column in between has gathered rows.
+        if !is_only || child as usize + 1 != column {
+            return None;
+        }
+        let others = self.graph.neighbours(self.order[column] as usize).iter();
+        let mut rows = others.map(|&i| self.place[i as usize] as usize);
+        let (first, last) = self.parts[child as usize].rows;
+        // The first row of a child is its parent.
+        rows.all(|row| row < column || self.seen[row] == self.mark)
+            .then_some((first + 1, last))
+    }
+
+    /// Appends the rows below a column to all rows.
+    fn gather(&mut self, column: usize) -> (usize, usize) {
         let begin = self.rows.len();
         let mark = column as u32;
+        self.mark = mark;
         for &i in self.graph.neighbours(self.order[column] as usize) {
             let row = self.place[i as usize];
             if row > mark && self.seen[row as usize] != mark {
@@ -193,7 +213,7 @@ impl<'a> Build<'a> {
             child = self.next_child[child as usize];
         }
         self.rows[begin..].sort_unstable();
-        begin
+        (begin, self.rows.len())
     }
 
     /// Stored zeros of a node made of two, if they are few enough.
