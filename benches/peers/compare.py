@@ -178,9 +178,10 @@ def main():
     parser.add_argument("problem", type=Path)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--proboscis", type=Path, required=True)
-    parser.add_argument("--intervals", type=int, nargs="+", default=[20, 40, 80, 160])
+    parser.add_argument("--intervals", type=int, nargs="+", default=[20, 40, 80, 160, 320, 640])
     parser.add_argument("--repeats", type=int, default=10)
     parser.add_argument("--interpreted-repeats", type=int, default=1)
+    parser.add_argument("--interpreted-most", type=int, default=160, help="intervals up to which interpreted functions are run: they take minutes to set up")
     parser.add_argument("--library", type=Path, help="folder for the compiled functions, of an earlier run or for the next one")
     arguments = parser.parse_args()
     binary, problem = arguments.proboscis.resolve(), arguments.problem.resolve()
@@ -209,7 +210,7 @@ def main():
                 repeats[name] = arguments.repeats
             for variant, name in INTERPRETED.items():
                 programs[name] = lambda variant=variant: casadi(clock, scene, *given, variant)
-                repeats[name] = arguments.interpreted_repeats
+                repeats[name] = arguments.interpreted_repeats if intervals <= arguments.interpreted_most else 0
             rows += [row | {"intervals": intervals} for row in measure(programs, repeats)]
             print(f"N = {intervals} done", file=sys.stderr)
     load.append(os.getloadavg()[0])

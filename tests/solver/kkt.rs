@@ -329,33 +329,28 @@ fn a_matrix_behind_one_that_is_not_condensed_exactly_is_condensed() {
         intervals: 9,
         ..CONDENSED
     };
-    let mut system = System::of_horizon(shape, 1.0, &mut random);
-    let harmless = system.entries.clone();
     let first = (shape.intervals * (shape.states + shape.inputs)) as u32;
-    let mut places = system.rows.iter().zip(&system.cols);
-    let is_of_input =
-        |(&row, &col): (&u32, &u32)| row >= first && col < first && is_input(shape, col);
-    let last = places.rposition(is_of_input).expect("inputs in equations");
-    grow(&mut system, shape, 60.0);
-    system.entries[last] *= 1e14;
-    let mut solver = solver(&system, Some(&system.unknowns));
-    for known in 1..4 {
+    let mut inexact = 0;
+    for _ in 0..10 {
+        let harmless = System::of_horizon(shape, 1.0, &mut random);
+        let mut system = harmless.clone();
+        grow(&mut system, shape, 50.0);
+        let mut places = system.rows.iter().zip(&system.cols);
+        let is_of_input = |(&i, &j): (&u32, &u32)| i >= first && j < first && is_input(shape, j);
+        let last = places.rposition(is_of_input).expect("inputs in equations");
+        system.entries[last] *= 1e14;
+        let mut solver = solver(&system, Some(&system.unknowns));
         solver.factor(&system.entries);
-        let statistics = solver.statistics();
-        assert_eq!(
-            (statistics.condensed, statistics.repeated),
-            (2 * known - 1, known)
-        );
-        assert!(solver.is_whole());
+        assert_eq!(solver.is_whole(), solver.statistics().repeated > 0);
+        inexact += usize::from(solver.is_whole());
         let error = error(&system, &mut solver);
         assert!(error < 1e-9, "{error:e}");
-        let mut other = system.clone();
-        other.entries.clone_from(&harmless);
-        assert_eq!(solver.factor(&other.entries), other.inertia());
+        assert_eq!(solver.factor(&harmless.entries), harmless.inertia());
         assert!(!solver.is_whole());
-        let error = self::error(&other, &mut solver);
+        let error = self::error(&harmless, &mut solver);
         assert!(error < 1e-12, "{error:e}");
     }
+    assert!(inexact > 4, "{inexact}");
 }
 
 fn is_input(shape: Horizon, variable: u32) -> bool {
