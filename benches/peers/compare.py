@@ -48,6 +48,7 @@ def proboscis(program, clock, problem, intervals, linear_solver):
         sys.exit(f"N = {intervals}: asked for {linear_solver}, solved with {summary['linear_solver']['name']}")
     seconds, calls = summary["seconds"], summary["evaluations"]
     return {
+        "solved": True,
         "objective": summary["objective"],
         "iterations": summary["iterations"],
         "setup": seconds["setup"],
@@ -80,7 +81,7 @@ def measure(programs, repeats):
     runs = {name: [] for name in programs}
     for i in range(max(repeats.values())):
         for name, program in programs.items():
-            if i < repeats[name]:
+            if i < repeats[name] and all(run["solved"] for run in runs[name]):
                 runs[name].append(program())
     own = runs[SOLVERS["stages"]][0]["objective"]
     rows = []
@@ -88,7 +89,7 @@ def measure(programs, repeats):
         if list_of_runs:
             row = least(list_of_runs) | {"program": name}
             row["apart"] = abs(row["objective"] - own) / own
-            if row["apart"] > 1e-8:
+            if row["solved"] and row["apart"] > 1e-8:
                 sys.exit(f"{name}: objectives {own} and {row['objective']} differ")
             rows.append(row)
     return rows
@@ -106,11 +107,14 @@ def conclusion(rows, compilation):
     parts = []
     for name in dict.fromkeys(row["program"] for row in rows):
         others = [row for row in rows if row["program"] == name != SOLVERS["stages"]]
+        unsolved = [f"N = {row['intervals']} in {row['iterations']} iterations" for row in others if not row["solved"]]
+        others = [row for row in others if row["solved"]]
         if others:
             ratio = lambda key: span([row[key] / own[row["intervals"]][key] for row in others], ".2g")
             parts.append(f"- {name}: {ratio('solve')} times the solve, {ratio('solver')} times the time inside the solver, "
-                         f"{span([row['setup'] for row in others], '.2g')} s to set up, {span([row['iterations'] for row in others], 'd')} iterations.")
-    return [f"**Conclusion.** Objectives agree to {max(row['apart'] for row in rows):.0e}. Against {SOLVERS['stages']}, which sets up in "
+                         f"{span([row['setup'] for row in others], '.2g')} s to set up, {span([row['iterations'] for row in others], 'd')} iterations."
+                         + (f" Not solved: {', '.join(unsolved)}." if unsolved else ""))
+    return [f"**Conclusion.** Objectives agree to {max(row['apart'] for row in rows if row['solved']):.0e}. Against {SOLVERS['stages']}, which sets up in "
             f"{span([row['setup'] for row in own.values()], '.1g')} s and takes {span([row['iterations'] for row in own.values()], 'd')} iterations:",
             "", *parts, "",
             f"Each compiled one needs the C compiler once besides, for all numbers of intervals, here for {span(compilation, '.0f')} s."]
@@ -126,6 +130,9 @@ def short_table(rows):
         cells = []
         for name in names:
             row = of[name]
+            if not row["solved"]:
+                cells.append(f"not solved in {row['iterations']} iterations")
+                continue
             ratios = f" ({row['solve'] / own['solve']:.2f} / {row['solver'] / own['solver']:.2f})" if row is not own else ""
             cells.append(f"{1e3 * row['solve']:.0f} / {1e3 * row['solver']:.0f}{ratios}, {row['iterations']}")
         lines.append(f"| {intervals} | " + " | ".join(cells) + " |")
@@ -140,7 +147,7 @@ def long_table(rows):
     ]
     for row in rows:
         cells = [str(row["intervals"]), row["program"], str(row["repeats"]), f"{row['setup']:.3f}", f"{1e3 * row['solve']:.1f}",
-                 f"{1e3 * row['solver']:.1f}", str(row["iterations"]), f"{row['objective']:.12f}", f"{row['apart']:.0e}"]
+                 f"{1e3 * row['solver']:.1f}", str(row["iterations"]) + ("" if row["solved"] else ", not solved"), f"{row['objective']:.12f}", f"{row['apart']:.0e}"]
         cells += [f"{row['microseconds'][name]:.1f}" for name in CALLBACKS]
         lines.append("| " + " | ".join(cells) + " |")
     return lines
