@@ -4,22 +4,22 @@ use crate::coordinates::map::{CoordinateMap, Dependence};
 use crate::coordinates::pattern::StepPattern;
 use crate::coordinates::pull_back::destination::{Destination, Site};
 use crate::functional::Part;
-use crate::math::Vector;
+use crate::math::{Vector, counted};
 
-/// One entry of a vector against a scalar.
+/// One entry of a vector against a scalar; compact, since a mesh with potentials has millions.
 #[derive(Clone, Copy, Debug)]
 enum Entry {
     Articulated {
-        slot: usize,
-        column: usize,
-        stride: usize,
-        place: usize,
+        slot: u32,
+        column: u32,
+        stride: u32,
+        place: u32,
     },
     Linear {
-        slot: usize,
+        slot: u32,
         factor: f64,
-        component: usize,
-        place: usize,
+        component: u8,
+        place: u32,
     },
 }
 
@@ -44,12 +44,11 @@ impl Mixed {
             Dependence::Articulated(packed) => {
                 for (i, &row) in packed.support.iter().enumerate() {
                     for place in site.mixed(layout, motion, row, s) {
-                        let (column, stride) = (packed.first + i, packed.stride);
                         self.list.push(Entry::Articulated {
-                            slot,
-                            column,
-                            stride,
-                            place,
+                            slot: counted(slot),
+                            column: counted(packed.first + i),
+                            stride: counted(packed.stride),
+                            place: counted(place),
                         });
                     }
                 }
@@ -58,15 +57,20 @@ impl Mixed {
                 for part in parts {
                     for place in site.mixed(layout, motion, part.coordinate, s) {
                         self.list.push(Entry::Linear {
-                            slot,
+                            slot: counted(slot),
                             factor: part.factor,
-                            component: part.axis,
-                            place,
+                            component: part.axis as u8,
+                            place: counted(place),
                         });
                     }
                 }
             }
         }
+    }
+
+    /// Gives back memory that further couplings would have taken.
+    pub(super) fn shrink_to_fit(&mut self) {
+        self.list.shrink_to_fit();
     }
 
     /// Adds Pᵀ m of both instants.
@@ -87,14 +91,14 @@ impl Mixed {
                 columns[side],
                 column,
                 stride,
-                &part.blocks.mixed[slot][side],
+                &part.blocks.mixed[slot as usize][side],
             ),
             Entry::Linear {
                 slot,
                 factor,
                 component,
                 ..
-            } => factor * part.blocks.mixed[slot][side][component],
+            } => factor * part.blocks.mixed[slot as usize][side][component as usize],
         });
     }
 
@@ -118,12 +122,12 @@ impl Mixed {
                     columns[side],
                     column,
                     stride,
-                    &contracted.blocks.mixed[slot][side],
+                    &contracted.blocks.mixed[slot as usize][side],
                 ) + dot(
                     columns_l[side],
                     column,
                     stride,
-                    &plain.blocks.mixed[slot][side],
+                    &plain.blocks.mixed[slot as usize][side],
                 )
             }
             Entry::Linear {
@@ -131,7 +135,7 @@ impl Mixed {
                 factor,
                 component,
                 ..
-            } => factor * contracted.blocks.mixed[slot][side][component],
+            } => factor * contracted.blocks.mixed[slot as usize][side][component as usize],
         });
     }
 
@@ -139,7 +143,7 @@ impl Mixed {
         for side in (0..2).filter(|&side| target.mixed[side] != usize::MAX) {
             for entry in &self.list {
                 let (Entry::Articulated { place, .. } | Entry::Linear { place, .. }) = *entry;
-                values[target.mixed[side] + place] += value(entry, side);
+                values[target.mixed[side] + place as usize] += value(entry, side);
             }
         }
     }
@@ -147,6 +151,7 @@ impl Mixed {
 
 /// One column of a vector times a vector.
 #[inline]
-fn dot(columns: &[f64], column: usize, stride: usize, v: &Vector) -> f64 {
+fn dot(columns: &[f64], column: u32, stride: u32, v: &Vector) -> f64 {
+    let (column, stride) = (column as usize, stride as usize);
     columns[column] * v.x + columns[column + stride] * v.y + columns[column + 2 * stride] * v.z
 }

@@ -56,6 +56,7 @@ impl PullBack {
             plan.mixed.add(slot, a, s, motion, layout, site);
         }
         plan.linear.shrink_to_fit();
+        plan.mixed.shrink_to_fit();
         if site == Site::Intervals {
             let place =
                 |(slot, &(s, t)): (usize, &(usize, usize))| (slot, layout.scalars.slot(s, t));
