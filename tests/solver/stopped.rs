@@ -202,7 +202,7 @@ fn a_limit_within_a_factorisation_leaves_the_last_iterate() {
     let of_asked = heard.take();
     assert!(of_asked == of_whole[..=LAST]);
 
-    // Where another program takes the core in the wrong moment the time is over before the factorisation, or after it.
+    // Where another program takes the core in the wrong moment the time is over before this factorisation, perhaps in an earlier one, or after it.
     let limit = took + of_one;
     let stopped = (0..10).find_map(|_| {
         heard.take();
@@ -214,9 +214,10 @@ fn a_limit_within_a_factorisation_leaves_the_last_iterate() {
         });
         let result = solver.solve(&point, &mut observer(&heard, usize::MAX));
         let result = result.unwrap().clone();
-        result.linear.stages.unwrap().stopped.map(|_| result)
+        let is_within = result.linear.stages.unwrap().stopped.is_some();
+        (is_within && heard.borrow().len() == of_asked.len()).then_some(result)
     });
-    let stopped = stopped.expect("a time that is over within a factorisation");
+    let stopped = stopped.expect("a time that is over within the factorisation");
     assert_eq!(stopped.status, Status::TimeLimit);
     assert!(heard.take() == of_asked);
     assert_eq!(stopped.x, asked.x);
