@@ -258,7 +258,8 @@ fn bytes_left_by_a_thread() -> isize {
         }
         left
     });
-    rounds.skip(2).take(3).max().expect("three rounds")
+    // What a pool has not yet freed is freed in a later round: what every round leaves is lost.
+    rounds.skip(2).take(5).min().expect("five rounds")
 }
 
 /// The only test of its binary: the count belongs to the process.
