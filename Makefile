@@ -11,8 +11,9 @@ BLOCKS := bending_actuator clamped_stack pull_in fe_bending_control
 MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight
 
 FUZZ_SECONDS := 600
+ADVERSARY_SECONDS := 600
 
-.PHONY: help trunk blocks gallery build test test-python test-browser wheel docs fuzz check bench studies install-deps try-fresh clean
+.PHONY: help trunk blocks gallery build test test-python test-browser wheel docs fuzz adversary check bench studies install-deps try-fresh clean
 
 help:
 	@echo 'make trunk         solve the elephant trunk, let it swing under constant voltages, and say where the pictures are'
@@ -24,6 +25,7 @@ help:
 	@echo 'make wheel         build the wheel that needs no package of the system, in target/wheels'
 	@echo 'make docs          pages of the Python package, in target/python/docs'
 	@echo 'make fuzz          look for files that the reader does not survive, for FUZZ_SECONDS=$(FUZZ_SECONDS)'
+	@echo 'make adversary     random robots in many forms, with fresh seeds, for ADVERSARY_SECONDS=$(ADVERSARY_SECONDS)'
 	@echo 'make check         formatting, lints, documentation'
 	@echo 'make bench         measure; rewrite the tables of benches/README.md'
 	@echo 'make studies       what accuracy costs, hard cases, effects, random goals, warm starts, a peer: rewrite their pages in $(GALLERY)'
@@ -69,6 +71,9 @@ docs: install-deps
 fuzz: install-deps
 	@FUZZ_SECONDS=$(FUZZ_SECONDS) $(CARGO) test --release --locked --test files -- \
 	  --test-threads 16 --nocapture are_read_or_refused are_refused are_taken_or_refused
+
+adversary: install-deps
+	@PROBOSCIS_SEED=$$(date +%s) PROBOSCIS_SECONDS=$(ADVERSARY_SECONDS) $(CARGO) test --release --locked --test adversary -- --nocapture
 
 check: install-deps
 	@$(CARGO) fmt --check

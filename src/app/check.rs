@@ -156,6 +156,7 @@ fn as_control(task: Task, system: &System) -> Control {
     let without_goal = |start, step, voltages, coordinates: Option<Coordinates>| Control {
         duration: Duration::Given(step * INTERVALS as f64),
         intervals: INTERVALS,
+        is_refined: false,
         start,
         goal: at_reference(),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],

@@ -173,7 +173,13 @@ fn of_control(
     let (variables, constraints) = (program.variables().lower.len(), rows.lower.len());
     let equalities = equalities.count();
     let sizes = [
-        ("intervals", control.intervals),
+        (
+            match control.is_refined {
+                true => "intervals of the first grid",
+                false => "intervals",
+            },
+            control.intervals,
+        ),
         ("variables", variables),
         ("constraints", constraints),
         ("of them inequalities", constraints - equalities),

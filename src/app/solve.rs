@@ -34,7 +34,7 @@ use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::report::{Run, write_run};
 use crate::workflow::Iterate;
-use crate::workflow::accuracy::{Accuracy, Refined};
+use crate::workflow::accuracy::{Accuracy, AccuracyTarget, Refined};
 use crate::workflow::cure::{Cured, reproduced};
 use crate::workflow::domain;
 use crate::workflow::effects::Plan;
@@ -46,6 +46,7 @@ use crate::workflow::optimise::{Optimum, SolveLimits};
 use crate::workflow::resimulate::{Cause, Resimulation, under_constant_voltages};
 use crate::workflow::second_start::is_infeasible;
 use crate::workflow::tracking::followed;
+use crate::workflow::verified::{ACCURACY, verified};
 use crate::workflow::violations::Violation;
 
 /// Length of the motion under constant voltages that is drawn beside the optimal one, in durations.
@@ -202,7 +203,7 @@ pub(super) fn control(
         began,
     )?;
     unfinished::done(&folder);
-    let mut told = told(&summary, violated, &folder);
+    let mut told = told(&summary, control.is_refined, violated, &folder);
     if STOPPED.contains(&word) {
         told.notes
             .extend(continuation::command(request, &loaded.task));
@@ -228,13 +229,20 @@ fn find(
     allowed: SolveLimits,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Found, CommandError> {
-    let Some(wanted) = request.wanted else {
+    let wanted = request.wanted.filter(|_| !control.is_refined);
+    let Some(wanted) = wanted else {
         let Cured {
             optimum,
             iterations,
             note,
-        } = reproduced(system, control, allowed, observer)
-            .map_err(CommandError::of(&request.input))?;
+        } = match (control.is_refined, request.wanted) {
+            (true, Some(AccuracyTarget::Below(part))) => {
+                verified(system, control, part, allowed, observer)
+            }
+            (true, _) => verified(system, control, ACCURACY, allowed, observer),
+            (false, _) => reproduced(system, control, allowed, observer),
+        }
+        .map_err(CommandError::of(&request.input))?;
         return Ok(Found {
             optimum,
             iterations,
@@ -332,7 +340,12 @@ fn write_files(
     summary.write(files)
 }
 
-fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> CommandOutput {
+fn told(
+    summary: &Summary,
+    is_refined: bool,
+    violated: &[Violation],
+    folder: &Path,
+) -> CommandOutput {
     let program = summary.program.as_ref();
     let (objective, iterations) = program.map_or((f64::NAN, 0), |p| (p.objective, p.iterations));
     let mut is_solved = summary.message.is_none();
@@ -346,13 +359,17 @@ fn told(summary: &Summary, violated: &[Violation], folder: &Path) -> CommandOutp
     notes.extend(summary.notes.iter().cloned());
     let parameters = program.iter().flat_map(|program| &program.parameters);
     notes.extend(parameters.map(|found| format!("{}: {}", found.name, found.told())));
-    let mut grid = String::new();
     if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
         notes.extend(accuracy.notes());
         (word, is_solved) = accuracy.outcome(&word);
-        let intervals = program.map_or(0, |p| p.intervals);
-        grid = format!(", {}", counted(intervals, "interval"));
     }
+    let grid = match is_refined || summary.accuracy.is_some() {
+        true => format!(
+            ", {}",
+            counted(program.map_or(0, |p| p.intervals), "interval")
+        ),
+        false => String::new(),
+    };
     CommandOutput {
         is_solved,
         result: format!(

@@ -171,6 +171,8 @@ pub struct Control {
     pub duration: Duration,
     /// Number of intervals N ≥ 1.
     pub intervals: usize,
+    /// Whether this number is that of a first grid, refined until the verification of the optimum confirms an accuracy.
+    pub is_refined: bool,
     /// Initial state.
     pub start: BoundaryState,
     /// Final state, at rest unless it is free.

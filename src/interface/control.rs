@@ -320,6 +320,7 @@ impl Control {
         Ok(problem::Control {
             duration: self.duration,
             intervals: self.intervals,
+            is_refined: false,
             start: self.start.resolve(system, sources.len())?,
             goal: self.goal.resolve(system, sources.len())?,
             voltage_bounds: self.voltage_bounds,

@@ -9,6 +9,8 @@ use crate::workflow::estimate::{Convergence, ErrorSample, Measures, greatest};
 
 /// No grid has more than so many times the intervals of the first.
 const FINEST: usize = 1 << 10;
+/// The finest grid for an estimate, in times the intervals of the first.
+const ESTIMATED: usize = 8;
 /// No grid has more variables than this.
 const VARIABLES: usize = 2_000_000;
 
@@ -17,7 +19,7 @@ const VARIABLES: usize = 2_000_000;
 pub enum AccuracyTarget {
     /// Grids are refined until every error is estimated below this.
     Below(f64),
-    /// The error on the grid of the problem is estimated by one refinement.
+    /// The error on the grid of the problem is estimated, by two refinements or more.
     Estimate,
 }
 
@@ -51,6 +53,8 @@ pub struct Accuracy {
     pub is_met: Option<bool>,
     /// Estimated errors of the solution that is kept; none where there is no second grid.
     pub estimate: Measures,
+    /// Whether differences that fall over three grids confirm the estimate.
+    pub is_confirmed: bool,
     /// Orders in the step that the last three grids show, as observed; zero or less where differences do not fall.
     pub order: Measures,
     /// Order where none is shown.
@@ -119,6 +123,9 @@ pub fn refine<R>(
     let mut convergence = Convergence::default();
     convergence.add(None, &kept.sample);
     let mut estimate = Measures::new();
+    let mut is_confirmed = false;
+    // The run on the first grid, where its error alone was asked for.
+    let mut own: Option<Attempt<R>> = None;
     let mut stopped = None;
     if !kept.is_complete {
         stopped = Some(kept.status.to_owned());
@@ -149,20 +156,32 @@ pub fn refine<R>(
             break;
         }
         convergence.add(Some(&kept.sample), &fine.sample);
+        is_confirmed = convergence.is_confirmed();
+        estimate = convergence.errors(assumed);
         let AccuracyTarget::Below(requested) = wanted else {
-            estimate = convergence.errors_before(assumed);
+            // The first grid is as far from the finest one, and that from the limit.
+            let first = own.as_ref().unwrap_or(&kept);
+            estimate = first.sample.errors_from(&fine.sample, &estimate);
             levels[0].estimate.clone_from(&estimate);
             levels.push(level);
-            break;
+            let is_last = is_confirmed || finer >= ESTIMATED;
+            own.get_or_insert(std::mem::replace(&mut kept, fine));
+            times = finer;
+            if is_last {
+                break;
+            }
+            continue;
         };
-        estimate = convergence.errors(assumed);
         level.estimate.clone_from(&estimate);
         levels.push(level);
         iterations += fine.iterations;
         (kept, times) = (fine, finer);
-        if is_below(&estimate, requested) {
+        if is_below(&estimate, requested) && is_confirmed {
             break;
         }
+    }
+    if let Some(own) = own {
+        (kept, times) = (own, 1);
     }
     let requested = match wanted {
         AccuracyTarget::Below(value) => Some(value),
@@ -174,7 +193,8 @@ pub fn refine<R>(
         iterations,
         accuracy: Accuracy {
             requested,
-            is_met: requested.map(|value| is_below(&estimate, value)),
+            is_met: requested.map(|value| is_confirmed && is_below(&estimate, value)),
+            is_confirmed,
             order: convergence.orders(),
             assumed_order: assumed,
             estimate,

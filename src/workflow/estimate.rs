@@ -115,6 +115,17 @@ impl ErrorSample {
         out
     }
 
+    /// Errors of this grid: differences from a finer grid whose own errors are known; of the response its own.
+    pub fn errors_from(&self, fine: &Self, left: &Measures) -> Measures {
+        let mut errors = self.differences(fine);
+        for (name, error) in &mut errors {
+            *error += left.get(name).copied().unwrap_or_default();
+        }
+        // Half the step leaves a quarter of an error of second order.
+        errors.extend(self.response.map(|value| (RESPONSE, 4.0 / 3.0 * value)));
+        errors
+    }
+
     /// Greatest deviation from a motion on a finer grid, along the path and at the end.
     pub fn deviation(&self, fine: &Self) -> f64 {
         let [path, end] = self.apart(fine);
@@ -162,6 +173,17 @@ impl Convergence {
         orders
     }
 
+    /// Whether all measures have two differences of which the second is smaller by at least the least order that estimates believe, or is
+    /// rounding.
+    pub fn is_confirmed(&self) -> bool {
+        let falls = |list: &Vec<Difference>| match list.as_slice() {
+            [.., last] if last.seen <= ROUNDING => true,
+            [.., before, last] => before.seen >= ORDERS[0].exp2() * last.seen,
+            _ => false,
+        };
+        self.differences.values().all(falls)
+    }
+
     /// The orders shown by differences of either kind.
     fn shown(&self, kind: impl Fn(&Difference) -> f64) -> Measures {
         let order = |list: &Vec<Difference>| {
@@ -183,14 +205,6 @@ impl Convergence {
         self.left(assumed, |name, factor| match name {
             RESPONSE => factor / (factor - 1.0),
             _ => 1.0 / (factor - 1.0),
-        })
-    }
-
-    /// Errors on the grid before the finest one.
-    pub fn errors_before(&self, assumed: f64) -> Measures {
-        self.left(assumed, |name, factor| match name {
-            RESPONSE => factor * factor / (factor - 1.0),
-            _ => factor / (factor - 1.0),
         })
     }
 

@@ -37,6 +37,7 @@ pub(crate) mod steps;
 pub(crate) mod stopwatch;
 pub(crate) mod tolerance;
 pub(crate) mod tracking;
+pub(crate) mod verified;
 pub(crate) mod violations;
 
 pub use active::{Active, active};

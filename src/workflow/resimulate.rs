@@ -29,8 +29,11 @@ const COARSE: f64 = 0.05;
 const TOO_COARSE: f64 = 0.25;
 /// Steps for an interval of the optimum that are tried.
 const FINER: [usize; 5] = [2, 4, 8, 16, 32];
-/// Estimates that differ by less than this part of the greater one agree, and those below rounding.
-const AGREE: f64 = 0.2;
+/// A distance between two refinements that is at most this part of the one before falls as the order of the method demands.
+const FALLS: f64 = 0.5;
+/// What is left of an error after the last refinement, as a part of it.
+const LEFT: f64 = 0.25;
+/// Parts of the path length below this are rounding.
 const ROUNDING: f64 = 1e-7;
 /// An estimated error beyond this part of the path length needs no better estimate.
 const LOST: f64 = 1.0;
@@ -50,7 +53,7 @@ pub struct Resimulation {
     /// where a simulation ended early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<f64>,
-    /// Whether two estimates of that error agree.
+    /// Whether distances that fall from refinement to refinement confirm that error.
     pub is_confirmed: bool,
     /// Time for which the voltages of the goal are held afterwards in s; absent where they are not known.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -165,14 +168,15 @@ pub(crate) fn resimulate(
 }
 
 impl Resimulation {
-    /// Estimates the error with finer and finer steps until two estimates agree; whether no simulation ended early.
+    /// Estimates the error with finer and finer steps until their distances fall; whether no simulation ended early.
     fn refine(&mut self, model: &Model, start: &Start, optimal: &Solution, least: f64) -> bool {
         let with = |steps: usize| Repeat::of(model, start, optimal, steps);
         // Two estimates at the least, at once.
         let (half, quarter) = rayon::join(|| with(FINER[0]), || with(FINER[1]));
         let mut ready = vec![quarter, half];
-        let mut estimates: Vec<f64> = Vec::new();
-        let mut is_confirmed = false;
+        let mut before: Option<(Repeat, f64)> = None;
+        let mut greatest = Distance::default();
+        let (mut error, mut is_confirmed) = (0.0, false);
         for steps in FINER {
             let repeat = ready.pop().unwrap_or_else(|| with(steps));
             let deviation = repeat.greatest();
@@ -186,22 +190,29 @@ impl Resimulation {
                 return false;
             }
             if steps == FINER[0] {
-                self.half = Some(repeat.history);
+                self.half = Some(repeat.history.clone());
             }
-            // Errors of second order leave this part of the deviation.
-            let square = (steps * steps) as f64;
-            let estimate = square / (square - 1.0) * deviation.over(self.path_length, model);
-            let before = estimates.last().copied();
-            estimates.push(estimate);
-            is_confirmed = before.is_some_and(|before| agree(before, estimate));
-            if is_confirmed || (before.is_some() && estimate > LOST) {
-                break;
+            greatest = greatest.max(deviation);
+            let apart = match &before {
+                Some((coarse, _)) => coarse.apart(model, &repeat),
+                None => deviation,
+            };
+            let apart = apart.over(self.path_length, model);
+            // What is left of an error of second order after this refinement.
+            let left = apart / 3.0;
+            error = deviation.over(self.path_length, model) + left;
+            if let Some((_, last)) = &before {
+                let falls = apart <= FALLS * last;
+                is_confirmed = error.max(apart) < ROUNDING || (falls && left <= LEFT * error);
+                if is_confirmed || error > LOST {
+                    break;
+                }
             }
+            before = Some((repeat, apart));
         }
-        let error = match is_confirmed {
-            true => estimates.last().copied().unwrap_or_default(),
-            false => estimates.iter().copied().fold(0.0, f64::max),
-        };
+        if !is_confirmed {
+            error = error.max(greatest.over(self.path_length, model));
+        }
         let error = error.max(least);
         self.error = Some(error);
         self.is_confirmed = is_confirmed;
@@ -210,12 +221,10 @@ impl Resimulation {
         } else {
             0.5 * TOO_COARSE
         };
-        let greatest = self.finer.iter().map(|finer| finer.deviation);
-        let distance = greatest.fold(Distance::default(), Distance::max);
         if error > allowed {
             self.cause = Some(Cause::Coarse {
                 error,
-                distance,
+                distance: greatest,
                 is_confirmed,
             });
         }
@@ -278,15 +287,10 @@ impl Resimulation {
     }
 }
 
-/// Whether two estimates of an error confirm each other.
-fn agree(one: f64, other: f64) -> bool {
-    let greater = one.max(other);
-    greater < ROUNDING || (one - other).abs() <= AGREE * greater
-}
-
 /// A simulation under optimal voltages, with so many steps for an interval.
 struct Repeat {
     history: DiscreteTrajectory,
+    motion: Solution,
     /// Distances from the optimum at its instants, as far as it goes.
     distances: Vec<Distance>,
     failure: Option<String>,
@@ -318,7 +322,16 @@ impl Repeat {
             distances: instants.map(of).collect(),
             failure: failure.map(|error| error.to_string()).or(ended),
             history,
+            motion,
         }
+    }
+
+    /// Greatest distance from the same motion in half the steps, at all its instants: between those of the optimum a vibration that the steps
+    /// do not resolve shows.
+    fn apart(&self, model: &Model, half: &Self) -> Distance {
+        let of = |k: usize| Distance::between(model, &self.motion, k, &half.motion, 2 * k);
+        let all = (0..self.motion.times.len()).map(of);
+        all.fold(Distance::default(), Distance::max)
     }
 
     fn greatest(&self) -> Distance {

@@ -5,9 +5,11 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod motions;
 mod rest;
 mod robots;
 mod twins;
+mod verdicts;
 
 use std::time::{Duration, Instant};
 

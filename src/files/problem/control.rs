@@ -14,7 +14,8 @@ use crate::files::problem::guess::guess;
 use crate::files::problem::limits::limit;
 use crate::files::problem::signal::signal;
 use crate::files::problem::spec_control::{
-    ControlSolverSpec, ControlSpec, DurationSpec, ObjectiveSpec, OptionSpec, SolverSpec,
+    ControlSolverSpec, ControlSpec, DurationSpec, IntervalsSpec, IntervalsWord, ObjectiveSpec,
+    OptionSpec, SolverSpec,
 };
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::{ELECTRIC_KEYS, driven, start_state};
@@ -30,14 +31,23 @@ use std::collections::BTreeMap;
 /// Most intervals of a control problem; a slip of the pen asks for more.
 pub(crate) const MOST_INTERVALS: usize = 1_000_000;
 
+/// Intervals of the first grid where no number is given.
+const FIRST_INTERVALS: usize = 20;
+
 pub(crate) fn control(
     spec: &ControlSpec,
     (written, system): (&SceneSpec, &System),
     scope: &Scope<'_>,
 ) -> Result<Control, SceneError> {
     let duration = duration(&spec.duration, &scope.key("duration"))?;
-    let place = scope.key("intervals");
-    count(spec.intervals, "interval", MOST_INTERVALS, &place)?;
+    let intervals = match spec.intervals {
+        Some(IntervalsSpec::Given(intervals)) => {
+            let place = scope.key("intervals");
+            count(intervals, "interval", MOST_INTERVALS, &place)?;
+            Some(intervals)
+        }
+        Some(IntervalsSpec::Word(IntervalsWord::Auto)) | None => None,
+    };
     if !system.sources().iter().any(|source| source.takes_voltage) {
         let found = "a scene without any muscle or electrode that takes a voltage";
         let expected = format!("a muscle of {ELECTRIC_KEYS}, or a driven electrode");
@@ -67,7 +77,8 @@ pub(crate) fn control(
     }
     Ok(Control {
         duration,
-        intervals: spec.intervals,
+        intervals: intervals.unwrap_or(FIRST_INTERVALS),
+        is_refined: intervals.is_none(),
         start,
         goal,
         voltage_bounds,

@@ -10,8 +10,10 @@ use crate::files::problem::spec_track::{FinalSpec, TrackSpec};
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::units::quantity::{Quantity, Time, Voltage};
 use schemars::JsonSchema;
+use serde::de::{Error, IntoDeserializer, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
+use std::fmt;
 use std::marker::PhantomData;
 
 /// An optimal control problem.
@@ -20,8 +22,10 @@ use std::marker::PhantomData;
 pub struct ControlSpec {
     /// Final time, SI unit s, or its bounds and a guess.
     pub duration: DurationSpec,
-    /// Number of intervals, 1 or more.
-    pub intervals: usize,
+    /// Number of intervals, 1 or more, or `"auto"`, as where it is not written: as many as the verification of the optimum needs to confirm
+    /// an error of 1 % of the path length, or of what `--accuracy` says.
+    #[serde(default)]
+    pub intervals: Option<IntervalsSpec>,
     /// Initial state.
     pub start: StartSpec,
     /// Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then.
@@ -55,6 +59,59 @@ pub struct ControlSpec {
     /// Options of the solver.
     #[serde(default)]
     pub solver: SolverSpec,
+}
+
+/// How many intervals there are.
+#[derive(Clone, Copy, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum IntervalsSpec {
+    /// `"auto"`.
+    Word(IntervalsWord),
+    /// A number.
+    Given(usize),
+}
+
+/// Intervals of no given number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum IntervalsWord {
+    /// As many as the verification needs.
+    Auto,
+}
+
+impl<'de> Deserialize<'de> for IntervalsSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(IntervalsVisitor)
+    }
+}
+
+struct IntervalsVisitor;
+
+impl Visitor<'_> for IntervalsVisitor {
+    type Value = IntervalsSpec;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a whole number of intervals, or \"auto\"")
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<IntervalsSpec, E> {
+        match text {
+            "auto" => Ok(IntervalsSpec::Word(IntervalsWord::Auto)),
+            _ => Err(E::invalid_value(Unexpected::Str(text), &self)),
+        }
+    }
+
+    fn visit_u64<E: Error>(self, number: u64) -> Result<IntervalsSpec, E> {
+        usize::deserialize(number.into_deserializer()).map(IntervalsSpec::Given)
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<IntervalsSpec, E> {
+        usize::deserialize(number.into_deserializer()).map(IntervalsSpec::Given)
+    }
+
+    fn visit_f64<E: Error>(self, number: f64) -> Result<IntervalsSpec, E> {
+        Err(E::invalid_type(Unexpected::Float(number), &self))
+    }
 }
 
 /// Bounds of a free final time.

@@ -1,0 +1,129 @@
+//! A control problem on as many intervals as the verification of its optimum needs to confirm an accuracy.
+//!
+//! The error of a grid falls with the square of its step: from the error e that a verification confirms on N intervals the next grid has
+//! about N √(e/ε), and begins at the optimum before.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use crate::control::problem::Control;
+use crate::ipopt::interrupt;
+use crate::model::System;
+use crate::workflow::cure::Cured;
+use crate::workflow::error::WorkflowError;
+use crate::workflow::iterate::Iterate;
+use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
+
+/// Deviation of the motion under the optimal voltages that is confirmed where no accuracy is asked for, as a part of the path length.
+pub(crate) const ACCURACY: f64 = 0.01;
+/// The part of the accuracy that the next grid is made for.
+const AIMED: f64 = 0.7;
+/// Least and greatest factor between the intervals of two grids, and that where the error is not known.
+const FACTORS: [f64; 2] = [1.25, 4.0];
+const UNKNOWN: f64 = 2.0;
+/// Limit of grids.
+const GRIDS: usize = 7;
+/// No grid has more variables than this.
+const VARIABLES: f64 = 2e6;
+
+/// Solves a control problem on its first grid, then on finer ones, until the verification confirms that the motion under the optimal voltages
+/// deviates from the optimum by no more than a part `accuracy` of the path length.
+///
+/// # Errors
+/// As of [`optimise`].
+pub(crate) fn verified(
+    system: &System,
+    control: &Control,
+    accuracy: f64,
+    allowed: SolveLimits,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+) -> Result<Cured, WorkflowError> {
+    let began = Instant::now();
+    let left = || {
+        let spent = began.elapsed().as_secs_f64();
+        allowed.seconds.map(|s| (s - spent).max(0.0))
+    };
+    let mut iterations = 0;
+    let mut solve = |intervals: usize, earlier: Option<&Optimum>| {
+        let control = Control {
+            intervals,
+            ..control.clone()
+        };
+        let limits = SolveLimits {
+            seconds: left(),
+            ..allowed
+        };
+        let earlier = earlier.map(|optimum| &optimum.motion);
+        let found = optimise(system, &control, earlier, limits, &mut |iterate| {
+            observer(intervals, iterate)
+        })?;
+        iterations += found.solution.iterations.len().saturating_sub(1);
+        Ok::<_, WorkflowError>(found)
+    };
+    let mut best = solve(control.intervals, None)?;
+    let mut why = None;
+    for _ in 1..GRIDS {
+        if !best.meets_equations() || is_confirmed(&best, accuracy) {
+            break;
+        }
+        let n = best.motion.intervals();
+        let next = (n as f64 * factor(&best, accuracy)).ceil();
+        let variables = best.solution.x.len() as f64 * next / n as f64;
+        let is_over = interrupt::requested() || left().is_some_and(|s| s <= 0.0);
+        if is_over || variables > VARIABLES {
+            why = Some(if is_over {
+                "it was stopped"
+            } else {
+                "a finer grid is too large"
+            });
+            break;
+        }
+        let mut found = solve(next as usize, Some(&best))?;
+        if !found.meets_equations() && interrupt::stop().is_none() {
+            found = solve(next as usize, None)?;
+        }
+        if !found.meets_equations() {
+            why = Some("a finer grid was not solved");
+            break;
+        }
+        found.carried = best.carried;
+        best = found;
+    }
+    let is_short = best.meets_equations() && !is_confirmed(&best, accuracy);
+    let note = is_short.then(|| {
+        format!(
+            "the verification does not confirm an error below {} % of the path length on {} intervals{}",
+            100.0 * accuracy,
+            best.motion.intervals(),
+            why.map_or(String::new(), |why| format!(": {why}")),
+        )
+    });
+    Ok(Cured {
+        optimum: best,
+        iterations,
+        note,
+    })
+}
+
+/// Whether the verification confirms an error of no more than this part of the path length.
+fn is_confirmed(optimum: &Optimum, accuracy: f64) -> bool {
+    let tested = optimum.resimulation.as_ref();
+    tested.is_some_and(|tested| {
+        let error = tested.error.unwrap_or(f64::INFINITY);
+        tested.cause.is_none() && tested.is_confirmed && error <= accuracy
+    })
+}
+
+/// How many times the intervals the next grid has.
+fn factor(optimum: &Optimum, accuracy: f64) -> f64 {
+    let tested = optimum
+        .resimulation
+        .as_ref()
+        .filter(|tested| tested.is_confirmed);
+    match tested.and_then(|tested| tested.error) {
+        Some(error) => (error / (AIMED * accuracy))
+            .sqrt()
+            .clamp(FACTORS[0], FACTORS[1]),
+        None => UNKNOWN,
+    }
+}
