@@ -8,13 +8,16 @@ const PRINTED = 3;
 /** All charts of a page; those over time follow the clock, and a touch on them moves it. */
 class Charts {
   constructor(charts, holder, clock) {
-    Object.assign(this, { holder, clock, made: [] });
+    Object.assign(this, { holder, clock, made: [], folded: [] });
     for (const chart of charts) this.section(chart);
     dark.addEventListener("change", () => this.made.forEach((panel) => panel.renew()));
   }
 
   /** Draws all of them for paper, or those in sight for the screen again. */
   print(on) {
+    // Names of many curves are told on paper too.
+    if (on) this.folded = [...this.holder.querySelectorAll("details:not([open])")];
+    for (const names of this.folded) names.open = on;
     for (const panel of this.made) {
       panel.printed = on;
       panel.renew();
