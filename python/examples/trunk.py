@@ -26,7 +26,7 @@ def trunk(segments: int = 6) -> tuple[pb.System, list[pb.Muscle], pb.Marker]:
         axis, outwards = (Z, X) if i % 2 == 0 else (X, Z)
         system.add(pb.Joint(revolute={"axis": axis}, parent=below, child=link, at=base))
         for side in (outwards, -outwards):
-            start, end = ({"body": body, "at": base + 0.015 * side + y * Y} for body, y in ((below, -0.02), (link, 0.02)))
+            start, end = (pb.entries.Point(body=body, at=base + 0.015 * side + y * Y) for body, y in ((below, -0.02), (link, 0.02)))
             muscle = pb.Muscle(material=silicone, from_=start, to=end, cross_section=["10 mm", "10 mm"], layer_thickness="50 um")
             muscles.append(system.add(muscle))
         below = link

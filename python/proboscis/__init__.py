@@ -2,7 +2,7 @@
 
 A `System` of parts is asked to `simulate`, for an `equilibrium`, or for a `control` problem, which is then solved; a `Problem` does what a
 problem file asks. Entries are those of the JSON files; numbers are in SI units, texts have a unit. What comes back is a `Result`: numpy arrays in SI units
-and the files of the command line. All mistakes are one exception, `Error`, with the path of the wrong entry.
+and the files of the command line. All mistakes are one exception, `Error`, with the path of the wrong entry. `sweep`, `study`, `starts`, `inspect` and `check` are the commands of these names.
 """
 
 from __future__ import annotations
@@ -10,9 +10,11 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from proboscis import _proboscis
+from proboscis import _proboscis, entries
+from proboscis._ending import Interrupted
 from proboscis._error import Error
 from proboscis._table import Table
+from proboscis.commands import Starts, Study, Sweep, check, inspect, starts, study, sweep
 from proboscis.nlp import Nlp
 from proboscis.parts import GROUND, Body, Joint, Marker, Material, Muscle, Part, Solid, Spring, Tendon
 from proboscis.problem import Iteration, Problem, Step
@@ -26,6 +28,7 @@ __all__ = [
     "Body",
     "Error",
     "Figure",
+    "Interrupted",
     "Iteration",
     "Joint",
     "Marker",
@@ -37,12 +40,21 @@ __all__ = [
     "Result",
     "Solid",
     "Spring",
+    "Starts",
     "Step",
+    "Study",
+    "Sweep",
     "System",
     "Table",
     "Tendon",
+    "check",
+    "entries",
+    "inspect",
     "load",
     "schema",
+    "starts",
+    "study",
+    "sweep",
 ]
 
 load = Result.load

@@ -2,6 +2,19 @@
 
 from __future__ import annotations
 
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+
+@contextmanager
+def told(what: str) -> Iterator[None]:
+    """Makes what the system says of files the one exception."""
+    try:
+        yield
+    except (OSError, shutil.Error, UnicodeError) as cause:
+        raise Error(f"{what}: cannot be read or written ({cause})") from cause
+
 
 class Error(ValueError):
     """A scene, problem, result or argument is wrong, or there is no answer; nothing was written.

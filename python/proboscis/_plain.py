@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from os import PathLike, fspath
 from typing import Any
@@ -9,6 +10,16 @@ from typing import Any
 import numpy as np
 
 from proboscis._error import Error
+
+
+def as_json(value: Any, *, indent: int | None = None) -> str:
+    """Returns the text of JSON values; raises `Error` where they have none."""
+    try:
+        text = json.dumps(value, indent=indent, ensure_ascii=False, allow_nan=False)
+        text.encode()
+    except (TypeError, ValueError, RecursionError) as error:
+        raise Error(f"found what no JSON can hold ({error}), expected finite numbers, texts, lists and dicts") from error
+    return text
 
 
 def plain(value: Any, path: str = "") -> Any:
@@ -24,7 +35,7 @@ def plain(value: Any, path: str = "") -> Any:
     if isinstance(value, np.generic):
         return plain(value.item(), path)
     if isinstance(value, np.ndarray):
-        return value.tolist()
+        return plain(value.tolist(), path)
     if isinstance(value, Mapping):
         return {str(plain(key)): plain(entry, f"{path}.{plain(key)}" if path else str(plain(key))) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):

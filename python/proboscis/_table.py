@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 
+class NoColumn(Error, KeyError):
+    """A column that is not there: what `in` and `get` of a mapping go by."""
+
+
 _SCALES = {"mm": (1e3, "m"), "ms": (1e3, "s"), "nC": (1e9, "C")}
 _NAMES = {"N m": "J"}
 
@@ -57,7 +61,7 @@ class Table(Mapping[str, Array]):
         columns, units = {}, {}
         for header, values in headed.items():
             name, _, unit = header.removesuffix("]").partition(" [")
-            scale, units[name] = _si(unit)
+            scale, units[name] = si(unit)
             columns[name] = values / scale
         return cls(columns, units)
 
@@ -75,7 +79,7 @@ class Table(Mapping[str, Array]):
         try:
             return self._columns[name]
         except KeyError:
-            raise KeyError(f"no column {name!r}; there are {', '.join(self._columns)}") from None
+            raise NoColumn(f"no column {name!r}; there are {', '.join(self._columns) or 'none'}") from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._columns)
@@ -88,7 +92,7 @@ class Table(Mapping[str, Array]):
         return f"<Table: {len(self)} columns of {rows} rows>"
 
 
-def _si(unit: str) -> tuple[float, str]:
+def si(unit: str) -> tuple[float, str]:
     """How many of a unit an SI unit is, and that unit."""
     scale, words = 1.0, []
     for word in unit.split():

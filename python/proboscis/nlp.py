@@ -97,7 +97,10 @@ class Nlp:
 
     @staticmethod
     def _vector(values: npt.ArrayLike, length: int, name: str) -> Array:
-        vector = np.ascontiguousarray(values, dtype=np.float64)
+        try:
+            vector = np.ascontiguousarray(values, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise Error(f"{name}: found {values!r} ({error}), expected {length} numbers", name) from error
         if vector.shape != (length,):
             raise Error(f"{name}: found an array of shape {vector.shape}, expected {length} numbers", name)
         return vector

@@ -1,100 +1,348 @@
 """What a system is made of: thin names for the entries of a scene file.
 
-Entries are those of the scene's JSON Schema (`proboscis.schema("scene")`); numbers are in SI units, texts have a unit. Positions and axes are given in the
-reference configuration, in the ground frame. Where JSON wants a name, the part itself may stand; a keyword of Python has an underscore
-behind it (`from_`).
+Numbers are in SI units, texts have a unit. Positions and axes are given in the reference configuration, in the ground frame. Where JSON
+wants a name, the part itself may stand; a keyword of Python has an underscore behind it (`from_`).
+
+Written by `python/generate.py` from the JSON Schema of problems.
 """
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
-from proboscis._error import Error
-from proboscis._plain import plain
+from proboscis._part import GROUND, Part
 
-GROUND = "ground"
-"""The body that does not move."""
+if TYPE_CHECKING:
+    from proboscis import entries
+    from proboscis.entries import Numbers, Quantity, Text
 
-
-class Part:
-    """An entry of a scene with a name; a system gives one to a part without."""
-
-    kind: ClassVar[str]
-    """Its list in the scene."""
-    noun: ClassVar[str]
-
-    name: str | None
-    entries: dict[str, Any]
-    """What is written of it, but its name."""
-
-    def __init__(self, name: str | None = None, /, **entries: Any) -> None:
-        given = {key.removesuffix("_"): value for key, value in entries.items()}
-        self.name = name if name is not None else given.pop("name", None)
-        self.entries = given
-
-    @classmethod
-    def from_dict(cls, entries: dict[str, Any], /) -> Part:
-        """Makes the part of its JSON object."""
-        return cls(**entries)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Returns its JSON object."""
-        named = {} if self.name is None else {"name": self.name}
-        return {**named, **{key: plain(value, key) for key, value in self.entries.items()}}
-
-    def __proboscis__(self) -> str:
-        if self.name is None:
-            raise Error(f"{self!r} has no name: add it to a system first, or name it")
-        return self.name
-
-    def __repr__(self) -> str:
-        entries = "".join(f", {key}={value!r}" for key, value in self.entries.items())
-        return f"{type(self).__name__}({self.name!r}{entries})"
+__all__ = ["GROUND", "Part", "Material", "Body", "Joint", "Muscle", "Solid", "Spring", "Tendon", "Marker"]
 
 
 class Material(Part):
-    """A dielectric elastomer: `shear_modulus` (Pa), `density` (kg/m³), `relative_permittivity`, `viscosity` (Pa s), `lame_lambda` (Pa) or `poisson_ratio`."""
+    """A dielectric elastomer.
+
+    * `shear_modulus`: Shear modulus μ, SI unit Pa.
+    * `c1`: Constant of the term c₁ E·E, SI unit F/m = N/V².
+    * `c2`: Constant of the term c₂ C:(E⊗E), SI unit F/m = N/V².
+    * `density`: Density, SI unit kg/m³; without it muscles are massless.
+    * `dielectric`: How `relative_permittivity` enters the energy.
+    * `lame_lambda`: First Lamé constant λ, SI unit Pa; or give `poisson_ratio`. Finite elements need one of them.
+    * `poisson_ratio`: Poisson's ratio, between −1 and 0.5; or give `lame_lambda`.
+    * `relative_permittivity`: Relative permittivity, 1 or more; or give `c1` and `c2`; without either the material has no electric term.
+    * `viscosity`: Viscosity η in σ = η d, SI unit Pa s; without it no viscous force.
+    """
 
     kind, noun = "materials", "material"
 
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        shear_modulus: Quantity,
+        c1: Quantity | None = None,
+        c2: Quantity | None = None,
+        density: Quantity | None = None,
+        dielectric: entries.Dielectric | None = None,
+        lame_lambda: Quantity | None = None,
+        poisson_ratio: float | None = None,
+        relative_permittivity: float | None = None,
+        viscosity: Quantity | None = None,
+    ) -> None:
+        super().__init__(
+            name,
+            {
+                "shear_modulus": shear_modulus,
+                "c1": c1,
+                "c2": c2,
+                "density": density,
+                "dielectric": dielectric,
+                "lame_lambda": lame_lambda,
+                "poisson_ratio": poisson_ratio,
+                "relative_permittivity": relative_permittivity,
+                "viscosity": viscosity,
+            },
+        )
+
 
 class Body(Part):
-    """A rigid body: `mass` (kg), `position` (m, three numbers), and `cylinder`, `box`, `sphere` or `inertia` (kg m²)."""
+    """A rigid body: one shape, or an explicit inertia, or both.
+
+    * `mass`: Mass, SI unit kg.
+    * `position`: Centre of mass, SI unit m.
+    * `box`: Solid box with edges along the axes of the ground frame.
+    * `cylinder`: Solid cylinder.
+    * `free`: Whether the body is free of the ground: no chain of joints leads there.
+    * `inertia`: Moments of inertia about the axes of the ground frame through the centre of mass, SI unit kg m²; overrides the shape's.
+    * `sphere`: Solid sphere.
+    """
 
     kind, noun = "bodies", "body"
 
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        mass: Quantity,
+        position: Sequence[Quantity] | Numbers,
+        box: entries.Box | None = None,
+        cylinder: entries.Cylinder | None = None,
+        free: bool | None = None,
+        inertia: Sequence[Quantity] | Numbers | None = None,
+        sphere: entries.Sphere | None = None,
+    ) -> None:
+        super().__init__(
+            name,
+            {
+                "mass": mass,
+                "position": position,
+                "box": box,
+                "cylinder": cylinder,
+                "free": free,
+                "inertia": inertia,
+                "sphere": sphere,
+            },
+        )
+
 
 class Joint(Part):
-    """A joint: `parent`, `child`, `at` (m), and `revolute={"axis": …}`, `prismatic={"axis": …}`, `spherical={}`, `floating={}` or `fixed={}`."""
+    """A joint: exactly one of `revolute`, `prismatic`, `spherical`, `floating`, `fixed`.
+
+    * `at`: Place, SI unit m.
+    * `child`: Body on the other side.
+    * `parent`: Body on the side of the root, or `ground`.
+    * `damping`: Damping of the joint coordinate, SI unit N m s/rad (revolute) or N s/m (prismatic).
+    * `fixed`: No motion.
+    * `floating`: Any motion: the child is as free as without the joint, and its orientation in the first body is told.
+    * `locked`: Whether the joint is locked as it stands in the reference configuration: it is then `fixed`, and what it connects is one body.
+    * `prismatic`: Translation along an axis.
+    * `revolute`: Rotation about an axis.
+    * `spherical`: Rotation about a point.
+    """
 
     kind, noun = "joints", "joint"
 
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        at: Sequence[Quantity] | Numbers,
+        child: Text,
+        parent: Text,
+        damping: Quantity | None = None,
+        fixed: entries.Nothing | None = None,
+        floating: entries.Nothing | None = None,
+        locked: bool | None = None,
+        prismatic: entries.Axis | None = None,
+        revolute: entries.Axis | None = None,
+        spherical: entries.Nothing | None = None,
+    ) -> None:
+        super().__init__(
+            name,
+            {
+                "at": at,
+                "child": child,
+                "parent": parent,
+                "damping": damping,
+                "fixed": fixed,
+                "floating": floating,
+                "locked": locked,
+                "prismatic": prismatic,
+                "revolute": revolute,
+                "spherical": spherical,
+            },
+        )
+
 
 class Muscle(Part):
-    """A muscle: `material`, `cross_section` (m, two numbers), `layer_thickness` (m), `from_` and `to`, each `{"body": …, "at": …}`."""
+    """A muscle between two points.
+
+    * `cross_section`: Sides of the rectangular cross-section at rest, SI unit m.
+    * `from_`: Start.
+    * `layer_thickness`: Thickness of one layer at rest, SI unit m.
+    * `material`: Name of the material.
+    * `to`: End.
+    * `element`: Which hexahedron; of `finite_elements` only.
+    * `elements`: Elements along both sides of the cross-section and along the span; of `finite_elements` only.
+    * `layers`: Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
+    * `model`: Model; `lumped` where not written.
+    * `section_inertia`: Whether the inertia of the changing cross-section is called for.
+    """
 
     kind, noun = "muscles", "muscle"
 
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        cross_section: Sequence[Quantity] | Numbers,
+        from_: entries.Point,
+        layer_thickness: Quantity,
+        material: Text,
+        to: entries.Point,
+        element: entries.Element | None = None,
+        elements: Sequence[int] | Numbers | None = None,
+        layers: int | None = None,
+        model: entries.MuscleModel | None = None,
+        section_inertia: bool | None = None,
+    ) -> None:
+        super().__init__(
+            name,
+            {
+                "cross_section": cross_section,
+                "from": from_,
+                "layer_thickness": layer_thickness,
+                "material": material,
+                "to": to,
+                "element": element,
+                "elements": elements,
+                "layers": layers,
+                "model": model,
+                "section_inertia": section_inertia,
+            },
+        )
+
 
 class Solid(Part):
-    """An elastic block of finite elements: `material`, `box` or a mesh file, electrodes, supports."""
+    """An elastic block of hexahedra: a `box` or a `mesh`, of one `material` or of `materials` by region.
+
+    Faces are `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max` of a box, and physical groups of a mesh.
+
+    * `box`: Box with edges along the axes of the ground frame.
+    * `electrodes`: Electrodes; without any the block has no potential.
+    * `element`: Which hexahedron.
+    * `fixed`: Faces and other places that are held. A node that is glued as well moves with its body.
+    * `glued`: Names of bodies by the faces that are glued to them; a face glued to `ground` is clamped.
+    * `material`: Name of the material.
+    * `materials`: Names of the materials by region.
+    * `mesh`: Path of a Gmsh file, relative to this file.
+    * `stack`: Electrodes between the layers of a stack and at its ends, alternately grounded and driven.
+    * `unit`: Length of a unit of the Gmsh file, SI unit m; 1 m where not written.
+    * `velocity`: Velocity at the start; at rest where not written.
+    """
 
     kind, noun = "solids", "solid"
 
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        box: entries.Grid | None = None,
+        electrodes: Sequence[entries.Electrode] | None = None,
+        element: entries.Element | None = None,
+        fixed: Sequence[entries.Fixed] | None = None,
+        glued: Mapping[Any, Text] | None = None,
+        material: Text | None = None,
+        materials: Mapping[Any, Text] | None = None,
+        mesh: Text | None = None,
+        stack: entries.Stack | None = None,
+        unit: Quantity | None = None,
+        velocity: entries.Velocity | None = None,
+    ) -> None:
+        super().__init__(
+            name,
+            {
+                "box": box,
+                "electrodes": electrodes,
+                "element": element,
+                "fixed": fixed,
+                "glued": glued,
+                "material": material,
+                "materials": materials,
+                "mesh": mesh,
+                "stack": stack,
+                "unit": unit,
+                "velocity": velocity,
+            },
+        )
+
 
 class Spring(Part):
-    """A spring or damper between two points: `from_`, `to`, `stiffness` (N/m), `damping` (N s/m), …."""
+    """A linear spring, a damper, or both, between two points: force k (length − rest length) + c (rate of the length).
+
+    * `from_`: One end.
+    * `to`: The other end.
+    * `damping`: Damping c, SI unit N s/m.
+    * `rest_length`: Length without force, SI unit m; the distance of the ends where not written.
+    * `stiffness`: Stiffness k, SI unit N/m.
+    """
 
     kind, noun = "springs", "spring"
 
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        from_: entries.Point,
+        to: entries.Point,
+        damping: Quantity | None = None,
+        rest_length: Quantity | None = None,
+        stiffness: Quantity | None = None,
+    ) -> None:
+        super().__init__(
+            name,
+            {
+                "from": from_,
+                "to": to,
+                "damping": damping,
+                "rest_length": rest_length,
+                "stiffness": stiffness,
+            },
+        )
+
 
 class Tendon(Part):
-    """An elastic cable through points."""
+    """An elastic cable that slides without friction through points and takes no compression: tension k max(length − rest length, 0).
+
+    * `stiffness`: Stiffness k of the whole cable, SI unit N/m.
+    * `through`: The points, two or more: the ends, and between them those that it slides through.
+    * `rest_length`: Length up to which it is slack, SI unit m; the length of the path where not written.
+    """
 
     kind, noun = "tendons", "tendon"
 
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        stiffness: Quantity,
+        through: Sequence[entries.Point],
+        rest_length: Quantity | None = None,
+    ) -> None:
+        super().__init__(
+            name,
+            {
+                "stiffness": stiffness,
+                "through": through,
+                "rest_length": rest_length,
+            },
+        )
+
 
 class Marker(Part):
-    """A point whose motion is reported: `body`, `at` (m)."""
+    """A named material point of a body or of a block: exactly one of `body` and `solid`.
+
+    * `at`: Place, SI unit m.
+    * `body`: Name of the body, or `ground`.
+    * `solid`: Name of the block; its node nearest to the place is meant.
+    """
 
     kind, noun = "markers", "marker"
+
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        at: Sequence[Quantity] | Numbers,
+        body: Text | None = None,
+        solid: Text | None = None,
+    ) -> None:
+        super().__init__(
+            name,
+            {
+                "at": at,
+                "body": body,
+                "solid": solid,
+            },
+        )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import json
-import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from os import PathLike
@@ -12,12 +11,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from proboscis import _proboscis
-from proboscis._error import Error
-from proboscis._plain import plain
+from proboscis._arguments import counted, positive, room
+from proboscis._ending import ended
+from proboscis._error import Error, told
+from proboscis._plain import as_json, plain
 from proboscis.result import Result
 
 if TYPE_CHECKING:
+    from proboscis import entries
     from proboscis.nlp import Nlp
+    from proboscis.system import System
 
 
 @dataclass(frozen=True)
@@ -61,22 +64,26 @@ class Problem:
 
     def __init__(
         self,
-        scene: Any,
+        scene: System | entries.Text | Mapping[str, Any],
         *,
-        control: Mapping[str, Any] | None = None,
-        simulate: Mapping[str, Any] | None = None,
-        equilibrium: Mapping[str, Any] | None = None,
+        control: entries.Control | None = None,
+        simulate: entries.Simulate | None = None,
+        equilibrium: entries.Equilibrium | None = None,
+        output: entries.Output | None = None,
         folder: str | PathLike[str] = ".",
     ) -> None:
-        tasks = {"control": control, "simulate": simulate, "equilibrium": equilibrium}
-        given = {key: plain(value, key) for key, value in tasks.items() if value is not None}
-        self._take({"scene": plain(scene, "scene"), **given}, Path(folder), "problem.json")
+        given = {"control": control, "simulate": simulate, "equilibrium": equilibrium, "output": output}
+        self._take({"scene": scene, **{key: value for key, value in given.items() if value is not None}}, Path(folder), "problem.json")
 
-    def _take(self, content: dict[str, Any], folder: Path, name: str) -> None:
-        self._content = content
+    @classmethod
+    def _asking(cls, scene: System, task: str, asked: Mapping[str, Any], folder: Path) -> Problem:
+        return cls._of({"scene": scene, task: asked}, folder, "problem.json")
+
+    def _take(self, content: Mapping[str, Any], folder: Path, name: str) -> None:
+        self._content = {str(key): plain(value, str(key)) for key, value in content.items()}
         self.folder = folder
         self.name = name
-        self.task = _proboscis.check(self._input, self._text, [])
+        self.task = ended(_proboscis.task(self._input, self._text), _answer)
 
     @property
     def _input(self) -> Path:
@@ -84,15 +91,14 @@ class Problem:
 
     @property
     def _text(self) -> str:
-        try:
-            return json.dumps(self._content, indent=2, ensure_ascii=False, allow_nan=False)
-        except ValueError as error:
-            raise Error(f"found a number that is not finite ({error}), expected finite numbers") from error
+        return as_json(self._content, indent=2)
 
     @classmethod
     def from_dict(cls, content: Mapping[str, Any], /, *, folder: str | PathLike[str] = ".") -> Problem:
         """Makes a problem of the content of a problem file; `folder` is where files that it names are looked for."""
-        return cls._of(copy.deepcopy(plain(content)), Path(folder), "problem.json")
+        if not isinstance(content, Mapping):
+            raise Error(f"found {content!r}, expected the content of a problem file")
+        return cls._of(content, Path(folder), "problem.json")
 
     @classmethod
     def from_file(cls, path: str | PathLike[str], /) -> Problem:
@@ -103,11 +109,11 @@ class Problem:
         except (OSError, UnicodeDecodeError) as error:
             raise Error(f"{path}: found no readable file ({error}), expected a JSON file") from error
         # What is read twice, such as a repeated key, is a mistake of the text alone.
-        _proboscis.check(path, text, [])
+        ended(_proboscis.task(path, text), _answer)
         return cls._of(json.loads(text), path.parent, path.name)
 
     @classmethod
-    def _of(cls, content: dict[str, Any], folder: Path, name: str) -> Problem:
+    def _of(cls, content: Mapping[str, Any], folder: Path, name: str) -> Problem:
         problem = cls.__new__(cls)
         problem._take(content, folder, name)
         return problem
@@ -119,16 +125,17 @@ class Problem:
     def changed(self, changes: Mapping[str, Any], /) -> Problem:
         """Returns the problem with other entries, such as `{"control.intervals": 80}`.
 
-        Lists are counted from zero: `scene.muscles[1].material`. The scene has to be in the problem, not in a file of its own.
+        Lists are counted from zero: `scene.muscles[1].material`. Where an entry of a scene in a file of its own is another one, the
+        problem holds the whole scene.
         """
-        content: dict[str, Any] = self.to_dict()
-        for path, value in changes.items():
-            _put(content, path, plain(value, path))
-        return self._of(content, self.folder, self.name)
+        words = [f"{path}={as_json(plain(value, path))}" for path, value in changes.items()]
+        text = ended(_proboscis.changed(self._input, self._text, words), _answer)
+        return self._of(json.loads(text), self.folder, self.name)
 
     def save(self, path: str | PathLike[str], /) -> None:
         """Writes the problem file."""
-        Path(path).write_text(self._text + "\n", encoding="utf-8")
+        with told(f"{path}"):
+            Path(path).write_text(self._text + "\n", encoding="utf-8")
 
     def solve(
         self,
@@ -143,8 +150,9 @@ class Problem:
     ) -> Result:
         """Does what the problem asks for, as the command `proboscis solve` does, with the same bits.
 
-        `start` is a result to start from in place of the guess. `on_iteration` hears of every iterate; an exception from it, and Ctrl-C, end the
-        run in good order and come out, with the result so far as their attribute `result` (`None` where there is none yet). `max_seconds` and
+        `start` is a result to start from in place of the guess. `on_iteration` hears of every iterate; an exception from it ends the run in
+        good order and comes out, with the result so far as its attribute `result` (`None` where there is none yet). Ctrl-C raises
+        `Interrupted`, a `KeyboardInterrupt`, at once; its `result` waits until the run has ended and written its files. `max_seconds` and
         `max_iterations` end it as well; the status of the result tells so. `accuracy` refines the grid until the error is estimated
         below it, `estimate_error` estimates it. The files of the result go to the folder `output`, or to one that lasts as long as the result.
         Other threads run meanwhile.
@@ -201,17 +209,15 @@ class Problem:
         estimate_error: bool,
         output: str | PathLike[str] | None,
     ) -> Result:
-        for name, limit in (("max_seconds", max_seconds), ("accuracy", accuracy)):
-            if limit is not None and not limit > 0:
-                raise Error(f"{name}: found {limit!r}, expected a positive number", name)
+        positive("max_seconds", max_seconds)
+        positive("accuracy", accuracy)
+        counted("max_iterations", max_iterations, least=0)
         problem = self if start is None else self._from(start)
-        kept = tempfile.TemporaryDirectory(prefix="proboscis-") if output is None else None
-        folder = Path(output if output is not None else kept.name if kept else "")
+        folder, kept = room(output)
         before = _state(folder / "summary.json")
-        told, raised = _proboscis.run(
+        outcome = _proboscis.run(
             problem._input,
             problem._text,
-            [],
             folder,
             f"Problem.{method}",
             max_seconds=max_seconds,
@@ -220,14 +226,12 @@ class Problem:
             estimate_error=estimate_error,
             observer=observer,
         )
-        # A state of rest that is refused leaves no files, and those of an earlier run alone.
-        is_written = _state(folder / "summary.json") != before
-        result = Result(folder, told, kept, is_written=is_written) if told else None
-        if raised is not None:
-            raised.result = result  # type: ignore[attr-defined]
-            raise raised
-        assert result is not None, "a run without an exception has a result"
-        return result
+
+        def read(told: tuple[bool, str, list[str]]) -> Result:
+            # A state of rest that is refused leaves no files, and those of an earlier run alone.
+            return Result(folder, told, kept, is_written=_state(folder / "summary.json") != before)
+
+        return ended(outcome, read, keeps=kept is None)
 
     def _from(self, start: Result) -> Problem:
         if self.task != "control":
@@ -240,8 +244,8 @@ class Problem:
         return self._of(content, self.folder, self.name)
 
     def __repr__(self) -> str:
-        scene = self._content["scene"]
-        name = scene if isinstance(scene, str) else scene["name"]
+        scene = self._content.get("scene")
+        name = scene.get("name") if isinstance(scene, dict) else scene
         return f"<Problem: {self.task} {name!r}>"
 
 
@@ -254,24 +258,5 @@ def _state(path: Path) -> tuple[int, int] | None:
     return stat.st_ino, stat.st_mtime_ns
 
 
-def _put(content: Any, path: str, value: Any) -> None:
-    """Puts a value at a path such as `scene.muscles[1].material`."""
-    steps: list[str | int] = []
-    for word in path.split("."):
-        key, *indices = word.split("[")
-        steps += [key] if key else []
-        for index in indices:
-            if not (index.endswith("]") and index[:-1].isdecimal()):
-                raise Error(f"{path}: found {word!r}, expected a path such as scene.muscles[1].material", path)
-            steps.append(int(index[:-1]))
-    place = content
-    for step, following in zip(steps, steps[1:] + [None]):
-        fits = isinstance(place, dict) if isinstance(step, str) else isinstance(place, list) and step < len(place)
-        if not fits:
-            raise Error(f"{path}: there is no place {step!r}", path)
-        if following is None:
-            place[step] = value
-        elif isinstance(step, str):
-            place = place.setdefault(step, {})
-        else:
-            place = place[step]
+def _answer(told: tuple[bool, str, list[str]]) -> str:
+    return told[1]

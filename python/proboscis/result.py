@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proboscis._error import Error
+from proboscis._error import told as _told
 from proboscis._plain import plain
 from proboscis._table import Array, Table
 
@@ -62,11 +63,12 @@ class Result:
     @classmethod
     def load(cls, folder: str | PathLike[str], /) -> Result:
         """Reads the folder of a result. Raises `Error` where it holds none."""
-        return cls(Path(folder))
+        return cls(Path(_named(folder)))
 
     def save(self, folder: str | PathLike[str], /) -> None:
         """Copies its files into a folder, which is made where it is missing."""
-        shutil.copytree(self.folder, folder, dirs_exist_ok=True)
+        with _told("the files of the result"):
+            shutil.copytree(self.folder, folder, dirs_exist_ok=True)
 
     @property
     def status(self) -> str:
@@ -153,7 +155,8 @@ class Result:
         if not path.is_file():
             there = ", ".join(sorted(file.stem for file in self.folder.glob("*.svg")))
             raise Error(f"{name}: there is no such figure; there are {there or 'none'}")
-        return Figure(path.read_text(encoding="utf-8"))
+        with _told("the figure"):
+            return Figure(path.read_text(encoding="utf-8"))
 
     def _table(self, *names: str) -> Table:
         arrays = self.folder / "tables.npz"
@@ -176,8 +179,15 @@ class Result:
         return f"<Result: {line}>"
 
     def _repr_html_(self) -> str:
-        page = html.escape(self.report().read_text(encoding="utf-8"))
+        with _told("the page"):
+            page = html.escape(self.report().read_text(encoding="utf-8"))
         return f'<iframe srcdoc="{page}" width="100%" height="640" style="border:0" title="proboscis"></iframe>'
+
+
+def _named(folder: object) -> str | PathLike[str]:
+    if not isinstance(folder, (str, PathLike)):
+        raise Error(f"found {folder!r}, expected the path of the folder of a result")
+    return folder
 
 
 def _summary(path: Path) -> dict[str, Any]:
@@ -200,7 +210,8 @@ class Figure:
 
     def save(self, path: str | PathLike[str], /) -> None:
         """Writes the figure."""
-        Path(path).write_text(self.svg, encoding="utf-8")
+        with _told("the figure"):
+            Path(path).write_text(self.svg, encoding="utf-8")
 
     def _repr_svg_(self) -> str:
         return self.svg

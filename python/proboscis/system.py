@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import copy
 import json
-from collections.abc import Callable
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar
 
-from proboscis._error import Error
-from proboscis._plain import plain
-from proboscis.parts import Part
-from proboscis.problem import Problem, Step
-from proboscis.result import Result
+from proboscis._error import Error, told
+from proboscis._part import Part
+from proboscis._plain import as_json, plain
+from proboscis._questions import Questions
+from proboscis.problem import Problem
 
 _Part = TypeVar("_Part", bound=Part)
 
 
-class System:
+class System(Questions):
     """What exists: the content of a scene file.
 
     `System("arm", gravity=[0, -9.81, 0])` is a scene with a name and other entries of its schema, to which parts are added.
@@ -29,18 +29,22 @@ class System:
     folder: Path
     """Where files that the scene names are looked for."""
 
-    def __init__(self, name: str, /, *, folder: str | PathLike[str] = ".", **entries: Any) -> None:
-        self.scene = {"name": name, **entries}
+    def _begin(self, name: str, folder: str | PathLike[str], scene: Mapping[str, Any]) -> None:
+        self.scene = {"name": name, **{key: value for key, value in scene.items() if value is not None}}
         self.folder = Path(folder)
 
     @classmethod
-    def from_dict(cls, scene: dict[str, Any], /, *, folder: str | PathLike[str] = ".") -> System:
+    def from_dict(cls, scene: Mapping[str, Any], /, *, folder: str | PathLike[str] = ".") -> System:
         """Makes a system of the content of a scene file; `folder` is where files that it names are looked for."""
-        entries = copy.deepcopy(scene)
+        if not isinstance(scene, Mapping):
+            raise Error(f"found {scene!r}, expected the content of a scene file")
+        entries = copy.deepcopy(dict(scene))
         name = entries.pop("name", None)
         if not isinstance(name, str):
             raise Error(f"name: found {name!r}, expected the name of the scene", "name")
-        return cls(name, folder=folder, **entries)
+        system = cls.__new__(cls)
+        system._begin(name, folder, entries)
+        return system
 
     @classmethod
     def from_file(cls, path: str | PathLike[str], /) -> System:
@@ -56,6 +60,8 @@ class System:
 
     def add(self, part: _Part, /) -> _Part:
         """Adds a part and returns it; without a name it gets one, such as `muscle3`."""
+        if not isinstance(part, Part):
+            raise Error(f"found {part!r}, expected a part")
         materials = part.kind == "materials"
         there = self.scene.setdefault(part.kind, {} if materials else [])
         if part.name is None:
@@ -82,34 +88,13 @@ class System:
 
     def save(self, path: str | PathLike[str], /) -> None:
         """Writes the scene file."""
-        Path(path).write_text(json.dumps(self.to_dict(), indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+        text = as_json(self.to_dict(), indent=2)
+        with told(f"{path}"):
+            Path(path).write_text(text + "\n", encoding="utf-8")
 
-    def control(self, **control: Any) -> Problem:
-        """Returns the optimal control problem with these entries of `control` in a problem file: `duration`, `intervals`, `start`, `goal`, `voltage_bounds`, `objective`, …."""
-        return Problem(self, control=control, folder=self.folder)
-
-    def simulate(
-        self,
-        *,
-        output: str | PathLike[str] | None = None,
-        on_step: Callable[[Step], object] | None = None,
-        max_seconds: float | None = None,
-        **simulate: Any,
-    ) -> Result:
-        """Simulates with these entries of `simulate` in a problem file: `duration`, `step`, `start`, `voltages`, …; the others are those of `Problem.solve`."""
-        problem = Problem(self, simulate=simulate, folder=self.folder)
-        return problem.simulate(output=output, on_step=on_step, max_seconds=max_seconds)
-
-    def equilibrium(
-        self,
-        *,
-        output: str | PathLike[str] | None = None,
-        max_seconds: float | None = None,
-        **equilibrium: Any,
-    ) -> Result:
-        """Finds the state of rest with these entries of `equilibrium` in a problem file: `voltages`, `path`, …; the others are those of `Problem.solve`."""
-        problem = Problem(self, equilibrium=equilibrium, folder=self.folder)
-        return problem.equilibrium(output=output, max_seconds=max_seconds)
+    def _problem(self, task: str, asked: dict[str, Any]) -> Problem:
+        given = {key: value for key, value in asked.items() if value is not None}
+        return Problem._asking(self, task, given, self.folder)
 
     def __proboscis__(self) -> dict[str, Any]:
         return self.to_dict()

@@ -2,17 +2,18 @@
 
 use std::path::PathBuf;
 use std::sync::Mutex;
-use std::sync::mpsc::{self, Sender};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use proboscis::Nlp;
 use proboscis::app::with_program;
+use proboscis::ipopt::interrupt::{self, StopRequest};
 use proboscis::nlp::{Bounds, Entries};
 use proboscis::workflow::at_once;
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::error;
+use crate::background::PERIOD;
+use crate::{broke_off, error, mistake};
 
 type Question = Box<dyn FnOnce(&mut dyn Nlp) + Send>;
 type Array<'py> = Bound<'py, PyArray1<f64>>;
@@ -40,16 +41,13 @@ impl Program {
         py: Python<'_>,
         question: impl FnOnce(&mut dyn Nlp) -> R + Send + 'static,
     ) -> PyResult<R> {
-        let (tell, mut told) = mpsc::channel();
+        let (tell, told) = mpsc::channel();
         let question: Question = Box::new(move |program| {
             tell.send(question(program)).ok();
         });
-        let told = &mut told;
-        let answer = py.detach(move || {
-            self.ask.lock().ok()?.send(question).ok()?;
-            told.recv().ok()
-        });
-        answer.ok_or_else(|| PyRuntimeError::new_err("the program broke off; see standard error"))
+        let asked = py.detach(|| self.ask.lock().ok()?.send(question).ok());
+        asked.ok_or_else(|| broke_off(py, "see standard error"))?;
+        heard(py, told)
     }
 
     fn variables(&self) -> usize {
@@ -61,15 +59,30 @@ impl Program {
     }
 }
 
+/// What another thread tells; Ctrl-C ends the waiting.
+fn heard<T: Send>(py: Python<'_>, mut told: Receiver<T>) -> PyResult<T> {
+    loop {
+        let waiting = &mut told;
+        let heard = py.detach(move || waiting.recv_timeout(PERIOD));
+        match heard {
+            Ok(answer) => return Ok(answer),
+            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(broke_off(py, "see standard error"));
+            }
+        }
+    }
+}
+
 /// The numbers of an array of this length.
 fn taken(array: &PyReadonlyArray1<'_, f64>, length: usize, of: &str) -> PyResult<Vec<f64>> {
     let values = array.as_array().to_vec();
     match values.len() == length {
         true => Ok(values),
-        false => Err(PyValueError::new_err(format!(
-            "{of}: found {} numbers, expected {length}",
-            values.len()
-        ))),
+        false => {
+            let found = format!("{of}: found {} numbers, expected {length}", values.len());
+            Err(mistake(array.py(), found, of))
+        }
     }
 }
 
@@ -78,8 +91,11 @@ impl Program {
     #[new]
     fn new(py: Python<'_>, input: PathBuf, text: String) -> PyResult<Self> {
         let (ask, questions) = mpsc::channel::<Question>();
-        let (tell, mut told) = mpsc::channel();
+        let (tell, told) = mpsc::channel();
+        let stop = StopRequest::default();
+        let request = stop.clone();
         let work = move || {
+            interrupt::listen(&request);
             let failed = tell.clone();
             let ended = with_program(&input, &text, move |program, start| {
                 let (n, m) = (start.len(), program.constraints().lower.len());
@@ -102,12 +118,9 @@ impl Program {
                 failed.send(Err(mistake)).ok();
             }
         };
-        at_once::begin(work)?;
-        let waiting = &mut told;
-        let sizes = py.detach(move || waiting.recv());
-        let sizes = sizes
-            .map_err(|_| PyRuntimeError::new_err("the program broke off; see standard error"))?
-            .map_err(|mistake| error(py, &mistake))?;
+        at_once::begin(work).map_err(|cause| broke_off(py, &cause.to_string()))?;
+        let sizes = heard(py, told).inspect_err(|_| stop.make())?;
+        let sizes = sizes.map_err(|mistake| error(py, &mistake))?;
         let ask = Mutex::new(ask);
         Ok(Self { ask, sizes })
     }

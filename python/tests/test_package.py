@@ -4,6 +4,7 @@ import json
 import os
 import signal
 import subprocess
+import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -147,7 +148,7 @@ def test_a_refused_state_of_rest_tells_nothing_of_an_earlier_one(tmp_path: Path,
     lost = system.equilibrium(voltages={muscles[0]: "100 kV"}, output=tmp_path)
     assert not lost.is_solved and lost.status == "pull_in" and "pull-in at" in str(lost.message)
     # A run that ends without files.
-    monkeypatch.setattr(pb._proboscis, "run", lambda *_, **__: ((False, "no equilibrium", ["no way there"]), None))
+    monkeypatch.setattr(pb._proboscis, "run", lambda *_, **__: ((False, "no equilibrium", ["no way there"]), None, None))
     refused = system.equilibrium(voltages={muscles[0]: "2 kV"}, output=tmp_path)
     assert not refused.is_solved and refused.message == "no way there"
     assert refused.status == "no_equilibrium" and not refused.summary
@@ -176,7 +177,7 @@ def test_mistakes_have_a_place(tmp_path: Path) -> None:
     with pytest.raises(pb.Error, match="twice"):
         pb.Problem.from_file(tmp_path / "twice.json")
     with pytest.raises(pb.Error, match="has no name"):
-        pb.Problem.from_dict({**written, "scene": {"bodies": [pb.Body(mass=1)]}})
+        pb.Problem.from_dict({**written, "scene": {"bodies": [pb.Body(mass=1, position=[0, 0, 0])]}})
     with pytest.raises(pb.Error, match="does not ask"):
         pb.Problem.from_file(PROBLEMS / "pair.json").simulate()
 
@@ -311,8 +312,116 @@ def test_others_run_while_a_run_does() -> None:
     assert after - before > 100
 
 
+def test_ctrl_c_does_not_wait_for_what_cannot_stop(tmp_path: Path) -> None:
+    """The result is waited for where it is asked for, and only there."""
+    simulation = long_simulation()
+    thread = ctrl_c_after(0.5)
+    with pytest.raises(pb.Interrupted) as caught:
+        simulation.simulate(output=tmp_path / "kept")
+    thread.join()
+    result = caught.value.result
+    assert caught.value.result is result and result.folder == tmp_path / "kept"
+    assert result.status == "interrupted" and len(result.time) > 1
+    assert (tmp_path / "kept" / "solution.json").is_file()
+
+
+def test_files_that_are_to_stay_are_written_before_python_ends(tmp_path: Path) -> None:
+    code = """
+import os, signal, sys, threading
+import proboscis as pb
+problem = pb.Problem.from_file(sys.argv[1]).changed({"simulate.duration": "10000 s", "simulate.step": "10 ms"})
+def press(step):
+    if step.step == 1000:
+        os.kill(os.getpid(), signal.SIGINT)
+try:
+    problem.simulate(output=sys.argv[2], on_step=press)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+    command = [sys.executable, "-c", code, PROBLEMS / "elephant_trunk_constant.json", tmp_path / "kept"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0 and done.stdout == "interrupted\n", done.stderr
+    assert pb.load(tmp_path / "kept").status == "interrupted"
+
+
+def test_ctrl_c_ends_all_that_takes_long(pair: pb.Problem) -> None:
+    control = pb.Problem.from_file(PROBLEMS / "fe_trunk_control.json")
+    content = {"problem": PROBLEMS / "elephant_trunk.json", "vary": {"control.intervals": list(range(50, 250))}}
+    calls: list[Any] = [lambda: pb.check(control), lambda: pb.sweep(content), lambda: pb.starts(PROBLEMS / "elephant_trunk.json", 500)]
+    for call in calls:
+        thread = ctrl_c_after(1.0)
+        with pytest.raises(pb.Interrupted) as caught:
+            call()
+        thread.join()
+        result = caught.value.result
+        if isinstance(result, dict):
+            assert not result["agrees"] and result["checked"] < result["variables"]
+        else:
+            assert "not_run" in set(result["status"]) or "interrupted" in set(result["status"]), set(result["status"])
+    assert pair.solve().is_solved
+
+
 def test_schemas() -> None:
     assert "control" in pb.schema()["properties"]
     assert "muscles" in pb.schema("scene")["properties"]
     with pytest.raises(pb.Error):
         pb.schema("study")
+
+
+def test_changes_reach_a_scene_of_a_file(pair: pb.Problem, optimum: pb.Result) -> None:
+    assert isinstance(pair.to_dict()["scene"], str)
+    soft = pair.changed({"scene.materials.silicone.shear_modulus": "50 kPa", "control.intervals": 10})
+    assert soft.to_dict()["scene"]["materials"]["silicone"]["shear_modulus"] == "50 kPa"
+    assert isinstance(pair.to_dict()["scene"], str)
+    # As the command line has it.
+    swept = pb.sweep({"problem": "pair.json", "set": {"control.intervals": 10}, "vary": {"scene.materials.silicone.shear_modulus": ["50 kPa"]}}, folder=PROBLEMS)
+    objective = soft.solve().objective
+    assert list(swept["objective"]) == [objective] and abs(objective / optimum.objective - 1) > 0.1
+    for wrong in ({"scene.materials.silicone.shear_modulus": "50 mm"}, {"control.intervls": 3}, {"scene.muscles[9].to": 1}, {"": 3}, {"control.duration": float("nan")}):
+        with pytest.raises(pb.Error):
+            pair.changed(wrong)
+    with pytest.raises(pb.Error, match="did you mean") as caught:
+        pair.changed({"control.intervls": 3})
+    assert caught.value.path == "control.intervls"
+
+
+def test_all_mistakes_are_one_exception(pair: pb.Problem, optimum: pb.Result, tmp_path: Path) -> None:
+    with pytest.raises(pb.Error, match="no column 'x'"):
+        optimum.table["x"]
+    assert "x" not in optimum.table and optimum.table.get("x") is None
+    nowhere = tmp_path / "none" / "x"
+    nlp = pair.nlp()
+    calls: list[Any] = [
+        lambda: pair.save(nowhere),
+        lambda: pb.System("a").save(nowhere),
+        lambda: optimum.figure().save(nowhere),
+        lambda: optimum.save("/dev/null/x"),
+        lambda: pb.load(nowhere),
+        lambda: pb.load(3),  # type: ignore[arg-type]
+        lambda: pair.solve(output="/dev/null/x"),
+        lambda: pair.solve(max_iterations=-1),
+        lambda: pair.solve(max_iterations=10**30),
+        lambda: pair.solve(max_seconds="x"),  # type: ignore[arg-type]
+        lambda: nlp.objective("abc"),
+        lambda: pb.System.from_dict([]),  # type: ignore[arg-type]
+        lambda: pb.System("a").add(3),  # type: ignore[type-var]
+        lambda: pb.Problem.from_dict({}),
+        lambda: pb.Problem.from_dict([]),  # type: ignore[arg-type]
+        lambda: pb.Problem.from_dict({"scene": [1]}),
+        lambda: pb.Muscle.from_dict(3),  # type: ignore[arg-type]
+        lambda: pb.starts(pair, 0),
+        lambda: pb.starts(pair, 2, seed=-1),
+        lambda: pb.starts(PROBLEMS / "pair_constant.json", 2),
+        lambda: pb.sweep(nowhere),
+        lambda: pb.sweep(PROBLEMS / "pair.json"),
+        lambda: pb.sweep({"problem": "x", "vary": {}}),
+        lambda: pb.study(nowhere),
+        lambda: pb.study({}, runs=0),
+        lambda: pb.inspect(nowhere),
+        lambda: pb.inspect(3),  # type: ignore[arg-type]
+        lambda: pb.check(nowhere),
+    ]
+    for number, call in enumerate(calls):
+        with pytest.raises(pb.Error) as caught:
+            call()
+        assert str(caught.value), number

@@ -3,21 +3,22 @@
 use std::collections::{BTreeMap, HashMap};
 use std::time::Instant;
 
+use serde::Serialize;
+
 use crate::app::error::CommandError;
 use crate::app::request::{CommandInput, CommandOutput};
+use crate::app::task::read;
 use crate::control::problem::{
     BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, Task, Voltages,
 };
 use crate::control::{Column, Row, Signal, Transcription};
-use crate::files::read_problem;
 use crate::ipopt::LinearSolver;
 use crate::ipopt::interrupt::TimeLimit;
 use crate::mesh::Mesh;
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
-use crate::nlp::differences::{self, Along};
+use crate::nlp::differences::{self, Along, Matrix, WrongEntry};
 use crate::workflow::effects;
-use crate::workflow::memory;
 use crate::workflow::optimise::{Counted, Prepared, prepare};
 use crate::workflow::resolve::resolve;
 
@@ -30,6 +31,58 @@ const INTERVALS: usize = 6;
 /// Entries of the Jacobian that are evaluated for the differences; of larger programs a part of the variables is looked at.
 const WORK: f64 = 2e8;
 
+/// What came of a comparison of derivatives with differences.
+#[derive(Clone, Debug, Serialize)]
+pub struct Checked {
+    /// Whether all were compared, and none is wrong.
+    pub agrees: bool,
+    /// The same in words.
+    pub message: String,
+    /// Greatest relative errors.
+    pub errors: GreatestErrors,
+    /// Variables along which they were compared.
+    pub checked: usize,
+    /// Variables of the program.
+    pub variables: usize,
+    /// Variables beside which a value does not exist.
+    pub unchecked: Vec<String>,
+    /// Entries that are wrong, the worst first, twenty at most.
+    pub wrong: Vec<WrongDerivative>,
+    /// What is told of each.
+    #[serde(skip)]
+    notes: Vec<String>,
+}
+
+/// Greatest relative errors of derivatives.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct GreatestErrors {
+    /// Of the objective.
+    pub gradient: f64,
+    /// Of the constraints.
+    pub jacobian: f64,
+    /// Of the Lagrangian, of second order.
+    pub hessian: f64,
+}
+
+/// A derivative that is wrong.
+#[derive(Clone, Debug, Serialize)]
+pub struct WrongDerivative {
+    /// `gradient`, `jacobian` or `hessian`.
+    pub matrix: &'static str,
+    /// What the row belongs to.
+    pub row: String,
+    /// The variable of the column.
+    pub column: String,
+    /// Value given by the program.
+    pub analytic: f64,
+    /// Value from differences.
+    pub difference: f64,
+    /// Relative error.
+    pub error: f64,
+    /// Effects that couple row and column.
+    pub effects: Vec<String>,
+}
+
 /// Compares gradient, Jacobian and Hessian with differences; not solved where an entry is wrong.
 ///
 /// What is not a control problem is made one without a goal, so that every equation of its motion is looked at.
@@ -37,9 +90,21 @@ const WORK: f64 = 2e8;
 /// # Errors
 /// The input is wrong.
 pub fn check(request: &CommandInput) -> Result<CommandOutput, CommandError> {
+    let found = checked(request, None)?;
+    Ok(CommandOutput {
+        is_solved: found.agrees,
+        result: found.message,
+        notes: found.notes,
+    })
+}
+
+/// The same as numbers; a `text` stands for that of the problem file, which then only names it and the folder that paths are relative to.
+///
+/// # Errors
+/// As of [`check`].
+pub fn checked(request: &CommandInput, text: Option<&str>) -> Result<Checked, CommandError> {
     let began = Instant::now();
-    let loaded = read_problem(&request.input, &request.set)?;
-    memory::of_elements(&loaded.system).map_err(CommandError::of(&request.input))?;
+    let loaded = read(&request.input, text, &request.set)?;
     let control = as_control(loaded.task, &loaded.system);
     let (model, boundary) =
         resolve(&loaded.system, &control).map_err(CommandError::of(&request.input))?;
@@ -64,18 +129,20 @@ pub fn check(request: &CommandInput) -> Result<CommandOutput, CommandError> {
         stopped.is_some()
     });
     let mut notes: Vec<String> = report.to_string().lines().map(str::to_owned).collect();
+    let mut wrong = Vec::new();
     for (entry, note) in report.wrong.iter().zip(&mut notes[1..]) {
         let effects = coupling(&program, &model, &entry.row, &entry.column);
         if !effects.is_empty() {
             note.push_str(&format!(" [{}]", effects.join(", ")));
         }
+        wrong.push(wrong_derivative(entry, effects));
     }
     let worst = report.gradient.max(report.jacobian).max(report.hessian);
     let of = match report.checked == x.len() {
         true => String::new(),
         false => format!(", along {} of {} variables", report.checked, x.len()),
     };
-    let result = match (report.is_consistent(), stopped) {
+    let message = match (report.is_consistent(), stopped) {
         (true, _) => format!("derivatives agree with differences to {worst:.1e}{of}"),
         (false, Some(status)) if report.wrong.is_empty() => {
             let why = status.word().replace('_', " ");
@@ -87,11 +154,36 @@ pub fn check(request: &CommandInput) -> Result<CommandOutput, CommandError> {
             report.unchecked.len()
         ),
     };
-    Ok(CommandOutput {
-        is_solved: report.is_consistent(),
-        result,
+    Ok(Checked {
+        agrees: report.is_consistent(),
+        message,
+        errors: GreatestErrors {
+            gradient: report.gradient,
+            jacobian: report.jacobian,
+            hessian: report.hessian,
+        },
+        checked: report.checked,
+        variables: x.len(),
+        unchecked: report.unchecked,
+        wrong,
         notes,
     })
+}
+
+fn wrong_derivative(entry: &WrongEntry, effects: Vec<String>) -> WrongDerivative {
+    WrongDerivative {
+        matrix: match entry.matrix {
+            Matrix::Gradient => "gradient",
+            Matrix::Jacobian => "jacobian",
+            Matrix::Hessian => "hessian",
+        },
+        row: entry.row.clone(),
+        column: entry.column.clone(),
+        analytic: entry.analytic,
+        difference: entry.difference,
+        error: entry.error,
+        effects,
+    }
 }
 
 /// The size of each variable as the solver sees it: that of an element for the coordinates of its nodes.

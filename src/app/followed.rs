@@ -9,7 +9,7 @@ use crate::dynamics::{Continuation, Instability};
 pub(super) struct Followed {
     /// Number of equilibria.
     points: usize,
-    /// Largest fraction of the voltages among them.
+    /// Largest fraction of the voltages on the path: of these equilibria and of those where stability is lost between them.
     largest_fraction: f64,
     /// Where stability is lost.
     pub(super) lost: Vec<StabilityLossRecord>,
@@ -34,9 +34,11 @@ impl Followed {
             kind: kind.key(),
             words: kind.words(),
         };
+        let lost = found.lost.iter().map(|&(_, fraction, _)| fraction);
+        let all = found.fractions.iter().copied().chain(lost);
         Self {
             points: found.points.len(),
-            largest_fraction: found.fractions.iter().copied().fold(0.0, f64::max),
+            largest_fraction: all.fold(0.0, f64::max),
             lost: found.lost.iter().map(loss).collect(),
         }
     }

@@ -1,14 +1,18 @@
 //! What a problem consists of, before it is solved.
 
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
 use crate::app::blocks::BlockSizes;
 use crate::app::error::CommandError;
 use crate::app::extent;
 use crate::app::folder::make_folder;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::sparsity;
+use crate::app::task::read;
 use crate::app::words::key;
 use crate::control::problem::{Control, Task};
-use crate::files::read_problem;
 use crate::model::{Model, Role, System};
 use crate::nlp::Nlp;
 use crate::report::atomic;
@@ -16,7 +20,6 @@ use crate::report::table;
 use crate::sparse::Symmetry;
 use crate::workflow::WorkflowError;
 use crate::workflow::effects::Plan;
-use crate::workflow::memory;
 use crate::workflow::optimise::{Counted, Prepared, prepare};
 use crate::workflow::resolve::resolve;
 
@@ -25,36 +28,60 @@ use crate::workflow::resolve::resolve;
 /// # Errors
 /// The input is wrong, or a picture cannot be written.
 pub fn inspect(request: &CommandInput) -> Result<CommandOutput, CommandError> {
-    let loaded = read_problem(&request.input, &request.set)?;
+    let found = inspected(request, None)?;
+    Ok(CommandOutput {
+        is_solved: true,
+        result: found.words,
+        notes: Vec::new(),
+    })
+}
+
+/// What a problem consists of.
+#[derive(Clone, Debug, Serialize)]
+pub struct Inspected {
+    /// Name of the scene.
+    pub system: String,
+    /// `reduced` or `redundant`.
+    pub coordinates: &'static str,
+    /// Effects in numbers, and what is not there.
+    #[serde(flatten)]
+    pub plan: Plan,
+    /// Numbers of parts, of unknowns, and of entries of the program of a control problem, by what they count.
+    pub sizes: BTreeMap<&'static str, usize>,
+    /// All of it in words.
+    #[serde(skip)]
+    words: String,
+}
+
+/// The same as numbers; a `text` stands for that of the problem file, which then only names it and the folder that paths are relative to.
+///
+/// # Errors
+/// As of [`inspect`].
+pub fn inspected(request: &CommandInput, text: Option<&str>) -> Result<Inspected, CommandError> {
+    let loaded = read(&request.input, text, &request.set)?;
     let system = &loaded.system;
-    memory::of_elements(system).map_err(CommandError::of(&request.input))?;
     let wrong = |error| {
         CommandError::of(&request.input)(WorkflowError::boundary(key(&loaded.task), &error))
     };
-    let result = match &loaded.task {
-        Task::Control(control) => of_control(request, system, control)?,
+    match &loaded.task {
+        Task::Control(control) => of_control(request, system, control),
         Task::Simulate(task) => {
             let model = Model::answering(system.clone(), task.question(system, task.step))
                 .map_err(|error| wrong(error.into()))?;
-            of_model(&model, None)
+            Ok(of_model(&model, None))
         }
         Task::Equilibrium(task) => {
             let model = Model::answering(system.clone(), task.question(system))
                 .map_err(|error| wrong(error.into()))?;
-            of_model(&model, None)
+            Ok(of_model(&model, None))
         }
-    };
-    Ok(CommandOutput {
-        is_solved: true,
-        result,
-        notes: Vec::new(),
-    })
+    }
 }
 
 /// Time in s that goes into measuring each effect.
 const MEASURED: f64 = 5e-3;
 
-fn of_model(model: &Model, control: Option<&Control>) -> String {
+fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
     let plan = Plan::of(model, control, MEASURED);
     let system = &model.system;
     let count = |role| model.variables.count(role);
@@ -89,7 +116,7 @@ fn of_model(model: &Model, control: Option<&Control>) -> String {
         (true, None) => factorisation(model),
         _ => "",
     };
-    format!(
+    let words = format!(
         "{}, {} coordinates\n\n{}\n{}\n{}\n{}{tangent}{}",
         system.name,
         model.coordinates.name(),
@@ -98,7 +125,14 @@ fn of_model(model: &Model, control: Option<&Control>) -> String {
         missing(&plan),
         numbers(&sizes),
         extent::lines(system)
-    )
+    );
+    Inspected {
+        system: system.name.clone(),
+        coordinates: model.coordinates.name(),
+        plan,
+        sizes: sizes.into_iter().collect(),
+        words,
+    }
 }
 
 /// How the tangent of a step is factorised.
@@ -163,7 +197,7 @@ fn of_control(
     request: &CommandInput,
     system: &System,
     control: &Control,
-) -> Result<String, CommandError> {
+) -> Result<Inspected, CommandError> {
     let (model, boundary) = resolve(system, control).map_err(CommandError::of(&request.input))?;
     let Prepared { program, start, .. } = prepare(&model, &boundary, control, None, Counted::Yes)
         .map_err(CommandError::of(&request.input))?;
@@ -193,11 +227,12 @@ fn of_control(
             hessian.rows.len(),
         ),
     ];
-    let mut text = of_model(&model, Some(control));
-    text.push_str(&format!(
+    let mut found = of_model(&model, Some(control));
+    found.words.push_str(&format!(
         "\n{}start of the solver: {start:?}\n",
         numbers(&sizes)
     ));
+    found.sizes.extend(sizes);
     if let Some(folder) = &request.output {
         make_folder(folder)?;
         let origin = request.origin(false);
@@ -215,7 +250,7 @@ fn of_control(
             atomic::write(&folder.join(file), svg.as_bytes())?;
         }
     }
-    Ok(text)
+    Ok(found)
 }
 
 fn numbers(sizes: &[(&str, usize)]) -> String {

@@ -1,6 +1,8 @@
 //! A problem in memory: whether it is one, and its nonlinear program for a solver of one's own.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
 
 use crate::app::error::CommandError;
 use crate::app::task::read;
@@ -17,6 +19,32 @@ use crate::workflow::resolve::resolve;
 /// The problem is wrong.
 pub fn check_text(input: &Path, text: &str, set: &[String]) -> Result<&'static str, CommandError> {
     Ok(key(&read(input, Some(text), set)?.task))
+}
+
+/// The text of a problem with other entries, such as `control.intervals=80`; it holds the scene of its file where an entry of that is
+/// another one.
+///
+/// # Errors
+/// The problem that it then is is wrong.
+pub fn changed_text(input: &Path, text: &str, set: &[String]) -> Result<String, CommandError> {
+    let loaded = read(input, Some(text), set)?;
+    let mut problem = loaded.problem;
+    let is_of_scene = |change: &String| change.trim_start().starts_with("scene.");
+    let file = problem["scene"].as_str().map(PathBuf::from);
+    if let Some(file) = file.filter(|_| set.iter().any(is_of_scene)) {
+        let mut scene = loaded.scene;
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let solids = scene.get_mut("solids").and_then(Value::as_array_mut);
+        for solid in solids.into_iter().flatten() {
+            // Paths in a scene are relative to its file.
+            if let Some(mesh) = solid.get_mut("mesh").filter(|mesh| mesh.is_string()) {
+                let beside = folder.join(mesh.as_str().unwrap_or_default());
+                *mesh = beside.display().to_string().into();
+            }
+        }
+        problem["scene"] = scene;
+    }
+    Ok(problem.to_string())
 }
 
 /// Hands the nonlinear program of a control problem to `read`, with the point where the solver would start: in the units inside, g, mm, ms, N

@@ -66,6 +66,12 @@ pub fn listen(request: &StopRequest) {
     REQUEST.set(request.clone());
 }
 
+/// The request that this thread listens to, for threads that work for it.
+#[must_use]
+pub fn request() -> StopRequest {
+    REQUEST.with_borrow(StopRequest::clone)
+}
+
 /// Until when work may go on.
 #[derive(Clone, Debug)]
 pub struct TimeLimit {

@@ -1,5 +1,7 @@
 //! What a figure in space has room for: the system over the whole motion.
 
+use std::collections::HashSet;
+
 use nalgebra::Vector3;
 
 use crate::dynamics::trajectory::Trajectory;
@@ -41,6 +43,20 @@ pub(super) fn reference(system: &System) -> Trajectory {
         marks: vec![marks.collect()],
         ..Trajectory::default()
     }
+}
+
+/// Faces of elastic blocks that the ground holds in all directions, in mm.
+pub(super) fn held_faces(system: &System) -> Vec<[Vector3<f64>; 4]> {
+    let faces = system.solids.iter().flat_map(|solid| {
+        let fixed = solid.supports.iter().filter(|s| s.held == [true; 3]);
+        let glued = solid.glued.iter().filter(|glue| glue.body.is_none());
+        let nodes = fixed.map(|s| &s.nodes).chain(glued.map(|glue| &glue.nodes));
+        let held: HashSet<usize> = nodes.flatten().copied().collect();
+        let faces = solid.mesh.boundary_quads().into_iter();
+        let faces = faces.filter(move |face| face.iter().all(|node| held.contains(node)));
+        faces.map(|face| face.map(|node| solid.mesh.nodes[node]))
+    });
+    faces.collect()
 }
 
 /// A disc in the ground below the points that are held by it, in mm; empty where nothing is.

@@ -5,7 +5,7 @@ use crate::model::system::System;
 use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Series};
 use crate::report::origin::Origin;
-use crate::report::style;
+use crate::report::{sources, style};
 
 /// Joint coordinates as curves over time in s: angles in degrees, displacements in mm.
 pub fn curves(system: &System, trajectory: &Trajectory) -> Vec<Series> {
@@ -22,6 +22,25 @@ pub fn curves(system: &System, trajectory: &Trajectory) -> Vec<Series> {
             Series::curve(coordinate.name, points, style::hue(i))
         })
         .collect()
+}
+
+/// The same by their units, each with the label of its axis.
+pub(super) fn by_unit(
+    system: &System,
+    trajectory: &Trajectory,
+) -> Vec<(&'static str, Vec<Series>)> {
+    let coordinates = trajectory.coordinates(system);
+    let curves = curves(system, trajectory);
+    let labels = [
+        ("rad", "joint angle [°]"),
+        ("mm", "joint displacement [mm]"),
+    ];
+    let each = labels.map(|(unit, label)| {
+        let of = coordinates.iter().zip(&curves);
+        let of = of.filter(|(coordinate, _)| coordinate.unit == unit);
+        (label, of.map(|(_, curve)| curve.clone()).collect())
+    });
+    each.to_vec()
 }
 
 /// Label of the vertical axis of [`curves`].
@@ -46,17 +65,18 @@ pub fn svg(system: &System, trajectory: &Trajectory, origin: &Origin) -> String 
 }
 
 /// The observed charges of electrodes and muscles over time in s, in mC.
-pub fn charges(trajectory: &Trajectory, observations: &Observations) -> Vec<Series> {
+pub fn charges(
+    system: &System,
+    trajectory: &Trajectory,
+    observations: &Observations,
+) -> Vec<Series> {
     let columns = observations.columns.iter();
-    let named = columns.filter_map(|c| Some((c.name.strip_suffix("_charge")?, c)));
-    named
-        .enumerate()
-        .map(|(i, (name, column))| {
-            let instants = trajectory.times.iter().zip(&column.values);
-            let points = instants.map(|(t, q)| [t / 1e3, *q]).collect();
-            Series::curve(name.replace('_', " "), points, style::hue(i))
-        })
-        .collect()
+    let named = columns.filter_map(|column| {
+        let name = column.name.strip_suffix("_charge")?;
+        let instants = trajectory.times.iter().zip(&column.values);
+        Some((name, instants.map(|(t, q)| [t / 1e3, *q]).collect()))
+    });
+    sources::curves(system, named)
 }
 
 /// The charges in the unit that suits the largest, and the label of their axis.

@@ -24,6 +24,7 @@ pub mod skin;
 pub mod skins;
 mod snapshots;
 pub mod solids;
+mod sources;
 pub mod style;
 pub mod table;
 mod ties;
@@ -117,7 +118,7 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
             has_any.then(|| ("joint_angles.svg", joints::svg(system, trajectory, origin)))
         },
         &|| {
-            let charges = joints::charges(trajectory, observations);
+            let charges = joints::charges(system, trajectory, observations);
             let has_any = !skins.list.is_empty() && !charges.is_empty();
             has_any.then(|| ("charge.svg", joints::charge_svg(charges, origin)))
         },

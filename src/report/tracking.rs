@@ -46,6 +46,18 @@ pub fn curves(times: &[f64], tracked: &[Tracked]) -> Vec<Series> {
     tracked.iter().enumerate().map(curve).collect()
 }
 
+/// The same by their units, each with the label of its axis.
+pub(super) fn by_unit(times: &[f64], tracked: &[Tracked]) -> Vec<(&'static str, Vec<Series>)> {
+    let curves = curves(times, tracked);
+    let labels = [("m", "deviation [mm]"), ("rad", "deviation [°]")];
+    let each = labels.map(|(unit, label)| {
+        let of = tracked.iter().zip(&curves);
+        let of = of.filter(|(one, _)| one.unit == unit);
+        (label, of.map(|(_, curve)| curve.clone()).collect())
+    });
+    each.to_vec()
+}
+
 /// Label of the vertical axis of [`curves`].
 pub fn label(tracked: &[Tracked]) -> &'static str {
     let has = |unit| tracked.iter().any(|one| one.unit == unit);

@@ -107,6 +107,7 @@ fn solve<'a>(
     let runs: Vec<CommandInput> = todo.iter().map(run).collect();
     let batch = Batch {
         runs: &runs,
+        text: None,
         run_in: request.run_in.of_tasks(sweep.run_at_once),
         folder: &results,
         max_seconds: request.max_seconds,

@@ -44,13 +44,6 @@ function axis(one, count) {
   return { low: low - margin, high: high + margin, marks: one.words ? one.words.map((_, i) => i).filter((i) => i >= low && i <= high) : marks };
 }
 
-function drawn(name, attributes, text) {
-  const made = document.createElementNS("http://www.w3.org/2000/svg", name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-  if (text !== undefined) made.textContent = text;
-  return made;
-}
-
 /** A choice among the columns. */
 function choice(label, id, entries, chosen) {
   const select = element("select", { id, "aria-label": label, onchange: draw }, ...entries.map(([value, name]) => element("option", { value }, name)));

@@ -9,6 +9,7 @@ use std::thread::{self, JoinHandle};
 
 use rayon::ThreadPoolBuilder;
 
+use crate::ipopt::interrupt;
 pub use crate::math::cores;
 
 /// Bytes of the stack of a thread: those that a main thread has.
@@ -20,7 +21,7 @@ pub type Answered<A> = Result<A, String>;
 /// The answers to all items, in their order, found in at most `threads` threads.
 ///
 /// A thread has its share of the cores for what is parallel within an answer: with as many threads as cores no half of a horizon competes
-/// with another answer. A panic is the end of one answer alone. `told` hears of each answer in this thread, as soon as there is one.
+/// with another answer, and stops where the one that calls is asked to. A panic is the end of one answer alone. `told` hears of each answer in this thread, as soon as there is one.
 pub fn at_once<T: Sync, A: Send>(
     items: &[T],
     threads: usize,
@@ -30,6 +31,7 @@ pub fn at_once<T: Sync, A: Send>(
     let threads = threads.clamp(1, items.len().max(1));
     let share = (cores() / threads).max(1);
     let next = AtomicUsize::new(0);
+    let request = interrupt::request();
     let take = || {
         let index = next.fetch_add(1, Ordering::Relaxed);
         let item = items.get(index)?;
@@ -45,9 +47,12 @@ pub fn at_once<T: Sync, A: Send>(
         let (sender, receiver) = mpsc::channel();
         for _ in 0..threads {
             let sender = sender.clone();
+            let request = &request;
             let work = move || {
-                let all =
-                    || std::iter::from_fn(take).for_each(|one| sender.send(one).unwrap_or(()));
+                let all = || {
+                    interrupt::listen(request);
+                    std::iter::from_fn(take).for_each(|one| sender.send(one).unwrap_or(()));
+                };
                 on_cores(share, all);
             };
             let thread = thread::Builder::new().stack_size(STACK);

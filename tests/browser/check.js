@@ -14,7 +14,7 @@ const solve = (name) => [["solve", `problems/${name}.json`]];
 /** A study of steps, and a trunk of so many joints that its voltages are rows of colours. */
 const STUDY = {
   title: "Steps of a pair", problem: resolve("problems/pair_constant.json"), set: { "simulate.duration": "0.1 s" },
-  methods: [{ name: "midpoint" }], refine: { name: "step", set: { "simulate.step": ["10 ms", "5 ms", "2.5 ms", "1.25 ms"] } },
+  methods: [{ name: "midpoint" }, { name: "redundant", set: { "simulate.coordinates": "redundant" } }], refine: { name: "step", set: { "simulate.step": ["10 ms", "5 ms", "2.5 ms", "1.25 ms"] } },
 };
 const SWING = { scene: "scene.json", simulate: { duration: "0.2 s", step: "4 ms", voltages: { muscle1: "2 kV", muscle6: "1 kV" } } };
 /** A pair whose marker is to end near a place. */
@@ -26,9 +26,10 @@ const SWEEP = {
 };
 /** Results, and what their pages show: so many parts that move or not, faces of finite elements, charts with these titles. */
 const RUNS = [
-  { name: "elephant_trunk", commands: solve("elephant_trunk"), moves: true, parts: 18, charts: ["Voltages", "Joints", "Energies", "Convergence"], megabytes: 1.5 },
+  { name: "elephant_trunk", commands: solve("elephant_trunk"), moves: true, parts: 18, charts: ["Voltages", "Joints", "Energies", "Convergence"], megabytes: 1.5, names: ["tip, optimal voltages", "constant voltages", "ground"] },
   { name: "fe_trunk", commands: [["simulate", "problems/fe_trunk.json"]], moves: true, parts: 18, faces: 864, charts: ["Voltages", "Stretches", "Charges"], megabytes: 3 },
-  { name: "bending_actuator", commands: solve("bending_actuator"), moves: false, parts: 1, faces: 916, charts: [], megabytes: 1 },
+  { name: "bending_actuator", commands: solve("bending_actuator"), moves: false, parts: 1, faces: 916, charts: [], megabytes: 1, names: ["reference configuration"] },
+  { name: "clamped_stack", commands: solve("clamped_stack"), moves: false, parts: 1, faces: 288, charts: [], megabytes: 1, names: ["reference configuration", "ground"] },
   { name: "pull_in", commands: solve("pull_in"), moves: true, walks: true, parts: 1, faces: 24, charts: ["Path"], megabytes: 1 },
   { name: "long_trunk", commands: [["new", "trunk", "--segments", "14", "FOLDER/scene"], ["simulate", "FOLDER/scene/swing.json"]], moves: true, parts: 42, charts: ["Voltages"], megabytes: 3 },
   { name: "aimed", commands: [["solve", "problems/pair.json", ...AIM]], moves: true, parts: 3, charts: ["Voltages"], megabytes: 1, target: [-12, 60, 0] },
@@ -42,6 +43,9 @@ const SCREENS = [
   { name: "laptop-dark", width: 1400, height: 900, scheme: "dark", still: true },
   { name: "phone-light", width: 400, height: 800, scheme: "light", still: true },
 ];
+
+const PROGRAM = process.env.CHROMIUM || "/usr/bin/chromium";
+const ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 
 let [passed, failed] = [0, 0];
 function expect(is, what) {
@@ -97,13 +101,20 @@ async function look(browser, run, screen, file) {
   if (!screen.still) {
     if (run.parts) {
       await scene(page, run, told);
+      await gauge(page, run, told);
       await picture(page, run, told);
       await controls(page, run, told);
     }
     await keyboard(page, told);
     if (run.variants) await sweep(page, run, told);
-    else await charts(page, run, told, screen);
+    else {
+      await charts(page, run, told, screen);
+      await pointed(page, told);
+    }
   }
+  if (!run.variants) await paper(page, run, told);
+  const words = await page.evaluate(() => document.querySelector("main").innerText);
+  expect(words.length > 50 && !words.includes("`"), `${told}: backticks in ${words.match(/.{0,40}`.{0,40}/)}`);
   await page.evaluate(() => window.scrollTo(0, 0));
   await page.evaluate(axe);
   const found = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
@@ -141,6 +152,71 @@ async function scene(page, run, told) {
     return new Set(Array.from({ length: 6400 }, (_, i) => data.slice(4 * i, 4 * i + 4).join())).size;
   });
   expect(colours > 20, `${told}: the picture has ${colours} colours`);
+}
+
+/** The bar of the scale is as long as it says, names tell what lines are, and the ground is there. */
+async function gauge(page, run, told) {
+  const { bar, label, apart, names } = await page.evaluate(() => {
+    const { scene } = window.proboscis;
+    scene.camera.enlarge(1.7);
+    const path = document.querySelector("#gauge path").getAttribute("d");
+    const [, left, right] = /^M([\d.]+) .*H([\d.]+)V/.exec(path).map(Number);
+    const label = document.querySelector("#gauge text:last-of-type").textContent;
+    const length = Number.parseFloat(label) * { "µm": 1e-3, mm: 1, m: 1e3 }[label.split(" ")[1]];
+    const along = new THREE.Vector3(...scene.camera.axes().right).multiplyScalar(length);
+    const [a, b] = [new THREE.Vector3(), along].map((place) => ((place.project(scene.camera.three).x + 1) / 2) * scene.canvas.clientWidth);
+    scene.camera.look("auto");
+    return { bar: right - left, label, apart: b - a, names: [...document.querySelectorAll("#legend li")].map((one) => one.textContent) };
+  });
+  expect(bar > 10 && Math.abs(bar - apart) < 0.01 * bar, `${told}: a bar of ${label} has ${bar} px in place of ${apart}`);
+  for (const name of run.names || []) expect(names.includes(name), `${told}: ${name} is not named among ${names}`);
+}
+
+/** What a curve says of a point has the units of its axes. */
+async function pointed(page, told) {
+  const wrong = await page.evaluate(() => window.proboscis.charts.made.filter((one) => one.panel).flatMap(({ panel, chart }) => {
+    const { label } = chart.options.plugins.tooltip.callbacks;
+    const words = label({ dataset: { label: "curve" }, parsed: { x: 2, y: 3 } });
+    const units = [panel.x.label, panel.y.label].map((text) => /\[(.*)\]/.exec(text)?.[1]).filter(Boolean);
+    return units.every((unit) => words.includes(unit)) && words.startsWith("curve: ") ? [] : [`${words} for ${panel.y.label} over ${panel.x.label}`];
+  }));
+  expect(wrong.length === 0, `${told}: tool tips say ${wrong}`);
+}
+
+/** On paper there are all charts and the scene, light and with ink on them, and then the screen is as before. */
+async function paper(page, run, told) {
+  const dressed = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const before = await dressed();
+  const found = await page.evaluate(() => {
+    const inked = (canvas) => {
+      const copy = Object.assign(document.createElement("canvas"), { width: 60, height: 60 });
+      const pen = copy.getContext("2d");
+      pen.drawImage(canvas, 0, 0, 60, 60);
+      const data = pen.getImageData(0, 0, 60, 60).data;
+      return new Set(Array.from({ length: 3600 }, (_, i) => data.slice(4 * i, 4 * i + 4).join())).size;
+    };
+    window.dispatchEvent(new Event("beforeprint"));
+    const charts = window.proboscis.charts.made.map((one) => inked(one.canvas));
+    const still = document.getElementById("still");
+    const told = { charts, scene: still && inked(still), paper: getComputedStyle(document.body).backgroundColor };
+    window.dispatchEvent(new Event("afterprint"));
+    return told;
+  });
+  expect(found.charts.every((colours) => colours > 5), `${told}: charts on paper have ${found.charts} colours`);
+  if (run.parts) expect(found.scene > 20, `${told}: the scene on paper has ${found.scene} colours`);
+  expect(found.paper === "rgb(255, 255, 255)" && (await dressed()) === before, `${told}: paper is ${found.paper}, the screen ${await dressed()} after ${before}`);
+  const printed = await page.pdf({ format: "A4" });
+  writeFileSync(join(folder, `${told.replaceAll(" ", "-")}.pdf`), printed);
+  expect(!run.parts || printed.toString("latin1").includes("/Subtype /Image"), `${told}: no picture on paper`);
+}
+
+/** What the command line of the browser prints is drawn. */
+function fromCommandLine(file, run) {
+  const pdf = join(folder, `${run.name}.pdf`);
+  execFileSync(PROGRAM, ["--headless", ...ARGUMENTS, `--print-to-pdf=${pdf}`, pathToFileURL(file).href], { stdio: "ignore" });
+  const printed = readFileSync(pdf);
+  // Without scene and charts it has 75 kB.
+  expect(printed.length > 2e5 && printed.toString("latin1").includes("/Subtype /Image"), `${run.name}: ${printed.length} bytes are printed from the command line`);
 }
 
 /** Normals of faces point where their triangles do, at every instant, and the picture is fine again at rest. */
@@ -313,7 +389,7 @@ async function charts(page, run, told, screen) {
   expect(empty === 0, `${told}: ${empty} charts are not drawn`);
 }
 
-const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || "/usr/bin/chromium", args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
+const browser = await chromium.launch({ executablePath: PROGRAM, args: ARGUMENTS });
 rmSync(folder, { recursive: true, force: true });
 mkdirSync(join(folder, "scene"), { recursive: true });
 writeFileSync(join(folder, "study.json"), JSON.stringify(STUDY));
@@ -329,6 +405,7 @@ for (const run of RUNS.filter(({ name }) => !named.length || named.includes(name
   const file = resolve(results, "report.html");
   const size = readFileSync(file).length / 1e6;
   expect(size < run.megabytes, `${run.name}: a page of ${size} MB`);
+  if (run.name === "elephant_trunk") fromCommandLine(file, run);
   for (const screen of SCREENS.filter((one) => !one.still || run.name === "elephant_trunk")) await look(browser, run, screen, file);
 }
 await browser.close();

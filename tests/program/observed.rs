@@ -2,8 +2,8 @@
 
 use crate::runs::{problem, read};
 use proboscis::app::{
-    CommandInput, CommandOutput, PageWanted, ProgressDisplay, Reached, check_text, run_observed,
-    with_program,
+    CommandInput, CommandOutput, PageWanted, ProgressDisplay, Reached, RunIn, changed_text,
+    check_text, checked, inspected, run_observed, solve_text_from_starts, with_program,
 };
 use proboscis::ipopt::interrupt::{self, StopRequest};
 use proboscis::report::Figures;
@@ -26,12 +26,17 @@ fn solve(
     output: &Path,
     observer: &mut dyn FnMut(Reached<'_>),
 ) -> CommandOutput {
-    let request = CommandInput {
+    let input = match text {
+        Some(_) => nowhere(),
+        None => problem(name).into(),
+    };
+    run_observed(&request(input, output), text, observer).unwrap()
+}
+
+fn request(input: PathBuf, output: &Path) -> CommandInput {
+    CommandInput {
         command: "proboscis".to_owned(),
-        input: match text {
-            Some(_) => nowhere(),
-            None => problem(name).into(),
-        },
+        input,
         set: Vec::new(),
         output: Some(output.to_owned()),
         max_seconds: None,
@@ -41,8 +46,7 @@ fn solve(
         figures: Figures::default(),
         progress: ProgressDisplay::Never,
         page: PageWanted::Written,
-    };
-    run_observed(&request, text, observer).unwrap()
+    }
 }
 
 #[test]
@@ -136,4 +140,86 @@ fn a_text_is_checked_and_its_program_handed_out() {
     })
     .unwrap();
     assert!(n > m && m > 20 && n == start);
+}
+
+#[test]
+fn a_change_in_the_scene_of_a_file_is_written_into_the_problem() {
+    let path = nowhere();
+    let set = |words: &[&str]| {
+        words
+            .iter()
+            .map(|&word| word.to_owned())
+            .collect::<Vec<_>>()
+    };
+    let parsed = |text: &str| serde_json::from_str::<serde_json::Value>(text).unwrap();
+    let asked = set(&["control.intervals=7"]);
+    let apart = parsed(&changed_text(&path, &text("pair"), &asked).unwrap());
+    assert_eq!(apart["control"]["intervals"], 7);
+    assert_eq!(apart["scene"], parsed(&text("pair"))["scene"]);
+    let stiff = set(&["scene.materials.silicone.shear_modulus=90 kPa"]);
+    let changed = changed_text(&path, &text("pair"), &stiff).unwrap();
+    let modulus = &parsed(&changed)["scene"]["materials"]["silicone"]["shear_modulus"];
+    assert_eq!(modulus, "90 kPa");
+    assert_eq!(check_text(&path, &changed, &[]).unwrap(), "control");
+    let wrong = set(&["scene.materials.silicone.shear_modulus=90 mm"]);
+    let error = changed_text(&path, &text("pair"), &wrong).unwrap_err();
+    assert_eq!(error.place(), "materials.silicone.shear_modulus");
+
+    // The mesh beside the scene is found from beside the problem.
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/block_v4.msh");
+    fs::create_dir(folder.path().join("scenes")).unwrap();
+    fs::copy(mesh, folder.path().join("scenes/block.msh")).unwrap();
+    let scene = r#"{"name": "block", "materials": {"silicone": {"density": 1000, "shear_modulus": "100 kPa", "lame_lambda": "400 kPa"}},
+        "solids": [{"name": "cube", "material": "silicone", "mesh": "block.msh", "unit": "1 mm"}]}"#;
+    fs::write(folder.path().join("scenes/scene.json"), scene).unwrap();
+    let here = folder.path().join("problem.json");
+    let asked = r#"{"scene": "scenes/scene.json", "simulate": {"duration": "1 ms"}}"#;
+    let soft = set(&["scene.materials.silicone.shear_modulus=50 kPa"]);
+    let changed = changed_text(&here, asked, &soft).unwrap();
+    assert_eq!(
+        parsed(&changed)["scene"]["solids"][0]["mesh"],
+        "scenes/block.msh"
+    );
+    assert_eq!(check_text(&here, &changed, &[]).unwrap(), "simulate");
+}
+
+#[test]
+fn a_text_is_inspected_and_its_derivatives_are_compared() {
+    let request = request(nowhere(), Path::new(""));
+    let request = CommandInput {
+        output: None,
+        ..request
+    };
+    let found = inspected(&request, Some(&text("pair"))).unwrap();
+    let n = with_program(&nowhere(), &text("pair"), |_, start| start.len()).unwrap();
+    assert_eq!((found.sizes["variables"], found.sizes["muscles"]), (n, 2));
+    assert_eq!(found.coordinates, "reduced");
+    assert!(
+        found
+            .plan
+            .effects
+            .iter()
+            .any(|effect| effect.name == "muscle electroelasticity")
+    );
+    let found = checked(&request, Some(&text("pair"))).unwrap();
+    assert!(found.agrees && found.wrong.is_empty() && found.checked == n && found.variables == n);
+    assert!(found.errors.jacobian > 0.0 && found.errors.hessian < 1e-5);
+}
+
+#[test]
+fn a_request_stops_the_solves_that_a_thread_has_begun() {
+    let folder = tempfile::tempdir().unwrap();
+    let asked = request(nowhere(), folder.path());
+    let starts = |request: &StopRequest| {
+        interrupt::listen(request);
+        solve_text_from_starts(&asked, Some(&text("pair")), 3, 1, RunIn::Here).unwrap()
+    };
+    let [before, none] = [StopRequest::default(), StopRequest::default()];
+    before.make();
+    let [stopped, solved] = [before, none]
+        .map(|request| thread::scope(|scope| scope.spawn(|| starts(&request)).join().unwrap()));
+    assert!(!stopped.is_solved && solved.is_solved);
+    let table = fs::read_to_string(folder.path().join("starts.csv")).unwrap();
+    assert_eq!(table.matches(",solved,").count(), 3, "{table}");
 }

@@ -1,11 +1,12 @@
 //! The page of a run: its data are those of the run, its code is small and asks for nothing.
 
+use std::collections::{BTreeMap, HashSet};
 use std::sync::LazyLock;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use nalgebra::Vector3;
-use proboscis::dynamics::trajectory::{Observations, Trajectory};
+use proboscis::dynamics::trajectory::{Column, Observations, Trajectory};
 use proboscis::model::System;
 use proboscis::model::system::{ElectricConstants, VACUUM_PERMITTIVITY};
 use proboscis::report::origin::Origin;
@@ -176,4 +177,95 @@ fn a_page_has_its_code_in_less_than_half_a_megabyte_and_asks_for_nothing() {
             .any(|value| (value - 1.5_f64.to_degrees()).abs() < 1e-4)
     );
     assert!((points[points.len() - 2] - 1.2).abs() < 1e-6);
+}
+
+#[test]
+fn each_muscle_looks_the_same_in_all_charts() {
+    let (system, trajectory) = swing();
+    let values = || (0..21).map(|k| 1.0 + f64::from(k)).collect::<Vec<_>>();
+    let column = |name: String, unit| Column {
+        name,
+        unit,
+        values: values(),
+    };
+    let each = system
+        .muscles
+        .iter()
+        .enumerate()
+        .rev()
+        .flat_map(|(_, muscle)| {
+            let ends = [
+                ("stretch", ""),
+                ("charge", "mC"),
+                ("electrical_energy", "N mm"),
+                ("mechanical_work", "N mm"),
+            ];
+            ends.map(|(end, unit)| column(format!("{}_{end}", muscle.name), unit))
+        });
+    let observations = Observations {
+        columns: each.collect(),
+    };
+    let run = Run {
+        observations: &observations,
+        ..run(&system, &trajectory)
+    };
+    let data = page_data(&page::html(&run, run.told.unwrap()));
+    let mut looks: BTreeMap<String, Vec<(Value, Value)>> = BTreeMap::new();
+    let named = [
+        "Voltages",
+        "Stretches",
+        "Charges",
+        "Energy from each source",
+        "Work of each source",
+    ];
+    for chart in data["charts"].as_array().unwrap() {
+        let is_of_muscles = named.iter().any(|title| chart["title"] == *title);
+        let panels = chart["panels"].as_array().unwrap().iter();
+        let curves = panels.flat_map(|panel| panel["series"].as_array().unwrap());
+        for curve in curves.filter(|_| is_of_muscles) {
+            let look = (curve["colour"].clone(), curve["dashed"].clone());
+            looks
+                .entry(curve["name"].as_str().unwrap().to_owned())
+                .or_default()
+                .push(look);
+        }
+    }
+    assert_eq!(looks.len(), 12, "{looks:?}");
+    for (name, look) in &looks {
+        assert_eq!(look.len(), named.len(), "{name}");
+        assert!(look.iter().all(|one| *one == look[0]), "{name}: {look:?}");
+    }
+    let distinct: HashSet<_> = looks
+        .values()
+        .map(|look| look[0].0.to_string() + &look[0].1.to_string())
+        .collect();
+    assert_eq!(distinct.len(), 12);
+}
+
+#[test]
+fn a_page_shows_the_ground_and_names_the_motion_beside() {
+    let (system, trajectory) = swing();
+    let run = Run {
+        comparison: Some(("constant voltages", &trajectory)),
+        name: "optimal voltages",
+        ..run(&system, &trajectory)
+    };
+    let data = page_data(&page::html(&run, run.told.unwrap()));
+    let scene = &data["scene"];
+    assert_eq!(scene["names"][0], "optimal voltages");
+    assert_eq!(scene["names"][1], "constant voltages");
+    // Below the lowest end of a muscle in the ground, and around all of them.
+    let plate = unpacked(&scene["ground"]["plate"]);
+    let ends = system
+        .muscles
+        .iter()
+        .filter(|muscle| muscle.from.body.is_none());
+    let ends: Vec<_> = ends.map(|muscle| muscle.from.at).collect();
+    let lowest = ends.iter().map(|at| at.y).fold(f64::INFINITY, f64::min);
+    assert!(plate.len() > 30 && plate.chunks(3).all(|at| close(at[1], lowest)));
+    let radius = (plate[0] - plate[plate.len() / 6 * 3])
+        .hypot(plate[2] - plate[plate.len() / 6 * 3 + 2])
+        / 2.0;
+    assert!(ends.iter().all(|at| at.xz().norm() < radius), "{radius}");
+    assert_eq!(unpacked(&scene["ground"]["faces"]).len(), 0);
 }

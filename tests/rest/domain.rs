@@ -163,6 +163,8 @@ fn pull_in_is_marked_on_the_path() {
     let lost = &told["path"]["lost"][0];
     let fraction = lost["fraction"].as_f64().unwrap();
     assert_eq!(lost["kind"], "pull_in");
+    // Of all states of rest on the path this one has the most.
+    assert_eq!(told["path"]["largest_fraction"], lost["fraction"]);
     assert!(
         err.contains(&format!(
             "pull-in at {:.6} % of the voltages",

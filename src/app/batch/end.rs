@@ -11,6 +11,10 @@ use crate::ipopt::Options;
 pub enum RunIn {
     /// In threads of this process, where the linear solver allows that; in processes elsewhere.
     Threads,
+    /// In this process: in threads, where the linear solver allows that, one after the other elsewhere.
+    Here,
+    /// One after the other, in this process.
+    InTurn,
     /// Each in a process of its own.
     Processes,
     /// Each as a task of a HyperQueue server.
@@ -23,6 +27,8 @@ impl RunIn {
     pub(crate) fn of_tasks(self, run_at_once: bool) -> Self {
         match self {
             Self::Threads if !run_at_once => Self::Processes,
+            Self::Here if run_at_once => Self::Threads,
+            Self::Here => Self::InTurn,
             other => other,
         }
     }

@@ -14,6 +14,7 @@ mod threads;
 use std::ops::ControlFlow;
 
 use crate::app::error::CommandError;
+use crate::workflow::at_once::cores;
 pub use end::RunIn;
 pub(crate) use end::{RunEnd, Said, task_runs_at_once};
 pub use parent::end_with_parent;
@@ -28,8 +29,12 @@ pub(crate) fn run_all(
     told: &mut dyn FnMut(usize, RunEnd) -> ControlFlow<()>,
 ) -> Result<(), CommandError> {
     match batch.run_in {
-        RunIn::Threads => {
-            threads::run_all(batch, told);
+        RunIn::Threads | RunIn::Here => {
+            threads::run_all(batch, cores(), told);
+            Ok(())
+        }
+        RunIn::InTurn => {
+            threads::run_all(batch, 1, told);
             Ok(())
         }
         RunIn::Processes => processes::run_all(batch, told),
@@ -43,7 +48,7 @@ pub(crate) fn run_all(
 /// What they need is missing.
 pub(crate) fn check_run_in(run_in: RunIn) -> Result<(), CommandError> {
     match run_in {
-        RunIn::Threads | RunIn::Processes => Ok(()),
+        RunIn::Threads | RunIn::Here | RunIn::InTurn | RunIn::Processes => Ok(()),
         RunIn::HyperQueue => hyperqueue::check(),
     }
 }

@@ -13,6 +13,8 @@ use crate::ipopt::interrupt;
 pub(crate) struct Batch<'a> {
     /// What is solved.
     pub(crate) runs: &'a [CommandInput],
+    /// Text that stands for that of the problem file, in threads.
+    pub(crate) text: Option<&'a str>,
     /// Where.
     pub(crate) run_in: RunIn,
     /// Folder of all results.

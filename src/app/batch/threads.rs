@@ -1,4 +1,4 @@
-//! Solves in threads of this process, as many at once as there are cores.
+//! Solves in threads of this process, as many at once as there are cores, or one.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,10 +9,14 @@ use super::plan::Batch;
 use crate::app::error::CommandError;
 use crate::app::request::CommandInput;
 use crate::app::task;
-use crate::workflow::at_once::{at_once, cores};
+use crate::workflow::at_once::at_once;
 
-/// Runs all of a batch.
-pub(super) fn run_all(batch: &Batch<'_>, told: &mut dyn FnMut(usize, RunEnd) -> ControlFlow<()>) {
+/// Runs all of a batch, at most so many at once.
+pub(super) fn run_all(
+    batch: &Batch<'_>,
+    threads: usize,
+    told: &mut dyn FnMut(usize, RunEnd) -> ControlFlow<()>,
+) {
     let is_over = AtomicBool::new(false);
     let solve = |run: &CommandInput| {
         let command = batch.command(run);
@@ -20,7 +24,7 @@ pub(super) fn run_all(batch: &Batch<'_>, told: &mut dyn FnMut(usize, RunEnd) -> 
             return RunEnd::NOT_STARTED;
         };
         let began = Instant::now();
-        let said = match task::run(&command) {
+        let said = match task::run_observed(&command, batch.text, &mut |_| {}) {
             Ok(told) if told.is_solved => Said::Solved,
             Ok(_) => Said::Unsolved(String::new()),
             Err(error) => said(&error),
@@ -30,7 +34,7 @@ pub(super) fn run_all(batch: &Batch<'_>, told: &mut dyn FnMut(usize, RunEnd) -> 
             seconds: began.elapsed().as_secs_f64(),
         }
     };
-    at_once(batch.runs, cores(), solve, |index, answered| {
+    at_once(batch.runs, threads, solve, |index, answered| {
         let end = answered.clone().unwrap_or_else(|panic| RunEnd {
             said: Said::Failed(panic),
             seconds: 0.0,

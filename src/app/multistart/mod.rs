@@ -17,11 +17,10 @@ use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::task::refuse_replacing;
+use crate::app::task::{read, refuse_replacing};
 use crate::app::words::key;
 use crate::control::problem::Task;
-use crate::files::{is_standard_input, read_problem};
-use crate::workflow::memory;
+use crate::files::is_standard_input;
 use crate::workflow::resolve::resolve;
 use ended::{Ended, best, number_optima};
 use files::write;
@@ -42,6 +41,21 @@ pub fn solve_from_starts(
     seed: u64,
     wanted: RunIn,
 ) -> Result<CommandOutput, CommandError> {
+    solve_text_from_starts(request, None, starts, seed, wanted)
+}
+
+/// The same; a `text` stands for that of the problem file, which then only names it and the folder that paths are relative to. It is
+/// not solved in processes, which read the file.
+///
+/// # Errors
+/// As of [`solve_from_starts`].
+pub fn solve_text_from_starts(
+    request: &CommandInput,
+    text: Option<&str>,
+    starts: usize,
+    seed: u64,
+    wanted: RunIn,
+) -> Result<CommandOutput, CommandError> {
     let began = Instant::now();
     if !(1..MOST).contains(&starts) {
         let reason = format!(
@@ -53,7 +67,7 @@ pub fn solve_from_starts(
             reason,
         });
     }
-    let loaded = read_problem(&request.input, &request.set)?;
+    let loaded = read(&request.input, text, &request.set)?;
     let Task::Control(control) = &loaded.task else {
         let task = key(&loaded.task);
         return Err(CommandError::Option {
@@ -65,7 +79,6 @@ pub fn solve_from_starts(
         });
     };
     refuse_replacing(request, &loaded.task)?;
-    memory::of_elements(&loaded.system).map_err(CommandError::of(&request.input))?;
     resolve(&loaded.system, control).map_err(CommandError::of(&request.input))?;
     let run_in = wanted.of_tasks(task_runs_at_once(&loaded.task));
     if run_in == RunIn::Processes && is_standard_input(&request.input) {
@@ -92,6 +105,7 @@ pub fn solve_from_starts(
         .collect();
     let batch = Batch {
         runs: &runs,
+        text,
         run_in,
         folder: &folder,
         max_seconds: request.max_seconds,

@@ -1,13 +1,13 @@
 // The answer in words, tables of what the run consists of, and the texts it was made from.
 
 function answer(data, holder) {
-  const verdict = element("p", { id: "verdict", class: data.isSolved ? "good" : "bad" }, `${data.isSolved ? "✓" : "✗"} ${data.answer}`);
+  const verdict = element("p", { id: "verdict", class: data.isSolved ? "good" : "bad" }, data.isSolved ? "✓ " : "✗ ", ...worded(data.answer));
   holder.append(verdict);
   if (data.notes.length) {
-    const notes = data.notes.map((note) => element("li", {}, note));
+    const notes = data.notes.map((note) => element("li", {}, ...worded(note)));
     holder.append(element("ul", { class: `notes ${data.isSolved ? "" : "bad"}` }, ...notes));
   }
-  const rows = data.rows.filter(([name]) => name !== "status").map(([name, value]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, value)));
+  const rows = data.rows.filter(([name]) => name !== "status").map(([name, value]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, ...worded(value))));
   holder.append(element("table", {}, element("tbody", {}, ...rows)));
 }
 
@@ -24,7 +24,7 @@ function again(data, holder) {
 function compared(data, holder) {
   const name = (text, i) => element("th", { scope: "col" }, element("span", { class: "dot", style: `--c:${readable(data.colours[i])}` }), text);
   const head = element("tr", {}, element("th", { scope: "col" }, "result"), ...data.names.map(name));
-  const ends = data.answers.map((text, i) => element("td", { class: data.solved[i] ? "good" : "bad" }, `${data.solved[i] ? "✓" : "✗"} ${text}`));
+  const ends = data.answers.map((text, i) => element("td", { class: data.solved[i] ? "good" : "bad" }, data.solved[i] ? "✓ " : "✗ ", ...worded(text)));
   const rows = [element("tr", {}, element("th", { scope: "row" }, "status"), ...ends)];
   for (const [title, ...values] of data.table.filter((row) => row[0] !== "status")) {
     const differs = values.some((value) => value !== values[0]);

@@ -2,15 +2,26 @@
 
 /** Width of the labels at the left in px, the same everywhere so that time axes stand below each other. */
 const LABELS = 66;
-
-const over = (label) => label.split(" [")[0];
+/** Pixels along a px of paper. */
+const PRINTED = 3;
 
 /** All charts of a page; those over time follow the clock, and a touch on them moves it. */
 class Charts {
   constructor(charts, holder, clock) {
-    Object.assign(this, { holder, clock, made: [] });
+    Object.assign(this, { holder, clock, made: [], folded: [] });
     for (const chart of charts) this.section(chart);
     dark.addEventListener("change", () => this.made.forEach((panel) => panel.renew()));
+  }
+
+  /** Draws all of them for paper, or those in sight for the screen again. */
+  print(on) {
+    // Names of many curves are told on paper too.
+    if (on) this.folded = [...this.holder.querySelectorAll("details:not([open])")];
+    for (const names of this.folded) names.open = on;
+    for (const panel of this.made) {
+      panel.printed = on;
+      panel.renew();
+    }
   }
 
   section(chart) {
@@ -54,7 +65,8 @@ class Drawn {
   renew() {
     this.chart?.destroy();
     this.chart = null;
-    if (!this.visible) return;
+    this.cursor.style.display = "none";
+    if (!this.visible && !this.printed) return;
     this.chart = new Chart(this.canvas, this.settings());
     this.follow();
   }
@@ -89,10 +101,10 @@ class Drawn {
     return {
       type: "scatter",
       options: {
-        animation: false, responsive: true, maintainAspectRatio: false, normalized: true,
+        animation: false, responsive: true, ...(this.printed ? { devicePixelRatio: PRINTED } : {}), maintainAspectRatio: false, normalized: true,
         layout: { padding: { right: 12, top: 4 } },
         interaction: { mode: "nearest", intersect: false },
-        scales, plugins: { legend: { display: false }, tooltip: { callbacks: { label: (item) => `${item.dataset.label}: ${short(item.parsed.x)}, ${short(item.parsed.y)}` } } },
+        scales, plugins: { legend: { display: false }, tooltip: { callbacks: { label: ({ dataset, parsed }) => pointed(dataset.label, [y, parsed.y], [x, parsed.x]) } } },
       },
     };
   }
@@ -104,7 +116,7 @@ class Panel extends Drawn {
     const frame = element("div", { class: "panel" });
     if (panel.title) frame.append(element("h3", {}, panel.title));
     holder.append(frame);
-    super(frame, clock, `${panel.title || title}: ${over(panel.y.label)} over ${over(panel.x.label)}`);
+    super(frame, clock, `${panel.title || title}: ${measure(panel.y.label).name} over ${measure(panel.x.label).name}`);
     this.panel = panel;
     this.series = panel.series.map((one) => ({ ...one, hidden: false, points: pairs(numbers(one.points)) }));
     this.keys();
@@ -115,7 +127,7 @@ class Panel extends Drawn {
     if (!named.length) return;
     const key = (one) => {
       const told = element("span");
-      const button = element("button", { class: `key${one.dashed ? " dashed" : ""}`, "aria-pressed": true, style: `--c:${one.colour}` }, one.name, told);
+      const button = element("button", { class: `key${one.dashed ? " dashed" : ""}${one.joined ? "" : ` ${one.mark}`}`, "aria-pressed": true, style: `--c:${one.colour}` }, one.name, told);
       button.addEventListener("click", () => {
         one.hidden = !one.hidden;
         button.setAttribute("aria-pressed", !one.hidden);
@@ -212,6 +224,15 @@ class Rows extends Drawn {
     }];
     return settings;
   }
+}
+
+/** A point in words: its curve, and its values on both axes. */
+function pointed(name, ...places) {
+  const words = places.map(([axis, value]) => {
+    const { name: quantity, unit } = measure(axis.label);
+    return `${quantity} ${valued(value, unit)}`;
+  });
+  return `${name ? `${name}: ` : ""}${words.join(", ")}`;
 }
 
 function pairs(values) {

@@ -8,7 +8,7 @@ use crate::report::axes::Scale;
 use crate::report::lines::{Aspect, LinePlot, Mark, Series};
 use crate::report::page::numbers::numbers;
 use crate::report::style::{self, Dash};
-use crate::report::{Run, Told, joints, tip_path, tracking, voltages};
+use crate::report::{Run, Told, joints, sources, tip_path, tracking, voltages};
 
 /// Panels beyond which voltages are shown as colours.
 const PANELS: usize = 12;
@@ -95,22 +95,25 @@ fn pair(system: &System, source: usize) -> String {
     }
 }
 
-/// Quantities over time with a chart each.
+/// Quantities over time with a chart each, with a panel for each unit.
 fn over_time(run: &Run<'_>) -> Vec<Value> {
     let (system, motion) = (run.system, run.trajectory);
     let times = &motion.times;
-    let observed = |chosen: &dyn Fn(&Column) -> Option<String>, factor: f64| {
+    let points = |column: &Column| -> Vec<[f64; 2]> {
+        let points = times.iter().zip(&column.values);
+        points.map(|(t, v)| [t / 1e3, *v]).collect()
+    };
+    let observed = |chosen: &dyn Fn(&Column) -> Option<String>| {
         let columns = run.observations.columns.iter();
         let named = columns.filter_map(|column| Some((chosen(column)?, column)));
-        let curve = |(i, (name, column)): (usize, (String, &Column))| {
-            let points = times.iter().zip(&column.values);
-            let points = points.map(|(t, v)| [t / 1e3, factor * v]).collect();
-            Series::curve(name, points, style::hue(i))
-        };
+        let curve = |(i, (name, column))| Series::curve(name, points(column), style::hue(i));
         named.enumerate().map(curve).collect::<Vec<_>>()
     };
-    let ends = |end: &'static str| {
-        move |column: &Column| Some(column.name.strip_suffix(end)?.replace('_', " "))
+    let of_sources = |end: &str| {
+        let columns = run.observations.columns.iter();
+        let columns = columns.filter(|column| column.name != "mechanical_work");
+        let named = columns.filter_map(|c| Some((c.name.strip_suffix(end)?, points(c))));
+        sources::curves(system, named)
     };
     let begins = |start: &'static str| {
         move |column: &Column| Some(column.name.strip_prefix(start)?.to_owned())
@@ -122,73 +125,60 @@ fn over_time(run: &Run<'_>) -> Vec<Value> {
     };
     let energy =
         |column: &Column| joints::is_energy(&column.name).then(|| column.name.replace('_', " "));
-    let source = |end: &'static str| {
-        move |column: &Column| {
-            let name = column.name.strip_suffix(end)?;
-            (column.name != "mechanical_work").then(|| name.replace('_', " "))
-        }
-    };
     let violation = |column: &Column| {
         (column.name == "constraint_violation").then(|| "constraint violation".to_owned())
     };
-    let mut momenta = observed(&begins("angular_momentum_"), 1.0);
+    let mut momenta = observed(&begins("angular_momentum_"));
     momenta
         .iter_mut()
         .for_each(|series| series.name.insert_str(0, "about "));
-    let (charge, charges) = joints::scaled_charges(joints::charges(motion, run.observations));
+    let charges = joints::charges(system, motion, run.observations);
+    let alone = |label: &'static str, curves: Vec<Series>| vec![(label, curves)];
     let all = [
-        (
-            "Joints",
-            joints::label(system, motion),
-            joints::curves(system, motion),
-        ),
-        ("Markers", "place [mm]", observed(&marker, 1.0)),
-        (
-            "Deviations",
-            tracking::label(run.tracked),
-            tracking::curves(times, run.tracked),
-        ),
-        ("Stretches", "stretch", observed(&ends("_stretch"), 1.0)),
-        ("Charges", charge, charges),
-        ("Energies", "energy [mJ]", observed(&energy, 1.0)),
+        ("Joints", joints::by_unit(system, motion)),
+        ("Markers", alone("place [mm]", observed(&marker))),
+        ("Deviations", tracking::by_unit(times, run.tracked)),
+        ("Stretches", alone("stretch", of_sources("_stretch"))),
+        ("Charges", vec![joints::scaled_charges(charges)]),
+        ("Energies", alone("energy [mJ]", observed(&energy))),
         (
             "Energy from each source",
-            "energy [mJ]",
-            observed(&source("_electrical_energy"), 1.0),
+            alone("energy [mJ]", of_sources("_electrical_energy")),
         ),
         (
             "Work of each source",
-            "work [mJ]",
-            observed(&source("_mechanical_work"), 1.0),
+            alone("work [mJ]", of_sources("_mechanical_work")),
         ),
         (
             "Linear momentum",
-            "momentum [N ms]",
-            observed(&begins("linear_momentum_"), 1.0),
+            alone("momentum [N ms]", observed(&begins("linear_momentum_"))),
         ),
-        ("Angular momentum", "momentum [N mm ms]", momenta),
+        ("Angular momentum", alone("momentum [N mm ms]", momenta)),
         (
             "Constraint violation",
-            "violation",
-            observed(&violation, 1.0),
+            alone("violation", observed(&violation)),
         ),
     ];
-    let chart = |(title, label, curves): (&str, &str, Vec<Series>)| {
-        // What stays zero, such as the violation of constraints that were eliminated, is no curve.
-        let mut values = curves.iter().flat_map(|one| &one.points);
-        let exists = values.any(|point| point[1].is_finite() && point[1] != 0.0);
-        exists.then(|| {
-            let curves: Vec<Value> = curves.iter().map(series).collect();
-            let panel = json!({
-                "title": "",
-                "x": axis("time [s]", Scale::Linear),
-                "y": axis(label, Scale::Linear),
-                "series": curves,
-            });
-            json!({ "title": title, "kind": "panels", "time": true, "panels": [panel] })
+    let each = all.into_iter().filter_map(|(title, panels)| {
+        let panels: Vec<Value> = panels.iter().filter_map(of_time).collect();
+        let chart = json!({ "title": title, "kind": "panels", "time": true, "panels": panels });
+        (!panels.is_empty()).then_some(chart)
+    });
+    each.collect()
+}
+
+/// A panel of curves over time; what stays zero, such as the violation of constraints that were eliminated, has none.
+fn of_time((label, curves): &(&str, Vec<Series>)) -> Option<Value> {
+    let mut values = curves.iter().flat_map(|one| &one.points);
+    let exists = values.any(|point| point[1].is_finite() && point[1] != 0.0);
+    exists.then(|| {
+        json!({
+            "title": "",
+            "x": axis("time [s]", Scale::Linear),
+            "y": axis(label, Scale::Linear),
+            "series": curves.iter().map(series).collect::<Vec<_>>(),
         })
-    };
-    all.into_iter().filter_map(chart).collect()
+    })
 }
 
 /// Paths of the markers in the three planes of the axes.

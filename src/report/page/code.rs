@@ -22,14 +22,16 @@ pub(super) const SHEET: &str = include_str!("page.css");
 /// What all pages share.
 const HELPERS: [&str; 2] = [include_str!("read.js"), include_str!("theme.js")];
 /// The modules of the page of a run in the order in which they need each other.
-pub(super) const MODULES: [&str; 8] = [
+pub(super) const MODULES: [&str; 10] = [
     include_str!("clock.js"),
     include_str!("camera.js"),
     include_str!("parts.js"),
     include_str!("picture.js"),
+    include_str!("ground.js"),
     include_str!("scene.js"),
     include_str!("charts.js"),
     include_str!("answer.js"),
+    include_str!("print.js"),
     include_str!("start.js"),
 ];
 

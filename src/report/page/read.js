@@ -33,6 +33,37 @@ function element(kind, attributes = {}, ...children) {
   return made;
 }
 
+/** The namespace of drawings, whose name is an address that nobody is to ask. */
+const DRAWINGS = (() => {
+  const holder = document.createElement("template");
+  holder.innerHTML = "<svg></svg>";
+  return holder.content.firstChild.namespaceURI;
+})();
+
+/** A new element of a drawing. */
+function drawn(name, attributes, text) {
+  const made = document.createElementNS(DRAWINGS, name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  if (text !== undefined) made.textContent = text;
+  return made;
+}
+
+/** A text whose names in backticks are set as names. */
+function worded(text) {
+  const named = (part, i) => (i % 2 ? element("code", {}, part) : part);
+  const parts = text.split(/`([^`]+)`/);
+  return parts.map(named);
+}
+
+/** What an axis or a scale measures, and its unit. */
+function measure(label) {
+  const [, name, unit] = /^(.*?)(?: \[(.*)\])?$/.exec(label);
+  return { name, unit: unit || "" };
+}
+
+/** A value with its unit. */
+const valued = (value, unit) => (unit === "°" ? `${short(value)}°` : unit ? `${short(value)} ${unit}` : short(value));
+
 /** A number with so many significant digits, short. */
 function short(value, digits = 4) {
   if (!Number.isFinite(value)) return "–";

@@ -8,6 +8,10 @@ const QUANTITIES = {
   stress: { name: "von Mises stress", unit: "kPa", zero: true },
   displacement: { name: "displacement", unit: "mm", zero: true },
 };
+/** Colours of the motion that is compared, of what markers were to follow, and of what was asked for at the end. */
+const [BESIDE, ASKED, GOAL] = ["#8a9098", "#b8860b", "#009e73"];
+/** Most markers that are named. */
+const NAMED = 12;
 /** Poses of a still of the motion. */
 const SNAPSHOTS = 6;
 
@@ -25,11 +29,15 @@ class Scene {
       compared: marker.compared && numbers(marker.compared), followed: marker.followed && numbers(marker.followed),
     }));
     const points = this.extent();
-    this.camera = new Camera(points, data.toward, () => this.draw());
+    this.camera = new Camera(points, data.toward, () => {
+      this.gauge?.draw();
+      this.draw();
+    });
     this.picture = new Picture(this.canvas, this.root, this.camera.three);
     this.size = 2 * Math.hypot(...this.camera.half);
+    this.gauge = new Gauge(this.camera, holder);
     this.light();
-    this.groups = { paths: this.paths(), joints: this.joints(), axes: this.jointAxes(), frames: this.frames(), goal: this.goal(), reference: this.reference(), snapshots: new THREE.Group() };
+    this.groups = { ground: ground(data.ground), paths: this.paths(), joints: this.joints(), axes: this.jointAxes(), frames: this.frames(), goal: this.goal(), reference: this.reference(), snapshots: new THREE.Group() };
     this.ties();
     for (const group of Object.values(this.groups)) if (group) this.root.add(group);
     for (const name of ["axes", "frames", "snapshots"]) if (this.groups[name]) this.groups[name].visible = false;
@@ -52,6 +60,7 @@ class Scene {
     for (let k = 0; k < this.times.length; k++) for (const part of this.parts) push(part.extent(k));
     for (const marker of this.markers) push([...marker.path, ...marker.target]);
     for (const tie of this.data.ties) push(numbers(tie.places));
+    push(numbers(this.data.ground.plate));
     return new Float32Array(all);
   }
 
@@ -88,8 +97,8 @@ class Scene {
   paths() {
     const group = new THREE.Group();
     for (const marker of this.markers) {
-      if (marker.compared) group.add(this.tube(marker.compared, "#8a9098", 0.0011, 0.8));
-      if (marker.followed) group.add(this.tube(marker.followed, "#8a9098", 0.0016));
+      if (marker.compared) group.add(this.tube(marker.compared, BESIDE, 0.0011, 0.8));
+      if (marker.followed) group.add(this.tube(marker.followed, ASKED, 0.0016));
       group.add(this.tube(marker.path, marker.colour, 0.0022));
       const ball = this.ball(marker.colour, 0.008);
       group.add(ball);
@@ -192,12 +201,12 @@ class Scene {
     this.parts.filter((part) => all.length && part.part.kind === "body").forEach((body, b) => {
       const ghost = body.copy([0, 0], 0.55);
       body.matrix(all.subarray(12 * b, 12 * b + 12), ghost.matrix);
-      ghost.children.forEach((child) => child.material.color.set("#009e73"));
+      ghost.children.forEach((child) => child.material.color.set(GOAL));
       group.add(ghost);
     });
     const [long, thin] = [0.05 * this.size, 0.003 * this.size];
     // Seen through what is before them.
-    const material = new THREE.MeshBasicMaterial({ color: "#009e73", depthTest: false, transparent: true, opacity: 0.85 });
+    const material = new THREE.MeshBasicMaterial({ color: GOAL, depthTest: false, transparent: true, opacity: 0.85 });
     for (const { target } of this.markers.filter((marker) => marker.target.length)) {
       for (let i = 0; i < 3; i++) {
         const arm = new THREE.Mesh(new THREE.BoxBufferGeometry(...[0, 1, 2].map((j) => (i === j ? long : thin))), material);
@@ -233,6 +242,28 @@ class Scene {
       }
     }
     this.set(this.time);
+  }
+
+  /** Names and colours of what is not seen to be itself: of lines or of surfaces, and the group that they belong to. */
+  named() {
+    const [motion, beside] = this.data.names;
+    const named = [];
+    const several = this.markers.some((marker) => marker.compared);
+    if (this.markers.length <= NAMED) for (const { name, colour } of this.markers) named.push({ name: several ? `${name}, ${motion}` : name, colour, group: "paths" });
+    if (several) named.push({ name: beside, colour: BESIDE, group: "paths" });
+    if (this.markers.some((marker) => marker.followed)) named.push({ name: "to follow", colour: ASKED, group: "paths" });
+    named.push({ name: "goal", colour: GOAL, group: "goal", solid: true }, { name: "reference configuration", colour: BESIDE, group: "reference" }, { name: "ground", colour: GROUND, group: "ground", solid: true });
+    return named.filter(({ group }) => this.groups[group]);
+  }
+
+  /** A picture of the scene on paper, which stays when the screen has gone. */
+  still(canvas) {
+    this.resize();
+    const { renderer } = this.picture;
+    renderer.setPixelRatio(PRINTED);
+    renderer.render(this.root, this.camera.three);
+    Object.assign(canvas, { width: renderer.domElement.width, height: renderer.domElement.height });
+    canvas.getContext("2d").drawImage(renderer.domElement, 0, 0);
   }
 
   show(name, on) {
@@ -326,7 +357,10 @@ function options(scene, bar, holder) {
     told();
   }
   choice("View", "viewpoint", [["auto", "auto"], ["front", "front"], ["side", "side"], ["top", "top"]], (name) => scene.camera.look(name));
-  const labels = { paths: scene.times.length > 1 ? "Paths" : "Markers", goal: "Goal", reference: "Reference", frames: "Frames", axes: "Joint axes", snapshots: "Snapshots" };
+  const labels = { paths: scene.times.length > 1 ? "Paths" : "Markers", goal: "Goal", reference: "Reference", ground: "Ground", frames: "Frames", axes: "Joint axes", snapshots: "Snapshots" };
+  const legend = element("ul", { id: "legend", "aria-label": "Legend" });
+  const entries = scene.named().map(({ name, colour, group, solid }) => ({ group, entry: element("li", { class: solid ? "solid" : null, style: `--c:${colour}` }, name) }));
+  const list = () => legend.replaceChildren(...entries.filter(({ group }) => scene.groups[group].visible).map(({ entry }) => entry));
   for (const [name, label] of Object.entries(labels)) {
     const group = scene.groups[name];
     if (!group || (name === "paths" && !group.children.length) || (name === "snapshots" && scene.times.length < 3)) continue;
@@ -334,11 +368,10 @@ function options(scene, bar, holder) {
     button.addEventListener("click", () => {
       scene.show(name, !group.visible);
       button.setAttribute("aria-pressed", group.visible);
+      list();
     });
     bar.append(button);
   }
-  if (scene.markers.length > 0 && scene.markers.length <= 12) {
-    const entries = scene.markers.map((marker) => element("li", { style: `--c:${marker.colour}` }, marker.name));
-    holder.append(element("ul", { id: "legend", "aria-label": "Markers" }, ...entries));
-  }
+  list();
+  holder.append(legend);
 }

@@ -7,6 +7,7 @@ use crate::kinematics::Pose;
 use crate::model::system::{Attachment, Joint, JointKind, Marker};
 use crate::report::Run;
 use crate::report::drawing::lumped;
+use crate::report::frame::{ground_plate, held_faces};
 use crate::report::page::numbers::{indices, numbers, places};
 use crate::report::skins::{Skin, shown};
 use crate::report::solids::{Prism, SurfaceMesh};
@@ -47,6 +48,11 @@ pub(super) fn scene(run: &Run<'_>) -> Value {
         "joints": stage.joints(),
         "markers": stage.markers(),
         "goal": goal.map(|poses| numbers(poses.iter().flat_map(moved))),
+        "ground": {
+            "plate": places(&ground_plate(run.system)),
+            "faces": places(held_faces(run.system).iter().flatten()),
+        },
+        "names": [run.name, run.comparison.map_or("", |(name, _)| name)],
     })
 }
 

@@ -36,10 +36,12 @@ async function start() {
   });
   // The end of the motion is what was asked for, of a path where stability is lost.
   clock.set(branch ? branch.shown : clock.last);
+  printing(page);
   window.proboscis = page;
 }
 
+const drawnAll = unloaded();
 start().catch((error) => {
   console.error(error);
   document.querySelector("main").prepend(element("p", { id: "failure" }, `This page could not be drawn: ${error.message}`));
-});
+}).finally(drawnAll);

@@ -3,6 +3,11 @@
 /** Stops of the map `magma` of matplotlib, from its light end. */
 const MAGMA = [[252, 253, 191], [254, 207, 146], [254, 159, 109], [247, 112, 92], [222, 73, 104], [183, 55, 121], [140, 41, 129]];
 
+/** Whether the page is being printed, on white paper. */
+const isPrinted = () => document.documentElement.classList.contains("printed");
+window.addEventListener("beforeprint", () => document.documentElement.classList.add("printed"));
+window.addEventListener("afterprint", () => document.documentElement.classList.remove("printed"));
+
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
 
 /** A colour of the sheet. */
@@ -27,7 +32,7 @@ const step = (part) => 3 * Math.round(STEPS * Math.min(1, Math.max(0, part || 0)
 function readable(colour) {
   if (colour === "#22262b") return themed("ink");
   if (colour === "#8a9098") return themed("muted");
-  if (!dark.matches) return colour;
+  if (!dark.matches || isPrinted()) return colour;
   const channels = [1, 3, 5].map((i) => parseInt(colour.slice(i, i + 2), 16));
   const light = (0.3 * channels[0] + 0.59 * channels[1] + 0.11 * channels[2]) / 255;
   const lift = Math.max(0, 0.55 - light);

@@ -1,0 +1,175 @@
+"""Keyword arguments of a system and of what it is asked.
+
+Written by `python/generate.py` from the JSON Schema of problems.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
+from typing import TYPE_CHECKING, Any, Literal
+
+if TYPE_CHECKING:
+    from proboscis import entries
+    from proboscis.entries import Numbers, Quantity, Text
+    from proboscis.problem import Problem, Step
+    from proboscis.result import Result
+
+
+class Questions:
+    """What a system is made with, and what it is asked."""
+
+    def _begin(self, name: str, folder: str | PathLike[str], scene: dict[str, Any]) -> None:
+        raise NotImplementedError
+
+    def _problem(self, task: str, asked: dict[str, Any]) -> Problem:
+        raise NotImplementedError
+
+    def __init__(
+        self,
+        name: str,
+        /,
+        *,
+        folder: str | PathLike[str] = ".",
+        chain: entries.Chain | None = None,
+        gravity: Sequence[Quantity] | Numbers | None = None,
+    ) -> None:
+        """A scene with a name, to which parts are added; `folder` is where files that it names are looked for.
+
+        * `chain`: Shorthand for a chain of segments with a pair of muscles at each joint.
+        * `gravity`: Acceleration of gravity, SI unit m/s².
+        """
+        self._begin(
+            name,
+            folder,
+            {
+                "chain": chain,
+                "gravity": gravity,
+            },
+        )
+
+    def control(
+        self,
+        *,
+        duration: entries.Duration,
+        intervals: int,
+        objective: entries.Objective,
+        start: entries.Start,
+        voltage_bounds: Sequence[Quantity] | Numbers,
+        coordinates: entries.Coordinates | None = None,
+        free: Mapping[Any, entries.Free] | None = None,
+        goal: entries.Goal | None = None,
+        guess: entries.Guess | None = None,
+        hold: entries.Hold | None = None,
+        limits: Sequence[entries.Limit] | None = None,
+        solver: entries.Solver | None = None,
+        voltages: entries.Voltages | None = None,
+    ) -> Problem:
+        """Returns the optimal control problem with these entries of `control` in a problem file.
+
+        * `duration`: Final time, SI unit s, or its bounds and a guess.
+        * `intervals`: Number of intervals, 1 or more.
+        * `objective`: What is minimised.
+        * `start`: Initial state.
+        * `voltage_bounds`: Lower and upper bound of every voltage that is sought, SI unit V.
+        * `coordinates`: Coordinates.
+        * `free`: Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`.
+        * `goal`: Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then.
+        * `guess`: Where the solver starts.
+        * `hold`: What becomes of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is `reported`
+          (where not written), or refused where holding it is `required`.
+        * `limits`: Path limits.
+        * `solver`: Options of the solver.
+        * `voltages`: Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no
+          unknowns, and one of 0 for all the time leaves no electric term at all. Functions of time, a table and those of a solution give all
+          voltages, as of a simulation; then a constant of the scene has to be sought.
+        """
+        problem = self._problem(
+            "control",
+            {
+                "duration": duration,
+                "intervals": intervals,
+                "objective": objective,
+                "start": start,
+                "voltage_bounds": voltage_bounds,
+                "coordinates": coordinates,
+                "free": free,
+                "goal": goal,
+                "guess": guess,
+                "hold": hold,
+                "limits": limits,
+                "solver": solver,
+                "voltages": voltages,
+            },
+        )
+        return problem
+
+    def simulate(
+        self,
+        *,
+        duration: Quantity,
+        coordinates: entries.Coordinates | None = None,
+        integrator: entries.Integrator | None = None,
+        linear_solver: entries.LinearSolver | None = None,
+        newton: entries.Newton | None = None,
+        start: entries.Start | None = None,
+        step: entries.Step | None = None,
+        tolerance: float | None = None,
+        voltages: entries.Voltages | None = None,
+        output: str | PathLike[str] | None = None,
+        on_step: Callable[[Step], object] | None = None,
+        max_seconds: float | None = None,
+    ) -> Result:
+        """Simulates with these entries of `simulate` in a problem file; the others are those of `Problem.simulate`.
+
+        * `duration`: Length, SI unit s.
+        * `coordinates`: Coordinates.
+        * `integrator`: The method; the midpoint variational integrator where not written.
+        * `linear_solver`: Who factorises it; the one that is fastest as a rule where not written.
+        * `newton`: When the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`.
+        * `start`: Where it starts; the reference configuration at rest where not written.
+        * `step`: Step, SI unit s, or `"auto"`, as where it is not written: steps as short as the tolerance needs, by the midpoint rule.
+        * `tolerance`: Sum of the estimated local errors that `"auto"` allows over the duration, of angles in rad, of lengths relative to the
+          robot's size; 1e-3 where not written.
+        * `voltages`: Constant voltages, those of a solution, or a table; 0 where not written.
+        """
+        problem = self._problem(
+            "simulate",
+            {
+                "duration": duration,
+                "coordinates": coordinates,
+                "integrator": integrator,
+                "linear_solver": linear_solver,
+                "newton": newton,
+                "start": start,
+                "step": step,
+                "tolerance": tolerance,
+                "voltages": voltages,
+            },
+        )
+        return problem.simulate(output=output, on_step=on_step, max_seconds=max_seconds)
+
+    def equilibrium(
+        self,
+        *,
+        coordinates: entries.Coordinates | None = None,
+        path: int | None = None,
+        voltages: Mapping[Any, Quantity] | None = None,
+        output: str | PathLike[str] | None = None,
+        max_seconds: float | None = None,
+    ) -> Result:
+        """Finds the state of rest with these entries of `equilibrium` in a problem file; the others are those of `Problem.equilibrium`.
+
+        * `coordinates`: Coordinates.
+        * `path`: Follow the path of equilibria from zero voltage by arc length for so many points, past limit points such as pull-in.
+        * `voltages`: Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
+        """
+        problem = self._problem(
+            "equilibrium",
+            {
+                "coordinates": coordinates,
+                "path": path,
+                "voltages": voltages,
+            },
+        )
+        return problem.equilibrium(output=output, max_seconds=max_seconds)

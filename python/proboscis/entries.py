@@ -1,0 +1,947 @@
+"""Types of the entries of scenes and problems, to annotate and to complete dicts with.
+
+Written by `python/generate.py` from the JSON Schema of problems.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from typing_extensions import NotRequired
+
+    from proboscis._part import Part
+
+Quantity: TypeAlias = "float | str | np.number[Any]"
+"""A number in SI units, or a text with a unit."""
+Numbers: TypeAlias = "npt.NDArray[Any]"
+"""An array in place of a list of numbers."""
+Text: TypeAlias = "str | Part | PathLike[str]"
+"""A text; a part stands for its name, a result for its folder."""
+
+
+AxisName: TypeAlias = "Literal['x', 'y', 'z']"
+"""An axis of the ground frame."""
+
+
+class Axis(TypedDict):
+    """An axis."""
+
+    axis: Sequence[float] | Numbers
+    """Direction, of any length."""
+
+
+class Box(TypedDict):
+    """A box."""
+
+    size: Sequence[Quantity] | Numbers
+    """Edge lengths along x, y, z, SI unit m."""
+
+
+class Corners(TypedDict):
+    """Two corners of a box."""
+
+    max: Sequence[Quantity] | Numbers
+    """Upper corner, SI unit m."""
+
+    min: Sequence[Quantity] | Numbers
+    """Lower corner, SI unit m."""
+
+
+class Cylinder(TypedDict):
+    """A cylinder."""
+
+    axis: Sequence[float] | Numbers
+    """Direction of the axis, of any length."""
+
+    length: Quantity
+    """Length along the axis, SI unit m."""
+
+    radius: Quantity
+    """Radius, SI unit m."""
+
+
+Dielectric: TypeAlias = "Literal['first_order', 'ideal']"
+"""How the relative permittivity enters the energy."""
+
+
+Division: TypeAlias = "int | Sequence[Layer]"
+"""How a direction of a box is cut."""
+
+
+class Electrode(TypedDict):
+    """An electrode: nodes of one potential, at exactly one of `face`, `plane`, `box`.
+
+    Driven electrodes of one name are connected: they share the voltage `block.name`.
+    """
+
+    box: NotRequired[Corners]
+    """All nodes in a box."""
+
+    face: NotRequired[Text]
+    """All nodes of a face."""
+
+    name: Text
+    """Name, unique in the block except for driven electrodes."""
+
+    plane: NotRequired[Plane]
+    """All nodes of a plane."""
+
+    potential: Potential
+    """Its potential."""
+
+
+Element: TypeAlias = "Literal['hex8', 'hex8_q1p0']"
+"""Which hexahedron: how it treats volume."""
+
+
+Fixed: TypeAlias = "Text | Held"
+"""A face that is clamped, or a place that is held in some directions."""
+
+
+class Grid(TypedDict):
+    """A box cut into hexahedra."""
+
+    corner: NotRequired[Sequence[Quantity] | Numbers]
+    """Lower corner, SI unit m; the origin where not written."""
+
+    elements: Sequence[Division]
+    """Elements along x, y, z: a number, or a list of layers."""
+
+    size: Sequence[Quantity] | Numbers
+    """Edge lengths along x, y, z, SI unit m."""
+
+
+class Held(TypedDict):
+    """A `face`, `plane` or `box` whose nodes are held in some directions: a roller is held in one."""
+
+    box: NotRequired[Corners]
+    """All nodes in a box."""
+
+    directions: NotRequired[Sequence[AxisName]]
+    """Directions in which it is held; all three where not written."""
+
+    face: NotRequired[Text]
+    """All nodes of a face."""
+
+    plane: NotRequired[Plane]
+    """All nodes of a plane."""
+
+
+class Layer(TypedDict):
+    """A layer of a box."""
+
+    elements: int
+    """Elements through the thickness."""
+
+    region: NotRequired[Text]
+    """Name of the region that the layer belongs to; in one direction only, and there for every layer."""
+
+    thickness: Quantity
+    """Thickness, SI unit m."""
+
+
+MuscleModel: TypeAlias = "Literal['lumped', 'finite_elements']"
+"""How a muscle is modelled."""
+
+
+class Nothing(TypedDict):
+    """An object without entries."""
+
+
+class Pair(TypedDict):
+    """A pair of muscles at a joint of a chain."""
+
+    arm: Quantity
+    """Distance from the long axis, SI unit m."""
+
+    cross_section: Sequence[Quantity] | Numbers
+    """Sides of the rectangular cross-section at rest, SI unit m."""
+
+    element: NotRequired[Element]
+    """Which hexahedron; of `finite_elements` only."""
+
+    elements: NotRequired[Sequence[int] | Numbers]
+    """Elements along both sides of the cross-section and along the span; of `finite_elements` only."""
+
+    layer_thickness: Quantity
+    """Thickness of one layer at rest, SI unit m."""
+
+    layers: NotRequired[int]
+    """Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only."""
+
+    material: Text
+    """Name of the material."""
+
+    model: NotRequired[MuscleModel]
+    """Model; `lumped` where not written."""
+
+    rest_length: Quantity
+    """Length at rest, SI unit m."""
+
+
+class Plane(TypedDict):
+    """A plane at right angles to an axis: exactly one of the three."""
+
+    x: NotRequired[Quantity]
+    """Place along x, SI unit m."""
+
+    y: NotRequired[Quantity]
+    """Place along y, SI unit m."""
+
+    z: NotRequired[Quantity]
+    """Place along z, SI unit m."""
+
+
+class Point(TypedDict):
+    """A material point of a body."""
+
+    at: Sequence[Quantity] | Numbers
+    """Place, SI unit m."""
+
+    body: Text
+    """Name of the body, or `ground`."""
+
+
+Potential: TypeAlias = "Literal['grounded', 'floating', 'driven'] | Mapping[str, Any]"
+"""The potential of an electrode."""
+
+
+class Sphere(TypedDict):
+    """A sphere."""
+
+    radius: Quantity
+    """Radius, SI unit m."""
+
+
+class Stack(TypedDict):
+    """Electrodes at all boundaries of equal layers, both ends included: grounded, driven, grounded…"""
+
+    axis: AxisName
+    """Direction across the layers."""
+
+    layers: int
+    """Number of layers, a divisor of the elements along the axis."""
+
+    name: Text
+    """Name of the driven electrodes, whose voltage is `block.name`."""
+
+
+class Velocity(TypedDict):
+    """A velocity v = v₀ + ω × (X − c) + diag(rate) (X − c) at the start."""
+
+    angular: NotRequired[Sequence[Quantity] | Numbers]
+    """ω, SI unit rad/s."""
+
+    centre: NotRequired[Sequence[Quantity] | Numbers]
+    """c, SI unit m; the middle of the block where not written."""
+
+    linear: NotRequired[Sequence[Quantity] | Numbers]
+    """v₀, SI unit m/s."""
+
+    stretch_rate: NotRequired[Sequence[Quantity] | Numbers]
+    """Rate of stretch along x, y, z, SI unit 1/s."""
+
+
+All: TypeAlias = "Literal['all']"
+"""All of them."""
+
+
+class Ball(TypedDict):
+    """A ball."""
+
+    centre: Sequence[Quantity] | Numbers
+    """Centre, SI unit m."""
+
+    radius: Quantity
+    """Radius, SI unit m."""
+
+
+class BodyVelocity(TypedDict):
+    """The velocity of a body at the start, in the ground frame."""
+
+    angular: NotRequired[Sequence[Quantity] | Numbers]
+    """Angular velocity, SI unit rad/s; 0 where not written."""
+
+    linear: NotRequired[Sequence[Quantity] | Numbers]
+    """Velocity of the centre of mass, SI unit m/s; 0 where not written. On a spherical joint it follows from `angular`."""
+
+
+ControlSolver: TypeAlias = "Literal['auto', 'stages', 'mumps']"
+"""Who solves the linear systems of a control problem."""
+
+
+Coordinates: TypeAlias = "Literal['reduced', 'redundant']"
+"""Coordinates in which a problem is solved; reduced where the joints form a tree, unless written."""
+
+
+Duration: TypeAlias = "Quantity | FreeDuration"
+"""A time, or bounds of a free one."""
+
+
+class ElectricFieldLimit(TypedDict):
+    """Breakdown field of one muscle (`"muscle": name`) or all (`"muscles": "all"`), of one elastic block (`"solid": name`, or a `region` of it) or
+    all (`"solids": "all"`).
+
+    It bounds the true field at every instant and in the middle of every interval; in finite elements at their centres and Gauss points.
+    """
+
+    max: Quantity
+    """Largest true field, SI unit V/m."""
+
+    muscle: NotRequired[Text]
+    """Name of the muscle."""
+
+    muscles: NotRequired[All]
+    """All muscles with an electric term."""
+
+    region: NotRequired[Text]
+    """Name of a region of the mesh of `solid`; all elements that a field reaches where not written."""
+
+    solid: NotRequired[Text]
+    """Name of the elastic block."""
+
+    solids: NotRequired[All]
+    """All elastic blocks that a field reaches."""
+
+
+Energy: TypeAlias = "float | SourceEnergy"
+"""The weight of an energy of all sources, or of those that are named."""
+
+
+class FinalJoint(TypedDict):
+    """A joint and where it is to end."""
+
+    at: Quantity
+    """The value, SI unit rad or m."""
+
+    joint: Text
+    """Name of the joint, revolute or prismatic."""
+
+    weight: NotRequired[float]
+    """Weight of (θ − r)² at the final instant, in rad², or mm² of a prismatic joint; 1 where not written."""
+
+
+class FinalMarker(TypedDict):
+    """A marker and where it is to end."""
+
+    at: Sequence[Quantity | None] | Numbers
+    """The place, SI unit m; directions that are `null` are free."""
+
+    marker: Text
+    """Name of the marker."""
+
+    weight: NotRequired[float]
+    """Weight of |x − r|² at the final instant, in mm²; 1 where not written."""
+
+
+class Final(TypedDict):
+    """What is to end near a place: exactly one of the two."""
+
+    joint: NotRequired[FinalJoint]
+    """The coordinate of a joint ends near a value."""
+
+    marker: NotRequired[FinalMarker]
+    """A marker ends near a place."""
+
+
+class FreeDuration(TypedDict):
+    """Bounds of a free final time."""
+
+    guess: Quantity
+    """Where the solver starts, SI unit s."""
+
+    max: Quantity
+    """Upper bound, SI unit s."""
+
+    min: Quantity
+    """Lower bound, SI unit s."""
+
+
+class Free(TypedDict):
+    """A constant that is sought between bounds."""
+
+    also: NotRequired[Mapping[Any, float]]
+    """Other constants by their paths that are this one times a number."""
+
+    guess: NotRequired[Quantity]
+    """Where the solver starts; the value of the scene where not written."""
+
+    max: Quantity
+    """Upper bound."""
+
+    min: Quantity
+    """Lower bound, in the unit of the constant."""
+
+
+class Function(TypedDict):
+    """A function of time: exactly one of the four."""
+
+    csv: NotRequired[SignalCsv]
+    """The same, with times and values from columns of a CSV file."""
+
+    ramp: NotRequired[Ramp]
+    """Linear between two values, constant before and after."""
+
+    sine: NotRequired[Sine]
+    """A sine."""
+
+    table: NotRequired[SignalTable]
+    """Linear between values at times, constant before and after."""
+
+
+Goal: TypeAlias = "GoalWord | RestGoal"
+"""`"free"`, or a state at the end, at rest."""
+
+
+GoalWord: TypeAlias = "Literal['free']"
+"""A word of a goal."""
+
+
+class GuessObject(TypedDict):
+    """An object of a guess: exactly one of the three."""
+
+    random: NotRequired[RandomGuess]
+    """A simulation under constant voltages drawn at random within the bounds."""
+
+    simulate: NotRequired[GuessSimulation]
+    """A simulation under given voltages."""
+
+    solution: NotRequired[Text]
+    """Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder."""
+
+
+class GuessSimulation(TypedDict):
+    """A simulation as a guess."""
+
+    voltages: NotRequired[Voltages]
+    """Constant voltages, those of a solution, or a table, as of a simulation; 0 where not written."""
+
+
+Guess: TypeAlias = "GuessWord | GuessObject"
+"""A word or an object."""
+
+
+GuessWord: TypeAlias = "Literal['interpolate']"
+"""A word of a guess."""
+
+
+Hold: TypeAlias = "Literal['reported', 'required']"
+"""What becomes of a goal that cannot be kept."""
+
+
+class IntegratorObject(TypedDict):
+    """A method with its parameter: exactly one of the two."""
+
+    galerkin: NotRequired[int]
+    """Degree, from 1 to 8, of a Galerkin variational integrator with Lobatto points, order 2 × degree."""
+
+    generalised_alpha: NotRequired[float]
+    """Spectral radius at infinity, from 0 to 1, of the generalised-α method."""
+
+
+Integrator: TypeAlias = "IntegratorWord | IntegratorObject"
+"""A word or an object."""
+
+
+IntegratorWord: TypeAlias = "Literal['midpoint', 'implicit_euler', 'generalised_alpha']"
+"""A method by its name."""
+
+
+class JointAngleLimit(TypedDict):
+    """Limits of a joint coordinate: `min`, `max` or both."""
+
+    joint: Text
+    """Name of the joint."""
+
+    max: NotRequired[Quantity]
+    """Upper bound, SI unit rad or m."""
+
+    min: NotRequired[Quantity]
+    """Lower bound, SI unit rad or m."""
+
+
+class Limit(TypedDict):
+    """A path limit: exactly one of the four."""
+
+    electric_field: NotRequired[ElectricFieldLimit]
+    """Breakdown field of muscles or elastic blocks."""
+
+    joint_angle: NotRequired[JointAngleLimit]
+    """Limits of a joint coordinate."""
+
+    marker: NotRequired[MarkerLimit]
+    """Region of a marker."""
+
+    stretch: NotRequired[StretchLimit]
+    """Limits of the stretch of a muscle."""
+
+
+LinearSolver: TypeAlias = "Literal['faer', 'mumps']"
+"""Who factorises a tangent."""
+
+
+class MarkerLimit(TypedDict):
+    """Region of a marker: exactly one of `inside` and `outside`."""
+
+    inside: NotRequired[Region]
+    """Where it stays."""
+
+    marker: Text
+    """Name of the marker."""
+
+    outside: NotRequired[Region]
+    """What it stays out of."""
+
+
+Newton: TypeAlias = "Literal['full', 'modified', 'reused']"
+"""When the tangent of a step is factorised."""
+
+
+class Objective(TypedDict):
+    """Weights of the objective."""
+
+    duration: NotRequired[float]
+    """Weight of the final time in s."""
+
+    effort: NotRequired[float]
+    """Weight of Σ h |V_k|², V in kV, h in s."""
+
+    electrical_energy: NotRequired[Energy]
+    """Weight per J of the electrical energy from the sources of lumped muscles, of all sources or of named ones; what flows back is negative."""
+
+    final: NotRequired[Sequence[Final]]
+    """Where markers and joints are to end."""
+
+    mechanical_work: NotRequired[Energy]
+    """Weight per J of the mechanical work of the electrical forces of lumped muscles, of all sources or of named ones."""
+
+    rate: NotRequired[float]
+    """Weight of Σ |V_k − V_{k−1}|²/h, V in kV, h in s, with the rest voltages of start and goal at the ends."""
+
+    track: NotRequired[Sequence[Track]]
+    """What markers and joints follow in time."""
+
+
+Option: TypeAlias = "int | float | Text"
+"""A value of an option of Ipopt."""
+
+
+class Orientation(TypedDict):
+    """An orientation of a body: `axis` with exactly one of `towards` and `angle`."""
+
+    angle: NotRequired[Quantity]
+    """Angle by which the body is turned from its reference configuration, SI unit rad."""
+
+    axis: Sequence[float] | Numbers
+    """A direction of the ground frame, of any length: with `towards` one that moves with the body, as it is in the reference configuration; with
+    `angle` the axis about which the body is turned.
+    """
+
+    towards: NotRequired[Sequence[float] | Numbers]
+    """Direction of the ground frame, of any length, to which `axis` points."""
+
+
+class Path(TypedDict):
+    """Coordinates as functions of time, SI unit m; one or more. Directions that are not written are free."""
+
+    x: NotRequired[Signal]
+    """Along x."""
+
+    y: NotRequired[Signal]
+    """Along y."""
+
+    z: NotRequired[Signal]
+    """Along z."""
+
+
+Ramp = TypedDict(
+    "Ramp",
+    {
+        "duration": "Quantity",
+        "from": "NotRequired[Quantity]",
+        "start": "NotRequired[Quantity]",
+        "to": "Quantity",
+    },
+)
+"""Linear between two values, constant before and after."""
+
+
+class RandomGuess(TypedDict):
+    """A random guess."""
+
+    seed: int
+    """Equal seeds give equal guesses."""
+
+
+class Region(TypedDict):
+    """A region: exactly one of the two."""
+
+    box: NotRequired[Corners]
+    """Box between two corners."""
+
+    sphere: NotRequired[Ball]
+    """Ball."""
+
+
+class RestGoal(TypedDict):
+    """A state at the end, at rest: `rest_at_voltages`, or `joint_angles`, or `markers` and `orientations`."""
+
+    hold: NotRequired[Mapping[Any, Quantity]]
+    """Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named."""
+
+    joint_angles: NotRequired[Mapping[Any, Quantity]]
+    """Joint coordinates by joint, SI unit rad or m; free where not named."""
+
+    markers: NotRequired[Mapping[Any, Sequence[Quantity | None] | Numbers]]
+    """Positions by marker, SI unit m; directions that are `null` are free."""
+
+    orientations: NotRequired[Mapping[Any, Orientation]]
+    """Orientations by body."""
+
+    rest: NotRequired[Rest]
+    """What comes to rest at an equilibrium, at positions of markers and at orientations: `everything` (where not written), or `bodies` and these
+    markers alone, for elastic blocks, which a few voltages cannot bring to rest everywhere.
+    """
+
+    rest_at_voltages: NotRequired[Mapping[Any, Quantity]]
+    """Static equilibrium under these voltages, SI unit V; 0 where not named."""
+
+
+Rest: TypeAlias = "Literal['everything', 'bodies', 'markers']"
+"""What comes to rest at a goal."""
+
+
+class SignalCsv(TypedDict):
+    """Values at times, from a CSV file: one line of headers such as `muscle1 [kV]`, SI units where a header has none; lines that begin with `#`
+    are comments.
+    """
+
+    file: Text
+    """Path of the file, relative to the problem or to the current folder."""
+
+    time: NotRequired[Text]
+    """Header of the times, with or without its unit."""
+
+    values: Text
+    """Header of the values, with or without its unit."""
+
+
+Signal: TypeAlias = "Quantity | Function"
+"""A constant in its SI unit, or exactly one of `ramp`, `sine`, `table` and `csv`."""
+
+
+class SignalTable(TypedDict):
+    """Values at times."""
+
+    time: Sequence[Quantity] | Numbers
+    """Times, growing, SI unit s."""
+
+    values: Sequence[Quantity] | Numbers
+    """A value at each."""
+
+
+class Sine(TypedDict):
+    """`mean + amplitude sin(2π t/period + phase)`."""
+
+    amplitude: Quantity
+    """Amplitude."""
+
+    mean: NotRequired[Quantity]
+    """Mean; 0 where not written."""
+
+    period: Quantity
+    """Period, SI unit s."""
+
+    phase: NotRequired[Quantity]
+    """Phase, SI unit rad; 0 where not written."""
+
+
+class Solution(TypedDict):
+    """A solution by its path."""
+
+    solution: Text
+    """Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder."""
+
+
+class Solver(TypedDict):
+    """Options of the solver."""
+
+    ipopt: NotRequired[Mapping[Any, Option]]
+    """Options of Ipopt by name."""
+
+    linear_solver: NotRequired[ControlSolver]
+    """Who solves the linear systems, `auto` where not written."""
+
+    max_iterations: NotRequired[int]
+    """Limit of iterations, 500 where not written."""
+
+    tolerance: NotRequired[float]
+    """Relative tolerance, 1e-10 where not written."""
+
+
+class SourceEnergy(TypedDict):
+    """The weight of an energy of some sources."""
+
+    sources: Sequence[Text]
+    """Names of lumped muscles."""
+
+    weight: float
+    """Weight per J."""
+
+
+class Start(TypedDict):
+    """A state at the start: exactly one of `rest_at_voltages`, `end_of` and joint coordinates."""
+
+    body_velocities: NotRequired[Mapping[Any, BodyVelocity]]
+    """Velocities by body, of bodies that are free or hang on a spherical or floating joint; with what the joints before them do where not named."""
+
+    end_of: NotRequired[Text]
+    """The end of another motion of the same robot, configuration and momentum: the path of the folder of its result, relative to this file or to
+    the current folder. Time begins at zero.
+    """
+
+    joint_angles: NotRequired[Mapping[Any, Quantity]]
+    """Joint coordinates by joint, SI unit rad or m; 0 where not named."""
+
+    joint_rates: NotRequired[Mapping[Any, Quantity]]
+    """Rates of joint coordinates by joint, SI unit rad/s or m/s; 0 where not named."""
+
+    rest_at_voltages: NotRequired[Mapping[Any, Quantity]]
+    """Static equilibrium under these voltages, SI unit V; 0 where not named."""
+
+
+Step: TypeAlias = "StepWord | Quantity"
+"""How long steps are."""
+
+
+StepWord: TypeAlias = "Literal['auto']"
+"""Steps of no given length."""
+
+
+class StretchLimit(TypedDict):
+    """Limits of the stretch of a muscle: `min`, `max` or both."""
+
+    max: NotRequired[float]
+    """Upper bound."""
+
+    min: NotRequired[float]
+    """Lower bound."""
+
+    muscle: Text
+    """Name of the muscle."""
+
+
+class Table(TypedDict):
+    """Voltages that are constant in intervals of time."""
+
+    hold: NotRequired[Mapping[Any, Quantity]]
+    """Voltages after the last interval; those of the last interval where not written."""
+
+    time: Sequence[Quantity] | Numbers
+    """Start and end of the intervals, growing, the first of them 0; SI unit s."""
+
+    voltages: Mapping[Any, Sequence[Quantity] | Numbers]
+    """A voltage for each interval by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named."""
+
+
+class TrackJoint(TypedDict):
+    """A joint and the function that its coordinate follows."""
+
+    along: Signal
+    """The function of time, SI unit rad or m."""
+
+    joint: Text
+    """Name of the joint, revolute or prismatic."""
+
+    weight: NotRequired[float]
+    """Weight of ∫ (θ − r)² dt in rad² s, or mm² s of a prismatic joint; 1 where not written."""
+
+
+class TrackJoints(TypedDict):
+    """All joints along an earlier solution."""
+
+    solution: Text
+    """Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder; linear between its instants,
+    constant after the last.
+    """
+
+    weight: NotRequired[float]
+    """Weight of the sum over all joints of ∫ (θ − r)² dt in rad² s, or mm² s of prismatic joints; 1 where not written."""
+
+
+class TrackMarker(TypedDict):
+    """A marker and its path."""
+
+    along: Path
+    """The path."""
+
+    marker: Text
+    """Name of the marker."""
+
+    weight: NotRequired[float]
+    """Weight of ∫ |x − r|² dt over the directions of the path, in mm² s; 1 where not written."""
+
+
+class Track(TypedDict):
+    """What is to be followed: exactly one of the three."""
+
+    joint: NotRequired[TrackJoint]
+    """The coordinate of a joint follows a function of time."""
+
+    joints: NotRequired[TrackJoints]
+    """The coordinates of all joints follow an earlier solution."""
+
+    marker: NotRequired[TrackMarker]
+    """A marker follows a path in time."""
+
+
+Voltages: TypeAlias = "Solution | Table | Mapping[Any, Signal]"
+"""Voltages by muscle or driven electrode, constant or functions of time; 0 where not named; `{"solution": path}`, or `{"time": [...], "voltages":
+{...}}`.
+"""
+
+
+class Control(TypedDict):
+    """An optimal control problem."""
+
+    coordinates: NotRequired[Coordinates]
+    """Coordinates."""
+
+    duration: Duration
+    """Final time, SI unit s, or its bounds and a guess."""
+
+    free: NotRequired[Mapping[Any, Free]]
+    """Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`."""
+
+    goal: NotRequired[Goal]
+    """Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then."""
+
+    guess: NotRequired[Guess]
+    """Where the solver starts."""
+
+    hold: NotRequired[Hold]
+    """What becomes of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is `reported` (where not
+    written), or refused where holding it is `required`.
+    """
+
+    intervals: int
+    """Number of intervals, 1 or more."""
+
+    limits: NotRequired[Sequence[Limit]]
+    """Path limits."""
+
+    objective: Objective
+    """What is minimised."""
+
+    solver: NotRequired[Solver]
+    """Options of the solver."""
+
+    start: Start
+    """Initial state."""
+
+    voltage_bounds: Sequence[Quantity] | Numbers
+    """Lower and upper bound of every voltage that is sought, SI unit V."""
+
+    voltages: NotRequired[Voltages]
+    """Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no unknowns, and one of 0
+    for all the time leaves no electric term at all. Functions of time, a table and those of a solution give all voltages, as of a simulation;
+    then a constant of the scene has to be sought.
+    """
+
+
+class Simulate(TypedDict):
+    """A forward simulation."""
+
+    coordinates: NotRequired[Coordinates]
+    """Coordinates."""
+
+    duration: Quantity
+    """Length, SI unit s."""
+
+    integrator: NotRequired[Integrator]
+    """The method; the midpoint variational integrator where not written."""
+
+    linear_solver: NotRequired[LinearSolver]
+    """Who factorises it; the one that is fastest as a rule where not written."""
+
+    newton: NotRequired[Newton]
+    """When the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`."""
+
+    start: NotRequired[Start]
+    """Where it starts; the reference configuration at rest where not written."""
+
+    step: NotRequired[Step]
+    """Step, SI unit s, or `"auto"`, as where it is not written: steps as short as the tolerance needs, by the midpoint rule."""
+
+    tolerance: NotRequired[float]
+    """Sum of the estimated local errors that `"auto"` allows over the duration, of angles in rad, of lengths relative to the robot's size; 1e-3
+    where not written.
+    """
+
+    voltages: NotRequired[Voltages]
+    """Constant voltages, those of a solution, or a table; 0 where not written."""
+
+
+class Equilibrium(TypedDict):
+    """A static equilibrium."""
+
+    coordinates: NotRequired[Coordinates]
+    """Coordinates."""
+
+    path: NotRequired[int]
+    """Follow the path of equilibria from zero voltage by arc length for so many points, past limit points such as pull-in."""
+
+    voltages: NotRequired[Mapping[Any, Quantity]]
+    """Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named."""
+
+
+class Chain(TypedDict):
+    """A chain from the origin along an axis: `segment1`…, `joint1`…, and `muscle1`…, two at each joint.
+
+    Joint i stands at (i − 1) lengths; the joint axes alternate by 90° about the long axis. Muscle 2i − 1 runs at `+arm`, muscle 2i at `−arm`
+    off the long axis, from half a rest length below the joint to half a rest length above it.
+    """
+
+    axis: Sequence[float] | Numbers
+    """Long axis."""
+
+    first_joint_axis: Sequence[float] | Numbers
+    """Axis of the first joint, at right angles to the long axis."""
+
+    length: Quantity
+    """Length of a segment, SI unit m."""
+
+    mass: Quantity
+    """Mass of a segment, SI unit kg."""
+
+    muscles: NotRequired[Pair]
+    """Pair of muscles at each joint."""
+
+    radius: Quantity
+    """Radius of a segment, SI unit m."""
+
+    segments: int
+    """Number of segments."""
+
+    tip_marker: NotRequired[Text]
+    """Name of a marker at the end."""
+
+
+class Output(TypedDict):
+    """What tables, figures and page show of a motion; all of it stays in the solution."""
+
+    every: NotRequired[Quantity]
+    """Time between the instants shown, SI unit s: those nearest to its multiples. Where not written all, and of a long motion so many that nothing
+    is lost to the eye.
+    """
+
+    quantities: NotRequired[Sequence[Text]]
+    """Columns of `trajectory.csv`: `joints`, `markers`, `stretches`, `charges`, `energies`, `momenta`, `constraint_violation`, or all of a joint,
+    marker, muscle, block, spring or tendon by its name. All where not written.
+    """
