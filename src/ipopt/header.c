@@ -4,9 +4,6 @@
 #include <stdbool.h>
 #include <IpStdCInterface.h>
 
-_Static_assert(sizeof(Number) == sizeof(double), "an Ipopt of double precision");
-_Static_assert(sizeof(Index) == sizeof(int), "an Ipopt with indices of 32 bits");
-
 typedef TRUTH Objective(int, double *, TRUTH, double *, void *);
 typedef TRUTH Gradient(int, double *, TRUTH, double *, void *);
 typedef TRUTH Constraint(int, double *, TRUTH, int, double *, void *);
