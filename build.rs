@@ -1,5 +1,5 @@
-//! Finds Ipopt, the MUMPS it was linked with and the code of pages, translates the few declarations of their C headers that `src/ipopt/ffi.rs`
-//! and `src/sparse/mumps/ffi.rs` call, and notes the versions that results name.
+//! Finds Ipopt, the MUMPS it was linked with and the code of pages, holds the declarations of `src/ipopt/ffi.rs` against the header of Ipopt,
+//! compiles what knows the structure of MUMPS, and notes the versions that results name.
 
 use std::env;
 use std::fs;
@@ -13,11 +13,11 @@ const INSTALL: &str = "proboscis needs Ipopt with its C header: \
     and see that `pkg-config --cflags --libs ipopt` answers";
 
 /// What is told when MUMPS or its header is missing.
-const INSTALL_MUMPS: &str = "proboscis needs the sequential MUMPS with its C header `dmumps_c.h`, the one that Ipopt uses: \
-    install libmumps-seq-dev and libmumps-headers-dev (Debian, Ubuntu) or MUMPS-devel (Fedora)";
-/// Name of the library where pkg-config does not tell what Ipopt was linked with.
+const INSTALL_MUMPS: &str = "proboscis needs the MUMPS that Ipopt uses, with its C header `dmumps_c.h`: \
+    install libmumps-seq-dev and libmumps-headers-dev (Debian 12, Ubuntu), libmumps-dev (Debian 13) or MUMPS-devel (Fedora)";
+/// Name of the library where neither Ipopt nor pkg-config tells it.
 const MUMPS: &str = "dmumps_seq";
-/// Folders of `dmumps_c.h` besides those that the compiler knows.
+/// Folders of `dmumps_c.h` besides those of Ipopt and those that the compiler knows.
 const MUMPS_HEADERS: [&str; 3] = [
     "/usr/include/MUMPS",
     "/usr/include/mumps-seq",
@@ -41,47 +41,164 @@ fn main() {
         pack_code();
     }
     println!("cargo::rerun-if-env-changed=PKG_CONFIG_PATH");
-
-    // Only the shared libraries are linked: what they need themselves (LAPACK, Fortran) is their own affair,
-    // so the rest of the list that pkg-config gives is left out.
-    let Ok(ipopt) = pkg_config::Config::new()
-        .cargo_metadata(false)
-        .probe("ipopt")
-    else {
-        println!("cargo::error={INSTALL}");
-        return;
-    };
-    let mumps = ipopt.libs.iter().find(|name| name.contains("dmumps"));
-    let mumps = mumps.map_or(MUMPS, String::as_str);
-    for name in ["ipopt", mumps] {
-        let holds = |path: &&PathBuf| shared(name).any(|file| path.join(file).exists());
-        let folders: Vec<&PathBuf> = ipopt.link_paths.iter().filter(holds).collect();
-        if name == mumps && folders.is_empty() && !linker_finds(name) {
-            println!("cargo::error={INSTALL_MUMPS} (no library {name})");
-            return;
-        }
-        for path in folders {
-            println!("cargo::rustc-link-search=native={}", path.display());
-        }
-        println!("cargo::rustc-link-lib=dylib={name}");
+    if let Err(missing) = libraries() {
+        println!("cargo::error={missing}");
     }
-    println!("cargo::rustc-env=PROBOSCIS_IPOPT={}", ipopt.version);
     if env::var("PROFILE").as_deref() == Ok("release") {
         note_commit();
     }
+}
 
-    let ipopt_functions =
-        "(Create|Free)IpoptProblem|AddIpopt(Str|Num|Int)Option|SetIntermediateCallback|IpoptSolve";
-    let mut folders = ipopt.include_paths;
-    // Up to 3.13 `Bool` is `int`, since 3.14 it is `bool`: the callbacks are written in terms of the name.
-    let ipopt = bindings("IpStdCInterface.h", &folders, ipopt_functions).allowlist_type("Bool");
-    write(ipopt, "ipopt.rs", INSTALL);
+/// Links Ipopt and MUMPS, and compiles what depends on their headers; an error says what is missing.
+///
+/// Only the shared libraries are linked: what they need themselves (LAPACK, Fortran) is their own affair, so the rest of the list that
+/// pkg-config gives is left out.
+fn libraries() -> Result<(), String> {
+    let ipopt = pkg_config::Config::new()
+        .cargo_metadata(false)
+        .probe("ipopt")
+        .map_err(|_| INSTALL)?;
+    println!("cargo::rustc-env=PROBOSCIS_IPOPT={}", ipopt.version);
+    let library = Library::find("ipopt", &ipopt.link_paths).ok_or(INSTALL)?;
+    library.link();
+    check_declarations(&ipopt)?;
+
+    let told = ipopt.libs.iter().find(|name| name.contains("mumps"));
+    let told = told.map_or(MUMPS, String::as_str);
+    let mut needed = library.needs.clone();
+    if !library.has_mumps {
+        let mut folders = ipopt.link_paths;
+        folders.extend(library.path.parent().map(Path::to_owned));
+        let name = library.mumps().unwrap_or(told);
+        let mumps = Library::find(name, &folders);
+        let mumps = mumps.ok_or_else(|| format!("{INSTALL_MUMPS} (no library {name})"))?;
+        mumps.link();
+        needed.extend(mumps.needs);
+    }
+    if needed.iter().any(|file| is_mpi(file)) {
+        println!("cargo::rustc-cfg=mpi");
+    }
+    compile_instance(ipopt.include_paths)
+}
+
+/// A shared library that is linked.
+struct Library {
+    name: String,
+    path: PathBuf,
+    /// Whether the linker finds it by itself.
+    is_found: bool,
+    /// Files of the libraries that it needs.
+    needs: Vec<String>,
+    /// Whether it contains MUMPS.
+    has_mumps: bool,
+}
+
+impl Library {
+    /// In one of these folders, or where the linker finds it by itself.
+    fn find(name: &str, folders: &[PathBuf]) -> Option<Self> {
+        let known = linker_finds(name);
+        let is_found = known.is_some();
+        let near = folders
+            .iter()
+            .flat_map(|folder| shared(name).map(|file| folder.join(file)))
+            .find(|path| path.exists());
+        let is_found = is_found && near.is_none();
+        let path = near.or(known)?;
+        let bytes = fs::read(&path).unwrap_or_default();
+        let (needs, has_mumps) = read(&bytes).unwrap_or_default();
+        let name = name.to_owned();
+        Some(Self {
+            name,
+            path,
+            is_found,
+            needs,
+            has_mumps,
+        })
+    }
+
+    /// Tells cargo.
+    fn link(&self) {
+        if let (Some(folder), false) = (self.path.parent(), self.is_found) {
+            println!("cargo::rustc-link-search=native={}", folder.display());
+        }
+        println!("cargo::rustc-link-lib=dylib={}", self.name);
+        // Another version may have another header.
+        println!("cargo::rerun-if-changed={}", self.path.display());
+    }
+
+    /// The MUMPS that it needs: `dmumps` of `libdmumps-5.7.so`, `coinmumps` of `libcoinmumps.so.3`.
+    fn mumps(&self) -> Option<&str> {
+        let mut names = self.needs.iter().filter_map(|file| file_stem(file));
+        names.find(|name| name.contains("mumps"))
+    }
+}
+
+/// The name that the linker is given for a file such as `libdmumps_seq-5.5.so` or `/opt/lib/libcoinmumps.3.dylib`.
+fn file_stem(file: &str) -> Option<&str> {
+    let file = file.rsplit('/').next()?.strip_prefix("lib")?;
+    file.split(['-', '.']).next()
+}
+
+/// Whether a file is a library of MPI, of which `libmpiseq` only has the names.
+fn is_mpi(file: &str) -> bool {
+    let name = file_stem(file).unwrap_or_default();
+    name == "mpi" || name.starts_with("mpi_") || name.starts_with("mpich")
+}
+
+/// What a shared library needs, and whether it contains MUMPS; none of what cannot be read.
+fn read(bytes: &[u8]) -> Option<(Vec<String>, bool)> {
+    let own = |libraries: &[&str]| libraries.iter().map(|&file| file.to_owned()).collect();
+    if let Ok(elf) = goblin::elf::Elf::parse(bytes) {
+        let has_mumps = elf.dynsyms.iter().any(|symbol| {
+            let is_defined = !symbol.is_import() && symbol.st_value != 0;
+            is_defined && elf.dynstrtab.get_at(symbol.st_name) == Some("dmumps_c")
+        });
+        return Some((own(&elf.libraries), has_mumps));
+    }
+    let library = goblin::mach::MachO::parse(bytes, 0).ok()?;
+    let exports = library.exports().ok()?;
+    let has_mumps = exports.iter().any(|export| export.name == "_dmumps_c");
+    Some((own(&library.libs), has_mumps))
+}
+
+/// Compiles the declarations of `src/ipopt/ffi.rs` beside those of the header.
+fn check_declarations(ipopt: &pkg_config::Library) -> Result<(), String> {
+    const DECLARATIONS: &str = "src/ipopt/header.c";
+    println!("cargo::rerun-if-changed={DECLARATIONS}");
+    // Up to 3.13 `Bool` is `int`, since 3.14 it is `bool`.
+    let mut numbers = ipopt.version.split('.').map(str::parse::<u32>);
+    let version = [numbers.next(), numbers.next()].map(|number| number?.ok());
+    let is_bool = version >= [Some(3), Some(14)];
+    if is_bool {
+        println!("cargo::rustc-cfg=ipopt_bool");
+    }
+    let compiled = cc::Build::new()
+        .file(DECLARATIONS)
+        .includes(&ipopt.include_paths)
+        .define("TRUTH", if is_bool { "bool" } else { "int" })
+        .flag("-Werror=incompatible-pointer-types")
+        .cargo_metadata(false)
+        .try_compile_intermediates();
+    match compiled {
+        Ok(_) => Ok(()),
+        Err(error) => Err(format!(
+            "{INSTALL} ({DECLARATIONS} does not compile: {error})"
+        )),
+    }
+}
+
+/// Compiles the functions that know the structure of MUMPS.
+fn compile_instance(mut folders: Vec<PathBuf>) -> Result<(), String> {
+    const INSTANCE: &str = "src/sparse/mumps/instance.c";
+    println!("cargo::rerun-if-changed={INSTANCE}");
+    let beside: Vec<PathBuf> = folders.iter().map(|folder| folder.join("mumps")).collect();
+    folders.extend(beside);
     folders.extend(MUMPS_HEADERS.map(PathBuf::from));
-    write(
-        bindings("dmumps_c.h", &folders, "dmumps_c"),
-        "mumps.rs",
-        INSTALL_MUMPS,
-    );
+    let compiled = cc::Build::new()
+        .file(INSTANCE)
+        .includes(folders)
+        .try_compile("proboscis_mumps");
+    compiled.map_err(|error| format!("{INSTALL_MUMPS} ({error})"))
 }
 
 /// Packs the code of pages for `src/report/page/code.rs`.
@@ -116,42 +233,15 @@ fn shared(name: &str) -> impl Iterator<Item = String> {
         .into_iter()
 }
 
-/// Whether the linker finds a shared library by itself: `cc` then tells its place instead of repeating its name.
-fn linker_finds(name: &str) -> bool {
-    let is_told = |file: String| {
-        let output = Command::new("cc")
-            .arg(format!("-print-file-name={file}"))
-            .output();
-        output.is_ok_and(|output| {
-            let path = String::from_utf8_lossy(&output.stdout);
-            Path::new(path.trim()).is_absolute()
-        })
+/// Where the linker finds a shared library by itself: `cc` then tells its place instead of repeating its name.
+fn linker_finds(name: &str) -> Option<PathBuf> {
+    let place = |file: String| {
+        let argument = format!("-print-file-name={file}");
+        let output = Command::new("cc").arg(argument).output().ok()?;
+        let path = PathBuf::from(String::from_utf8(output.stdout).ok()?.trim());
+        path.is_absolute().then_some(path)
     };
-    shared(name).any(is_told)
-}
-
-/// Translates the functions of a header.
-fn bindings(header: &str, folders: &[PathBuf], functions: &str) -> bindgen::Builder {
-    bindgen::Builder::default()
-        .header_contents("bindings.h", &format!("#include <{header}>\n"))
-        .clang_args(folders.iter().map(|path| format!("-I{}", path.display())))
-        .allowlist_function(functions)
-        .rust_edition(bindgen::RustEdition::Edition2024)
-        .layout_tests(false)
-        .generate_comments(false)
-}
-
-/// Writes bindings to where the sources include them from.
-fn write(bindings: bindgen::Builder, file: &str, install: &str) {
-    match bindings.generate() {
-        Ok(bindings) => {
-            let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
-            bindings
-                .write_to_file(out.join(file))
-                .expect("OUT_DIR can be written");
-        }
-        Err(error) => println!("cargo::error={install} ({error})"),
-    }
+    shared(name).find_map(place)
 }
 
 /// Tells release builds from a checkout their commit; a development build would be compiled anew after each commit.

@@ -7,6 +7,17 @@ use crate::ipopt::options::OptionValue;
 /// Version of the Ipopt that the program was built with.
 pub const VERSION: &str = env!("PROBOSCIS_IPOPT");
 
+/// Why this Ipopt does not take the linear solver along the horizon.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum NoStages {
+    /// Nothing can be in the place of MA57.
+    #[error("this Ipopt ({VERSION}) was built to load no linear solvers")]
+    WithoutMa57,
+    /// Nothing takes the functions.
+    #[error("this Ipopt ({VERSION}) shows no function that takes a linear solver")]
+    WithoutSetter,
+}
+
 /// Why Ipopt could not be called.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum IpoptError {
@@ -23,10 +34,8 @@ pub enum IpoptError {
         nearest: Option<String>,
     },
     /// This Ipopt takes no linear solver but those that it was built with.
-    #[error(
-        "this Ipopt ({VERSION}) takes no linear solver along the horizon: write \"auto\" or \"mumps\""
-    )]
-    NoStages,
+    #[error("{0}: write \"auto\" or \"mumps\"")]
+    NoStages(#[from] NoStages),
     /// Ipopt takes no problem without variables, nor constraints without any entry in their Jacobian.
     #[error(
         "Ipopt cannot work on {variables} variables and {constraints} constraints with {entries} entries in their Jacobian"

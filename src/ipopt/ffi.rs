@@ -1,14 +1,15 @@
-//! The C interface of Ipopt: bindings, and the callbacks over one guard against panics.
+//! The C interface of Ipopt: declarations, and the callbacks over one guard against panics.
 //!
 //! The header differs between versions: up to 3.13 `Bool` is `int`, `Number` is `double` and `Index` is `int`; since
 //! 3.14 `Bool` is `bool`, and the other two are old names of `ipnumber` and `ipindex`, which are `double` and `int`
-//! unless Ipopt was built for single precision or long indices (then this file does not compile). So truth values
-//! are written with `Bool::from` and read by comparison with it, and nothing else depends on the version.
+//! unless Ipopt was built for single precision or long indices (then the build ends). So truth values are written with
+//! `Bool::from` and read by comparison with it, and nothing else depends on the version. `header.c` holds the declarations
+//! below against the header.
 
 #![expect(unsafe_code, reason = "C interface of Ipopt")]
 
 use std::any::Any;
-use std::ffi::{CString, c_int, c_void};
+use std::ffi::{CString, c_char, c_int, c_void};
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::ptr::{self, NonNull};
@@ -20,30 +21,111 @@ use crate::ipopt::solution::{Iteration, Multipliers};
 use crate::nlp::{Bounds, Entries};
 use crate::sparse::mumps::{self, Exclusive};
 
-use bindings::Bool;
+/// Truth values of this Ipopt.
+#[cfg(ipopt_bool)]
+type Bool = bool;
+/// Truth values of this Ipopt.
+#[cfg(not(ipopt_bool))]
+type Bool = c_int;
 
-/// What `bindgen` makes of `IpStdCInterface.h`.
-#[allow(
-    non_camel_case_types,
-    non_snake_case,
-    non_upper_case_globals,
-    missing_docs,
-    missing_debug_implementations,
-    unreachable_pub,
-    dead_code,
-    clippy::all,
-    reason = "generated from a C header that differs between versions"
-)]
-mod bindings {
-    include!(concat!(env!("OUT_DIR"), "/ipopt.rs"));
+/// `struct IpoptProblemInfo`, which only Ipopt looks into.
+#[repr(C)]
+struct IpoptProblemInfo {
+    _inside: [u8; 0],
+}
+
+type Objective = unsafe extern "C" fn(c_int, *mut f64, Bool, *mut f64, *mut c_void) -> Bool;
+type Gradient = unsafe extern "C" fn(c_int, *mut f64, Bool, *mut f64, *mut c_void) -> Bool;
+type Constraint = unsafe extern "C" fn(c_int, *mut f64, Bool, c_int, *mut f64, *mut c_void) -> Bool;
+type Jacobian = unsafe extern "C" fn(
+    c_int,
+    *mut f64,
+    Bool,
+    c_int,
+    c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut f64,
+    *mut c_void,
+) -> Bool;
+type Hessian = unsafe extern "C" fn(
+    c_int,
+    *mut f64,
+    Bool,
+    f64,
+    c_int,
+    *mut f64,
+    Bool,
+    c_int,
+    *mut c_int,
+    *mut c_int,
+    *mut f64,
+    *mut c_void,
+) -> Bool;
+type Intermediate = unsafe extern "C" fn(
+    c_int,
+    c_int,
+    f64,
+    f64,
+    f64,
+    f64,
+    f64,
+    f64,
+    f64,
+    f64,
+    c_int,
+    *mut c_void,
+) -> Bool;
+
+unsafe extern "C" {
+    fn CreateIpoptProblem(
+        n: c_int,
+        x_lower: *mut f64,
+        x_upper: *mut f64,
+        m: c_int,
+        g_lower: *mut f64,
+        g_upper: *mut f64,
+        jacobian_entries: c_int,
+        hessian_entries: c_int,
+        first_index: c_int,
+        objective: Objective,
+        constraint: Constraint,
+        gradient: Gradient,
+        jacobian: Jacobian,
+        hessian: Hessian,
+    ) -> *mut IpoptProblemInfo;
+    fn FreeIpoptProblem(problem: *mut IpoptProblemInfo);
+    fn AddIpoptStrOption(
+        problem: *mut IpoptProblemInfo,
+        name: *mut c_char,
+        value: *mut c_char,
+    ) -> Bool;
+    fn AddIpoptNumOption(problem: *mut IpoptProblemInfo, name: *mut c_char, value: f64) -> Bool;
+    fn AddIpoptIntOption(problem: *mut IpoptProblemInfo, name: *mut c_char, value: c_int) -> Bool;
+    fn SetIntermediateCallback(problem: *mut IpoptProblemInfo, iteration: Intermediate) -> Bool;
+    fn IpoptSolve(
+        problem: *mut IpoptProblemInfo,
+        x: *mut f64,
+        g: *mut f64,
+        objective: *mut f64,
+        of_constraints: *mut f64,
+        of_lower: *mut f64,
+        of_upper: *mut f64,
+        session: *mut c_void,
+    ) -> c_int;
 }
 
 /// A problem known to Ipopt, for any number of solves; while one exists that uses MUMPS, no other thread has such a one or calls MUMPS.
 pub(super) struct Problem {
-    handle: NonNull<bindings::IpoptProblemInfo>,
+    handle: NonNull<IpoptProblemInfo>,
     variables: usize,
     constraints: usize,
     _lock: Option<Exclusive>,
+}
+
+/// Where a function of the Ipopt that is called stands.
+pub(super) fn address() -> *const c_void {
+    FreeIpoptProblem as *const c_void
 }
 
 /// An evaluator, and the panic that ended its work, if any.
@@ -71,7 +153,7 @@ impl Problem {
         // SAFETY: the bounds are arrays of `n` and `m` numbers, which Ipopt copies; the callbacks have the types that the
         // header declares.
         let handle = unsafe {
-            bindings::CreateIpoptProblem(
+            CreateIpoptProblem(
                 count(n)?,
                 variables.lower.as_ptr().cast_mut(),
                 variables.upper.as_ptr().cast_mut(),
@@ -81,11 +163,11 @@ impl Problem {
                 count(jacobian)?,
                 count(hessian)?,
                 0,
-                Some(objective),
-                Some(constraint),
-                Some(gradient),
-                Some(self::jacobian),
-                Some(self::hessian),
+                objective,
+                constraint,
+                gradient,
+                self::jacobian,
+                self::hessian,
             )
         };
         let problem = Self {
@@ -95,7 +177,7 @@ impl Problem {
             _lock: lock,
         };
         // SAFETY: the handle is valid; the callback has the type that the header declares.
-        unsafe { bindings::SetIntermediateCallback(handle, Some(iteration)) };
+        unsafe { SetIntermediateCallback(handle, iteration) };
         Some(problem)
     }
 
@@ -108,19 +190,15 @@ impl Problem {
         let handle = self.handle.as_ptr();
         let taken = match value {
             // SAFETY: the handle is valid, and Ipopt copies the name, which ends in NUL.
-            OptionValue::Integer(value) => unsafe {
-                bindings::AddIpoptIntOption(handle, name, *value)
-            },
+            OptionValue::Integer(value) => unsafe { AddIpoptIntOption(handle, name, *value) },
             // SAFETY: as above.
-            OptionValue::Number(value) => unsafe {
-                bindings::AddIpoptNumOption(handle, name, *value)
-            },
+            OptionValue::Number(value) => unsafe { AddIpoptNumOption(handle, name, *value) },
             OptionValue::Text(value) => {
                 let Ok(value) = CString::new(value.as_str()) else {
                     return false;
                 };
                 // SAFETY: as above; the value is copied too and ends in NUL.
-                unsafe { bindings::AddIpoptStrOption(handle, name, value.as_ptr().cast_mut()) }
+                unsafe { AddIpoptStrOption(handle, name, value.as_ptr().cast_mut()) }
             }
         };
         taken != Bool::from(false)
@@ -158,7 +236,7 @@ impl Problem {
         // SAFETY: the handle is valid and the arrays have the lengths it was created with. The session outlives the call and
         // is reached through the pointer alone meanwhile; Ipopt calls back from this thread only, one call at a time.
         let code = unsafe {
-            bindings::IpoptSolve(
+            IpoptSolve(
                 self.handle.as_ptr(),
                 x.as_mut_ptr(),
                 ptr::null_mut(),
@@ -179,7 +257,7 @@ impl Problem {
 impl Drop for Problem {
     fn drop(&mut self) {
         // SAFETY: the handle came from `CreateIpoptProblem` and is freed once, here; the lock is released afterwards.
-        unsafe { bindings::FreeIpoptProblem(self.handle.as_ptr()) };
+        unsafe { FreeIpoptProblem(self.handle.as_ptr()) };
     }
 }
 

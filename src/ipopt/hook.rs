@@ -1,17 +1,21 @@
 //! The linear solver along the horizon in the place of MA57 of the HSL.
 //!
-//! Up to 3.13 Ipopt can be given the functions of a linear solver that it was not built with: `LSL_setMA57` of its header
-//! `HSLLoader.h`, found among the loaded libraries when first asked for. Later versions have no such function. Meaning of the arguments:
-//! specification of MA57 (HSL, 2016) and `IpMa57TSolverInterface.cpp`; the arrays `keep`, `fact` and `ifact`, in which MA57 stores what it
-//! knows, stay unused.
+//! Ipopt can be given the functions of a linear solver that it was not built with: up to 3.13 by `LSL_setMA57` of its header `HSLLoader.h`, from
+//! 3.14 on by the static function `Ipopt::Ma57TSolverInterface::SetFunctions` of C++, whose mangled name holds the types of its arguments. Both take
+//! the same five functions, for all problems of the process. Meaning of the arguments: specification of MA57 (HSL, 2016) and
+//! `IpMa57TSolverInterface.cpp`; the arrays `keep`, `fact` and `ifact`, in which MA57 stores what it knows, stay unused.
 
 #![expect(unsafe_code, reason = "C interface of Ipopt")]
 
-use std::ffi::{c_int, c_void};
+use std::ffi::{CStr, c_int, c_uint, c_void};
 use std::mem;
+use std::ptr::NonNull;
 use std::slice;
 use std::sync::OnceLock;
 
+use crate::ipopt::error::NoStages;
+use crate::ipopt::ffi;
+use crate::ipopt::loaded::Loaded;
 use crate::ipopt::session::with_current;
 use crate::kkt::Stopped;
 
@@ -87,21 +91,54 @@ type Enlarge = unsafe extern "C" fn(
 type Initialise = unsafe extern "C" fn(*mut f64, *mut c_int);
 type SetMa57 = unsafe extern "C" fn(Analyse, Factor, Solve, Enlarge, Initialise);
 
-/// Gives Ipopt the functions, once in a process, and says whether it takes them.
-pub(super) fn install() -> bool {
-    static TAKEN: OnceLock<bool> = OnceLock::new();
+type LinearSolvers = unsafe extern "C" fn(c_int) -> c_uint;
+
+/// What takes the functions: of 3.13 and before, and of 3.14, as `c++filt` shows.
+const SETTERS: [&CStr; 2] = [
+    c"LSL_setMA57",
+    c"_ZN5Ipopt20Ma57TSolverInterface12SetFunctionsEPFvPiS1_PKiS3_S1_S1_S1_S1_S1_PdEPFvS1_S1_S4_S4_S1_S1_S1_S1_S1_S1_S1_S4_S1_S4_EPFvS1_S1_S4_S1_S1_S1_S1_S4_S1_S4_S1_S1_S1_S1_EPFvS1_S1_S1_S4_S1_S4_S1_S1_S1_S1_S1_S1_EPFvS4_S1_E",
+];
+/// Tells the linear solvers that may be asked for, since 3.14, where a build may leave MA57 out.
+const LINEAR_SOLVERS: &CStr = c"IpoptGetAvailableLinearSolvers";
+/// `IPOPTLINEARSOLVER_MA57` of `IpLinearSolvers.h`.
+const MA57: c_uint = 2;
+
+/// Gives Ipopt the functions, once in a process.
+pub(super) fn install() -> Result<(), NoStages> {
+    static TAKEN: OnceLock<Result<(), NoStages>> = OnceLock::new();
     *TAKEN.get_or_init(|| {
-        // SAFETY: the name ends in NUL; `dlsym` looks it up among the libraries already loaded and returns null if there is none.
-        let symbol = unsafe { libc::dlsym(libc::RTLD_DEFAULT, c"LSL_setMA57".as_ptr()) };
-        if symbol.is_null() {
-            return false;
+        let ipopt = Loaded::with(ffi::address());
+        if let Some(symbol) = ipopt.function(LINEAR_SOLVERS) {
+            // SAFETY: `IpLinearSolvers.h` declares the function with these types.
+            let known = unsafe {
+                let ask = mem::transmute::<NonNull<c_void>, LinearSolvers>(symbol);
+                // Linked or loaded.
+                ask(0)
+            };
+            if known & MA57 == 0 {
+                return Err(NoStages::WithoutMa57);
+            }
         }
-        // SAFETY: `HSLLoader.h` declares the function and its five arguments with these types.
-        let set = unsafe { mem::transmute::<*mut c_void, SetMa57>(symbol) };
+        let symbol = SETTERS.into_iter().find_map(|name| ipopt.function(name));
+        let symbol = symbol.ok_or(NoStages::WithoutSetter)?;
+        // SAFETY: `HSLLoader.h` declares the first function and its five arguments with these types, the second one's name tells them, and a
+        // static function of C++ is called as one of C.
+        let set = unsafe { mem::transmute::<NonNull<c_void>, SetMa57>(symbol) };
         // SAFETY: as above; the functions live as long as the process, and the cell keeps other threads out.
         unsafe { set(analyse, factor, solve, enlarge, initialise) };
-        true
+        Ok(())
     })
+}
+
+/// What Ipopt calls in the place of MA57, in the order of its setter; for tests.
+#[doc(hidden)]
+#[must_use]
+pub fn functions_of_ma57() -> [*const c_void; 3] {
+    [
+        analyse as *const c_void,
+        factor as *const c_void,
+        solve as *const c_void,
+    ]
 }
 
 /// `length` numbers at `start`.

@@ -1,5 +1,6 @@
 //! What the linear systems of a solve took.
 
+use crate::ipopt::error::NoStages;
 use crate::ipopt::status::Status;
 use crate::kkt::Statistics;
 
@@ -8,6 +9,8 @@ use crate::kkt::Statistics;
 pub struct LinearReport {
     /// Who solved them: `stages`, or a name that Ipopt knows.
     pub solver: String,
+    /// Why it was not `stages`, which nothing spoke against but this Ipopt.
+    pub why_not: Option<NoStages>,
     /// What that did; known of `stages` alone.
     pub stages: Option<StagesReport>,
 }
@@ -37,9 +40,17 @@ pub struct StagesReport {
 const FELT: f64 = 10.0;
 
 impl LinearReport {
-    /// Why factorisations took long, where most of their time went into systems that were not condensed although others were.
+    /// What made the linear systems take longer than they might.
     #[must_use]
     pub fn note(&self) -> Option<String> {
+        let instead = self
+            .why_not
+            .map(|why| format!("linear systems were solved by MUMPS, which takes longer: {why}"));
+        instead.or_else(|| self.whole_systems())
+    }
+
+    /// Why factorisations took long, where most of their time went into systems that were not condensed although others were.
+    fn whole_systems(&self) -> Option<String> {
         let report = self.stages?;
         let statistics = report.statistics;
         (report.whole > FELT && 2.0 * report.whole > report.factorisation).then(|| {

@@ -1,6 +1,10 @@
 //! Who solves the linear systems of Ipopt.
 
+use crate::ipopt::error::NoStages;
 use crate::ipopt::hook;
+
+/// How Ipopt calls MUMPS.
+pub(super) const MUMPS: &str = "mumps";
 
 /// Who solves the linear systems of Ipopt.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -14,28 +18,40 @@ pub enum LinearSolver {
     Mumps,
 }
 
-impl LinearSolver {
-    /// What is taken: never [`LinearSolver::Auto`]. `None` if this Ipopt does not take it.
-    pub(super) fn resolve(self) -> Option<Self> {
-        match self {
-            Self::Auto if hook::install() => Some(Self::Stages),
-            Self::Auto => Some(Self::Mumps),
-            Self::Stages => hook::install().then_some(self),
-            Self::Mumps => Some(self),
-        }
-    }
-
+/// The linear solver that a solve takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Taken<'o> {
     /// How Ipopt calls it.
-    pub(super) const fn name(self) -> &'static str {
+    pub(super) name: &'o str,
+    /// Whether it is the one along the horizon.
+    pub(super) is_along: bool,
+    /// Why it is not, where nothing else was asked for.
+    pub(super) why_not: Option<NoStages>,
+}
+
+impl LinearSolver {
+    /// What is taken: an error if this Ipopt does not take it.
+    pub(super) fn taken(self) -> Result<Taken<'static>, NoStages> {
+        let stages = Taken {
+            name: "ma57",
+            is_along: true,
+            why_not: None,
+        };
+        let mumps = |why_not| Taken {
+            name: MUMPS,
+            is_along: false,
+            why_not,
+        };
         match self {
-            Self::Auto | Self::Stages => "ma57",
-            Self::Mumps => "mumps",
+            Self::Auto => Ok(hook::install().map_or_else(|why| mumps(Some(why)), |()| stages)),
+            Self::Stages => hook::install().map(|()| stages),
+            Self::Mumps => Ok(mumps(None)),
         }
     }
 
     /// Whether this Ipopt takes [`LinearSolver::Stages`].
     #[must_use]
     pub fn has_stages() -> bool {
-        hook::install()
+        hook::install().is_ok()
     }
 }

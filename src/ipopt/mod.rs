@@ -12,6 +12,7 @@ pub mod interrupt;
 mod known_bounds;
 mod linear_report;
 mod linear_solver;
+mod loaded;
 mod options;
 mod reached;
 mod record;
@@ -25,7 +26,9 @@ use std::ops::ControlFlow;
 
 use crate::nlp::Nlp;
 
-pub use error::{IpoptError, VERSION};
+pub use error::{IpoptError, NoStages, VERSION};
+#[doc(hidden)]
+pub use hook::functions_of_ma57;
 pub use linear_report::{LinearReport, StagesReport};
 pub use linear_solver::LinearSolver;
 pub use options::{MUMPS_ORDERING, OptionValue, Options, Start};

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::ipopt::linear_solver::LinearSolver;
+use crate::ipopt::error::NoStages;
+use crate::ipopt::linear_solver::{LinearSolver, MUMPS, Taken};
 
 /// Ordering of the linear solver's elimination unless `mumps_pivot_order` says otherwise: approximate minimum fill.
 ///
@@ -126,13 +127,16 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The name of the linear solver in Ipopt, and whether it is the one along the horizon; `None` if this Ipopt does not take it.
-    pub(super) fn linear_solver(&self) -> Option<(&str, bool)> {
-        if let Some(OptionValue::Text(name)) = self.extra.get("linear_solver") {
-            return Some((name, false));
+    /// The linear solver; an error if this Ipopt does not take it.
+    pub(super) fn taken(&self) -> Result<Taken<'_>, NoStages> {
+        match self.extra.get("linear_solver") {
+            Some(OptionValue::Text(name)) => Ok(Taken {
+                name,
+                is_along: false,
+                why_not: None,
+            }),
+            _ => self.linear_solver.taken(),
         }
-        let solver = self.linear_solver.resolve()?;
-        Some((solver.name(), solver == LinearSolver::Stages))
     }
 
     /// By how much Ipopt relaxes bounds, of their magnitude and at least of one.
@@ -147,21 +151,25 @@ impl Options {
     /// Whether solves with these options run in several threads at once: those with the linear solver along the horizon.
     #[must_use]
     pub fn run_at_once(&self) -> bool {
-        self.linear_solver().is_some_and(|(_, is_along)| is_along)
+        self.taken().is_ok_and(|taken| taken.is_along)
     }
 
-    /// All options that Ipopt is given, by name; `solver` is its name of the linear solver.
+    /// All options that Ipopt is given, by name.
     ///
     /// Ipopt is silent, reads no options file from the working directory, and leaves the scaling and the point that it returns, which may
     /// leave the bounds by what they are relaxed, to the problem.
-    pub(super) fn settings(&self, solver: &str) -> BTreeMap<String, OptionValue> {
+    pub(super) fn settings(&self, solver: Taken<'_>) -> BTreeMap<String, OptionValue> {
         let mut settings = BTreeMap::new();
         let mut text = |name: &str, value: &str| {
             settings.insert(name.to_owned(), OptionValue::Text(value.to_owned()))
         };
         text("sb", "yes");
         text("option_file_name", "");
-        text("linear_solver", solver);
+        text("linear_solver", solver.name);
+        if solver.is_along {
+            // An Ipopt that has MC19 would scale systems for MA57.
+            text("linear_system_scaling", "none");
+        }
         text("nlp_scaling_method", "none");
         text("honor_original_bounds", "no");
         text("fixed_variable_treatment", "make_parameter");
@@ -179,7 +187,7 @@ impl Options {
             "max_iter",
             i32::try_from(self.max_iterations).unwrap_or(i32::MAX),
         );
-        if solver == LinearSolver::Mumps.name() {
+        if solver.name == MUMPS {
             integer("mumps_pivot_order", MUMPS_ORDERING);
         }
 

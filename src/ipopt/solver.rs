@@ -234,7 +234,8 @@ impl<N: Nlp> Solver<N> {
         if let Some(problem) = self.problem.take() {
             return Ok(problem);
         }
-        let (name, is_along) = self.options.linear_solver().ok_or(IpoptError::NoStages)?;
+        let taken = self.options.taken()?;
+        let is_along = taken.is_along;
         let KnownBounds {
             variables,
             constraints,
@@ -249,7 +250,9 @@ impl<N: Nlp> Solver<N> {
                 Session::new(variables, constraints, stages.as_deref())
             })
         });
-        self.result.linear.solver = if is_along { "stages" } else { name }.to_owned();
+        let solver = if is_along { "stages" } else { taken.name };
+        self.result.linear.solver = solver.to_owned();
+        self.result.linear.why_not = taken.why_not;
         let Structures { jacobian, hessian } = &self.structures;
         let (first, second) = (jacobian.rows.len(), hessian.rows.len());
         let mut problem = Problem::new(variables, constraints, first, second, !is_along).ok_or(
@@ -259,7 +262,7 @@ impl<N: Nlp> Solver<N> {
                 entries: first,
             },
         )?;
-        for (name, value) in self.options.settings(name) {
+        for (name, value) in self.options.settings(taken) {
             if !problem.set(&name, &value) {
                 let nearest = options::nearest(&name).map(str::to_owned);
                 return Err(IpoptError::OptionRejected {

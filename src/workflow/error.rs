@@ -98,7 +98,7 @@ impl WorkflowError {
     pub(crate) fn ipopt(error: &IpoptError) -> Self {
         let place = match error {
             IpoptError::OptionRejected { .. } => "control.solver.ipopt",
-            IpoptError::NoStages => "control.solver.linear_solver",
+            IpoptError::NoStages(_) => "control.solver.linear_solver",
             IpoptError::ProblemNotCreated { .. } => "control",
         };
         Self::Problem {

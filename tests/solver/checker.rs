@@ -62,20 +62,59 @@ impl Nlp for Program<'_> {
     }
 }
 
+/// By how much variables move away from the start.
+const RADIUS: f64 = 0.05;
+/// Round-off of a first derivative over that of its largest entry: sums of about so many numbers of its size.
+const SUMMED: f64 = 8.0;
+
+/// Step and tolerance of the checker, which compares second derivatives with one-sided differences of first ones.
+///
+/// Such a difference over δ is wrong by `2 ε J/δ + δ T/2`, with first derivatives up to J that are known up to ε, and third ones up to T. That is
+/// least at `δ² = 4 ε J/T`. Where the second derivative is small the checker compares the error with the square of its tolerance.
+fn method(program: &mut Program<'_>, x: &[f64]) -> (f64, f64) {
+    let (jacobian, hessian) = (program.jacobian_structure(), program.hessian_structure());
+    let costates = vec![1.5; program.constraints().lower.len()];
+    let mut first = vec![0.0; jacobian.rows.len()];
+    let mut ends = [(); 2].map(|()| vec![0.0; hessian.rows.len()]);
+    program.jacobian(x, &mut first);
+    let mut gradient = vec![0.0; x.len()];
+    program.gradient(x, &mut gradient);
+    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let first = 1.5 * largest(&first).max(largest(&gradient));
+    // Third derivatives along one direction after the other.
+    let mut third = 0.0_f64;
+    for i in 0..x.len() {
+        for (sign, values) in [-1.0, 1.0].into_iter().zip(&mut ends) {
+            let mut x = x.to_vec();
+            x[i] += sign * 0.1 * RADIUS;
+            program.hessian(&x, 1.5, &costates, values);
+        }
+        let [low, high] = &ends;
+        let differences: Vec<f64> = high.iter().zip(low).map(|(a, b)| a - b).collect();
+        third = third.max(largest(&differences) / (0.2 * RADIUS));
+    }
+    assert!(first > 0.1 && third > 0.1, "{first} {third}");
+    let rounded = SUMMED * f64::EPSILON * first;
+    let step = 2.0 * (rounded / third).sqrt();
+    let error = 2.0 * rounded / step + 0.5 * step * third;
+    (step, error.sqrt())
+}
+
 fn check(system: &System, control: &Control, factor: f64) {
     let (model, boundary) = BoundaryConditions::resolve(system, control, 10.0).unwrap();
     let initial = guess(&model, &boundary, control, 10.0, None);
     let of = Transcription::new(&model, &boundary, control, &initial).unwrap();
     let start = of.start(&initial);
+    let mut program = Program { of, factor };
+    let (step, tolerance) = method(&mut program, &start.x);
     let text = |text: &str| OptionValue::Text(text.to_owned());
+    let number = OptionValue::Number;
     let extra = BTreeMap::from([
         ("derivative_test".to_owned(), text("second-order")),
         // Variables are scaled to about one: a small move away from the special points of the guess.
-        (
-            "point_perturbation_radius".to_owned(),
-            OptionValue::Number(0.05),
-        ),
-        ("derivative_test_tol".to_owned(), OptionValue::Number(1e-4)),
+        ("point_perturbation_radius".to_owned(), number(RADIUS)),
+        ("derivative_test_perturbation".to_owned(), number(step)),
+        ("derivative_test_tol".to_owned(), number(tolerance)),
         ("print_level".to_owned(), OptionValue::Integer(5)),
     ]);
     let options = Options {
@@ -84,7 +123,6 @@ fn check(system: &System, control: &Control, factor: f64) {
         extra,
         ..Options::default()
     };
-    let mut program = Program { of, factor };
     ipopt::solve(&mut program, &start, &options, &mut |_, _| {
         ControlFlow::Continue(())
     })

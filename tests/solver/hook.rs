@@ -4,8 +4,8 @@
 
 use crate::common::programs::{HS071_START, hs071};
 use crate::ipopt::run;
-use proboscis::ipopt::{LinearSolver, Options, Status};
-use std::ffi::{CStr, c_int};
+use proboscis::ipopt::{LinearSolver, Options, Status, functions_of_ma57};
+use std::ffi::{c_int, c_void};
 use std::mem;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr::null_mut;
@@ -59,18 +59,18 @@ type Solve = unsafe extern "C" fn(
     Integers,
 );
 
-/// A function of MA57 as Ipopt exports it: it calls what was put in its place.
-///
-/// # Safety
-///
-/// `F` is its type.
-unsafe fn function<F: Copy>(name: &CStr) -> F {
+/// What stands in the place of `MA57AD`, `MA57BD` and `MA57CD`.
+fn functions() -> (Analyse, Factor, Solve) {
     assert!(LinearSolver::has_stages(), "an Ipopt that takes them");
-    // SAFETY: the name ends in NUL, and the library is loaded.
-    let symbol = unsafe { libc::dlsym(libc::RTLD_DEFAULT, name.as_ptr()) };
-    assert!(!symbol.is_null(), "{name:?}");
-    // SAFETY: a pointer to a function, whose type the caller vouches for.
-    unsafe { mem::transmute_copy(&symbol) }
+    let [analyse, factor, solve] = functions_of_ma57();
+    // SAFETY: pointers to functions of these types, as MA57 declares its own.
+    unsafe {
+        (
+            mem::transmute::<*const c_void, Analyse>(analyse),
+            mem::transmute::<*const c_void, Factor>(factor),
+            mem::transmute::<*const c_void, Solve>(solve),
+        )
+    }
 }
 
 /// `info` after the analysis of a matrix of so many unknowns with a full diagonal.
@@ -80,7 +80,7 @@ fn analyse(order: usize) -> [c_int; 40] {
     let mut count = order as c_int;
     // SAFETY: as MA57 takes its arguments; null where what stands in its place reads nothing.
     unsafe {
-        function::<Analyse>(c"ma57ad_")(
+        functions().0(
             &raw mut count,
             &raw mut count,
             places.as_mut_ptr(),
@@ -104,7 +104,7 @@ fn factor(entries: &[f64]) -> [c_int; 40] {
     let mut tolerance = 1e-8;
     // SAFETY: as above.
     unsafe {
-        function::<Factor>(c"ma57bd_")(
+        functions().1(
             &raw mut count,
             &raw mut count,
             entries.as_mut_ptr(),
@@ -130,7 +130,7 @@ fn solve(right: &mut [f64]) -> [c_int; 40] {
     let (mut order, mut columns) = (right.len() as c_int, 1);
     // SAFETY: as above.
     unsafe {
-        function::<Solve>(c"ma57cd_")(
+        functions().2(
             null_mut(),
             &raw mut order,
             null_mut(),

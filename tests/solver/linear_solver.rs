@@ -8,7 +8,9 @@ use crate::ipopt::run;
 use proboscis::control::problem::{Control, Duration, Objective, PathConstraint, Task};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::files::read_problem;
-use proboscis::ipopt::{LinearSolver, OptionValue, Options, SolverResult, Status};
+use proboscis::ipopt::{
+    LinearReport, LinearSolver, NoStages, OptionValue, Options, SolverResult, Status,
+};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -98,6 +100,31 @@ fn iterations_and_optima_are_those_of_mumps() {
         }
     }
     assert!(solved >= 3, "{solved} of the cases are solved");
+}
+
+/// MUMPS takes the place of the solver along the horizon where this Ipopt does not take it, and where a user says so; only the first is told.
+#[test]
+fn a_note_says_why_mumps_was_used() {
+    let asked = |linear_solver| run(&mut hs071(), &HS071_START, &options(linear_solver)).linear;
+    for solver in [LinearSolver::Auto, LinearSolver::Mumps] {
+        let linear = asked(solver);
+        let is_refused = solver == LinearSolver::Auto && !LinearSolver::has_stages();
+        assert_eq!(linear.why_not.is_some(), is_refused);
+        assert_eq!(linear.note().is_some(), is_refused);
+    }
+    for why in [NoStages::WithoutMa57, NoStages::WithoutSetter] {
+        let linear = LinearReport {
+            solver: "mumps".to_owned(),
+            why_not: Some(why),
+            stages: None,
+        };
+        let told = "linear systems were solved by MUMPS, which takes longer: this Ipopt (3.";
+        let note = linear.note().expect("a reason");
+        assert!(
+            note.starts_with(told) && note.ends_with(&why.to_string()),
+            "{note}"
+        );
+    }
 }
 
 /// A goal that cannot be reached, so that Ipopt enters its restoration phase, where every equation has a diagonal.

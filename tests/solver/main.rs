@@ -14,6 +14,7 @@ mod ipopt_stops;
 mod kkt;
 mod linear_solver;
 mod matrices;
+mod mpi;
 mod precision;
 mod random_systems;
 mod recorded;

@@ -1,37 +1,53 @@
-//! The C interface of MUMPS: bindings, and one instance per matrix.
+//! The C interface of MUMPS, one instance per matrix.
 //!
 //! Words of the manual: an instance goes through jobs (initialisation −1, analysis 1, factorisation 2, solution 3, end −2);
-//! `ICNTL` and `CNTL` are its controls, `INFOG` its answers; all three are counted from one.
+//! `ICNTL` and `CNTL` are its controls, `INFOG` its answers; all three are counted from one. `instance.c` knows where they stand in the structure,
+//! which differs between versions.
 
 #![expect(unsafe_code, reason = "C interface of MUMPS")]
 
-use std::ffi::c_int;
+use std::ffi::{CStr, c_char, c_int};
 use std::fmt;
-use std::mem::MaybeUninit;
-use std::ptr;
+use std::ptr::{self, NonNull};
 use std::slice;
 
 use crate::sparse::Symmetry;
 use crate::sparse::mumps::lock::exclusive;
 
-/// What `bindgen` makes of `dmumps_c.h`.
-#[allow(
-    non_camel_case_types,
-    non_snake_case,
-    non_upper_case_globals,
-    missing_docs,
-    missing_debug_implementations,
-    unreachable_pub,
-    dead_code,
-    clippy::all,
-    reason = "generated from a C header that differs between versions"
-)]
-mod bindings {
-    include!(concat!(env!("OUT_DIR"), "/mumps.rs"));
+/// `DMUMPS_STRUC_C`, which `instance.c` looks into.
+#[repr(C)]
+struct Structure {
+    _inside: [u8; 0],
 }
 
-/// The communicator of the library without MPI.
-const COMM_WORLD: c_int = -987_654;
+unsafe extern "C" {
+    fn proboscis_mumps_begin(symmetry: c_int) -> *mut Structure;
+    fn proboscis_mumps_end(instance: *mut Structure);
+    fn proboscis_mumps_header() -> *const c_char;
+    fn proboscis_mumps_library(instance: *const Structure, most: *mut usize) -> *const c_char;
+    fn proboscis_mumps_matrix(
+        instance: *mut Structure,
+        n: c_int,
+        entries: i64,
+        rows: *mut c_int,
+        cols: *mut c_int,
+    );
+    fn proboscis_mumps_icntl(instance: *mut Structure) -> *mut c_int;
+    fn proboscis_mumps_cntl(instance: *mut Structure) -> *mut f64;
+    fn proboscis_mumps_infog(instance: *const Structure) -> *const c_int;
+    fn proboscis_mumps_places(instance: *const Structure) -> *const c_int;
+    fn proboscis_mumps_call(
+        instance: *mut Structure,
+        job: c_int,
+        entries: *mut f64,
+        right: *mut f64,
+    ) -> c_int;
+}
+
+/// Lengths of `ICNTL`, `CNTL` and `INFOG`.
+const ICNTL: usize = 60;
+const CNTL: usize = 15;
+const INFOG: usize = 80;
 
 /// What an instance is asked to do.
 #[derive(Clone, Copy, Debug)]
@@ -44,9 +60,11 @@ pub(super) enum Job {
 /// A matrix known to MUMPS, with its symbolic and numeric factors.
 pub(super) struct Instance {
     /// Its arrays `irn` and `jcn` are those below; `a` and `rhs` are null between two calls.
-    data: Box<bindings::DMUMPS_STRUC_C>,
+    structure: NonNull<Structure>,
+    size: usize,
     rows: Vec<c_int>,
     cols: Vec<c_int>,
+    is_analysed: bool,
 }
 
 // SAFETY: nothing in an instance belongs to a thread, and every call to MUMPS takes the lock of the process.
@@ -56,91 +74,131 @@ impl Instance {
     /// An instance for matrices of `size` rows with these entries, counted from one.
     pub(super) fn new(size: usize, symmetry: Symmetry, rows: Vec<c_int>, cols: Vec<c_int>) -> Self {
         assert_eq!(rows.len(), cols.len(), "as many rows as columns");
-        // SAFETY: the structure is made of numbers and pointers, for which zero is a value.
-        let data = unsafe { Box::<MaybeUninit<_>>::new(MaybeUninit::zeroed()).assume_init() };
-        let mut instance = Self { data, rows, cols };
-        instance.data.par = 1;
-        instance.data.sym = match symmetry {
+        let n = c_int::try_from(size).expect("a size that MUMPS can count");
+        let entries = i64::try_from(rows.len()).expect("a countable matrix");
+        let symmetry = match symmetry {
             Symmetry::Unsymmetric => 0,
             Symmetry::Symmetric => 2,
         };
-        instance.data.comm_fortran = COMM_WORLD;
-        instance.call(-1);
-        instance.data.n = c_int::try_from(size).expect("a size that MUMPS can count");
-        instance.data.nnz = i64::try_from(instance.rows.len()).expect("a countable matrix");
-        instance.data.irn = instance.rows.as_mut_ptr();
-        instance.data.jcn = instance.cols.as_mut_ptr();
+        let structure = {
+            let _lock = exclusive();
+            // SAFETY: the lock keeps all other users of MUMPS out.
+            NonNull::new(unsafe { proboscis_mumps_begin(symmetry) })
+                .expect("memory for an instance")
+        };
+        check_version(structure);
+        let mut instance = Self {
+            structure,
+            size,
+            rows,
+            cols,
+            is_analysed: false,
+        };
+        let (rows, cols) = (instance.rows.as_mut_ptr(), instance.cols.as_mut_ptr());
+        // SAFETY: the structure is valid; the arrays have `entries` numbers and live as long as it.
+        unsafe { proboscis_mumps_matrix(structure.as_ptr(), n, entries, rows, cols) };
         instance
     }
 
     /// Sets ICNTL(`number`).
     pub(super) fn control(&mut self, number: usize, value: c_int) {
-        self.data.icntl[number - 1] = value;
+        // SAFETY: the structure is valid and has so many controls.
+        let controls = unsafe {
+            slice::from_raw_parts_mut(proboscis_mumps_icntl(self.structure.as_ptr()), ICNTL)
+        };
+        controls[number - 1] = value;
     }
 
     /// Sets CNTL(`number`).
     pub(super) fn threshold(&mut self, number: usize, value: f64) {
-        self.data.cntl[number - 1] = value;
+        // SAFETY: as above.
+        let controls = unsafe {
+            slice::from_raw_parts_mut(proboscis_mumps_cntl(self.structure.as_ptr()), CNTL)
+        };
+        controls[number - 1] = value;
     }
 
     /// INFOG(`number`).
     pub(super) fn information(&self, number: usize) -> c_int {
-        self.data.infog[number - 1]
+        // SAFETY: as above.
+        let told =
+            unsafe { slice::from_raw_parts(proboscis_mumps_infog(self.structure.as_ptr()), INFOG) };
+        told[number - 1]
     }
 
     /// The place of each row in the order of elimination, counted from one; empty before the analysis.
     pub(super) fn places(&self) -> &[c_int] {
-        let (start, size) = (self.data.sym_perm, usize::try_from(self.data.n));
-        match size {
+        // SAFETY: the structure is valid.
+        let start = unsafe { proboscis_mumps_places(self.structure.as_ptr()) };
+        match self.is_analysed && !start.is_null() {
             // SAFETY: after the analysis the pointer leads to `n` numbers, which stay unchanged until the next call.
-            Ok(size) if !start.is_null() => unsafe { slice::from_raw_parts(start, size) },
-            _ => &[],
+            true => unsafe { slice::from_raw_parts(start, self.size) },
+            false => &[],
         }
     }
 
     /// Does `job` with the values of the matrix or the right-hand side, and returns INFOG(1): negative where it failed.
     pub(super) fn run(&mut self, job: Job, numbers: &mut [f64]) -> c_int {
-        match job {
-            Job::Analyse => self.call(job as c_int),
+        let none = ptr::null_mut();
+        let (entries, right) = match job {
+            Job::Analyse => (none, none),
             Job::Factor => {
                 assert_eq!(numbers.len(), self.rows.len(), "one value per entry");
-                self.data.a = numbers.as_mut_ptr();
-                let code = self.call(job as c_int);
-                self.data.a = ptr::null_mut();
-                code
+                (numbers.as_mut_ptr(), none)
             }
             Job::Solve => {
-                let size = usize::try_from(self.data.n).unwrap_or_default();
-                assert_eq!(numbers.len(), size, "one number per row");
-                self.data.rhs = numbers.as_mut_ptr();
-                let code = self.call(job as c_int);
-                self.data.rhs = ptr::null_mut();
-                code
+                assert_eq!(numbers.len(), self.size, "one number per row");
+                (none, numbers.as_mut_ptr())
             }
-        }
-    }
-
-    fn call(&mut self, job: c_int) -> c_int {
+        };
         let _lock = exclusive();
-        self.data.job = job;
-        // SAFETY: the instance was initialised (that is job −1); its arrays have the lengths that `n` and `nnz` tell and live
-        // during the call; the lock keeps all other users of MUMPS out.
-        unsafe { bindings::dmumps_c(&raw mut *self.data) };
-        self.data.infog[0]
+        let structure = self.structure.as_ptr();
+        // SAFETY: the structure is valid; its arrays have the lengths that it was told and live during the call; the lock
+        // keeps all other users of MUMPS out.
+        let code = unsafe { proboscis_mumps_call(structure, job as c_int, entries, right) };
+        self.is_analysed |= code >= 0;
+        code
     }
 }
 
 impl Drop for Instance {
     fn drop(&mut self) {
-        self.call(-2);
+        let _lock = exclusive();
+        // SAFETY: the structure is valid and ended once, here; the lock keeps all other users of MUMPS out.
+        unsafe { proboscis_mumps_end(self.structure.as_ptr()) };
     }
+}
+
+/// A structure of another version than the header's has its parts elsewhere; versions are told apart by their first two numbers.
+fn check_version(structure: NonNull<Structure>) {
+    let mut most = 0;
+    // SAFETY: the structure is valid, the first text ends in NUL, and the second one has `most` places in the structure.
+    let (header, library) = unsafe {
+        let start = proboscis_mumps_library(structure.as_ptr(), &raw mut most);
+        let library = slice::from_raw_parts(start.cast::<u8>(), most);
+        (CStr::from_ptr(proboscis_mumps_header()), library)
+    };
+    let library = CStr::from_bytes_until_nul(library).unwrap_or_default();
+    let [header, library] = [header, library].map(CStr::to_string_lossy);
+    let series = |version: &str| {
+        version
+            .trim()
+            .split('.')
+            .take(2)
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    assert!(
+        series(&header) == series(&library),
+        "the program was built with dmumps_c.h of MUMPS {header}, and MUMPS {library} is loaded"
+    );
 }
 
 impl fmt::Debug for Instance {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Instance")
-            .field("n", &self.data.n)
-            .field("nnz", &self.data.nnz)
+            .field("n", &self.size)
+            .field("nnz", &self.rows.len())
             .finish_non_exhaustive()
     }
 }

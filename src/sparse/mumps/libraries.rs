@@ -73,7 +73,7 @@ pub(super) fn restart_random_numbers() {
 }
 
 /// A function of a library that is loaded, if there is one of this name.
-fn loaded(name: &CStr) -> Option<NonNull<c_void>> {
+pub(super) fn loaded(name: &CStr) -> Option<NonNull<c_void>> {
     // SAFETY: the name ends in NUL; `dlsym` looks it up among the libraries already loaded and returns null if there is none.
     NonNull::new(unsafe { libc::dlsym(libc::RTLD_DEFAULT, name.as_ptr()) })
 }

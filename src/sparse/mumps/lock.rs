@@ -26,5 +26,7 @@ impl fmt::Debug for Exclusive {
 pub(crate) fn exclusive() -> Exclusive {
     let guard = LOCK.lock();
     use_one_thread();
+    #[cfg(mpi)]
+    crate::sparse::mumps::mpi::start();
     Exclusive { _guard: guard }
 }

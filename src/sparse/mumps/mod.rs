@@ -6,6 +6,8 @@
 mod ffi;
 mod libraries;
 mod lock;
+#[cfg(mpi)]
+mod mpi;
 
 use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Singular, Symmetry};
