@@ -4,6 +4,7 @@ use crate::app::blocks::BlockSizes;
 use crate::app::error::CommandError;
 use crate::app::extent;
 use crate::app::folder::make_folder;
+use crate::app::moved_markers::moved_markers;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::sparsity;
 use crate::app::words::key;
@@ -47,7 +48,7 @@ pub fn inspect(request: &CommandInput) -> Result<CommandOutput, CommandError> {
     Ok(CommandOutput {
         is_solved: true,
         result,
-        notes: Vec::new(),
+        notes: moved_markers(system),
     })
 }
 
@@ -192,6 +193,10 @@ fn of_control(
         "\n{}start of the solver: {start:?}\n",
         numbers(&sizes)
     ));
+    boundary
+        .notes
+        .iter()
+        .for_each(|note| text.push_str(&format!("note: {note}\n")));
     if let Some(folder) = &request.output {
         make_folder(folder)?;
         let origin = request.origin(false);
