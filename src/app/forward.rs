@@ -78,6 +78,7 @@ pub(super) fn simulation(
             model,
             history,
             failure,
+            error,
             setup,
             seconds: spent,
         },
@@ -168,7 +169,7 @@ pub(super) fn simulation(
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = failure.as_ref().map(ToString::to_string);
     summary.accuracy = accuracy;
-    let simulation = summary::Simulation::new(&history, task, neglected);
+    let simulation = summary::Simulation::new((&history, error), task, neglected);
     summary.simulation = Some(simulation);
     summary.plan = plan;
     summary.domain = domain::told(&outside);
@@ -194,6 +195,7 @@ pub(super) fn simulation(
     summary.notes.extend(steps::divided(task));
     summary.notes.extend(domain::note(&summary.domain, true));
     summary.notes.extend(steps::told(neglected, &history, task));
+    summary.notes.extend(steps::beyond(error, task));
     summary.notes.extend(steps::unbalanced(&history));
     let shown = Shown::of(
         Motion {

@@ -22,12 +22,12 @@ use crate::math::significant;
 use crate::model::FoundParameter;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
-use crate::workflow::Tracked;
 use crate::workflow::accuracy::Accuracy;
 use crate::workflow::domain::Outside;
 use crate::workflow::effects::Plan;
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::violations::Violation;
+use crate::workflow::{EstimatedError, Tracked};
 
 /// Time in s that goes into measuring each effect for it.
 pub(super) const MEASURED: f64 = 2e-4;
@@ -190,6 +190,12 @@ pub(super) struct Simulation {
     /// Tolerance that controlled the lengths of the steps; absent of equal ones.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) tolerance: Option<f64>,
+    /// Estimated error of the motion in the unit of the tolerance; absent of equal steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) estimated_error: Option<f64>,
+    /// Whether steps of two other lengths confirm the estimate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) is_confirmed: Option<bool>,
     /// Newton iterations.
     pub(super) newton_iterations: usize,
     /// Steps that had to be halved.
@@ -236,7 +242,7 @@ impl Neglected {
 impl Simulation {
     /// Of a motion.
     pub(super) fn new(
-        history: &DiscreteTrajectory,
+        (history, estimated): (&DiscreteTrajectory, Option<EstimatedError>),
         task: &problem::Simulation,
         error: Option<LocalError>,
     ) -> Self {
@@ -247,6 +253,8 @@ impl Simulation {
             local_error: error.map(Neglected::new),
             integrator: task.solving.integrator.name(),
             tolerance: task.tolerance,
+            estimated_error: estimated.map(|estimated| estimated.error),
+            is_confirmed: estimated.map(|estimated| estimated.is_confirmed),
             newton_iterations: report.iterations,
             halved_steps: report.halved,
             linear_solver: history.solver.clone(),

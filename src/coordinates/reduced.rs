@@ -93,6 +93,20 @@ impl Reduced {
         }
     }
 
+    /// Evaluates the potential energy alone between two instants, up to second derivatives, and adds its forces to theirs.
+    pub fn evaluate_potential(
+        &self,
+        [a, b]: [&mut Configuration; 2],
+        interval: &Interval<'_>,
+        scratch: &mut Scratch,
+    ) {
+        let sample = interval.sample([&*a, &*b]);
+        let out = &mut scratch.interval;
+        self.intervals.evaluate_potential(&sample, out);
+        add(&mut a.forces, &out.plain.forces[0]);
+        add(&mut b.forces, &out.plain.forces[1]);
+    }
+
     /// Adds the second derivatives of the interval evaluated last to the values of step k: ∇² at order `Hessian`, the
     /// lower triangle of ∇³ along the directions at order `Third`.
     pub fn pull_back_interval(

@@ -1,14 +1,15 @@
 //! The equations of a step, which every time stepping method has.
 
 use crate::coordinates::Configuration;
+use crate::dynamics::drive::Drive;
 use crate::dynamics::resolution::Balance;
 use crate::functional::Order;
 use crate::model::Model;
 
 /// The equations that lead from one instant to the next.
 pub trait Equations {
-    /// Takes the voltages of a step that begins.
-    fn begin(&mut self, voltages: &[f64]);
+    /// Takes the voltages of a step between two times in ms, at the points where the method reads them.
+    fn begin(&mut self, step: [f64; 2], drive: &dyn Drive);
 
     /// First guess of the unknowns of a step of `h` ms.
     fn guess(&mut self, h: f64);

@@ -9,6 +9,7 @@
 //! with the potentials φ of the interval, which have no inertia, by Gauss's law.
 
 use crate::coordinates::{Configuration as Place, Interval, Scratch};
+use crate::dynamics::drive::Drive;
 use crate::dynamics::equations::Equations;
 use crate::dynamics::resolution::{Balance, typical_energy};
 use crate::dynamics::solving::{Newton, Solving};
@@ -110,8 +111,8 @@ impl<'m> Stepper<'m> {
 }
 
 impl Equations for Midpoint<'_> {
-    fn begin(&mut self, voltages: &[f64]) {
-        self.scalars[self.model.variables.inputs()].copy_from_slice(voltages);
+    fn begin(&mut self, step: [f64; 2], drive: &dyn Drive) {
+        self.scalars[self.model.variables.inputs()].copy_from_slice(&drive.at(step, 0.5));
     }
 
     fn guess(&mut self, h: f64) {

@@ -16,6 +16,7 @@ mod contraction;
 mod controlled;
 mod discrete_trajectory;
 mod domain;
+mod drive;
 mod equations;
 mod error;
 mod exchange;
@@ -41,6 +42,7 @@ mod updates;
 
 pub use discrete_trajectory::{DiscreteTrajectory, Reading};
 pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
+pub use drive::Drive;
 pub use equations::Equations;
 pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};

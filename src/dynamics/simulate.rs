@@ -1,6 +1,7 @@
 //! Simulation: step after step, recorded.
 
 use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
+use crate::dynamics::drive::Drive;
 use crate::dynamics::equations::Equations;
 use crate::dynamics::momenta::{rates, vector_momenta};
 use crate::dynamics::solving::{Integrator, Solving};
@@ -87,7 +88,7 @@ impl Start {
     }
 }
 
-/// Integrates `steps` steps of `h` ms; `voltages` gives those of the interval between two times, by scalar.
+/// Integrates `steps` steps of `h` ms under the voltages of a drive.
 ///
 /// After each step `observer` sees the motion so far and may end it; so may a [watch](crate::ipopt::interrupt::watch), within a
 /// step too.
@@ -98,18 +99,10 @@ pub fn simulate(
     start: &Start,
     h: f64,
     steps: usize,
-    voltages: impl Fn(f64, f64) -> Vec<f64>,
+    drive: impl Drive,
     observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
 ) -> (DiscreteTrajectory, Option<StepError>) {
-    simulate_by(
-        Solving::default(),
-        model,
-        start,
-        h,
-        steps,
-        voltages,
-        observer,
-    )
+    simulate_by(Solving::default(), model, start, h, steps, drive, observer)
 }
 
 /// Integrates like [`simulate`], by the method and with the solution of its equations that `solving` names.
@@ -119,19 +112,21 @@ pub fn simulate_by(
     start: &Start,
     h: f64,
     steps: usize,
-    voltages: impl Fn(f64, f64) -> Vec<f64>,
+    drive: impl Drive,
     observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
 ) -> (DiscreteTrajectory, Option<StepError>) {
     let lengths = Lengths::Equal(TimeGrid { h, steps });
     let begun = DiscreteTrajectory::at(start);
-    go_on(solving, model, begun, lengths, voltages, observer)
+    go_on(solving, model, begun, lengths, drive, observer)
 }
 
-/// Equal steps, or steps that a tolerance controls.
+/// Equal steps, given ones, or steps that a tolerance controls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lengths<'a> {
     /// Equal ones.
     Equal(TimeGrid),
+    /// Steps between times in ms that grow from zero.
+    Between(&'a [f64]),
     /// By their local error.
     Controlled(StepControl<'a>),
 }
@@ -152,31 +147,31 @@ pub struct StepControl<'a> {
 /// Integrates by the midpoint rule with steps whose local error, by the change of the last rates, stays below a tolerance per
 /// time. Steps of unequal length keep momentum maps, and no longer the energy over long times.
 ///
-/// `voltages` and `observer` are as in [`simulate`].
+/// `drive` and `observer` are as in [`simulate`].
 pub fn simulate_within(
     solving: Solving,
     model: &Model,
     start: &Start,
     control: StepControl<'_>,
-    voltages: impl Fn(f64, f64) -> Vec<f64>,
+    drive: impl Drive,
     observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
 ) -> (DiscreteTrajectory, Option<StepError>) {
     let begun = DiscreteTrajectory::at(start);
     let lengths = Lengths::Controlled(control);
-    go_on(solving, model, begun, lengths, voltages, observer)
+    go_on(solving, model, begun, lengths, drive, observer)
 }
 
 /// Goes on with a motion that has begun, up to the number of steps or the duration of the whole: it becomes what it would have become without
 /// a stop, to the bit.
 ///
-/// `voltages` and `observer` are as in [`simulate`]. Where the motion is not one of this model by this method it stays as it is, and the error
+/// `drive` and `observer` are as in [`simulate`]. Where the motion is not one of this model by this method it stays as it is, and the error
 /// says so.
 pub fn go_on(
     solving: Solving,
     model: &Model,
     mut history: DiscreteTrajectory,
     lengths: Lengths<'_>,
-    voltages: impl Fn(f64, f64) -> Vec<f64>,
+    drive: impl Drive,
     observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
 ) -> (DiscreteTrajectory, Option<StepError>) {
     if !history.is_of(model) {
@@ -193,25 +188,22 @@ pub fn go_on(
         true => Reading::Intervals,
         false => Reading::Instants,
     };
-    let failure = match lengths {
-        Lengths::Equal(grid) if !is_midpoint => {
-            let first = voltages(0.0, grid.h);
-            match Steps::stages(model, &start, solving, grid.h, &first) {
-                Ok(mut stages) => record(&mut stages, grid, voltages, observer, &mut history),
-                Err(error) => Some(error),
-            }
-        }
+    let failure = match (lengths.first(), is_midpoint) {
+        (Some(first), false) => match Steps::stages(model, &start, solving, first, &drive) {
+            Ok(mut stages) => record(&mut stages, lengths, &drive, observer, &mut history),
+            Err(error) => Some(error),
+        },
         _ => {
             let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
             match lengths {
-                Lengths::Equal(grid) => {
-                    record(&mut stepper, grid, voltages, observer, &mut history)
+                Lengths::Equal(_) | Lengths::Between(_) => {
+                    record(&mut stepper, lengths, &drive, observer, &mut history)
                 }
                 Lengths::Controlled(control) => {
                     if let Some(rates) = &start.rates {
                         stepper.began_with(rates);
                     }
-                    controlled(&mut stepper, control, voltages, observer, &mut history)
+                    controlled(&mut stepper, control, &drive, observer, &mut history)
                 }
             }
         }
@@ -223,7 +215,7 @@ pub fn go_on(
 fn controlled(
     stepper: &mut Stepper<'_>,
     control: StepControl<'_>,
-    voltages: impl Fn(f64, f64) -> Vec<f64>,
+    drive: &dyn Drive,
     mut observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
     history: &mut DiscreteTrajectory,
 ) -> Option<StepError> {
@@ -240,19 +232,24 @@ fn controlled(
         return Some(StepError::Foreign { time });
     }
     let mut wanted = history.end.wanted.unwrap_or(first);
+    let tolerance = *history.end.tolerance.get_or_insert(tolerance);
     let mut failure = None;
     while time < duration * (1.0 - 1e-12) {
         let mut later = switches.iter().filter(|&&at| at > time * (1.0 + 1e-12));
         let end = later.next().copied().unwrap_or(duration).min(duration);
         let left = end - time;
-        // The last two steps before an end share what is left.
+        let mut earlier = switches.iter().filter(|&&at| at <= time * (1.0 + 1e-12));
+        let begin = earlier.next_back().copied().unwrap_or(0.0);
+        // The last two steps before an end share what is left, and there are two between any two ends.
         let h = match left / wanted {
-            parts if parts <= 1.0 => left,
+            parts if parts <= 1.0 && time > begin => left,
             parts if parts < 2.0 => 0.5 * left,
             _ => wanted,
         };
-        let row = voltages(time, time + h);
-        let step = match stepper.step_within(h, LEAST * duration, tolerance / duration, &row) {
+        let begun = time;
+        let to = if h == left { end } else { time + h };
+        let bounds = [LEAST * duration, tolerance / duration];
+        let step = match stepper.step_within([time, to], h, bounds, drive) {
             Ok(step) => step,
             Err(StepError::Stopped { .. }) => break,
             Err(error) => {
@@ -271,8 +268,9 @@ fn controlled(
             step.next
         };
         history.z[k][n..n + step.multipliers.len()].copy_from_slice(&step.multipliers);
-        history.push(time, stepper);
+        history.push([begun, time], stepper, drive);
         history.end.wanted = Some(wanted);
+        history.end.tolerance = Some(tolerance);
         k += 1;
         if observer(history).is_break() {
             break;
@@ -310,12 +308,15 @@ impl DiscreteTrajectory {
             && self.z.iter().all(|z| motion.has_unit_charts(z))
     }
 
-    /// Takes in the step that ends at a time in ms.
-    fn push<E: Equations>(&mut self, time: f64, stepper: &mut Steps<E>) {
-        self.times.push(time);
+    /// Takes in the step between two times in ms, with the voltages in its middle.
+    fn push<E: Equations>(&mut self, step: [f64; 2], stepper: &mut Steps<E>, drive: &dyn Drive) {
+        self.times.push(step[1]);
         self.z.push(stepper.coordinates().to_vec());
         self.momenta.push(stepper.momentum().to_vec());
-        self.scalars.push(stepper.scalars().to_vec());
+        let mut scalars = stepper.scalars().to_vec();
+        let inputs = stepper.equations().model().variables.inputs();
+        scalars[inputs].copy_from_slice(&drive.at(step, 0.5));
+        self.scalars.push(scalars);
         self.works.extend(stepper.work());
         stepper.keep(&mut self.end);
     }
@@ -330,11 +331,32 @@ pub struct TimeGrid {
     pub steps: usize,
 }
 
-/// Takes the steps and records them; returns why they end early.
+impl Lengths<'_> {
+    /// Length in ms of the first step, where it is given.
+    fn first(self) -> Option<f64> {
+        self.step(0).map(|[from, to, _]| to - from)
+    }
+
+    /// Both times and the length in ms of a step that is given.
+    fn step(self, k: usize) -> Option<[f64; 3]> {
+        match self {
+            Self::Equal(TimeGrid { h, steps }) => {
+                (k < steps).then(|| [k as f64 * h, (k + 1) as f64 * h, h])
+            }
+            Self::Between(times) => {
+                let (from, to) = (*times.get(k)?, *times.get(k + 1)?);
+                Some([from, to, to - from])
+            }
+            Self::Controlled(_) => None,
+        }
+    }
+}
+
+/// Takes the steps that are given and records them; returns why they end early.
 fn record<E: Equations>(
     stepper: &mut Steps<E>,
-    TimeGrid { h, steps }: TimeGrid,
-    voltages: impl Fn(f64, f64) -> Vec<f64>,
+    lengths: Lengths<'_>,
+    drive: &dyn Drive,
     mut observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
     history: &mut DiscreteTrajectory,
 ) -> Option<StepError> {
@@ -345,12 +367,14 @@ fn record<E: Equations>(
         let time = history.times[done];
         return Some(StepError::Foreign { time });
     }
-    for k in done..steps {
-        let (from, to) = (k as f64 * h, (k + 1) as f64 * h);
-        match stepper.step(h, &voltages(from, to)) {
+    for k in done.. {
+        let Some([from, to, h]) = lengths.step(k) else {
+            break;
+        };
+        match stepper.go([from, to], h, drive) {
             Ok(multipliers) => {
                 history.z[k][n..n + multipliers.len()].copy_from_slice(&multipliers);
-                history.push(to, stepper);
+                history.push([from, to], stepper, drive);
             }
             Err(StepError::Stopped { .. }) => break,
             Err(error) => {

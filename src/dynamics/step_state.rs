@@ -22,6 +22,8 @@ pub struct StepState {
     pub report: StepperReport,
     /// Length in ms that the next step may have, where a tolerance controls it.
     pub wanted: Option<f64>,
+    /// The tolerance that controls the steps: tighter than the one asked for where that left too great an error.
+    pub tolerance: Option<f64>,
 }
 
 /// A tangent that is kept.
@@ -57,6 +59,7 @@ impl StepState {
             times.iter_mut().for_each(|time| *time -= now);
         }
         self.report = StepperReport::default();
+        self.tolerance = None;
         self
     }
 }

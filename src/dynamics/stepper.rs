@@ -2,6 +2,7 @@
 
 use crate::dynamics::contraction::{Contraction, Verdict};
 use crate::dynamics::controlled::{Controlled, factor};
+use crate::dynamics::drive::Drive;
 use crate::dynamics::equations::Equations;
 use crate::dynamics::error::StepError;
 use crate::dynamics::resolution::{Balance, turned};
@@ -105,14 +106,33 @@ impl<E: Equations> Steps<E> {
     /// Goes on by `h` ms under constant voltages; returns the multipliers at the start, where the method knows them there.
     ///
     /// # Errors
-    /// The step and its halves fail; the state is then that of the last accepted step.
+    /// As of [`Self::go`].
     pub fn step(&mut self, h: f64, voltages: &[f64]) -> Result<Vec<f64>, StepError> {
+        let constant = |_: f64, _: f64| voltages.to_vec();
+        self.go([0.0, h], h, &constant)
+    }
+
+    /// Goes on by `h` ms between two times of the drive; returns the multipliers at the start, where the method knows them there.
+    ///
+    /// # Errors
+    /// The step and its halves fail; the state is then that of the last accepted step.
+    pub(super) fn go(
+        &mut self,
+        [from, to]: [f64; 2],
+        h: f64,
+        drive: &dyn Drive,
+    ) -> Result<Vec<f64>, StepError> {
         let (mut done, mut part) = (0.0, h);
         let mut multipliers = None;
         let mut halvings = 0;
-        self.equations.begin(voltages);
         while done < h * (1.0 - 1e-12) {
             part = part.min(h - done);
+            let end = if part < h - done {
+                from + done + part
+            } else {
+                to
+            };
+            self.equations.begin([from + done, end], drive);
             match self.attempt(part) {
                 Ok(()) => {
                     done += part;
@@ -138,22 +158,23 @@ impl<E: Equations> Steps<E> {
         Ok(multipliers.unwrap_or_default())
     }
 
-    /// Goes on by at most `h` ms under constant voltages, with a local error of at most `allowed` per ms; returns how far it
-    /// went and how far it would go next.
+    /// Goes on between two times of the drive by at most all of the `h` ms, with a local error of at most `allowed` per ms; returns
+    /// how far it went and how far it would go next.
     ///
     /// # Errors
     /// Steps down to `least` ms fail; the state is then that of the last accepted step.
     pub(super) fn step_within(
         &mut self,
+        [from, to]: [f64; 2],
         h: f64,
-        least: f64,
-        allowed: f64,
-        voltages: &[f64],
+        [least, allowed]: [f64; 2],
+        drive: &dyn Drive,
     ) -> Result<Controlled, StepError> {
         self.allowed = Some(allowed);
-        self.equations.begin(voltages);
         let mut part = h;
         loop {
+            let end = if part < h { from + part } else { to };
+            self.equations.begin([from, end], drive);
             self.used = 0.0;
             let error = match self.attempt(part) {
                 Ok(()) => break,

@@ -62,6 +62,7 @@ pub fn bytes(history: &DiscreteTrajectory, problem: &Value) -> io::Result<Vec<u8
         tangent,
         report,
         wanted,
+        tolerance,
     } = &history.end;
     arrays.text(OF, of);
     for (i, (name, list)) in lists.iter().enumerate() {
@@ -95,6 +96,7 @@ pub fn bytes(history: &DiscreteTrajectory, problem: &Value) -> io::Result<Vec<u8
     arrays.list("report/seconds", &[assembly, factorisation, solution]);
     arrays.list("report/energies", &[made, exchanged]);
     arrays.list("wanted", wanted.as_slice());
+    arrays.list("tolerance", tolerance.as_slice());
     Ok(arrays.finish()?.0)
 }
 
@@ -172,6 +174,7 @@ fn state(file: &mut Npz) -> Result<StepState, ContinuationError> {
             exchanged,
         },
         wanted: list(file, "wanted")?.first().copied(),
+        tolerance: list(file, "tolerance")?.first().copied(),
     })
 }
 

@@ -224,6 +224,15 @@ impl Functional {
         }
     }
 
+    /// The derivatives of the potential energy alone up to the second, on one interval, in place of what `out` held.
+    pub fn evaluate_potential(&self, sample: &Sample<'_>, out: &mut Output) {
+        out.plain.clear(true);
+        let potential = |(term, _): &(&dyn Term, &[u32])| term.kind() == Kind::Potential;
+        for (term, slots) in self.terms().filter(potential) {
+            term.evaluate(Order::Hessian, sample, slots, out);
+        }
+    }
+
     /// The derivatives on one interval, in place of what `out` held.
     pub fn evaluate(&self, order: Order, sample: &Sample<'_>, out: &mut Output) {
         out.plain.clear(order >= Order::Hessian);

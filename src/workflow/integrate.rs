@@ -3,16 +3,18 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use crate::control::problem::{BoundaryState, Simulation};
+use crate::control::problem::{BoundaryState, Simulation, Voltages};
 use crate::control::resolve_start;
 use crate::dynamics::{
-    DiscreteTrajectory, Lengths, StepControl, StepError, StepState, TimeGrid, go_on,
+    DiscreteTrajectory, Drive, Lengths, StepControl, StepError, StepState, TimeGrid, go_on,
 };
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
+use crate::workflow::confirmed::EstimatedError;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::memory;
 use crate::workflow::phase::phase;
+use crate::workflow::tolerance::ByTolerance;
 
 /// A simulation and how it ended.
 #[derive(Debug)]
@@ -23,6 +25,8 @@ pub struct Simulated {
     pub history: DiscreteTrajectory,
     /// Why it ended early.
     pub failure: Option<StepError>,
+    /// Its error, where a tolerance controls its steps and it came to its end.
+    pub error: Option<EstimatedError>,
     /// Seconds before the first step.
     pub setup: f64,
     /// Seconds in the steps.
@@ -95,24 +99,53 @@ pub fn integrate_on(
     let setup = began.elapsed().as_secs_f64();
     phase("ordering and first factorisation");
     let observer = |history: &DiscreteTrajectory| observer(&model, history);
-    let scalars = |from: f64, to: f64| model.scalars(&task.voltages.at(0.5 * (from + to)));
-    let switches = task.voltages.switches();
-    let lengths = match task.tolerance {
-        Some(tolerance) => Lengths::Controlled(StepControl {
-            duration: task.duration,
-            first: h,
-            tolerance,
-            switches: &switches,
-        }),
-        None => Lengths::Equal(TimeGrid { h, steps }),
+    let drive = Driven {
+        model: &model,
+        voltages: &task.voltages,
     };
-    let (history, failure) = go_on(task.solving, &model, begun, lengths, scalars, observer);
+    let switches = task.voltages.switches();
+    let (history, failure, error) = match task.tolerance {
+        Some(tolerance) => ByTolerance {
+            model: &model,
+            solving: task.solving,
+            control: StepControl {
+                duration: task.duration,
+                first: h,
+                tolerance,
+                switches: &switches,
+            },
+            drive: &drive,
+        }
+        .run(begun, observer),
+        None => {
+            let lengths = Lengths::Equal(TimeGrid { h, steps });
+            let (history, failure) = go_on(task.solving, &model, begun, lengths, drive, observer);
+            (history, failure, None)
+        }
+    };
     let seconds = began.elapsed().as_secs_f64() - setup;
     Ok(Simulated {
         model,
         history,
         failure,
+        error,
         setup,
         seconds,
     })
+}
+
+/// The voltages of a task as the steps of its model ask for them.
+struct Driven<'a> {
+    model: &'a Model,
+    voltages: &'a Voltages,
+}
+
+impl Drive for Driven<'_> {
+    fn at(&self, [from, to]: [f64; 2], part: f64) -> Vec<f64> {
+        // A switch at an end of the step lies outside it, whichever way its time was rounded.
+        let rounding = 4.0 * f64::EPSILON * to.abs().max(from.abs());
+        let time = from + part * (to - from);
+        let within = time.max(from + rounding).min(to - rounding);
+        self.model.scalars(&self.voltages.at(within))
+    }
 }

@@ -12,6 +12,7 @@
 pub mod accuracy;
 pub(crate) mod active;
 pub mod at_once;
+pub(crate) mod confirmed;
 pub(crate) mod cure;
 pub(crate) mod distance;
 pub(crate) mod domain;
@@ -34,10 +35,12 @@ pub(crate) mod resolve;
 pub(crate) mod second_start;
 pub(crate) mod steps;
 pub(crate) mod stopwatch;
+pub(crate) mod tolerance;
 pub(crate) mod tracking;
 pub(crate) mod violations;
 
 pub use active::{Active, active};
+pub use confirmed::EstimatedError;
 pub use effects::{EffectCounts, Plan, coupling, effect_counts};
 pub use error::WorkflowError;
 pub use grids::{integrate_to, optimise_to};

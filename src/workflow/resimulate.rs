@@ -27,6 +27,13 @@ const JUMP: f64 = 1e3;
 /// Estimated errors along the motion, as parts of its path length, from which on it is warned, and refused.
 const COARSE: f64 = 0.05;
 const TOO_COARSE: f64 = 0.25;
+/// Steps for an interval of the optimum that are tried.
+const FINER: [usize; 5] = [2, 4, 8, 16, 32];
+/// Estimates that differ by less than this part of the greater one agree, and those below rounding.
+const AGREE: f64 = 0.2;
+const ROUNDING: f64 = 1e-7;
+/// An estimated error beyond this part of the path length needs no better estimate.
+const LOST: f64 = 1.0;
 /// A drift from the goal, as a part of the path length, from which on it is not held.
 const DRIFTS: f64 = 0.05;
 
@@ -43,6 +50,8 @@ pub struct Resimulation {
     /// where a simulation ended early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<f64>,
+    /// Whether two estimates of that error agree.
+    pub is_confirmed: bool,
     /// Time for which the voltages of the goal are held afterwards in s; absent where they are not known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub held: Option<f64>,
@@ -109,6 +118,8 @@ pub enum Cause {
         error: f64,
         /// Greatest distance from the optimum with finer steps.
         distance: Distance,
+        /// Whether two refinements agree on it.
+        is_confirmed: bool,
     },
 }
 
@@ -126,6 +137,7 @@ pub(crate) fn resimulate(
         path_length,
         finer: Vec::new(),
         error: None,
+        is_confirmed: false,
         held: None,
         drift: None,
         failure: own.failure.clone(),
@@ -136,39 +148,13 @@ pub(crate) fn resimulate(
     if own.failure.is_some() || out.cause.is_some() {
         return out;
     }
-    let mut error = match own.is_halved {
+    let least = match own.is_halved {
         true => own.greatest().over(path_length, model),
         false => 0.0_f64,
     };
-    for steps in [2, 4] {
-        let repeat = Repeat::of(model, start, optimal, steps);
-        let deviation = repeat.greatest();
-        out.finer.push(Finer {
-            steps,
-            deviation,
-            failure: repeat.failure.clone(),
-        });
-        if let Some(failure) = repeat.failure {
-            out.cause = Some(Cause::Ends { steps, failure });
-            return out;
-        }
-        // Errors of second order leave this part of the deviation.
-        let square = (steps * steps) as f64;
-        let left = square / (square - 1.0) * deviation.over(path_length, model);
-        error = error.max(left);
-        if steps == 2 {
-            out.half = Some(repeat.history);
-        }
-        if error > TOO_COARSE {
-            let distance = deviation;
-            out.cause = Some(Cause::Coarse { error, distance });
-            break;
-        }
-        if error < COARSE {
-            break;
-        }
+    if !out.refine(model, start, optimal, least) {
+        return out;
     }
-    out.error = Some(error);
     let last = own.history.z.len() - 1;
     out.end = Some(Start {
         z: own.history.z[last].clone(),
@@ -179,6 +165,63 @@ pub(crate) fn resimulate(
 }
 
 impl Resimulation {
+    /// Estimates the error with finer and finer steps until two estimates agree; whether no simulation ended early.
+    fn refine(&mut self, model: &Model, start: &Start, optimal: &Solution, least: f64) -> bool {
+        let with = |steps: usize| Repeat::of(model, start, optimal, steps);
+        // Two estimates at the least, at once.
+        let (half, quarter) = rayon::join(|| with(FINER[0]), || with(FINER[1]));
+        let mut ready = vec![quarter, half];
+        let mut estimates: Vec<f64> = Vec::new();
+        let mut is_confirmed = false;
+        for steps in FINER {
+            let repeat = ready.pop().unwrap_or_else(|| with(steps));
+            let deviation = repeat.greatest();
+            self.finer.push(Finer {
+                steps,
+                deviation,
+                failure: repeat.failure.clone(),
+            });
+            if let Some(failure) = repeat.failure {
+                self.cause = Some(Cause::Ends { steps, failure });
+                return false;
+            }
+            if steps == FINER[0] {
+                self.half = Some(repeat.history);
+            }
+            // Errors of second order leave this part of the deviation.
+            let square = (steps * steps) as f64;
+            let estimate = square / (square - 1.0) * deviation.over(self.path_length, model);
+            let before = estimates.last().copied();
+            estimates.push(estimate);
+            is_confirmed = before.is_some_and(|before| agree(before, estimate));
+            if is_confirmed || (before.is_some() && estimate > LOST) {
+                break;
+            }
+        }
+        let error = match is_confirmed {
+            true => estimates.last().copied().unwrap_or_default(),
+            false => estimates.iter().copied().fold(0.0, f64::max),
+        };
+        let error = error.max(least);
+        self.error = Some(error);
+        self.is_confirmed = is_confirmed;
+        let allowed = if is_confirmed {
+            TOO_COARSE
+        } else {
+            0.5 * TOO_COARSE
+        };
+        let greatest = self.finer.iter().map(|finer| finer.deviation);
+        let distance = greatest.fold(Distance::default(), Distance::max);
+        if error > allowed {
+            self.cause = Some(Cause::Coarse {
+                error,
+                distance,
+                is_confirmed,
+            });
+        }
+        true
+    }
+
     /// Holds the voltages of the goal, where they are known and the motion came to its end.
     pub(crate) fn hold(
         &mut self,
@@ -215,14 +258,30 @@ impl Resimulation {
                 "the motion under the optimal voltages could not be simulated: {failure}"
             ));
         }
-        let error = self.error.filter(|&e| e > COARSE && self.cause.is_none())?;
+        let error = self.error.filter(|_| self.cause.is_none())?;
         let Finer { deviation, .. } = self.finer.last()?;
+        if !self.is_confirmed {
+            return Some(format!(
+                "how far the motion under the optimal voltages deviates from the optimum is not known: finer steps lead elsewhere each \
+                 time, by up to {:.0} % of the path length so far ({deviation}); use more intervals, or --accuracy",
+                100.0 * error
+            ));
+        }
+        if error <= COARSE {
+            return None;
+        }
         Some(format!(
             "the intervals are long for this motion: under the same voltages the motion with finer steps deviates from it by up to \
              {:.0} % of the path length ({deviation}); use more intervals, or --accuracy",
             100.0 * error
         ))
     }
+}
+
+/// Whether two estimates of an error confirm each other.
+fn agree(one: f64, other: f64) -> bool {
+    let greater = one.max(other);
+    greater < ROUNDING || (one - other).abs() <= AGREE * greater
 }
 
 /// A simulation under optimal voltages, with so many steps for an interval.
@@ -345,11 +404,23 @@ impl Cause {
             Self::Unstable { rate, distance } => format!(
                 "forward simulation under the optimal voltages leaves the optimum ({distance}): the motion is unstable, round-off grows at a rate of {rate:.3} 1/s"
             ),
-            Self::Coarse { error, distance } => format!(
-                "the intervals do not resolve the motion: under the same voltages the motion with finer steps deviates \
-                 from it by up to {:.0} % of the path length ({distance})",
-                100.0 * error
-            ),
+            Self::Coarse {
+                error,
+                distance,
+                is_confirmed,
+            } => {
+                let further = match is_confirmed {
+                    true => "",
+                    false => {
+                        "; steps that are still finer lead elsewhere, so that more is possible"
+                    }
+                };
+                format!(
+                    "the intervals do not resolve the motion: under the same voltages the motion with finer steps deviates \
+                     from it by up to {:.0} % of the path length ({distance}){further}",
+                    100.0 * error
+                )
+            }
         }
     }
 }

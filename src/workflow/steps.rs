@@ -3,6 +3,7 @@
 use crate::control::problem::Simulation;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
 use crate::math::{shortest, significant};
+use crate::workflow::confirmed::EstimatedError;
 use crate::workflow::integrate::grid;
 
 /// Part of the path beyond which the estimated error of a motion is warned of.
@@ -84,6 +85,21 @@ pub(crate) fn told(
             error.path
         ),
     })
+}
+
+/// A warning where the error of a motion is not confirmed to be below its tolerance.
+pub(crate) fn beyond(error: Option<EstimatedError>, task: &Simulation) -> Option<String> {
+    let (error, tolerance) = (error?, task.tolerance?);
+    let size = significant(error.error, 2);
+    match (error.error <= tolerance, error.is_confirmed) {
+        (true, true) => None,
+        (false, true) => Some(format!(
+            "the estimated error of the motion is {size}, above the tolerance of {tolerance:e}, with the shortest steps that were tried"
+        )),
+        (_, false) => Some(format!(
+            "the error of the motion is not known: steps of other lengths lead elsewhere, {size} away (the tolerance is {tolerance:e})"
+        )),
+    }
 }
 
 /// Three digits of a step.

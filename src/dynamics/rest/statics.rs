@@ -1,7 +1,8 @@
-//! Rest: the same action on an interval whose two instants are one.
+//! Rest: the potential energy and the constraints of the action on an interval whose two instants are one.
 //!
-//! With q_k = q_{k+1} = q inertia and viscosity vanish from the rows by themselves, and the sum of both rows is
-//! −h Pᵀ∇V − h₀ Gᵀλ; the tangent is the sum of the four blocks. Potentials keep the rows of Gauss's law.
+//! With q_k = q_{k+1} = q the sum of both rows is −h Pᵀ∇V − h₀ Gᵀλ, and the tangent is the sum of the four blocks. Inertia and
+//! viscosity would vanish from both sums only up to the rounding of M/h and D: they are left out, so that a state of rest depends
+//! neither on masses nor on the step. Potentials keep the rows of Gauss's law.
 //!
 //! Weights are constant forces on the vectors, so that a part of them is a part of these forces. A stiffness σ on every
 //! coordinate may be added to the tangent, which makes any state's tangent that of a minimum.
@@ -169,7 +170,7 @@ impl<'m> Statics<'m> {
             instant.forces.fill(Vector::zeros());
         }
         let interval = Interval::given(scalars, self.model.multiplier_time);
-        action.evaluate_interval(Order::Hessian, [a, b], &interval, scratch);
+        action.evaluate_potential([a, b], &interval, scratch);
         action.pull_back_interval(Order::Hessian, [a, b], &interval, 0, scratch, values);
         for (force, other) in a.forces.iter_mut().zip(&b.forces) {
             *force += other;
@@ -212,39 +213,41 @@ impl<'m> Statics<'m> {
 
     /// Largest stiffness on the diagonal, in N mm for each rad or length of the system; 1 where there is none.
     pub(super) fn largest_stiffness(&self) -> f64 {
-        let layout = self.model.action.layout();
         let mut diagonal = vec![0.0; self.scales().len()];
-        for (slot, (i, j)) in layout.same.entries().enumerate() {
-            if i == j && i < diagonal.len() {
-                diagonal[i] += self.values[layout.same_at(0) + slot];
-                diagonal[i] += self.values[layout.same_at(1) + slot];
+        for ((i, j), value) in self.stiffness() {
+            if i == j {
+                diagonal[i] += value;
             }
         }
-        let h = self.model.multiplier_time;
         let scaled = diagonal.iter().zip(self.scales());
-        let largest = scaled.fold(0.0, |m, (k, s)| f64::max(m, (k * s * s / h).abs()));
+        let largest = scaled.fold(0.0, |m, (k, s)| f64::max(m, (k * s * s).abs()));
         if largest > 0.0 { largest } else { 1.0 }
     }
 
     /// Stiffness of the state evaluated last along a direction of the coordinates, potentials being held.
     pub(super) fn stiffness_along(&self, direction: &[f64]) -> f64 {
+        let products = self.stiffness();
+        products
+            .map(|((i, j), value)| value * direction[i] * direction[j])
+            .sum()
+    }
+
+    /// Summands of the stiffness of the state evaluated last, by coordinates: those of each block between both instants.
+    fn stiffness(&self) -> impl Iterator<Item = ((usize, usize), f64)> + '_ {
         let layout = self.model.action.layout();
-        let n = direction.len();
-        let mut sum = 0.0;
-        let mut add = |place: usize, (i, j): (usize, usize)| {
-            if i < n && j < n {
-                sum += self.values[place] * direction[i] * direction[j];
-            }
-        };
-        for (slot, entry) in layout.same.entries().enumerate() {
-            add(layout.same_at(0) + slot, entry);
-            add(layout.same_at(1) + slot, entry);
-        }
-        for (slot, entry) in layout.cross.entries().enumerate() {
-            add(layout.lower_at(0) + slot, entry);
-            add(layout.upper_at(0) + slot, entry);
-        }
-        -sum / self.model.multiplier_time
+        let (n, h) = (self.scales().len(), self.model.multiplier_time);
+        let same = layout.same.entries().enumerate();
+        let same = same.flat_map(|(slot, entry)| {
+            [layout.same_at(0), layout.same_at(1)].map(|first| (entry, first + slot))
+        });
+        let cross = layout.cross.entries().enumerate();
+        let cross = cross.flat_map(|(slot, entry)| {
+            [layout.lower_at(0), layout.upper_at(0)].map(|first| (entry, first + slot))
+        });
+        let is_stiffness = move |((i, j), _): &((usize, usize), usize)| *i < n && *j < n;
+        same.chain(cross)
+            .filter(is_stiffness)
+            .map(move |(entry, place)| (entry, -self.values[place] / h))
     }
 
     /// Whether anything has a weight.

@@ -1,6 +1,7 @@
 //! The equations of a step of every rule.
 
 use crate::coordinates::Configuration;
+use crate::dynamics::drive::Drive;
 use crate::dynamics::equations::Equations;
 use crate::dynamics::momenta::vector_momenta;
 use crate::dynamics::stages::lobatto::lagrange;
@@ -12,9 +13,11 @@ use crate::model::Model;
 use std::slice;
 
 impl Equations for Stages<'_> {
-    fn begin(&mut self, voltages: &[f64]) {
+    fn begin(&mut self, step: [f64; 2], drive: &dyn Drive) {
+        let inputs = self.model.variables.inputs();
         for sample in &mut self.samples {
-            sample.scalars[self.model.variables.inputs()].copy_from_slice(voltages);
+            let voltages = drive.at(step, sample.weights.part);
+            sample.scalars[inputs.clone()].copy_from_slice(&voltages);
         }
     }
 
@@ -100,7 +103,7 @@ impl Equations for Stages<'_> {
         let motion = &self.model.action.motion;
         let (n, m) = (motion.coordinates, motion.unknowns());
         let points = self.points[1..].iter_mut().zip(&mut self.multipliers);
-        for ((point, multipliers), update) in points.zip(update.chunks(m)) {
+        for ((point, multipliers), update) in points.zip(update.chunks(m.max(1))) {
             for (z, update) in point.z[..n].iter_mut().zip(update) {
                 *z -= update;
             }

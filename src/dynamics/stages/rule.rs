@@ -33,6 +33,8 @@ pub(super) enum Rule {
 /// Where a sample looks, and who feels its forces: weights of the points for the sides a and b.
 #[derive(Clone, Debug)]
 pub(super) struct Weights {
+    /// Where in the step its voltages are read, from 0 to 1.
+    pub(super) part: f64,
     /// Of the quadrature.
     pub(super) quadrature: f64,
     /// x_S = Σ take x^ν, by side and point.
@@ -88,6 +90,7 @@ impl Rule {
                     };
                     let take = [at(-1.0), at(1.0)];
                     Weights {
+                        part: lobatto.points[i],
                         quadrature: lobatto.weights[i],
                         give: take.clone(),
                         take,
@@ -104,6 +107,7 @@ impl Rule {
 /// A sample at the end of the step, with the rate `rate` (x¹ − x⁰)/h besides what is carried.
 fn at_end(rate: f64, give: [f64; 2]) -> Weights {
     Weights {
+        part: 1.0,
         quadrature: 1.0,
         take: [
             vec![0.5 * rate, 1.0 - 0.5 * rate],

@@ -1,6 +1,7 @@
 //! State at one instant and the storage of the equations of a step.
 
 use crate::coordinates::{Configuration, Scratch};
+use crate::dynamics::drive::Drive;
 use crate::dynamics::error::StepError;
 use crate::dynamics::kinetic::masses;
 use crate::dynamics::momenta::{rates, vector_momenta};
@@ -58,8 +59,7 @@ pub struct Stages<'m> {
 }
 
 impl<'m> Steps<Stages<'m>> {
-    /// Starts a motion by the method of `solving`, which is not the midpoint rule; `h` and `voltages` are those of the first
-    /// step.
+    /// Starts a motion by the method of `solving`, which is not the midpoint rule; `h` is the length of the first step.
     ///
     /// # Errors
     /// The first acceleration of the generalised-α method is not found.
@@ -68,7 +68,7 @@ impl<'m> Steps<Stages<'m>> {
         start: &Start,
         solving: Solving,
         h: f64,
-        voltages: &[f64],
+        drive: &dyn Drive,
     ) -> Result<Self, StepError> {
         let rule = match solving.integrator {
             Integrator::Midpoint => Rule::Galerkin(Lobatto::new(1)),
@@ -78,7 +78,7 @@ impl<'m> Steps<Stages<'m>> {
                 let (v, p) = moving(model, start);
                 let first = FIRST * h;
                 let mut euler = Self::with(model, start, Rule::Euler(p), solving);
-                euler.step(first, voltages)?;
+                euler.go([0.0, first], first, drive)?;
                 let rates = euler.equations().last_rates();
                 let a = rates.iter().zip(&v).map(|(after, v)| (after - v) / first);
                 let a = a.collect();

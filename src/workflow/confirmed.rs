@@ -1,0 +1,47 @@
+//! Errors of motions in steps of second order, from two refinements that agree.
+//!
+//! With d the distance between two motions of which the second has steps of half the length, the error left on the second is d/3 and that on
+//! the first 4 d/3, where steps are short enough for their order to show: then the distance before, between the first and a motion in steps of
+//! twice the length, is about 4 d. An estimate is confirmed where that ratio lies between 2.5 and 6.5, or where both distances are
+//! rounding.
+
+use std::ops::RangeInclusive;
+
+/// Ratios of two distances that show the order two.
+const OF_ORDER_TWO: RangeInclusive<f64> = 2.5..=6.5;
+/// Distances below this are rounding, in rad and lengths of the system.
+const ROUNDING: f64 = 1e-11;
+
+/// The error of a motion, estimated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EstimatedError {
+    /// Its greatest distance from the exact motion, in rad and lengths of the system.
+    pub error: f64,
+    /// Whether a second refinement shows the order of the method.
+    pub is_confirmed: bool,
+}
+
+impl EstimatedError {
+    /// Of the finest of three motions, each in steps of half the length: from the distance `before` between the first two and `last`
+    /// between the last two.
+    pub(crate) fn of_finest(before: f64, last: f64) -> Self {
+        let ratio = before / last;
+        let is_rounding = before.max(last) < ROUNDING;
+        Self {
+            error: match ratio.is_finite() {
+                true => last / (ratio.clamp(1.5, 4.0) - 1.0),
+                false => last,
+            },
+            is_confirmed: is_rounding || OF_ORDER_TWO.contains(&ratio),
+        }
+    }
+
+    /// Of the middle one of three motions.
+    pub(crate) fn of_middle(before: f64, last: f64) -> Self {
+        let finest = Self::of_finest(before, last);
+        Self {
+            error: finest.error + last,
+            ..finest
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Simulation by a tolerance: the error of the motion is confirmed against the same motion in steps of other lengths, and the local errors
+//! that are allowed shrink until it is below the tolerance.
+//!
+//! Local errors add up to the error of a motion only where they neither grow nor decay. The motion is therefore repeated in pairs of its
+//! steps, and in pairs of these pairs; where that does not show the order of the method, in halves of its steps.
+
+use std::ops::ControlFlow;
+
+use crate::dynamics::{DiscreteTrajectory, Drive, Lengths, Solving, StepControl, StepError, go_on};
+use crate::ipopt::interrupt;
+use crate::model::Model;
+use crate::workflow::confirmed::EstimatedError;
+use crate::workflow::distance::Distance;
+use crate::workflow::motion::solved;
+
+/// How often a motion is begun again with a tighter tolerance.
+const AGAIN: usize = 4;
+/// A tolerance is tightened to leave this part of the one that was asked for.
+const LEAVES: f64 = 0.6;
+/// Factors by which it is tightened at most, and where nothing is confirmed.
+const MOST: f64 = 0.01;
+const UNCONFIRMED: f64 = 0.1;
+
+/// What a motion by a tolerance is made of.
+pub(crate) struct ByTolerance<'a> {
+    pub(crate) model: &'a Model,
+    pub(crate) solving: Solving,
+    pub(crate) control: StepControl<'a>,
+    pub(crate) drive: &'a dyn Drive,
+}
+
+/// A motion, why it ended early, and its error where it did not.
+pub(crate) type Found = (
+    DiscreteTrajectory,
+    Option<StepError>,
+    Option<EstimatedError>,
+);
+
+impl ByTolerance<'_> {
+    /// The motion that goes on from where it has `begun`, or one in shorter steps whose error is confirmed to be below the tolerance.
+    pub(crate) fn run(
+        &self,
+        begun: DiscreteTrajectory,
+        mut observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
+    ) -> Found {
+        let Self { control, .. } = *self;
+        let start = at_start(&begun);
+        let mut found = self.go_on(begun, Lengths::Controlled(control), &mut observer);
+        for _ in 0..AGAIN {
+            let Some(error) = self.error(&found.0).filter(|_| found.1.is_none()) else {
+                return (found.0, found.1, None);
+            };
+            let part = error.error / control.tolerance;
+            if interrupt::stop().is_some() || (part <= 1.0 && error.is_confirmed) {
+                return (found.0, None, Some(error));
+            }
+            let factor = match error.is_confirmed {
+                true => (LEAVES / part).max(MOST),
+                false => UNCONFIRMED,
+            };
+            let mut again = start.clone();
+            let used = found.0.end.tolerance.unwrap_or(control.tolerance);
+            again.end.tolerance = Some(used * factor);
+            let tighter = self.go_on(again, Lengths::Controlled(control), &mut observer);
+            let is_whole = tighter.0.times.last() == found.0.times.last();
+            if !is_whole && interrupt::stop().is_none() {
+                // Steps that short fail: the motion before is the best there is.
+                return (found.0, None, Some(error));
+            }
+            found = tighter;
+        }
+        let error = self.error(&found.0).filter(|_| found.1.is_none());
+        (found.0, found.1, error)
+    }
+
+    fn go_on(
+        &self,
+        begun: DiscreteTrajectory,
+        lengths: Lengths<'_>,
+        observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
+    ) -> (DiscreteTrajectory, Option<StepError>) {
+        let drive = Shared(self.drive);
+        go_on(self.solving, self.model, begun, lengths, drive, observer)
+    }
+
+    /// The error of a whole motion; none of one that ended early.
+    fn error(&self, history: &DiscreteTrajectory) -> Option<EstimatedError> {
+        let end = history.times.last().copied()?;
+        if end < self.control.duration * (1.0 - 1e-12) {
+            return None;
+        }
+        let all: Vec<usize> = (0..history.times.len()).collect();
+        let pairs = self.pairs(history, &all);
+        let fours = self.pairs(history, &pairs);
+        let kept = |places: &[usize]| places.iter().map(|&k| history.times[k]).collect::<Vec<_>>();
+        let in_pairs = self.repeated(history, &kept(&pairs));
+        let in_fours = self.repeated(history, &kept(&fours));
+        let by_pairs = in_pairs.as_ref().map(|m| self.apart(history, &pairs, m));
+        if let (Some(by_pairs), Some(in_pairs), Some(in_fours)) = (by_pairs, &in_pairs, &in_fours) {
+            let among: Vec<usize> = fours
+                .iter()
+                .filter_map(|k| pairs.binary_search(k).ok())
+                .collect();
+            let before = self.apart(in_pairs, &among, in_fours);
+            let error = EstimatedError::of_finest(before, by_pairs);
+            if error.is_confirmed {
+                return Some(error);
+            }
+        }
+        let halves: Vec<f64> = halved(&history.times);
+        let in_halves = self.repeated(history, &halves)?;
+        let every_other: Vec<usize> = (0..halves.len()).step_by(2).collect();
+        let last = self.apart(&in_halves, &every_other, history);
+        Some(match by_pairs {
+            Some(before) => EstimatedError::of_middle(before, last),
+            None => EstimatedError {
+                error: 4.0 / 3.0 * last,
+                is_confirmed: false,
+            },
+        })
+    }
+
+    /// Every other of some instants of a motion, those at which voltages may switch included.
+    fn pairs(&self, history: &DiscreteTrajectory, places: &[usize]) -> Vec<usize> {
+        let switches = self.control.switches;
+        let is_end = |&&place: &&usize| {
+            place == 0
+                || place + 1 == history.times.len()
+                || switches.contains(&history.times[place])
+        };
+        let mut kept = Vec::new();
+        let mut since = 0;
+        for place in places {
+            if is_end(&place) || since == 1 {
+                kept.push(*place);
+                since = 0;
+            } else {
+                since += 1;
+            }
+        }
+        kept
+    }
+
+    /// The motion in steps between other times; none where a step fails.
+    fn repeated(&self, history: &DiscreteTrajectory, times: &[f64]) -> Option<DiscreteTrajectory> {
+        let lengths = Lengths::Between(times);
+        let (motion, failure) =
+            self.go_on(at_start(history), lengths, |_| ControlFlow::Continue(()));
+        let is_whole = failure.is_none() && motion.times.len() == times.len();
+        is_whole.then_some(motion)
+    }
+
+    /// Greatest distance between some instants of a motion and all of another.
+    fn apart(
+        &self,
+        fine: &DiscreteTrajectory,
+        places: &[usize],
+        coarse: &DiscreteTrajectory,
+    ) -> f64 {
+        let model = self.model;
+        let [fine, coarse] = [fine, coarse].map(|history| solved(model, history, None));
+        let each = places.iter().enumerate();
+        let distances = each.map(|(k, &place)| Distance::between(model, &fine, place, &coarse, k));
+        distances
+            .fold(Distance::default(), Distance::max)
+            .size(model)
+    }
+}
+
+/// A drive that several motions share.
+struct Shared<'a>(&'a dyn Drive);
+
+impl Drive for Shared<'_> {
+    fn at(&self, step: [f64; 2], part: f64) -> Vec<f64> {
+        self.0.at(step, part)
+    }
+}
+
+/// A motion before its first step.
+fn at_start(history: &DiscreteTrajectory) -> DiscreteTrajectory {
+    let mut start = DiscreteTrajectory {
+        times: vec![0.0],
+        z: history.z[..1].to_vec(),
+        momenta: history.momenta[..1].to_vec(),
+        rates: history.rates.clone(),
+        ..DiscreteTrajectory::default()
+    };
+    start.end.of.clone_from(&history.end.of);
+    start
+}
+
+/// Times with one in the middle of each two.
+fn halved(times: &[f64]) -> Vec<f64> {
+    let first = times.first().copied();
+    let others = times
+        .windows(2)
+        .flat_map(|ends| [0.5 * (ends[0] + ends[1]), ends[1]]);
+    first.into_iter().chain(others).collect()
+}
