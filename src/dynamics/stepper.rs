@@ -276,19 +276,8 @@ impl<E: Equations> Steps<E> {
             step: h,
             residuals: last.iter().map(|r| r / first).collect(),
             muscle: self.short_muscle(),
-            overflow: self.overflow(),
+            overflow: spans::overflow(self.equations.model(), self.equations.scalars()),
         })
-    }
-
-    /// The greatest voltage in V, where forces without a value are laid to numbers and not to an inverted element: there is none, or the square
-    /// of the voltage is no number.
-    fn overflow(&self) -> Option<f64> {
-        let model = self.equations.model();
-        let voltages = self.equations.scalars().get(model.variables.inputs());
-        let voltages = voltages.unwrap_or_default();
-        let greatest = voltages.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-        let is_beyond = !greatest.powi(2).is_finite();
-        (model.solids.is_empty() || is_beyond).then_some(greatest)
     }
 
     /// Whether there is time for what comes next in a step.
