@@ -199,6 +199,9 @@ fn default(value: &Value, said: &str) -> String {
     if !written.is_null() && !is_empty {
         return format!("`{written}`");
     }
+    if value["type"] == "boolean" {
+        return "`false`".to_owned();
+    }
     let Some(at) = said
         .find("where not written")
         .or_else(|| said.find("where not named"))

@@ -88,7 +88,7 @@ impl Examples {
                     match inside.is_null() {
                         true => self.visit(root, &node["additionalProperties"], value, &name),
                         false => {
-                            self.keep(&name, key, value.to_string());
+                            self.keep(&name, key, first(value));
                             self.visit(root, inside, value, &name);
                         }
                     }
@@ -112,6 +112,14 @@ impl Examples {
         if text.len() < kept.len() {
             *kept = text;
         }
+    }
+}
+
+/// The text of a value; of a list of objects only the first one.
+fn first(value: &Value) -> String {
+    match value.as_array().map(Vec::as_slice) {
+        Some([one @ Value::Object(_), ..]) => format!("[{one}]"),
+        _ => value.to_string(),
     }
 }
 
