@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Solve a problem: find optimal voltages, or do what else its file asks.
+    /// Do what a problem file asks: find optimal voltages, simulate, or find a state of rest.
     Solve {
         #[command(flatten)]
         problem: InTime,
@@ -44,7 +44,7 @@ pub(crate) enum Command {
         #[arg(long, requires = "starts")]
         processes: bool,
     },
-    /// Simulate a problem forward in time, or do what else its file asks.
+    /// Simulate forward in time, of a problem that asks for it; one that asks for optimal voltages is for solve.
     Simulate(InTime),
     /// Find the static equilibrium of a problem, or of any scene under given voltages.
     Equilibrium {
@@ -94,7 +94,7 @@ pub(crate) enum Command {
         #[arg(default_value = "problem")]
         file: File,
     },
-    /// Write a scene and a problem to start from.
+    /// Write a scene and a problem to start from, with the schemas that an editor reads, and tell the next command.
     New {
         #[command(subcommand)]
         what: New,
@@ -134,7 +134,7 @@ pub(crate) enum New {
 
 #[derive(Args, Debug)]
 pub(crate) struct NewFiles {
-    /// Folder for scene.json and problem.json.
+    /// Folder for scene.json, problem.json and their schemas.
     #[arg(default_value = ".")]
     pub(crate) folder: PathBuf,
 }

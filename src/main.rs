@@ -99,7 +99,7 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
         }
         Command::Simulate(problem) => {
             let json = problem.json();
-            told(json, &problem.request(), app::run)
+            told(json, &problem.request(), app::simulate)
         }
         Command::Equilibrium { problem, voltages } => {
             let json = problem.json();
@@ -145,9 +145,7 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
                 New::Gripper(files) => (Template::Gripper, files.folder),
                 New::Satellite(files) => (Template::Satellite, files.folder),
             };
-            let files = app::new_files(template, &folder)?;
-            let names = files.iter().map(|path| path.display().to_string());
-            Ok(text(names.collect::<Vec<_>>().join("\n")))
+            app::new_files(template, &folder)
         }
         Command::Completions { shell } => {
             let mut script = Vec::new();
@@ -165,7 +163,15 @@ fn told(
     run: impl FnOnce(&CommandInput) -> Result<CommandOutput, CommandError>,
 ) -> Result<CommandOutput, CommandError> {
     interrupt::install();
-    let told = run(request)?;
+    let told = match run(request) {
+        // What was found is told in the summary, which is written.
+        Err(error @ CommandError::NoEquilibrium { .. }) if json => CommandOutput {
+            is_solved: false,
+            result: String::new(),
+            notes: vec![format!("error: {}", printable(&error.to_string()))],
+        },
+        other => other?,
+    };
     Ok(match json {
         true => CommandOutput {
             result: app::written_summary(request)?,

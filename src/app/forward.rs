@@ -13,6 +13,7 @@ use crate::app::error::CommandError;
 use crate::app::exchanged::Exchanged;
 use crate::app::fields;
 use crate::app::folder::make_folder;
+use crate::app::moved_markers::moved_markers;
 use crate::app::page;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
@@ -189,7 +190,9 @@ pub(super) fn simulation(
     let compared = summary.comparison.iter().flat_map(Comparison::notes);
     let mut notes: Vec<String> = summary.message.iter().cloned().chain(compared).collect();
     summary.notes.extend_from_slice(task.start.notes());
+    summary.notes.extend(moved_markers(system));
     summary.notes.extend(afterwards(task));
+    summary.notes.extend(steps::divided(task));
     summary.notes.extend(domain::note(&summary.domain, true));
     summary.notes.extend(steps::told(neglected, &history, task));
     summary.notes.extend(steps::beyond(error, task));

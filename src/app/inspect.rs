@@ -8,6 +8,7 @@ use crate::app::blocks::BlockSizes;
 use crate::app::error::CommandError;
 use crate::app::extent;
 use crate::app::folder::make_folder;
+use crate::app::moved_markers::moved_markers;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::sparsity;
 use crate::app::task::read;
@@ -32,7 +33,7 @@ pub fn inspect(request: &CommandInput) -> Result<CommandOutput, CommandError> {
     Ok(CommandOutput {
         is_solved: true,
         result: found.words,
-        notes: Vec::new(),
+        notes: found.notes,
     })
 }
 
@@ -51,6 +52,9 @@ pub struct Inspected {
     /// All of it in words.
     #[serde(skip)]
     words: String,
+    /// What is told beside it.
+    #[serde(skip)]
+    notes: Vec<String>,
 }
 
 /// The same as numbers; a `text` stands for that of the problem file, which then only names it and the folder that paths are relative to.
@@ -63,7 +67,7 @@ pub fn inspected(request: &CommandInput, text: Option<&str>) -> Result<Inspected
     let wrong = |error| {
         CommandError::of(&request.input)(WorkflowError::boundary(key(&loaded.task), &error))
     };
-    match &loaded.task {
+    let mut found = match &loaded.task {
         Task::Control(control) => of_control(request, system, control),
         Task::Simulate(task) => {
             let model = Model::answering(system.clone(), task.question(system, task.step))
@@ -75,7 +79,9 @@ pub fn inspected(request: &CommandInput, text: Option<&str>) -> Result<Inspected
                 .map_err(|error| wrong(error.into()))?;
             Ok(of_model(&model, None))
         }
-    }
+    }?;
+    found.notes = moved_markers(system);
+    Ok(found)
 }
 
 /// Time in s that goes into measuring each effect.
@@ -132,6 +138,7 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
         plan,
         sizes: sizes.into_iter().collect(),
         words,
+        notes: Vec::new(),
     }
 }
 
@@ -233,6 +240,8 @@ fn of_control(
         numbers(&sizes)
     ));
     found.sizes.extend(sizes);
+    let notes = boundary.notes.iter();
+    notes.for_each(|note| found.words.push_str(&format!("note: {note}\n")));
     if let Some(folder) = &request.output {
         make_folder(folder)?;
         let origin = request.origin(false);

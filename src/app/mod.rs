@@ -7,7 +7,8 @@
 //! - `continuation`: runs that go on from the result of another; `digest`: what tells that two are the same.
 //! - `shown`: which part of a motion tables, figures and page show.
 //! - `side_by_side`: several results on one page.
-//! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`: what is told of a result.
+//! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`, `moved_markers`: what is told of a result.
+//! - `other_task`: what is said where a problem asks for another command; `no_equilibrium`: what is written where nothing rests.
 //! - `page`, `solve_page`: what the page tells; `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `progress`, `request`, `error`: what commands share.
 
 use crate::sparse::mumps::end_blas_threads;
@@ -28,7 +29,10 @@ mod followed;
 mod forward;
 mod inspect;
 mod linear_systems;
+mod moved_markers;
 mod multistart;
+mod no_equilibrium;
+mod other_task;
 mod page;
 mod path;
 mod program;
@@ -68,7 +72,7 @@ pub use request::{CommandInput, CommandOutput, PageWanted};
 pub use rest::equilibrium_of_file;
 pub use side_by_side::compare;
 pub use summary::written_summary;
-pub use task::{run, run_observed};
+pub use task::{run, run_observed, simulate};
 pub use templates::{Template, expand, new_files, schema, study_schema, sweep_schema, write_file};
 
 /// Ends threads of libraries that wait for work in vain. To be called once, by a program, before anything else.

@@ -6,6 +6,8 @@ use crate::app::blocks::BlockSizes;
 use crate::app::error::CommandError;
 use crate::app::fields;
 use crate::app::folder::make_folder;
+use crate::app::moved_markers::moved_markers;
+use crate::app::other_task::no_equilibrium;
 use crate::app::page;
 use crate::app::path;
 use crate::app::progress::Progress;
@@ -14,7 +16,6 @@ use crate::app::rest_observed::at_rest;
 use crate::app::rest_refused::refused;
 use crate::app::rest_words::{describe, lost, rows, status, text};
 use crate::app::summary::{MEASURED, Seconds, Summary};
-use crate::app::words::key;
 use crate::control::problem::{AtRest, Task};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
@@ -65,11 +66,7 @@ pub fn equilibrium_of_file(
             task,
             began,
         ),
-        other => Err(CommandError::Problem {
-            file: request.input.clone(),
-            place: key(other).to_owned(),
-            reason: "asks for no equilibrium; name the voltages with --voltages".to_owned(),
-        }),
+        other => Err(no_equilibrium(request, other)),
     }
 }
 
@@ -140,6 +137,7 @@ pub(super) fn at(
         setup,
         ..Seconds::default()
     };
+    summary.notes.extend(moved_markers(system));
     summary.notes.extend(domain::note(&summary.domain, false));
     let notes = summary.message.iter().chain(&summary.notes);
     let notes = notes.cloned().collect();

@@ -1,10 +1,11 @@
 //! Why nothing is found at rest.
 
 use crate::app::error::CommandError;
+use crate::app::no_equilibrium;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::dynamics::EquilibriumError;
 
-/// Why there is no equilibrium at all: a floating block is wrong input, anything else a result without files.
+/// Why there is no equilibrium at all: a floating block is wrong input, anything else a result of which the summary alone is written.
 pub(super) fn refused(
     request: &CommandInput,
     error: &EquilibriumError,
@@ -21,9 +22,10 @@ pub(super) fn refused(
         EquilibriumError::Stopped(status) => return Err(CommandError::Stopped(*status)),
         _ => {}
     }
+    no_equilibrium::write(request, &error.to_string())?;
     Ok(CommandOutput {
         is_solved: false,
-        result: result.to_owned(),
+        result: format!("{result}, {}", request.folder().display()),
         notes: vec![error.to_string()],
     })
 }

@@ -11,6 +11,7 @@ use crate::app::exchanged::Exchanged;
 use crate::app::fields;
 use crate::app::folder::make_folder;
 use crate::app::linear_systems::LinearSystems;
+use crate::app::moved_markers::moved_markers;
 use crate::app::page;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
@@ -166,6 +167,8 @@ pub(super) fn control(
     });
     let coarse = tested.and_then(Resimulation::warning);
     summary.notes.extend_from_slice(control.start.notes());
+    summary.notes.extend_from_slice(&boundary.notes);
+    summary.notes.extend(moved_markers(system));
     summary.notes.extend(note.into_iter().chain(coarse));
     summary.notes.extend(not_kept.filter(|_| is_solved));
     summary.notes.extend(holding::free_end(control));

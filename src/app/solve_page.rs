@@ -29,7 +29,10 @@ pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
         for parameter in &program.parameters {
             row(&parameter.name, parameter.told());
         }
-        row("coordinates", summary.coordinates.to_owned());
+        row(
+            "coordinates",
+            summary.coordinates.unwrap_or_default().to_owned(),
+        );
         row("variables", program.variables.to_string());
         row("constraints", program.constraints.to_string());
         row("time", format!("{:.3} s", summary.seconds.total));

@@ -28,7 +28,7 @@ pub(super) fn meaning(status: Status) -> &'static str {
         Status::TimeLimit => "the time allowed was used up; the files hold the last iterate",
         Status::Interrupted => "interrupted; the files hold the last iterate",
         Status::InvalidNumber => {
-            "an equation or a derivative has no value at an iterate: the ends of a muscle meet there, or an element is inverted; the files hold the last iterate; take another guess or more intervals"
+            "an equation or a derivative has no value at an iterate: the ends of a muscle meet there, an element is inverted, or a voltage is beyond the range of numbers; the files hold the last iterate; take another guess or more intervals"
         }
         Status::TooFewDegreesOfFreedom => "there are more equations than unknowns",
         _ => "the solver stopped early; the files hold the last iterate",

@@ -71,7 +71,9 @@ pub(super) struct Summary {
     pub(super) domain: Vec<Outside>,
     #[serde(flatten)]
     pub(super) blocks: Option<BlockSizes>,
-    pub(super) coordinates: &'static str,
+    /// Those of the model; absent where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) coordinates: Option<&'static str>,
     pub(super) seconds: Seconds,
     #[serde(flatten)]
     pub(super) plan: Plan,
@@ -321,7 +323,11 @@ pub fn written_summary(request: &CommandInput) -> Result<String, CommandError> {
 
 impl Summary {
     /// A summary without a result.
-    pub(super) fn new(request: &CommandInput, status: &str, coordinates: &'static str) -> Self {
+    pub(super) fn new(
+        request: &CommandInput,
+        status: &str,
+        coordinates: impl Into<Option<&'static str>>,
+    ) -> Self {
         Self {
             command: request.command.clone(),
             input: request.input.display().to_string(),
@@ -339,7 +345,7 @@ impl Summary {
             path: None,
             domain: Vec::new(),
             blocks: None,
-            coordinates,
+            coordinates: coordinates.into(),
             seconds: Seconds::default(),
             plan: Plan::default(),
             versions: Versions::new(),

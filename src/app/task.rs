@@ -6,6 +6,8 @@ use std::time::Instant;
 use crate::app::continuation;
 use crate::app::error::CommandError;
 use crate::app::forward;
+use crate::app::no_equilibrium;
+use crate::app::other_task::refuse_all_but_motions;
 use crate::app::page::asked;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
@@ -27,6 +29,14 @@ pub fn run(request: &CommandInput) -> Result<CommandOutput, CommandError> {
     run_observed(request, None, &mut |_| {})
 }
 
+/// Simulates what a problem asks to simulate.
+///
+/// # Errors
+/// As of [`run`]; or it asks for something else, and nothing was written.
+pub fn simulate(request: &CommandInput) -> Result<CommandOutput, CommandError> {
+    run_checked(request, None, &mut |_| {}, refuse_all_but_motions)
+}
+
 /// The same; a `text` stands for that of the problem file, which then only names it and the folder that paths are relative to. `observer`
 /// hears of every iteration of a solve and every step of a simulation; who wants to end it makes a
 /// [request](crate::ipopt::interrupt::StopRequest).
@@ -38,14 +48,24 @@ pub fn run_observed(
     text: Option<&str>,
     observer: &mut dyn FnMut(Reached<'_>),
 ) -> Result<CommandOutput, CommandError> {
+    run_checked(request, text, observer, |_, _| Ok(()))
+}
+
+fn run_checked(
+    request: &CommandInput,
+    text: Option<&str>,
+    observer: &mut dyn FnMut(Reached<'_>),
+    check: fn(&CommandInput, &Task) -> Result<(), CommandError>,
+) -> Result<CommandOutput, CommandError> {
     let began = Instant::now();
     let _progress = Progress::of_phases(request.progress);
     phase("reading");
     let loaded = read(&request.input, text, &request.set)?;
+    check(request, &loaded.task)?;
     refuse_unused(request, &loaded.task)?;
     refuse_replacing(request, &loaded.task)?;
     let told = (request, &asked(&loaded)[..]);
-    match &loaded.task {
+    let answer = match &loaded.task {
         Task::Control(control) => {
             let mut control = control.clone();
             if let Some(folder) = &request.from {
@@ -58,7 +78,8 @@ pub fn run_observed(
             forward::simulation(told, &loaded, simulation, began, observer)
         }
         Task::Equilibrium(task) => rest::at(told, &loaded.system, task, began),
-    }
+    };
+    no_equilibrium::kept(request, answer)
 }
 
 /// Reads a problem and whether the machine has room for it.

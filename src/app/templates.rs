@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
+use crate::app::request::CommandOutput;
 use crate::files;
-use crate::report::atomic;
+use crate::report::{atomic, shell};
 
 /// A robot to begin with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,13 +45,29 @@ impl Template {
             Self::Satellite => kept!("satellite"),
         }
     }
+
+    /// The command that does what its problem asks, with results in a folder of its own name.
+    fn next(self, folder: &Path) -> String {
+        let command = match self {
+            Self::Satellite => "simulate",
+            _ => "solve",
+        };
+        let problem = folder.join("problem.json").display().to_string();
+        let mut words = vec!["proboscis".to_owned(), command.to_owned(), problem];
+        if let Some(name) = folder.file_name() {
+            let results = Path::new("results").join(name);
+            words.extend(["-o".to_owned(), results.display().to_string()]);
+        }
+        shell::command(words)
+    }
 }
 
-/// Writes `scene.json` and `problem.json` of a robot into a folder; files that exist are left alone.
+/// Writes scene and problem of a robot into a folder, beside the schemas from which editors complete them, and tells what comes next; files that
+/// exist are left alone.
 ///
 /// # Errors
 /// A trunk has no segments, a file exists, or cannot be written.
-pub fn new_files(template: Template, folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
+pub fn new_files(template: Template, folder: &Path) -> Result<CommandOutput, CommandError> {
     if template == (Template::Trunk { segments: 0 }) {
         return Err(CommandError::Option {
             option: "--segments",
@@ -58,15 +75,27 @@ pub fn new_files(template: Template, folder: &Path) -> Result<Vec<PathBuf>, Comm
         });
     }
     let (scene, problem) = template.files();
-    let files = [("scene.json", scene), ("problem.json", problem)]
-        .map(|(name, text)| (folder.join(name), text));
+    let (of_scene, of_problem) = schema();
+    let files: [(PathBuf, String); 4] = [
+        ("scene.json", scene),
+        ("problem.json", problem),
+        ("scene.schema.json", of_scene + "\n"),
+        ("problem.schema.json", of_problem + "\n"),
+    ]
+    .map(|(name, text)| (folder.join(name), text));
     if let Some((path, _)) = files.iter().find(|(path, _)| path.exists()) {
         return Err(CommandError::Exists(path.clone()));
     }
     for (path, text) in &files {
         write_file(path, text.as_bytes())?;
     }
-    Ok(files.map(|(path, _)| path).to_vec())
+    let names = files.iter().map(|(path, _)| path.display().to_string());
+    let next = format!("next: {}", template.next(folder));
+    Ok(CommandOutput {
+        is_solved: true,
+        result: names.chain([next]).collect::<Vec<_>>().join("\n"),
+        notes: Vec::new(),
+    })
 }
 
 /// Writes a file, and the folders that it lies in where they are missing.

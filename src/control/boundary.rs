@@ -9,6 +9,8 @@ use crate::control::limits::Limits;
 use crate::control::problem::{BoundaryState, Control, Rest};
 use crate::control::rest::rest_at;
 use crate::control::sought;
+use crate::control::transcription::count::overdetermined;
+use crate::control::transcription::layout::Layout;
 use crate::dynamics::{Start, muscle_without_length};
 use crate::functional::Order;
 use crate::model::{Analysis, Coordinates, Graph, Model, Presolved, Quantity, Role, System};
@@ -19,6 +21,42 @@ impl BoundaryConditions {
     /// # Errors
     /// The model does not exist in the coordinates, or a state of rest does not exist.
     pub fn resolve(
+        system: &System,
+        control: &Control,
+        h0: f64,
+    ) -> Result<(Model, Self), BoundaryError> {
+        let (model, boundary) = Self::of_goal(system, control, h0)?;
+        let goal = match model.solids.is_empty() {
+            true => None,
+            false => control.goal.resting(Rest::Bodies),
+        };
+        let Some(goal) = goal else {
+            return Ok((model, boundary));
+        };
+        let layout = Layout::new(&model, &boundary, control, control.intervals);
+        let Some(error) = overdetermined(&layout, &model, control.intervals) else {
+            return Ok((model, boundary));
+        };
+        let names_markers = matches!(goal, BoundaryState::Markers { .. });
+        if !names_markers && model.action.motion.of_bodies == 0 {
+            return Err(error);
+        }
+        let eased = Control {
+            goal,
+            ..control.clone()
+        };
+        let (model, mut boundary) = Self::of_goal(system, &eased, h0)?;
+        boundary.notes.push(format!(
+            "{} voltages cannot bring all {} coordinates of elastic blocks and bodies to rest: at the goal {} rest, as by \"rest\": \"bodies\"",
+            layout.unknowns.voltages.len(),
+            model.coordinate_count(),
+            if names_markers { "bodies and its markers" } else { "bodies" },
+        ));
+        Ok((model, boundary))
+    }
+
+    /// The same, where everything rests unless the goal says otherwise.
+    fn of_goal(
         system: &System,
         control: &Control,
         h0: f64,
@@ -81,7 +119,7 @@ impl BoundaryConditions {
                 let rest = rest_at(&model, voltages, "goal")?;
                 scalars[1] = Some(rest.scalars.clone());
                 let reached = match of {
-                    Rest::Everything => n,
+                    Rest::Everything | Rest::Attainable => n,
                     Rest::Bodies => model.action.motion.of_bodies.min(n),
                 };
                 for (given, value) in given.iter_mut().zip(&rest.z[..reached]) {
@@ -126,6 +164,7 @@ impl BoundaryConditions {
             },
             rest,
             limits,
+            notes: Vec::new(),
         };
         let rest = boundary.goal.rest.as_ref();
         let ends = [Some(&boundary.start.z[..]), rest.map(|rest| &rest.z[..])];

@@ -45,6 +45,8 @@ pub enum Rest {
     Everything,
     /// Bodies and the markers of the goal; elastic blocks have more coordinates than a few voltages can bring to rest.
     Bodies,
+    /// Every coordinate, or, of elastic blocks where the voltages are too few for that, bodies and the markers of the goal.
+    Attainable,
 }
 
 /// What becomes of a goal that its voltages do not keep.
@@ -67,6 +69,16 @@ impl BoundaryState {
             Self::Markers { hold, .. } => hold.as_deref(),
             Self::JointAngles { .. } | Self::Free => None,
         }
+    }
+
+    /// A goal that leaves open what rests, with what rests.
+    pub(crate) fn resting(&self, what: Rest) -> Option<Self> {
+        let mut goal = self.clone();
+        let rest = match &mut goal {
+            Self::RestAtVoltages(_, rest) | Self::Markers { rest, .. } => rest,
+            _ => return None,
+        };
+        (std::mem::replace(rest, what) == Rest::Attainable).then_some(goal)
     }
 
     /// What there is to say of it.

@@ -14,6 +14,8 @@ pub struct BoundaryConditions {
     pub rest: [Option<Vec<f64>>; 2],
     /// Limits and goal equations.
     pub limits: Limits,
+    /// What there is to say of them.
+    pub notes: Vec<String>,
 }
 
 /// What comes to rest at the end.

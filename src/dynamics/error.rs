@@ -11,7 +11,7 @@ pub enum StepError {
     /// Newton's method did not converge, although the step was halved.
     #[error(
         "no convergence of the step from t = {time} ms, even with a step of {step} ms; last residuals relative to the first: {}{}",
-        short(residuals), hint(residuals, muscle.as_ref())
+        short(residuals), hint(residuals, muscle.as_ref(), overflow.as_ref())
     )]
     NoConvergence {
         /// Start of the step in ms.
@@ -22,6 +22,8 @@ pub enum StepError {
         residuals: Vec<f64>,
         /// Shortest lumped muscle at the start of the step and its stretch, if it is rather short.
         muscle: Option<(String, f64)>,
+        /// Forces beyond the range of numbers, and the greatest voltage, where an inverted element is not what they are laid to.
+        overflow: Option<f64>,
     },
     /// The span of a lumped muscle turned by a right angle or more, although the step was halved.
     #[error(
@@ -199,8 +201,13 @@ fn short(residuals: &[f64]) -> String {
 }
 
 /// What a short muscle or residuals that are not finite mean.
-fn hint(residuals: &[f64], muscle: Option<&(String, f64)>) -> String {
+fn hint(residuals: &[f64], muscle: Option<&(String, f64)>, overflow: Option<&f64>) -> String {
     let is_finite = residuals.iter().all(|r| r.is_finite());
+    if let (Some(voltage), false) = (overflow, is_finite) {
+        return format!(
+            "; the forces there are beyond the range of numbers: the greatest voltage is {voltage:.3e} V; check the units of voltages and of the scene"
+        );
+    }
     match muscle {
         Some((name, stretch)) if *stretch < NOTHING => {
             format!("; muscle \"{name}\" has no length there")

@@ -276,6 +276,7 @@ impl<E: Equations> Steps<E> {
             step: h,
             residuals: last.iter().map(|r| r / first).collect(),
             muscle: self.short_muscle(),
+            overflow: spans::overflow(self.equations.model(), self.equations.scalars()),
         })
     }
 

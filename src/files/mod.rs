@@ -165,15 +165,21 @@ pub fn expand(path: &Path) -> Result<String, SceneError> {
 pub fn schema() -> (Value, Value) {
     let scene = schemars::schema_for!(SceneSpec);
     let problem = schemars::schema_for!(ProblemSpec);
-    (scene.to_value(), problem.to_value())
+    (identified("scene", scene), identified("problem", problem))
 }
 
 /// The JSON Schema of the study file.
 pub fn study_schema() -> Value {
-    schemars::schema_for!(StudySpec).to_value()
+    identified("study", schemars::schema_for!(StudySpec))
 }
 
 /// The JSON Schema of the sweep file.
 pub fn sweep_schema() -> Value {
-    schemars::schema_for!(SweepSpec).to_value()
+    identified("sweep", schemars::schema_for!(SweepSpec))
+}
+
+/// A schema with the name by which other schemas and editors refer to it.
+fn identified(file: &str, mut schema: schemars::Schema) -> Value {
+    schema.insert("$id".to_owned(), format!("urn:proboscis:{file}").into());
+    schema.to_value()
 }

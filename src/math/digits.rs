@@ -16,3 +16,12 @@ pub fn significant(value: f64, digits: usize) -> String {
     let decimals = usize::try_from(digits as i64 - before).unwrap_or(0);
     format!("{value:.decimals$}")
 }
+
+/// The same without zeros at its end: `6.25` of 6.250000.
+pub fn shortest(value: f64, digits: usize) -> String {
+    let text = significant(value, digits);
+    match text.parse::<f64>() {
+        Ok(rounded) if value.abs() >= SMALL => rounded.to_string(),
+        _ => text,
+    }
+}

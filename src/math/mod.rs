@@ -14,7 +14,7 @@ pub(crate) use both::both;
 pub use both::cores;
 pub(crate) use counted::counted;
 pub use derivatives::{Derivatives, Local};
-pub use digits::significant;
+pub use digits::{shortest, significant};
 pub use jet::Jet;
 pub use sets::DisjointSets;
 pub use stopped::{IsOver, Stopped};

@@ -2,8 +2,9 @@
 
 use crate::control::problem::Simulation;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
-use crate::math::significant;
+use crate::math::{shortest, significant};
 use crate::workflow::confirmed::EstimatedError;
+use crate::workflow::integrate::grid;
 
 /// Part of the path beyond which the estimated error of a motion is warned of.
 const FINE: f64 = 0.01;
@@ -23,6 +24,19 @@ pub(crate) fn unbalanced(history: &DiscreteTrajectory) -> Option<String> {
             if part > 0.0 { "make" } else { "lose" },
             significant(report.made.abs(), 3),
             100.0 * part.abs()
+        )
+    })
+}
+
+/// The step that is taken where the one that is written does not divide the duration.
+pub(crate) fn divided(task: &Simulation) -> Option<String> {
+    let (steps, step) = grid(task);
+    let is_other = (step - task.step).abs() > 1e-6 * task.step;
+    (task.tolerance.is_none() && is_other).then(|| {
+        format!(
+            "the step is {} ms, the duration in {steps} equal steps: steps of {} ms do not divide it",
+            shortest(step, 6),
+            shortest(task.step, 6)
         )
     })
 }

@@ -299,7 +299,7 @@ fn a_goal_may_be_the_equilibrium_of_bodies_alone() {
     );
     assert_eq!(
         goal(PROBLEM),
-        BoundaryState::RestAtVoltages(row, Rest::Everything)
+        BoundaryState::RestAtVoltages(row, Rest::Attainable)
     );
     #[rustfmt::skip]
     let cases: &[Case] = &[

@@ -41,7 +41,7 @@ fn a_new_trunk_can_be_solved_and_is_not_overwritten() {
     let arguments = ["new", "trunk", "--segments", "2", "mine"];
     let (status, out, err) = run(folder.path(), &arguments);
     assert_eq!(status, 0, "{err}");
-    assert_eq!(out.lines().count(), 2);
+    assert_eq!(out.lines().count(), 5);
     let (status, _, err) = run(folder.path(), &arguments);
     assert!(status == 2 && err.contains("exists already"), "{err}");
     let (status, ..) = run(folder.path(), &["solve", "mine/problem.json"]);

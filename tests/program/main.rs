@@ -10,6 +10,7 @@ mod end_of_refused;
 mod engine;
 mod fe_control;
 mod fields;
+mod first_hour;
 mod gltf;
 mod kept;
 mod killed;

@@ -15,6 +15,7 @@ use std::time::Instant;
 use crate::app::batch::{Batch, RunIn, run_all, task_runs_at_once};
 use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
+use crate::app::no_equilibrium;
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::{read, refuse_replacing};
@@ -79,7 +80,8 @@ pub fn solve_text_from_starts(
         });
     };
     refuse_replacing(request, &loaded.task)?;
-    resolve(&loaded.system, control).map_err(CommandError::of(&request.input))?;
+    let ends = resolve(&loaded.system, control).map_err(CommandError::of(&request.input));
+    no_equilibrium::kept(request, ends)?;
     let run_in = wanted.of_tasks(task_runs_at_once(&loaded.task));
     if run_in == RunIn::Processes && is_standard_input(&request.input) {
         return Err(CommandError::Option {

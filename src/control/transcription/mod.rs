@@ -10,6 +10,7 @@
 
 mod cost_rows;
 mod costs;
+pub(super) mod count;
 mod energies;
 mod energy_rows;
 pub(super) mod layout;
@@ -28,8 +29,8 @@ mod units;
 use crate::control::BoundaryError;
 use crate::control::conditions::{BoundaryConditions, Rests};
 use crate::control::guess::InitialGuess;
-use crate::control::limits::{BoundedQuantity, When};
-use crate::control::numbering::{Column, Numbering, Row};
+use crate::control::limits::BoundedQuantity;
+use crate::control::numbering::{Column, Numbering};
 use crate::control::objective::{Cost, objective_scale};
 use crate::control::problem::{Control, Duration};
 use crate::coordinates::Configuration;
@@ -37,6 +38,7 @@ use crate::functional::{Horizon, Part};
 use crate::model::{Model, Role, Size, Time};
 use crate::nlp::{Bounds, Entries, Nlp};
 use cost_rows::{CostRow, cost_rows, costs_size};
+use count::overdetermined;
 use energy_rows::{EnergyRow, Jump, energies_size, energy_rows};
 use layout::Layout;
 use limit_rows::LimitRow;
@@ -54,6 +56,7 @@ struct Gather {
     place: usize,
     scale: f64,
 }
+
 /// A control problem as a nonlinear program.
 #[derive(Debug)]
 pub struct Transcription<'m> {
@@ -126,9 +129,11 @@ impl<'m> Transcription<'m> {
         control: &Control,
         initial: &InitialGuess,
     ) -> Result<Self, BoundaryError> {
-        let program = Self::of_any(model, boundary, control, initial);
-        program.count()?;
-        Ok(program)
+        let layout = Layout::new(model, boundary, control, control.intervals);
+        match overdetermined(&layout, model, control.intervals) {
+            Some(error) => Err(error),
+            None => Ok(Self::laid_out(model, boundary, control, initial, layout)),
+        }
     }
 
     /// Transcribes like [`new`](Self::new), also where there are more equations than unknowns: derivatives exist all the same.
@@ -137,6 +142,17 @@ impl<'m> Transcription<'m> {
         boundary: &BoundaryConditions,
         control: &Control,
         initial: &InitialGuess,
+    ) -> Self {
+        let layout = Layout::new(model, boundary, control, control.intervals);
+        Self::laid_out(model, boundary, control, initial, layout)
+    }
+
+    fn laid_out(
+        model: &'m Model,
+        boundary: &BoundaryConditions,
+        control: &Control,
+        initial: &InitialGuess,
+        layout: Layout,
     ) -> Self {
         let motion = &model.action.motion;
         let unknown_count = motion.unknowns();
@@ -152,7 +168,7 @@ impl<'m> Transcription<'m> {
             unknowns,
             limits,
             limit_rows: limit_at,
-        } = Layout::new(model, boundary, control, intervals);
+        } = layout;
         let given = |k: usize| {
             let time = control.middle(k);
             let scalars = variables.of(Time::Interval).iter();
@@ -265,32 +281,6 @@ impl<'m> Transcription<'m> {
         out.set_bounds(control);
         out.set_row_bounds();
         out
-    }
-
-    fn count(&self) -> Result<(), BoundaryError> {
-        let is_goal =
-            |l: &&LimitRow| l.bounded.when == When::Goal && l.bounded.lower == l.bounded.upper;
-        let goals = self.limits.iter().filter(is_goal).count();
-        let given = self.instants.len().saturating_sub(1);
-        let equations = self
-            .unknowns
-            .rows
-            .iter()
-            .filter(|r| !matches!(r, Row::Limit { .. }))
-            .count()
-            + goals;
-        let unknowns = self.unknowns.columns.len();
-        if equations > unknowns {
-            let fixed = (0..self.model.coordinate_count())
-                .filter(|&i| self.unknowns.unknown(given, i).is_none())
-                .count();
-            return Err(BoundaryError::Overdetermined {
-                equations,
-                goals: goals + fixed,
-                unknowns,
-            });
-        }
-        Ok(())
     }
 
     /// Number of intervals N.

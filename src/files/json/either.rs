@@ -6,6 +6,8 @@ use serde::de::{Error, IntoDeserializer, MapAccess, Visitor};
 use std::fmt;
 use std::marker::PhantomData;
 
+use crate::files::json::wording::beside;
+
 /// A type that is read from one scalar, or from an object.
 pub(crate) trait ScalarOrObject<'de>: Sized {
     /// Both, for messages.
@@ -33,7 +35,11 @@ impl<'de, T: ScalarOrObject<'de>> Visitor<'de> for Either<T> {
     }
 
     fn visit_str<E: Error>(self, text: &str) -> Result<T, E> {
-        T::Scalar::deserialize(text.into_deserializer()).map(T::scalar)
+        let read = T::Scalar::deserialize(text.into_deserializer());
+        read.map(T::scalar).map_err(|error: E| {
+            // A word alone is not all that may stand here.
+            beside(&error.to_string(), T::EXPECTED).map_or(error, E::custom)
+        })
     }
 
     fn visit_f64<E: Error>(self, number: f64) -> Result<T, E> {

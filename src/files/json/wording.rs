@@ -1,6 +1,7 @@
 //! Messages of serde in the words of this project: what was found, what is expected, which name is near.
 
 use crate::files::json::error::nearest;
+use crate::files::json::not_offered::not_offered;
 
 /// A message of serde, taken apart.
 pub(crate) struct Wording {
@@ -28,13 +29,7 @@ pub(crate) fn wording(key: Option<&str>, message: &str) -> Wording {
         return unknown_key(key.unwrap_or_default(), expected);
     }
     if let Some(variant) = problem.strip_prefix("unknown variant ") {
-        let variant = variant.trim_matches('`');
-        return Wording {
-            found: format!("{variant:?}"),
-            expected: one_of(expected),
-            nearest: nearest(variant, quoted(expected)),
-            at_key: false,
-        };
+        return unknown_word(variant, expected);
     }
     if let Some(field) = problem.strip_prefix("missing field ") {
         let field = field.trim_matches('`');
@@ -52,13 +47,50 @@ pub(crate) fn wording(key: Option<&str>, message: &str) -> Wording {
     plain(format!("{count}{}", json_word(found)), json_word(expected))
 }
 
-fn unknown_key(key: &str, expected: &str) -> Wording {
+/// A word that is none of those `expected`, which are in backticks, or stand there beside other kinds of value: then the words are told with the
+/// one that is wrong.
+fn unknown_word(variant: &str, expected: &str) -> Wording {
+    let (variant, words) = variant.split_once(AMONG).unwrap_or((variant, expected));
+    let variant = variant.trim_matches('`');
+    let said = not_offered(variant);
     Wording {
-        found: format!("the key {key:?}"),
+        nearest: nearest(variant, quoted(words)).filter(|_| said.is_none()),
+        found: found(format!("{variant:?}"), said),
+        expected: match words == expected {
+            true => one_of(expected),
+            false => expected.to_owned(),
+        },
+        at_key: false,
+    }
+}
+
+fn unknown_key(key: &str, expected: &str) -> Wording {
+    let said = not_offered(key);
+    Wording {
+        nearest: nearest(key, quoted(expected)).filter(|_| said.is_none()),
+        found: found(format!("the key {key:?}"), said),
         expected: one_of(expected),
-        nearest: nearest(key, quoted(expected)),
         at_key: true,
     }
+}
+
+/// What was found, with what is said of it.
+fn found(what: String, said: Option<String>) -> String {
+    match said {
+        Some(said) => format!("{what}, {said}"),
+        None => what,
+    }
+}
+
+/// Between a wrong word and the words of its kind, where other kinds of value are expected too; no text of a file has it.
+const AMONG: char = '\u{1f}';
+
+/// The message of serde of a word that is none of its kind, where a value of another `kind` may stand too.
+pub(crate) fn beside(message: &str, kind: &str) -> Option<String> {
+    let (problem, words) = message.rsplit_once(", expected ")?;
+    problem
+        .starts_with("unknown variant ")
+        .then(|| format!("{problem}{AMONG}{words}, expected {kind}"))
 }
 
 /// The names between backticks.

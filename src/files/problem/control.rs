@@ -10,7 +10,7 @@ use crate::files::problem::coordinates::{coordinates, count};
 use crate::files::problem::energies::energies;
 use crate::files::problem::free::parameters;
 use crate::files::problem::goal::goal_state;
-use crate::files::problem::guess::guess;
+use crate::files::problem::guess::{guess, unwritten};
 use crate::files::problem::limits::limit;
 use crate::files::problem::signal::signal;
 use crate::files::problem::spec_control::{
@@ -75,6 +75,10 @@ pub(crate) fn control(
     for (index, spec) in spec.limits.iter().enumerate() {
         limits.extend(limit(spec, system, &scope.key("limits").index(index))?);
     }
+    let guess = match &spec.guess {
+        Some(guess_spec) => guess(guess_spec, system, voltage_bounds, &scope.key("guess"))?,
+        None => unwritten(&goal, system),
+    };
     Ok(Control {
         duration,
         intervals: intervals.unwrap_or(FIRST_INTERVALS),
@@ -89,7 +93,7 @@ pub(crate) fn control(
         objective,
         limits,
         coordinates: coordinates(spec.coordinates, system, scope)?,
-        guess: guess(&spec.guess, system, voltage_bounds, &scope.key("guess"))?,
+        guess,
         solver: solver(&spec.solver, &scope.key("solver"))?,
     })
 }

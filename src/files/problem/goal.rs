@@ -59,7 +59,7 @@ pub(crate) fn goal_state(
             return Err(scope.key(name).wrong(found, expected));
         }
     }
-    let reached = Rest::from(rest.unwrap_or_default());
+    let reached = rest.map_or(Rest::Attainable, Rest::from);
     if let Some(map) = rest_at_voltages {
         if reached == Rest::Bodies && system.bodies.is_empty() {
             let expected = "a scene with bodies; goals of elastic blocks alone are \"markers\"";

@@ -1,14 +1,14 @@
 //! From a guess as written to the guess.
 
 use crate::control::Earlier;
-use crate::control::problem::{Guess, Voltages};
+use crate::control::problem::{BoundaryState, Guess, Voltages};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_control::GuessSpec;
 use crate::files::problem::voltages::{SOLUTION_PATH, over_time};
 use crate::files::solution::SolutionFile;
 use crate::math::random::Random;
-use crate::model::system::{Source, System};
+use crate::model::system::{Fidelity, Source, System};
 
 pub(crate) fn guess(
     spec: &GuessSpec,
@@ -43,6 +43,22 @@ pub(crate) fn guess(
         ("random", random),
     ])?;
     build()
+}
+
+/// The guess where none is written: of elastic blocks the motion under the voltages that hold the goal, where they are named, as nothing tells the
+/// places of nodes to interpolate between.
+pub(crate) fn unwritten(goal: &BoundaryState, system: &System) -> Guess {
+    let of_muscles = system
+        .muscles
+        .iter()
+        .any(|m| m.fidelity != Fidelity::Lumped);
+    let has_elements = of_muscles || !system.solids.is_empty();
+    match goal {
+        BoundaryState::Markers {
+            hold: Some(hold), ..
+        } if has_elements => Guess::Simulate(Voltages::Constant(hold.clone())),
+        _ => Guess::Interpolate,
+    }
 }
 
 /// A voltage within the bounds for each source that takes one, drawn at random.

@@ -53,9 +53,10 @@ pub struct ControlSpec {
     /// Coordinates.
     #[serde(default)]
     pub coordinates: Option<CoordinatesSpec>,
-    /// Where the solver starts.
+    /// Where the solver starts; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages, otherwise
+    /// `"interpolate"`.
     #[serde(default)]
-    pub guess: GuessSpec,
+    pub guess: Option<GuessSpec>,
     /// Options of the solver.
     #[serde(default)]
     pub solver: SolverSpec,
@@ -256,12 +257,6 @@ pub enum GuessSpec {
     Word(GuessWord),
     /// An object.
     Object(GuessObjectSpec),
-}
-
-impl Default for GuessSpec {
-    fn default() -> Self {
-        Self::Word(GuessWord::Interpolate)
-    }
 }
 
 scalar_or_object! {

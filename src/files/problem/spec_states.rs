@@ -86,11 +86,13 @@ pub struct RestGoalSpec {
     /// Orientations by body.
     #[serde(default)]
     pub orientations: Option<BTreeMap<String, OrientationSpec>>,
-    /// What comes to rest at an equilibrium, at positions of markers and at orientations: `everything` (where not written), or `bodies` and these
-    /// markers alone, for elastic blocks, which a few voltages cannot bring to rest everywhere.
+    /// What comes to rest at an equilibrium, at positions of markers and at orientations: `everything`, or `bodies` and these markers alone,
+    /// also called `markers`. Where not written everything, or, of elastic blocks that have more coordinates than the voltages can bring to rest, bodies
+    /// and these markers.
     #[serde(default)]
     pub rest: Option<RestSpec>,
-    /// Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named.
+    /// Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named. Of elastic blocks the motion
+    /// under them is the guess, where no other is written.
     #[serde(default)]
     pub hold: Option<VoltageMap>,
 }
@@ -111,11 +113,10 @@ pub struct OrientationSpec {
 }
 
 /// What comes to rest at a goal.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RestSpec {
     /// Every coordinate.
-    #[default]
     Everything,
     /// Bodies and the markers of the goal.
     Bodies,

@@ -10,7 +10,7 @@ use crate::files::scene::expand::expanded;
 use crate::files::scene::graph::check_connected;
 use crate::files::scene::marker::marker;
 use crate::files::scene::material::materials;
-use crate::files::scene::muscle::{MOST_ELEMENTS, fidelity, muscle, positive_sides};
+use crate::files::scene::muscle::{MOST_ELEMENTS, fidelity, layer, muscle, positive_sides};
 use crate::files::scene::names::{find_body, find_material, names};
 use crate::files::scene::point::vector;
 use crate::files::scene::solid::solid;
@@ -195,10 +195,8 @@ fn check_chain(
             let found = format!("an arm of {} at a length of {}", pair.arm, pair.rest_length);
             return Err(scope.wrong(found, "muscles in finite places"));
         }
-        positive_sides(&pair.cross_section, &scope)?;
-        scope
-            .key("layer_thickness")
-            .positive(&pair.layer_thickness)?;
+        positive_sides(&pair.cross_section, rest_length, &scope)?;
+        layer(&pair.layer_thickness, rest_length, &scope)?;
     }
     Ok(())
 }

@@ -23,9 +23,7 @@ pub(crate) fn materials(
 fn material(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Material, SceneError> {
     let shear_modulus = scope.key("shear_modulus").positive(&spec.shear_modulus)?;
     Ok(Material {
-        density: scope
-            .key("density")
-            .absent_or_positive(spec.density.as_ref())?,
+        density: density(spec, scope)?,
         shear_modulus,
         lame_lambda: lame_lambda(spec, shear_modulus, scope)?,
         electric: electric(spec, scope)?,
@@ -33,6 +31,25 @@ fn material(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Material, SceneErr
             .key("viscosity")
             .absent_or_positive(spec.viscosity.as_ref())?,
     })
+}
+
+/// Density in g/mm³ beyond that of any matter on earth: osmium has 0.02259.
+const DENSEST: f64 = 0.1;
+
+/// The density in g/mm³, where there is one.
+fn density(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<f64>, SceneError> {
+    let place = scope.key("density");
+    match (
+        &spec.density,
+        place.absent_or_positive(spec.density.as_ref())?,
+    ) {
+        (Some(written), Some(density)) if density > DENSEST => {
+            let expected =
+                "a density below 1e5 kg/m^3: that of silicone is \"1000 kg/m^3\", or \"1 g/cm^3\"";
+            Err(place.wrong(written.to_string(), expected))
+        }
+        (_, density) => Ok(density),
+    }
 }
 
 /// λ, or 2 μ ν/(1 − 2 ν), in MPa.

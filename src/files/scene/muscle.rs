@@ -7,10 +7,14 @@ use crate::files::scene::point::PointSpec;
 use crate::files::scene::spec::{ModelSpec, MuscleModel, MuscleSpec};
 use crate::files::scene::spec_solids::ElementSpec;
 use crate::files::units::quantity::{Length, Quantity};
+use crate::math::shortest;
 use crate::model::system::{Discretisation, ElementKind, Fidelity, Material, Muscle};
 
 /// Spans shorter than this in mm have no direction.
 const SHORTEST_SPAN: f64 = 1e-9;
+
+/// Lengths of a muscle that a side of its section may have: a wider one is a slip of a unit.
+const WIDEST: f64 = 100.0;
 
 /// Most elements of one mesh; a slip of the pen asks for more.
 pub(crate) const MOST_ELEMENTS: usize = 1_000_000;
@@ -51,10 +55,8 @@ pub(crate) fn muscle(
         name: spec.name.clone(),
         from,
         to,
-        cross_section: positive_sides(&spec.cross_section, scope)?,
-        layer_thickness: scope
-            .key("layer_thickness")
-            .positive(&spec.layer_thickness)?,
+        cross_section: positive_sides(&spec.cross_section, length, scope)?,
+        layer_thickness: layer(&spec.layer_thickness, length, scope)?,
         material,
         section_inertia: spec.section_inertia,
         fidelity,
@@ -121,15 +123,49 @@ pub(crate) fn element_kind(spec: Option<ElementSpec>) -> ElementKind {
     }
 }
 
-/// Sides of the cross-section of a muscle or of a pair.
+/// Sides of the cross-section of a muscle or of a pair of some length in mm.
 pub(crate) fn positive_sides(
     sides: &[Quantity<Length>; 2],
+    length: f64,
     scope: &Scope<'_>,
 ) -> Result<[f64; 2], SceneError> {
     let place = scope.key("cross_section");
-    let [first, second] = sides;
-    Ok([
-        place.index(0).positive(first)?,
-        place.index(1).positive(second)?,
-    ])
+    let side = |index: usize| {
+        let (place, written) = (place.index(index), &sides[index]);
+        let side = place.positive(written)?;
+        if side <= WIDEST * length {
+            return Ok(side);
+        }
+        let found = format!("{written}, {:.0} lengths of the muscle", side / length);
+        let expected = format!(
+            "a side of no more than {WIDEST} lengths of the muscle, {}; a number without a unit is in m",
+            told(length)
+        );
+        Err(place.wrong(found, expected))
+    };
+    Ok([side(0)?, side(1)?])
+}
+
+/// The thickness of a layer of a muscle or of a pair of some length in mm: layers are stacked along it.
+pub(crate) fn layer(
+    thickness: &Quantity<Length>,
+    length: f64,
+    scope: &Scope<'_>,
+) -> Result<f64, SceneError> {
+    let place = scope.key("layer_thickness");
+    let layer = place.positive(thickness)?;
+    // The length of a stack of one layer is known to rounding.
+    if layer <= length * (1.0 + 1e-9) {
+        return Ok(layer);
+    }
+    let expected = format!(
+        "a layer no thicker than the muscle is long, {}, such as \"50 um\"; a number without a unit is in m",
+        told(length)
+    );
+    Err(place.wrong(thickness.to_string(), expected))
+}
+
+/// A length in mm.
+fn told(length: f64) -> String {
+    format!("{} mm", shortest(length, 6))
 }

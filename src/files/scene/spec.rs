@@ -71,7 +71,7 @@ pub struct MaterialSpec {
     /// Relative permittivity, 1 or more; or give `c1` and `c2`; without either the material has no electric term.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative_permittivity: Option<f64>,
-    /// How `relative_permittivity` enters the energy.
+    /// How `relative_permittivity` enters the energy; `first_order` where not written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dielectric: Option<Dielectric>,
     /// Constant of the term c₁ E·E, SI unit F/m = N/V².
@@ -217,7 +217,7 @@ macro_rules! stacked {
             /// Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             pub layers: Option<usize>,
-            /// Which hexahedron; of `finite_elements` only.
+            /// Which hexahedron; `hex8` where not written. Of `finite_elements` only.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             pub element: Option<ElementSpec>,
             /// Name of the material.

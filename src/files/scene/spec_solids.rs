@@ -36,7 +36,7 @@ pub struct SolidSpec {
     /// Length of a unit of the Gmsh file, SI unit m; 1 m where not written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<Quantity<Length>>,
-    /// Which hexahedron.
+    /// Which hexahedron; `hex8` where not written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub element: Option<ElementSpec>,
     /// Electrodes; without any the block has no potential.

@@ -10,6 +10,7 @@ pub fn new_trunk(segments: usize) -> (String, String) {
 fn scene(segments: usize) -> String {
     format!(
         r#"{{
+  "$schema": "scene.schema.json",
   "name": "trunk of {segments}",
   "materials": {{
     "silicone": {{
@@ -41,6 +42,7 @@ fn problem(segments: usize) -> String {
     let lines: Vec<String> = hold.chunks(4).map(|line| line.join(", ")).collect();
     format!(
         r#"{{
+  "$schema": "problem.schema.json",
   "scene": "scene.json",
   "control": {{
     "duration": "0.6 s",

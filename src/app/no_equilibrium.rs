@@ -1,0 +1,63 @@
+//! What is written of a run that finds no state of rest to begin with, to end with, or at all: its summary alone.
+
+use crate::app::error::CommandError;
+use crate::app::folder::make_folder;
+use crate::app::request::CommandInput;
+use crate::app::summary::Summary;
+use crate::report::file_set::FileSet;
+
+/// The status of such a run.
+const STATUS: &str = "no_equilibrium";
+
+/// Files of an earlier result of the folder.
+const EARLIER: [&str; 21] = [
+    "configuration.svg",
+    "continuation.npz",
+    "controls.csv",
+    "energy.svg",
+    "equilibrium.csv",
+    "joint_angles.svg",
+    "motion.gltf",
+    "parts.pvd",
+    "path.csv",
+    "path.svg",
+    "report.html",
+    "snapshots.svg",
+    "solution.json",
+    "solution.npz",
+    "tables.npz",
+    "tip_path.svg",
+    "tracking.csv",
+    "tracking.svg",
+    "trajectory.csv",
+    "trajectory.pvd",
+    "voltages.svg",
+];
+
+/// Writes the summary of a run that has ended so, and gives its answer back.
+///
+/// # Errors
+/// Those of the run; or the summary cannot be written.
+pub(super) fn kept<T>(
+    request: &CommandInput,
+    answer: Result<T, CommandError>,
+) -> Result<T, CommandError> {
+    if let Err(CommandError::NoEquilibrium { place, reason, .. }) = &answer {
+        write(request, &format!("{place}: {reason}"))?;
+    }
+    answer
+}
+
+/// Writes the summary alone, with why there is no equilibrium.
+///
+/// # Errors
+/// It cannot be written.
+pub(super) fn write(request: &CommandInput, reason: &str) -> Result<(), CommandError> {
+    let folder = request.folder();
+    make_folder(&folder)?;
+    let mut summary = Summary::new(request, STATUS, None);
+    summary.message = Some(reason.to_owned());
+    let mut files = FileSet::of(&folder);
+    EARLIER.iter().for_each(|name| files.remove(name));
+    Ok(summary.write(files)?)
+}

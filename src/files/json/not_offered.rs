@@ -1,0 +1,239 @@
+//! Words for what is not offered, and what is said of them.
+
+/// Where the limits are listed.
+const LIMITS: &str = "docs/accuracy.md#limits-of-validity";
+
+/// Words that stand for one thing, and what is said of it.
+struct NotOffered {
+    /// Singular, in lower case with underscores.
+    words: &'static [&'static str],
+    /// What there is, and what there is instead.
+    said: &'static str,
+}
+
+/// What people look for.
+const TABLE: &[NotOffered] = &[
+    NotOffered {
+        words: &[
+            "contact",
+            "contact_pair",
+            "collision",
+            "collider",
+            "impact",
+            "self_contact",
+            "floor",
+            "wall",
+            "ground_plane",
+            "restitution",
+        ],
+        said: "there is no contact: bodies and blocks pass through each other; a marker of a control problem is kept out of a region by \"limits\"",
+    },
+    NotOffered {
+        words: &["obstacle"],
+        said: "there is no contact; a marker of a control problem is kept out of a region by \"limits\": { \"marker\": { \"marker\": …, \"outside\": … } }",
+    },
+    NotOffered {
+        words: &[
+            "friction",
+            "coulomb_friction",
+            "friction_coefficient",
+            "dry_friction",
+            "stiction",
+        ],
+        said: "there is no friction; \"damping\" of joints and springs and \"viscosity\" of materials are viscous",
+    },
+    NotOffered {
+        words: &[
+            "motor",
+            "torque",
+            "joint_torque",
+            "servo",
+            "actuator",
+            "drive",
+            "force",
+            "load",
+            "external_force",
+            "wrench",
+        ],
+        said: "there are no motors, and no forces but gravity and those of muscles, springs and tendons: voltages are the only control",
+    },
+    NotOffered {
+        words: &[
+            "pressure",
+            "pneumatic",
+            "fluid",
+            "drag",
+            "air_resistance",
+            "aerodynamics",
+            "buoyancy",
+            "hydraulic",
+        ],
+        said: "there is no fluid and no pressure",
+    },
+    NotOffered {
+        words: &[
+            "circuit",
+            "current",
+            "resistance",
+            "resistor",
+            "inductance",
+            "electronics",
+            "amplifier",
+            "leakage",
+            "conductivity",
+            "power_supply",
+        ],
+        said: "voltage is the control; the electronics are not modelled",
+    },
+    NotOffered {
+        words: &[
+            "temperature",
+            "thermal",
+            "thermal_expansion",
+            "heat",
+            "heat_capacity",
+        ],
+        said: "there is no temperature",
+    },
+    NotOffered {
+        words: &[
+            "plasticity",
+            "yield_stress",
+            "hardening",
+            "damage",
+            "fatigue",
+            "fracture",
+            "creep",
+            "mullins",
+        ],
+        said: "materials are elastic and viscous; they neither yield nor break",
+    },
+    NotOffered {
+        words: &[
+            "mooney_rivlin",
+            "ogden",
+            "gent",
+            "yeoh",
+            "arruda_boyce",
+            "hyperelastic",
+            "constitutive_law",
+            "prony",
+            "maxwell",
+            "relaxation_time",
+            "youngs_modulus",
+            "young_modulus",
+            "elastic_modulus",
+        ],
+        said: "materials are neo-Hookean, given by \"shear_modulus\" with \"lame_lambda\" or \"poisson_ratio\", and \"viscosity\" is of Kelvin–Voigt kind",
+    },
+    NotOffered {
+        words: &[
+            "universal",
+            "cylindrical",
+            "planar",
+            "screw",
+            "helical",
+            "hinge",
+            "ball",
+            "pin",
+            "slider",
+            "weld",
+            "rigid",
+        ],
+        said: "joints are \"revolute\" (a hinge), \"prismatic\" (a slider), \"spherical\" (a ball joint), \"floating\" and \"fixed\" (a weld); a universal joint is two revolute ones with a small body between them",
+    },
+    NotOffered {
+        words: &[
+            "feedback",
+            "controller",
+            "pid",
+            "mpc",
+            "gain",
+            "policy",
+            "noise",
+            "sensor",
+            "observer",
+            "disturbance",
+        ],
+        said: "voltages are functions of time: there is no feedback, no sensor and no noise",
+    },
+    NotOffered {
+        words: &[
+            "urdf", "mjcf", "stl", "obj", "cad", "visual", "colour", "color", "texture",
+        ],
+        said: "shapes are cylinders, boxes and spheres, and meshes of blocks are Gmsh files",
+    },
+    NotOffered {
+        words: &[
+            "shell",
+            "membrane",
+            "beam",
+            "cloth",
+            "rope",
+            "tet4",
+            "tet10",
+            "tetrahedra",
+            "hex20",
+            "hex27",
+            "c3d8",
+            "c3d8h",
+            "c3d10",
+        ],
+        said: "elements are hexahedra, \"hex8\" and \"hex8_q1p0\"; a cable is one of \"tendons\"",
+    },
+    NotOffered {
+        words: &[
+            "rk4",
+            "runge_kutta",
+            "rk45",
+            "ode45",
+            "dopri5",
+            "radau",
+            "radau5",
+            "bdf",
+            "gauss",
+            "gauss_legendre",
+            "lobatto",
+            "dop853",
+            "adams",
+            "lsoda",
+        ],
+        said: "of order 4 is { \"galerkin\": 2 }, of order 6 { \"galerkin\": 3 }: variational integrators",
+    },
+    NotOffered {
+        words: &[
+            "euler",
+            "explicit_euler",
+            "forward_euler",
+            "symplectic_euler",
+            "semi_implicit_euler",
+            "verlet",
+            "leapfrog",
+            "stormer_verlet",
+            "velocity_verlet",
+        ],
+        said: "of these kinds are \"midpoint\", of order 2 and symplectic, and \"implicit_euler\", of order 1",
+    },
+    NotOffered {
+        words: &[
+            "newmark",
+            "hht",
+            "hht_alpha",
+            "wbz",
+            "bathe",
+            "trapezoidal",
+            "crank_nicolson",
+        ],
+        said: "of this kind is \"generalised_alpha\", of order 2",
+    },
+];
+
+/// What is said of a word that stands for what is not offered.
+pub(super) fn not_offered(word: &str) -> Option<String> {
+    let word = word.to_lowercase().replace([' ', '-'], "_");
+    let one = TABLE.iter().find(|entry| {
+        let is_meant = |known: &&str| *known == word || word.strip_suffix('s') == Some(known);
+        entry.words.iter().any(|known| is_meant(&known))
+    })?;
+    Some(format!("which is not offered ({}: {LIMITS})", one.said))
+}

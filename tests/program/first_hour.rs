@@ -1,0 +1,208 @@
+//! The first hour: files to begin with, the right command for a problem, notes of what was understood otherwise.
+
+use crate::refusals::refused_run;
+use crate::runs::{problem, read, run, workshop};
+use std::fs;
+use std::path::Path;
+
+#[test]
+fn new_files_name_their_schemas_and_the_next_command() {
+    let folder = workshop();
+    let path = folder.path();
+    for (robot, command) in [("arm", "solve"), ("satellite", "simulate")] {
+        let place = format!("my robots/{robot}");
+        let (status, out, err) = run(path, &["new", robot, &place]);
+        assert_eq!(status, 0, "{err}");
+        let next = format!(
+            "next: proboscis {command} 'my robots/{robot}/problem.json' -o results/{robot}"
+        );
+        assert_eq!(out.lines().last(), Some(&*next), "{out}");
+        assert_eq!(out.lines().count(), 5, "{out}");
+        for file in ["scene", "problem"] {
+            let written = read(path.join(&place).join(format!("{file}.json")));
+            let name = written["$schema"].as_str().unwrap();
+            let schema = read(path.join(&place).join(name));
+            assert_eq!(schema["$id"], format!("urn:proboscis:{file}"));
+            assert!(schema["properties"].is_object());
+        }
+    }
+    let (_, out, _) = run(path, &["new", "trunk", "--segments", "2"]);
+    assert_eq!(
+        out.lines().last(),
+        Some("next: proboscis solve problem.json")
+    );
+    let (status, out, err) = run(path, &["simulate", "my robots/satellite/problem.json"]);
+    assert!(status == 0 && err.is_empty(), "{out}{err}");
+}
+
+#[test]
+fn another_command_than_the_right_one_names_it() {
+    let folder = workshop();
+    let path = folder.path();
+    let set = "control.intervals=10";
+    refused_run(
+        path,
+        &["simulate", "problems/pair.json", "--set", set, "-o", "out"],
+        &[
+            "problems/pair.json: control: ",
+            "`proboscis solve problems/pair.json --set control.intervals=10 -o out`",
+            "\"simulate\" in place of \"control\"",
+        ],
+    );
+    refused_run(
+        path,
+        &["simulate", "problems/clamped_stack.json"],
+        &[
+            "equilibrium: ",
+            "`proboscis equilibrium problems/clamped_stack.json`",
+        ],
+    );
+    for (name, key, command) in [
+        ("pair", "control", "solve"),
+        ("pair_constant", "simulate", "simulate"),
+    ] {
+        let file = format!("problems/{name}.json");
+        let right = format!("`proboscis {command} {file}`");
+        refused_run(path, &["equilibrium", &file], &[key, &right, "--voltages"]);
+    }
+    assert!(!path.join("out").exists());
+}
+
+#[test]
+fn a_run_without_an_equilibrium_leaves_its_summary() {
+    let folder = workshop();
+    let path = folder.path();
+    fs::create_dir(path.join("out")).unwrap();
+    fs::write(path.join("out/solution.json"), "{}").unwrap();
+    let goal = "control.goal={\"rest_at_voltages\":{\"muscle2\":\"9 kV\"}}";
+    let bounds = "control.voltage_bounds=[\"0 V\",\"20 kV\"]";
+    let words = [
+        "solve",
+        "problems/pair.json",
+        "--set",
+        goal,
+        "--set",
+        bounds,
+        "-o",
+        "out",
+    ];
+    let (status, _, err) = run(path, &words);
+    assert!(status == 1 && err.contains("no equilibrium"), "{err}");
+    let summary = read(path.join("out/summary.json"));
+    assert_eq!(summary["status"], "no_equilibrium");
+    let message = summary["message"].as_str().unwrap();
+    assert!(
+        message.starts_with("control.goal: ") && message.contains("pull-in"),
+        "{message}"
+    );
+    // What was there is no file of this run.
+    assert_eq!(fs::read_dir(path.join("out")).unwrap().count(), 1);
+    let (status, out, _) = run(path, &[&words[..], &["--json"]].concat());
+    assert!(status == 1 && out.contains("\"no_equilibrium\""), "{out}");
+}
+
+#[test]
+fn a_step_that_does_not_divide_the_duration_is_told() {
+    let folder = workshop();
+    let pair = "problems/pair_constant.json";
+    let duration = "simulate.duration=0.1 s";
+    let words = [
+        "simulate",
+        pair,
+        "--set",
+        duration,
+        "--set",
+        "simulate.step=7 ms",
+        "-o",
+        "out",
+    ];
+    let (status, out, err) = run(folder.path(), &words);
+    assert_eq!(status, 0, "{out}{err}");
+    assert!(
+        err.contains("the step is 6.66667 ms, the duration in 15 equal steps: steps of 7 ms"),
+        "{err}"
+    );
+    let words = [
+        "simulate",
+        pair,
+        "--set",
+        duration,
+        "--set",
+        "simulate.step=5 ms",
+        "-o",
+        "out",
+    ];
+    let (_, _, err) = run(folder.path(), &words);
+    assert!(!err.contains("equal steps"), "{err}");
+}
+
+#[test]
+fn a_voltage_beyond_numbers_inverts_no_element() {
+    let folder = workshop();
+    let voltages = "simulate.voltages={\"muscle1\":1e308}";
+    let words = [
+        "simulate",
+        "problems/pair_constant.json",
+        "--set",
+        voltages,
+        "--set",
+        "simulate.step=10 ms",
+    ];
+    let (status, out, err) = run(folder.path(), &words);
+    assert_eq!(status, 1, "{out}{err}");
+    assert!(
+        err.contains("beyond the range of numbers: the greatest voltage is 1.000e308 V"),
+        "{err}"
+    );
+    assert!(!err.contains("element"), "{err}");
+}
+
+/// The gripper of two fingers of finite elements, one of them from a Gmsh file, as a user writes it.
+fn gripper(folder: &Path) {
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/gripper");
+    for entry in fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();
+    }
+}
+
+#[test]
+fn an_overdetermined_goal_is_told_part_by_part() {
+    let folder = tempfile::tempdir().unwrap();
+    gripper(folder.path());
+    let rest = "control.goal.rest=everything";
+    refused_run(
+        folder.path(),
+        &["inspect", "grip.json", "--set", rest],
+        &[
+            "overdetermined: 6050 equations for 5840 unknowns",
+            "rest at the end is 288 equations, goal z of marker lower_tip is 1, goal z of marker upper_tip is 1; 80 voltages are sought in 20 intervals",
+            "\"rest\": \"bodies\"",
+            "\"hold\"",
+        ],
+    );
+}
+
+#[test]
+fn what_cannot_rest_is_not_asked_to_and_moved_markers_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    gripper(folder.path());
+    let goal = r#"control.goal={ "markers": { "upper_tip": [null, null, "3 mm"], "lower_tip": [null, null, "-3 mm"] } }"#;
+    let (status, out, err) = run(folder.path(), &["inspect", "grip.json", "--set", goal]);
+    assert_eq!(status, 0, "{err}");
+    assert!(
+        out.contains("80 voltages cannot bring all 288 coordinates")
+            && out.contains("bodies and its markers rest"),
+        "{out}"
+    );
+    for (marker, z) in [("upper_tip", "5"), ("lower_tip", "-5")] {
+        let words = format!("marker {marker} is the node at [30 mm, ");
+        let line = err
+            .lines()
+            .find(|line| line.starts_with(&words))
+            .unwrap_or_else(|| panic!("{err}"));
+        assert!(line.contains(&format!(", {z} mm], ")), "{line}");
+    }
+    let (_, _, err) = run(folder.path(), &["inspect", &problem("fe_finger_control")]);
+    assert!(!err.contains("is the node at"), "{err}");
+}
