@@ -8,9 +8,7 @@
 //! - `shown`: which part of a motion tables, figures and page show.
 //! - `side_by_side`: several results on one page.
 //! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`: what is told of a result.
-//! - `page`, `solve_page`: what the page tells; `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `progress`, `request`, `error`: what commands share.
-
-use crate::sparse::mumps::end_blas_threads;
+//! - `page`, `solve_page`: what the page tells; `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `progress`, `ticker`, `request`, `error`: what commands share.
 
 mod accuracy_table;
 mod batch;
@@ -48,6 +46,7 @@ mod sparsity;
 mod summary;
 mod task;
 mod templates;
+mod ticker;
 mod tracking_words;
 mod unfinished;
 mod words;
@@ -70,8 +69,3 @@ pub use side_by_side::compare;
 pub use summary::written_summary;
 pub use task::{run, run_observed};
 pub use templates::{Template, expand, new_files, schema, study_schema, sweep_schema, write_file};
-
-/// Ends threads of libraries that wait for work in vain. To be called once, by a program, before anything else.
-pub fn end_idle_threads() {
-    end_blas_threads();
-}

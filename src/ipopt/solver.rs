@@ -18,6 +18,7 @@ use crate::ipopt::solution::{Iteration, SolverResult, StartingPoint};
 use crate::ipopt::squares::{InSquares, Squares};
 use crate::ipopt::status::Status;
 use crate::nlp::{Entries, Nlp};
+use crate::sparse::mumps;
 
 /// A program that is solved again and again.
 ///
@@ -235,6 +236,9 @@ impl<N: Nlp> Solver<N> {
             return Ok(problem);
         }
         let (name, is_along) = self.options.linear_solver().ok_or(IpoptError::NoStages)?;
+        if !is_along && !mumps::has_room() {
+            return Err(IpoptError::NoRoom);
+        }
         let KnownBounds {
             variables,
             constraints,

@@ -119,25 +119,28 @@ impl<'m> Transcription<'m> {
     /// Transcribes a control problem; the guess sets the scales, and the interval length where the duration is free.
     ///
     /// # Errors
-    /// There are more equations than unknowns.
+    /// There are more equations than unknowns, or it is time to stop.
     pub fn new(
         model: &'m Model,
         boundary: &BoundaryConditions,
         control: &Control,
         initial: &InitialGuess,
     ) -> Result<Self, BoundaryError> {
-        let program = Self::of_any(model, boundary, control, initial);
+        let program = Self::of_any(model, boundary, control, initial)?;
         program.count()?;
         Ok(program)
     }
 
     /// Transcribes like [`new`](Self::new), also where there are more equations than unknowns: derivatives exist all the same.
+    ///
+    /// # Errors
+    /// It is time to stop.
     pub fn of_any(
         model: &'m Model,
         boundary: &BoundaryConditions,
         control: &Control,
         initial: &InitialGuess,
-    ) -> Self {
+    ) -> Result<Self, BoundaryError> {
         let motion = &model.action.motion;
         let unknown_count = motion.unknowns();
         let variables = &model.variables;
@@ -259,12 +262,12 @@ impl<'m> Transcription<'m> {
             kilovolts,
             unknowns,
         };
-        out.lay_jacobian();
-        out.lay_hessian();
+        out.lay_jacobian()?;
+        out.lay_hessian()?;
         out.set_scales(&initial.history, initial.h);
         out.set_bounds(control);
         out.set_row_bounds();
-        out
+        Ok(out)
     }
 
     fn count(&self) -> Result<(), BoundaryError> {
