@@ -2,9 +2,12 @@
 
 mod arguments;
 mod choices;
+#[cfg(target_os = "linux")]
+mod one_core;
+mod words;
 
 use std::env;
-use std::io::{self, IsTerminal, Stderr, Write};
+use std::io::{self, IsTerminal};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -17,31 +20,46 @@ use proboscis::ipopt::interrupt;
 use proboscis::study::study;
 use proboscis::sweep::sweep;
 use tracing_subscriber::EnvFilter;
+use words::{Events, answered, tell};
 
 /// The name of the program.
 const NAME: &str = "proboscis";
 
 fn main() -> ExitCode {
-    app::end_idle_threads();
-    let arguments = Arguments::parse();
+    #[cfg(target_os = "linux")]
+    one_core::end();
+    let kept = interrupt::outlive_file_limit();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(other) => return helped(&other),
+    };
     app::end_with_parent();
     show_events(arguments.verbose);
+    if let Err(error) = kept {
+        tracing::warn!("a file that grows beyond the limit of the process will end it: {error}");
+    }
     match answer(arguments.command) {
         Ok(told) => {
-            for note in &told.notes {
-                eprintln!("{note}");
-            }
-            // Whoever reads the answer may have gone, as `head` does.
-            writeln!(io::stdout(), "{}", told.result.trim_end()).ok();
-            ExitCode::from(if told.is_solved { 0 } else { 1 })
+            told.notes.iter().for_each(|note| tell(note));
+            answered(&told.result, if told.is_solved { 0 } else { 1 })
         }
         Err(error) => {
-            eprintln!("error: {}", printable(&error.to_string()));
+            tell(&format!("error: {}", printable(&error.to_string())));
             if let Some(excerpt) = error.excerpt() {
-                eprintln!("{}", excerpt.trim_end());
+                tell(excerpt.trim_end());
             }
             ExitCode::from(error.exit_status())
         }
+    }
+}
+
+/// The end of a command that asks for help or version, or is none.
+fn helped(other: &clap::Error) -> ExitCode {
+    let status = u8::try_from(other.exit_code()).unwrap_or(2);
+    let printed = other.print();
+    match other.use_stderr() {
+        true => ExitCode::from(status),
+        false => words::printed(printed, status),
     }
 }
 
@@ -53,23 +71,14 @@ fn show_events(verbose: bool) {
     let level = if verbose { "debug" } else { "warn" };
     let shown = named.unwrap_or_else(|_| EnvFilter::new(format!("proboscis={level}")));
     let events = tracing_subscriber::fmt()
-        .with_writer(on_a_new_line)
+        .with_writer(Events::on_a_new_line)
+        .log_internal_errors(false)
         .with_ansi(is_coloured)
         .with_env_filter(shown);
     match is_plain {
         true => events.without_time().with_target(false).init(),
         false => events.init(),
     }
-}
-
-/// Standard error, in a terminal without the line that shows progress.
-fn on_a_new_line() -> Stderr {
-    let mut errors = io::stderr();
-    if errors.is_terminal() {
-        // What cannot be cleared stays.
-        errors.write_all(b"\r\x1b[2K").ok();
-    }
-    errors
 }
 
 fn answer(command: Command) -> Result<CommandOutput, CommandError> {
@@ -112,18 +121,18 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
             ..input.request()
         }),
         Command::Check { input, max_seconds } => {
-            interrupt::install();
+            interrupt::install(tell);
             app::check(&CommandInput {
                 max_seconds,
                 ..input.request()
             })
         }
         Command::Study(variants) => {
-            interrupt::install();
+            interrupt::install(tell);
             study(&variants.request())
         }
         Command::Sweep(variants) => {
-            interrupt::install();
+            interrupt::install(tell);
             sweep(&variants.request())
         }
         Command::Report { results, output } => app::compare(&typed(), &results, &output),
@@ -162,7 +171,7 @@ fn told(
     request: &CommandInput,
     run: impl FnOnce(&CommandInput) -> Result<CommandOutput, CommandError>,
 ) -> Result<CommandOutput, CommandError> {
-    interrupt::install();
+    interrupt::install(tell);
     let told = match run(request) {
         // What was found is told in the summary, which is written.
         Err(error @ CommandError::NoEquilibrium { .. }) if json => CommandOutput {

@@ -17,12 +17,37 @@ use proboscis::model::system::System;
 use proboscis::nlp::Nlp;
 use proboscis::workflow::at_once;
 use std::alloc::{GlobalAlloc, Layout, System as Heap};
+use std::cell::Cell;
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicIsize, AtomicUsize, Ordering};
-use std::{iter, thread, time};
+use std::sync::atomic::{AtomicBool, AtomicIsize, AtomicUsize, Ordering};
+use std::{fs, iter, thread, time};
 
-/// Counts what it is asked for.
+/// Counts what the test and the threads that it starts ask for, whatever the harness does in its own thread meanwhile.
 struct Counting;
+
+/// Whether the test has begun, so that threads from now on are its own.
+static BEGUN: AtomicBool = AtomicBool::new(false);
+
+thread_local! {
+    /// Whether this thread is one of the test, once it has asked for memory.
+    static IS_OURS: Cell<Option<bool>> = const { Cell::new(None) };
+}
+
+fn is_ours() -> bool {
+    let known = |place: &Cell<Option<bool>>| {
+        let is_ours = place.get().unwrap_or_else(|| BEGUN.load(Ordering::SeqCst));
+        place.set(Some(is_ours));
+        is_ours
+    };
+    IS_OURS.try_with(known).unwrap_or(true)
+}
+
+fn count(asked: usize, bytes: isize) {
+    if is_ours() {
+        ASKED.fetch_add(asked, Ordering::Relaxed);
+        KEPT.fetch_add(bytes, Ordering::Relaxed);
+    }
+}
 
 static ASKED: AtomicUsize = AtomicUsize::new(0);
 
@@ -32,22 +57,19 @@ static KEPT: AtomicIsize = AtomicIsize::new(0);
 // SAFETY: every call goes to the allocator of the system with unchanged arguments.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ASKED.fetch_add(1, Ordering::Relaxed);
-        KEPT.fetch_add(layout.size().cast_signed(), Ordering::Relaxed);
+        count(1, layout.size().cast_signed());
         // SAFETY: as asked of this function.
         unsafe { Heap.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-        KEPT.fetch_sub(layout.size().cast_signed(), Ordering::Relaxed);
+        count(0, -layout.size().cast_signed());
         // SAFETY: as asked of this function; the memory came from `Heap`.
         unsafe { Heap.dealloc(memory, layout) }
     }
 
     unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        ASKED.fetch_add(1, Ordering::Relaxed);
-        let more = size.cast_signed() - layout.size().cast_signed();
-        KEPT.fetch_add(more, Ordering::Relaxed);
+        count(1, size.cast_signed() - layout.size().cast_signed());
         // SAFETY: as asked of this function; the memory came from `Heap`.
         unsafe { Heap.realloc(memory, layout, size) }
     }
@@ -241,22 +263,23 @@ fn allocations_of_solves() -> usize {
     fewest
 }
 
+/// Threads of this process, where the system tells; none elsewhere.
+fn threads() -> usize {
+    fs::read_dir("/proc/self/task").map_or(0, Iterator::count)
+}
+
 /// Bytes that a thread leaves behind which evaluates a horizon long enough for both cores, after those before it have left theirs.
 fn bytes_left_by_a_thread() -> isize {
+    let others = threads();
     let rounds = iter::repeat_with(|| {
         let before = KEPT.load(Ordering::Relaxed);
         let work = || allocations(&trunk(3), &rest_to_rest(3, 160, 1500.0));
         at_once::begin(work).unwrap().join().expect("no panic");
         // Threads of a pool end some time after it.
-        let mut left = isize::MAX;
-        for _ in 0..200 {
-            left = KEPT.load(Ordering::Relaxed) - before;
-            if left <= 0 {
-                break;
-            }
-            thread::sleep(time::Duration::from_millis(5));
+        while threads() > others {
+            thread::sleep(time::Duration::from_millis(1));
         }
-        left
+        KEPT.load(Ordering::Relaxed) - before
     });
     // What a pool has not yet freed in one round is freed in a later one, so that the middle one counts.
     let mut left: Vec<isize> = rounds.skip(2).take(5).collect();
@@ -267,6 +290,8 @@ fn bytes_left_by_a_thread() -> isize {
 /// The only test of its binary: the count belongs to the process.
 #[test]
 fn evaluations_allocate_nothing() {
+    BEGUN.store(true, Ordering::SeqCst);
+    IS_OURS.set(Some(true));
     assert_eq!(allocations_of_factors(horizon()), (0, 0), "factors");
     assert_eq!(allocations_of_factors(constrained()), (0, 20), "condensed");
     assert_eq!(allocations_of_solves(), 0, "solves of a kept program");
@@ -276,7 +301,11 @@ fn evaluations_allocate_nothing() {
         ASKED.load(Ordering::Relaxed) > before,
         "the allocator counts"
     );
-    assert!(KEPT.load(Ordering::Relaxed) > 0, "and has something in use");
+    let more = vec![0_u8; 1 << 20];
+    let with = KEPT.load(Ordering::Relaxed);
+    drop(std::hint::black_box(more));
+    let without = KEPT.load(Ordering::Relaxed);
+    assert_eq!(with - without, 1 << 20, "and knows what is in use");
     assert_eq!(bytes_left_by_a_thread(), 0, "bytes left by a thread");
     let free = Duration::Free {
         min: 10.0,

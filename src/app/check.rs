@@ -1,7 +1,6 @@
 //! The derivatives of a problem against differences, at its guess moved by noise.
 
 use std::collections::{BTreeMap, HashMap};
-use std::time::Instant;
 
 use serde::Serialize;
 
@@ -13,7 +12,7 @@ use crate::control::problem::{
 };
 use crate::control::{Column, Row, Signal, Transcription};
 use crate::ipopt::LinearSolver;
-use crate::ipopt::interrupt::TimeLimit;
+use crate::ipopt::interrupt::{self, TimeLimit};
 use crate::mesh::Mesh;
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
@@ -103,7 +102,7 @@ pub fn check(request: &CommandInput) -> Result<CommandOutput, CommandError> {
 /// # Errors
 /// As of [`check`].
 pub fn checked(request: &CommandInput, text: Option<&str>) -> Result<Checked, CommandError> {
-    let began = Instant::now();
+    let watch = interrupt::watch(request.max_seconds);
     let loaded = read(&request.input, text, &request.set)?;
     let control = as_control(loaded.task, &loaded.system);
     let (model, boundary) =
@@ -121,11 +120,12 @@ pub fn checked(request: &CommandInput, text: Option<&str>) -> Result<Checked, Co
         columns: &columns,
         sizes: &sizes,
     };
-    let left = |seconds: f64| seconds - began.elapsed().as_secs_f64();
-    let limit = TimeLimit::after(request.max_seconds.map(left));
+    // What is evaluated while it becomes time to stop would be there in part, and seem to be wrong.
+    let limit = interrupt::limit();
+    drop(watch);
     let mut stopped = None;
     let report = differences::check_along(&mut program, &x, along, SEED, || {
-        stopped = limit.reached();
+        stopped = limit.as_ref().and_then(TimeLimit::reached);
         stopped.is_some()
     });
     let mut notes: Vec<String> = report.to_string().lines().map(str::to_owned).collect();

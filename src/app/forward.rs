@@ -29,6 +29,7 @@ use crate::dynamics::{
 };
 use crate::files::{Loaded, continuation as continuation_file};
 use crate::ipopt::interrupt;
+use crate::math::join;
 use crate::model::Model;
 use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
@@ -142,7 +143,7 @@ pub(super) fn simulation(
     let integrator = task.solving.integrator;
     let ends = [task.start.voltages(), None];
     // Of many steps each takes long, and most need no other.
-    let (columns, (motion, written, seen)) = rayon::join(
+    let (columns, (motion, written, seen)) = join(
         || observed(&model, &history),
         || {
             let motion = Trajectory::from_history(&model, &history);
@@ -159,7 +160,7 @@ pub(super) fn simulation(
                     EnergyExchange::new(&model.system, &motion, ends),
                 )
             };
-            let (written, seen) = rayon::join(write, see);
+            let (written, seen) = join(write, see);
             (motion, written, seen)
         },
     );

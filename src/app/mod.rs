@@ -9,9 +9,7 @@
 //! - `side_by_side`: several results on one page.
 //! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`, `moved_markers`: what is told of a result.
 //! - `other_task`: what is said where a problem asks for another command; `no_equilibrium`: what is written where nothing rests.
-//! - `page`, `solve_page`: what the page tells; `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `progress`, `request`, `error`: what commands share.
-
-use crate::sparse::mumps::end_blas_threads;
+//! - `page`, `solve_page`: what the page tells; `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `progress`, `ticker`, `request`, `error`: what commands share.
 
 mod accuracy_table;
 mod batch;
@@ -52,6 +50,7 @@ mod sparsity;
 mod summary;
 mod task;
 mod templates;
+mod ticker;
 mod tracking_words;
 mod unfinished;
 mod words;
@@ -74,8 +73,3 @@ pub use side_by_side::compare;
 pub use summary::written_summary;
 pub use task::{run, run_observed, simulate};
 pub use templates::{Template, expand, new_files, schema, study_schema, sweep_schema, write_file};
-
-/// Ends threads of libraries that wait for work in vain. To be called once, by a program, before anything else.
-pub fn end_idle_threads() {
-    end_blas_threads();
-}

@@ -2,10 +2,11 @@
 //! simulation.
 
 use std::cell::RefCell;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::app::ticker::Ticker;
 use crate::ipopt::Iteration;
 use crate::workflow::listen_to_phases;
 
@@ -50,6 +51,7 @@ pub(crate) struct Progress {
     bar: ProgressBar,
     began: Instant,
     before: Option<ProgressBar>,
+    _ticker: Option<Ticker>,
 }
 
 impl Progress {
@@ -82,7 +84,10 @@ impl Progress {
     /// Shows a bar by a template of indicatif, in the place of the one before.
     fn starting(bar: ProgressBar, template: &str) -> Self {
         bar.set_style(style(template));
-        bar.enable_steady_tick(Duration::from_millis(120));
+        let ticker = match bar.is_hidden() {
+            true => None,
+            false => Ticker::of(&bar),
+        };
         show_phases();
         let before = LINE.replace(Some(bar.clone()));
         if let Some(line) = &before {
@@ -92,6 +97,7 @@ impl Progress {
             bar,
             began: Instant::now(),
             before,
+            _ticker: ticker,
         }
     }
 

@@ -9,6 +9,7 @@ use crate::dynamics::DiscreteTrajectory;
 use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::files::npz::NpzWriter;
 use crate::files::problem::output::Output;
+use crate::math::join;
 use crate::model::{Model, System};
 use crate::report::Run;
 use crate::report::atomic::WriteError;
@@ -90,8 +91,7 @@ impl Shown {
         let is_complete_beside = sampled.is_some() && !is_asked;
         let complete =
             || is_complete_beside.then(|| tables(&model.system, trajectory, observations));
-        let ((trajectory_shown, observations_shown, skins), complete) =
-            rayon::join(choose, complete);
+        let ((trajectory_shown, observations_shown, skins), complete) = join(choose, complete);
         let of = history.times.len();
         let mut shown = Self {
             trajectory: trajectory_shown,

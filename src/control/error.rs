@@ -1,6 +1,7 @@
 //! Why a control problem has no start, no goal or no solution to look for.
 
 use crate::dynamics::EquilibriumError;
+use crate::ipopt::Status;
 use crate::model::ModelError;
 use thiserror::Error;
 
@@ -76,6 +77,9 @@ pub enum BoundaryError {
         /// What is other.
         reason: String,
     },
+    /// Ctrl-C was pressed, or the time allowed is over, before the problem was built.
+    #[error("stopped while the problem was built ({})", .0.word().replace('_', " "))]
+    Stopped(Status),
     /// More equations than unknowns.
     #[error(
         "the problem is overdetermined: {equations} equations for {unknowns} unknowns. {}; {voltages} voltages are sought in \

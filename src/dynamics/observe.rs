@@ -14,7 +14,7 @@ use crate::dynamics::kinetic::Kinetic;
 use crate::dynamics::momenta::{Places, momentum_maps, moving, rates, vector_momenta};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Kind, Order};
-use crate::math::Vector;
+use crate::math::{Vector, has_pool};
 use crate::model::{Model, Role, SolidBlock};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -46,11 +46,13 @@ pub fn observed(model: &Model, history: &DiscreteTrajectory) -> Vec<Column> {
             .map(|k| observer.row(history, k))
             .collect::<Vec<_>>()
     };
-    let rows: Vec<_> = (0..pieces)
-        .into_par_iter()
-        .with_max_len(1)
-        .map(rows)
-        .collect();
+    let rows: Vec<_> = match has_pool() {
+        true => {
+            let pieces = (0..pieces).into_par_iter().with_max_len(1);
+            pieces.map(rows).collect()
+        }
+        false => (0..pieces).map(rows).collect(),
+    };
     let mut observer = Observer::new(model);
     let mut columns = observer.columns();
     for column in &mut columns {

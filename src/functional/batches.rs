@@ -1,5 +1,6 @@
 //! Elements evaluated on all cores and added up one after the other, so that sums are the same for any number of threads.
 
+use crate::math::has_pool;
 use rayon::prelude::*;
 use std::sync::Mutex;
 
@@ -30,7 +31,7 @@ impl<L: Default + Send> Batches<L> {
         compute: impl Fn(&E, &mut L) + Sync,
         mut add: impl FnMut(&E, &L),
     ) {
-        let is_large = size_of::<L>() > 0 && elements.len() >= PARALLEL;
+        let is_large = size_of::<L>() > 0 && elements.len() >= PARALLEL && has_pool();
         let kept = is_large.then(|| self.0.try_lock());
         let Some(Ok(mut locals)) = kept else {
             let mut local = L::default();

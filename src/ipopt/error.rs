@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::ipopt::options::OptionValue;
+use crate::sparse::mumps;
 
 /// Version of the Ipopt that the program was built with.
 pub const VERSION: &str = env!("PROBOSCIS_IPOPT");
@@ -48,6 +49,9 @@ pub enum IpoptError {
         /// Number of entries of the Jacobian.
         entries: usize,
     },
+    /// OpenBLAS, which MUMPS calls, would wait for memory for ever.
+    #[error("{}", mumps::NO_ROOM)]
+    NoRoom,
 }
 
 fn hint(nearest: Option<&str>) -> String {

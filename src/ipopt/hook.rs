@@ -17,7 +17,6 @@ use crate::ipopt::error::NoStages;
 use crate::ipopt::ffi;
 use crate::ipopt::loaded::Loaded;
 use crate::ipopt::session::with_current;
-use crate::kkt::Stopped;
 
 /// Numbers in `info`, in `icntl` and in `cntl`.
 const INFO: usize = 40;
@@ -204,7 +203,7 @@ unsafe extern "C" fn analyse(
         let (order, entries) = (count(n), count(entries));
         let (rows, cols) = (read(rows, entries), read(cols, entries));
         let done = with_current(|session| session.analyse(order, rows, cols));
-        let first = done.map_or(FAILED, |()| 0);
+        let first = done.flatten().map_or(FAILED, |()| 0);
         let unused = UNUSED.unsigned_abs() as usize;
         answer(info, first, &[(9, unused), (10, unused)]);
     }
@@ -230,12 +229,12 @@ unsafe extern "C" fn factor(
     unsafe {
         let (order, values, tolerance) = (count(n), read(values, count(entries)), *cntl);
         match with_current(|session| session.factor(values, tolerance)) {
-            Some(Ok(inertia)) => {
+            Some(Some(inertia)) => {
                 let first = if inertia.zero > 0 { SINGULAR } else { 0 };
                 let rank = order - inertia.zero;
                 answer(info, first, &[(24, inertia.negative), (25, rank)]);
             }
-            Some(Err(Stopped)) | None => answer(info, FAILED, &[]),
+            Some(None) | None => answer(info, FAILED, &[]),
         }
     }
 }

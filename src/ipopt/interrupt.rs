@@ -4,46 +4,23 @@
 //! answered while a [`Watch`] lasts, so that what is known can be written afterwards.
 
 use std::cell::RefCell;
-use std::process;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Once};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
+use crate::ipopt::signals::have_asked;
+pub use crate::ipopt::signals::{install, outlive_file_limit};
 use crate::ipopt::status::Status;
-
-/// Exit status of a program ended by Ctrl-C: 128 plus the number of SIGINT.
-const EXIT_STATUS: i32 = 130;
-
-static REQUESTED: AtomicBool = AtomicBool::new(false);
 
 thread_local! {
     static LIMIT: RefCell<Option<TimeLimit>> = const { RefCell::new(None) };
     static REQUEST: RefCell<StopRequest> = RefCell::default();
 }
 
-/// Makes Ctrl-C end the solves of this process with [`Status::Interrupted`], and says so
-/// on standard error; the second Ctrl-C ends the process with exit status 130.
-///
-/// Only the first call has an effect.
-pub fn install() {
-    static INSTALLED: Once = Once::new();
-    INSTALLED.call_once(|| {
-        let installed = ctrlc::set_handler(|| {
-            if REQUESTED.swap(true, Ordering::SeqCst) {
-                process::exit(EXIT_STATUS);
-            }
-            eprintln!("\nstopping; the results so far will be written; Ctrl-C again ends the program at once");
-        });
-        if let Err(error) = installed {
-            tracing::warn!("Ctrl-C will not stop a solve in good order: {error}");
-        }
-    });
-}
-
-/// Whether Ctrl-C was pressed since [`install`], or this thread was asked to stop.
+/// Whether a signal asked for a stop since [`install`], or this thread was asked to stop.
 #[must_use]
 pub fn requested() -> bool {
-    REQUESTED.load(Ordering::SeqCst) || REQUEST.with_borrow(StopRequest::is_made)
+    have_asked() || REQUEST.with_borrow(StopRequest::is_made)
 }
 
 /// A request to one thread, made by another: it stops as at Ctrl-C.
@@ -72,10 +49,42 @@ pub fn request() -> StopRequest {
     REQUEST.with_borrow(StopRequest::clone)
 }
 
+/// A time that passes by being asked for: so many questions until it is over, and how many there were. A test has such a one in place of
+/// the clock, and so its stops are the same ones every time.
+#[derive(Clone, Debug)]
+pub struct Questions(Arc<[AtomicU64; 2]>);
+
+impl Questions {
+    /// Time for so many questions.
+    #[must_use]
+    pub fn allowed(count: u64) -> Self {
+        Self(Arc::new([AtomicU64::new(count), AtomicU64::new(0)]))
+    }
+
+    /// How many there were.
+    #[must_use]
+    pub fn asked(&self) -> u64 {
+        self.0[1].load(Ordering::SeqCst)
+    }
+
+    /// Lets the time be over after so many more questions.
+    pub fn end_after(&self, count: u64) {
+        self.0[0].store(self.asked().saturating_add(count), Ordering::SeqCst);
+    }
+
+    /// Whether the time is over at this question.
+    fn ask(&self) -> bool {
+        let [allowed, asked] = &*self.0;
+        let before = asked.fetch_add(1, Ordering::SeqCst);
+        before >= allowed.load(Ordering::SeqCst)
+    }
+}
+
 /// Until when work may go on.
 #[derive(Clone, Debug)]
 pub struct TimeLimit {
     end: Option<Instant>,
+    questions: Option<Questions>,
     request: StopRequest,
 }
 
@@ -86,17 +95,22 @@ impl TimeLimit {
         let length = seconds.and_then(|s| Duration::try_from_secs_f64(s.max(0.0)).ok());
         let end = length.and_then(|length| Instant::now().checked_add(length));
         let request = REQUEST.with_borrow(StopRequest::clone);
-        Self { end, request }
+        Self {
+            end,
+            questions: None,
+            request,
+        }
     }
 
     /// Why to stop now, if so: [`Status::Interrupted`] or [`Status::TimeLimit`].
     #[must_use]
     pub fn reached(&self) -> Option<Status> {
-        if REQUESTED.load(Ordering::SeqCst) || self.request.is_made() {
+        if have_asked() || self.request.is_made() {
             return Some(Status::Interrupted);
         }
-        let is_over = self.end.is_some_and(|end| Instant::now() >= end);
-        is_over.then_some(Status::TimeLimit)
+        let is_late = self.end.is_some_and(|end| Instant::now() >= end);
+        let is_over = self.questions.as_ref().is_some_and(Questions::ask);
+        (is_late || is_over).then_some(Status::TimeLimit)
     }
 }
 
@@ -121,10 +135,23 @@ pub struct Watch {
 
 /// Begins to watch: this thread is to stop at Ctrl-C, after so many seconds, or when a watch around this one says so.
 pub fn watch(seconds: Option<f64>) -> Watch {
+    watch_until(TimeLimit::after(seconds))
+}
+
+/// Begins to watch with a time that passes by questions.
+pub fn watch_questions(questions: &Questions) -> Watch {
+    watch_until(TimeLimit {
+        questions: Some(questions.clone()),
+        ..TimeLimit::after(None)
+    })
+}
+
+fn watch_until(mut own: TimeLimit) -> Watch {
     let before = limit();
-    let around = before.as_ref().and_then(|limit| limit.end);
-    let mut own = TimeLimit::after(seconds);
-    own.end = [own.end, around].into_iter().flatten().min();
+    if let Some(around) = &before {
+        own.end = [own.end, around.end].into_iter().flatten().min();
+        own.questions = own.questions.or_else(|| around.questions.clone());
+    }
     LIMIT.set(Some(own));
     Watch { before }
 }

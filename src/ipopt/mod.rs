@@ -17,6 +17,7 @@ mod options;
 mod reached;
 mod record;
 mod session;
+mod signals;
 mod solution;
 mod solver;
 mod squares;

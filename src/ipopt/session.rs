@@ -79,8 +79,8 @@ impl Session {
         (found, report, session)
     }
 
-    /// A solver for systems of `order` unknowns with these entries, counted from one.
-    pub(super) fn analyse(&mut self, order: usize, rows: &[c_int], cols: &[c_int]) {
+    /// A solver for systems of `order` unknowns with these entries, counted from one; none where it is time to stop.
+    pub(super) fn analyse(&mut self, order: usize, rows: &[c_int], cols: &[c_int]) -> Option<()> {
         let began = Instant::now();
         let unknowns = self.layouts.iter().find(|layout| layout.len() == order);
         let fits = |kept: &Kept| {
@@ -101,18 +101,33 @@ impl Session {
             None => {
                 self.report.analyses += 1;
                 let (rows, cols): (Vec<_>, Vec<_>) = from_zero(rows).zip(from_zero(cols)).unzip();
-                let plan = Plan::new(order, &rows, &cols, unknowns.map(Vec::as_slice));
-                Kept {
-                    solver: Solver::new(plan),
-                    unknowns: unknowns.cloned(),
+                let limit = interrupt::limit();
+                let is_over = || limit.as_ref().and_then(TimeLimit::reached).is_some();
+                let of_unknowns = unknowns.map(Vec::as_slice);
+                match Plan::new_unless(order, &rows, &cols, of_unknowns, &is_over) {
+                    Ok(plan) => Kept {
+                        solver: Solver::new(plan),
+                        unknowns: unknowns.cloned(),
+                    },
+                    Err(Stopped) => {
+                        self.report.stopped = interrupt::stop();
+                        return None;
+                    }
                 }
             }
         });
         self.report.analysis += began.elapsed().as_secs_f64();
+        Some(())
     }
 
     /// Factors a matrix; a tolerance greater than before asks for better factors. What takes long stops when it is time to.
-    pub(super) fn factor(&mut self, entries: &[f64], tolerance: f64) -> Result<Inertia, Stopped> {
+    ///
+    /// Ipopt 3.11 asks again and again for a matrix that is no number and is told to be singular: such a one fails.
+    pub(super) fn factor(&mut self, entries: &[f64], tolerance: f64) -> Option<Inertia> {
+        self.report.stopped = self.report.stopped.or_else(interrupt::stop);
+        if self.report.stopped.is_some() || !entries.iter().all(|entry| entry.is_finite()) {
+            return None;
+        }
         let began = Instant::now();
         let solver = &mut self.current.as_mut().expect("analysed first").solver;
         if self.tolerance > 0.0 && tolerance > self.tolerance {
@@ -131,7 +146,7 @@ impl Session {
             self.report.wholes += 1;
             self.report.whole += seconds;
         }
-        factored
+        factored.ok()
     }
 
     /// Solves for right-hand sides that begin every `stride` numbers.

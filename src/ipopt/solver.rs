@@ -18,6 +18,7 @@ use crate::ipopt::solution::{Iteration, SolverResult, StartingPoint};
 use crate::ipopt::squares::{InSquares, Squares};
 use crate::ipopt::status::Status;
 use crate::nlp::{Entries, Nlp};
+use crate::sparse::mumps;
 
 /// A program that is solved again and again.
 ///
@@ -236,6 +237,9 @@ impl<N: Nlp> Solver<N> {
         }
         let taken = self.options.taken()?;
         let is_along = taken.is_along;
+        if !is_along && !mumps::has_room() {
+            return Err(IpoptError::NoRoom);
+        }
         let KnownBounds {
             variables,
             constraints,

@@ -5,6 +5,8 @@
 
 use super::graph::Graph;
 use super::groups::Group;
+use super::progress::Progress;
+use crate::math::Stopped;
 
 const NONE: u32 = u32::MAX;
 
@@ -22,7 +24,11 @@ struct Arrangement<'a> {
 }
 
 /// Brings the equations and unknowns of all groups in order.
-pub(super) fn arrange(graph: &Graph, groups: &mut [Group]) {
+pub(super) fn arrange(
+    graph: &Graph,
+    groups: &mut [Group],
+    progress: &mut Progress<'_>,
+) -> Result<(), Stopped> {
     let mut state_of = vec![NONE; graph.order()];
     let mut equation_of = vec![NONE; graph.order()];
     for group in groups {
@@ -37,7 +43,7 @@ pub(super) fn arrange(graph: &Graph, groups: &mut [Group]) {
             seen: vec![0; group.states.len()],
             search: 0,
         }
-        .run();
+        .run(progress)?;
         for &i in &group.states {
             state_of[i as usize] = NONE;
         }
@@ -46,6 +52,7 @@ pub(super) fn arrange(graph: &Graph, groups: &mut [Group]) {
         }
         *group = arranged;
     }
+    Ok(())
 }
 
 fn number(numbers: &mut [u32], list: &[u32]) {
@@ -55,7 +62,7 @@ fn number(numbers: &mut [u32], list: &[u32]) {
 }
 
 impl Arrangement<'_> {
-    fn run(mut self) -> Group {
+    fn run(mut self, progress: &mut Progress<'_>) -> Result<Group, Stopped> {
         let count = self.group.equations.len();
         let mut is_done = vec![false; count];
         let mut order = Vec::with_capacity(count);
@@ -64,9 +71,11 @@ impl Arrangement<'_> {
                 continue;
             }
             // What lies farthest from anywhere, then farthest from there, lies at an end.
-            let farthest = *self.search(first).last().expect("the first is found");
-            let end = *self.search(farthest).last().expect("the first is found");
-            let part = self.search(end);
+            let found = self.search(first, progress)?;
+            let farthest = *found.last().expect("the first is found");
+            let found = self.search(farthest, progress)?;
+            let end = *found.last().expect("the first is found");
+            let part = self.search(end, progress)?;
             part.iter().for_each(|&i| is_done[i as usize] = true);
             order.extend(part);
         }
@@ -81,10 +90,10 @@ impl Arrangement<'_> {
             self.states(equation).for_each(&mut take);
         }
         (0..self.group.states.len() as u32).for_each(take);
-        Group {
+        Ok(Group {
             states,
             equations: self.of_group(&order),
-        }
+        })
     }
 
     fn of_group(&self, order: &[u32]) -> Vec<u32> {
@@ -109,7 +118,7 @@ impl Arrangement<'_> {
     }
 
     /// All equations that are connected with one, by their distance from it, those with few unknowns first.
-    fn search(&mut self, first: u32) -> Vec<u32> {
+    fn search(&mut self, first: u32, progress: &mut Progress<'_>) -> Result<Vec<u32>, Stopped> {
         self.search += 1;
         let search = self.search;
         let mut order = vec![first];
@@ -119,6 +128,7 @@ impl Arrangement<'_> {
             let equation = order[next];
             let begin = order.len();
             let states: Vec<u32> = self.states(equation).collect();
+            progress.add(states.len().pow(2))?;
             for state in states {
                 if std::mem::replace(&mut self.seen[state as usize], search) == search {
                     continue;
@@ -133,7 +143,7 @@ impl Arrangement<'_> {
             order[begin..].sort_by_key(|&other| self.states(other).count());
             next += 1;
         }
-        order
+        Ok(order)
     }
 }
 
@@ -151,13 +161,15 @@ mod tests {
         let pairs =
             (0..COUNT).flat_map(|i| near(i).map(move |j| (shuffled(i), COUNT + shuffled(j))));
         let (rows, cols): (Vec<u32>, Vec<u32>) = pairs.unzip();
-        let graph = Graph::new(2 * COUNT as usize, &rows, &cols);
+        let progress = &mut Progress::new(&|| false);
+        let graph = Graph::new(2 * COUNT as usize, &rows, &cols, progress);
+        let graph = graph.expect("nothing stops it");
         let before = Group {
             states: (COUNT..2 * COUNT).collect(),
             equations: (0..COUNT).collect(),
         };
         let mut groups = [before.clone()];
-        arrange(&graph, &mut groups);
+        arrange(&graph, &mut groups, progress).expect("nothing stops it");
         let envelope = |group: &Group| {
             let place = |list: &[u32], i| list.iter().position(|&j| j == i).expect("it is kept");
             let pairs = rows.iter().zip(&cols);

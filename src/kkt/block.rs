@@ -55,6 +55,19 @@ impl Block {
         self.envelope = Envelope::new(self.equations.len(), self.states.len(), entries);
     }
 
+    /// Number of its entries.
+    pub(super) fn items(&self) -> usize {
+        let lists = [
+            &self.own,
+            &self.below,
+            &self.inputs,
+            &self.curvature,
+            &self.coupling,
+            &self.diagonal,
+        ];
+        lists.iter().map(|list| list.len()).sum()
+    }
+
     pub(super) fn multiplications(&self) -> f64 {
         let (n, items) = (
             self.states.len(),

@@ -19,6 +19,8 @@ use super::fronts::Fronts;
 use super::graph::Graph;
 use super::groups::{self, Group};
 use super::order::Unknown;
+use super::progress::Progress;
+use crate::math::Stopped;
 
 /// Multiplications by condensing must be fewer than this part of those along the horizon.
 const WORTH: f64 = 0.5;
@@ -68,17 +70,25 @@ impl Condensation {
         unknowns: &[Unknown],
         (rows, cols): (&[u32], &[u32]),
         multiplications: f64,
-    ) -> Option<Self> {
+        progress: &mut Progress<'_>,
+    ) -> Result<Option<Self>, Stopped> {
         let most = WORTH * multiplications;
-        let candidates = [groups::constraints, groups::squares].into_iter();
-        let of_groups = |choose: fn(&Graph, &[Unknown]) -> Vec<Group>| {
+        let mut all = Vec::new();
+        for choose in [groups::constraints, groups::squares] {
+            progress.add(rows.len())?;
             let mut groups = choose(graph, unknowns);
-            arrange(graph, &mut groups);
-            Self::of_groups(&groups, unknowns, (rows, cols), most)
-        };
-        let all = candidates.filter_map(of_groups);
+            arrange(graph, &mut groups, progress)?;
+            all.extend(Self::of_groups(
+                &groups,
+                unknowns,
+                (rows, cols),
+                most,
+                progress,
+            )?);
+        }
+        let all = all.into_iter();
         let cheapest = all.min_by(|(a, _), (b, _)| a.total_cmp(b));
-        cheapest.map(|(_, condensation)| condensation)
+        Ok(cheapest.map(|(_, condensation)| condensation))
     }
 
     /// With its multiplications, if these are fewer than `most`.
@@ -87,26 +97,30 @@ impl Condensation {
         unknowns: &[Unknown],
         (rows, cols): (&[u32], &[u32]),
         most: f64,
-    ) -> Option<(f64, Self)> {
+        progress: &mut Progress<'_>,
+    ) -> Result<Option<(f64, Self)>, Stopped> {
         let determined: usize = groups.iter().map(|group| group.equations.len()).sum();
         if determined == 0 || (determined as f64) < SHARE * unknowns.len() as f64 {
-            return None;
+            return Ok(None);
         }
         let mut out = Self::default();
         let kinds = out.number(groups, unknowns.len());
+        progress.add(rows.len())?;
         if !out.sort(&kinds, rows, cols) {
-            return None;
+            return Ok(None);
         }
         let mut kinds: Vec<Unknown> = out.rest.iter().map(|&i| unknowns[i as usize]).collect();
-        let of_blocks = out.reach(unknowns, &mut kinds, most)?;
+        let Some(of_blocks) = out.reach(unknowns, &mut kinds, most, progress)? else {
+            return Ok(None);
+        };
         // Without inputs, as where start and goal leave nothing to choose, there is nothing to condense to.
         if kinds.is_empty() {
-            return None;
+            return Ok(None);
         }
-        out.merge(rows.len());
-        out.reduce(&kinds);
+        out.merge(rows.len(), progress)?;
+        out.reduce(&kinds, progress)?;
         let all = of_blocks + out.plans[0].multiplications();
-        (all < most).then_some((all, out))
+        Ok((all < most).then_some((all, out)))
     }
 
     fn number(&mut self, groups: &[Group], count: usize) -> Vec<Kind> {
@@ -212,12 +226,19 @@ impl Condensation {
 
     /// Finds what the states of each block respond to, and appends the states left over to the reduced unknowns; the multiplications of all
     /// blocks, if they are no more than `most`.
-    fn reach(&mut self, unknowns: &[Unknown], kinds: &mut Vec<Unknown>, most: f64) -> Option<f64> {
+    fn reach(
+        &mut self,
+        unknowns: &[Unknown],
+        kinds: &mut Vec<Unknown>,
+        most: f64,
+        progress: &mut Progress<'_>,
+    ) -> Result<Option<f64>, Stopped> {
         let block_of = self.block_of();
         let mut multiplications = 0.0;
         for k in 0..self.blocks.len() {
             let (before, block) = self.blocks.split_at_mut(k);
             let block = &mut block[0];
+            progress.add(block.items())?;
             block.reach.clear();
             place_states(&mut block.reach, &mut block.below, before, &block_of);
             block.inherited = block.reach.len();
@@ -233,17 +254,18 @@ impl Condensation {
             (block.weighted, block.curvature) = (weighted, items);
             multiplications += block.multiplications();
             if multiplications > most {
-                return None;
+                return Ok(None);
             }
         }
-        Some(multiplications)
+        Ok(Some(multiplications))
     }
 
     /// Gives the entries at one place one value.
-    fn merge(&mut self, entries: usize) {
+    fn merge(&mut self, entries: usize, progress: &mut Progress<'_>) -> Result<(), Stopped> {
         self.values = vec![0; entries];
         self.count = 1;
         for block in &mut self.blocks {
+            progress.add(block.items())?;
             let lists = [
                 &mut block.own,
                 &mut block.below,
@@ -257,13 +279,15 @@ impl Condensation {
             }
         }
         merge(&mut self.corner, &mut self.values, &mut self.count);
+        Ok(())
     }
 
     /// The plans of the reduced system of these unknowns.
-    fn reduce(&mut self, kinds: &[Unknown]) {
+    fn reduce(&mut self, kinds: &[Unknown], progress: &mut Progress<'_>) -> Result<(), Stopped> {
         // Row, column, and whether a pair on the diagonal stands for two.
         let mut pairs = Vec::new();
         for block in &self.blocks {
+            progress.add(block.reach.len() * block.weighted.len())?;
             for &row in &block.reach {
                 pairs.extend(block.weighted.iter().map(|&column| (row, column, true)));
             }
@@ -272,6 +296,7 @@ impl Condensation {
         pairs.extend(of_corner.map(|item| (item.row, item.column, false)));
         let plain = pairs.len();
         for block in self.blocks.iter().filter(|b| !b.diagonal.is_empty()) {
+            progress.add(block.weighted.len().pow(2))?;
             for (i, &row) in block.weighted.iter().enumerate() {
                 let columns = block.weighted[..=i].iter().enumerate();
                 pairs.extend(columns.map(|(j, &column)| (row, column, i != j)));
@@ -286,9 +311,12 @@ impl Condensation {
             true => vec![plain, pairs.len()],
             false => vec![plain],
         };
-        let plan =
-            |length| Fronts::new(kinds.len(), &rows[..length], &cols[..length], Some(kinds)).1;
-        self.plans = lengths.into_iter().map(plan).collect();
+        for length in lengths {
+            let (rows, cols) = (&rows[..length], &cols[..length]);
+            let (_, plan) = Fronts::new(kinds.len(), rows, cols, Some(kinds), progress)?;
+            self.plans.push(plan);
+        }
+        Ok(())
     }
 }
 

@@ -4,7 +4,9 @@ use std::ops::Range;
 
 use super::graph::Graph;
 use super::order::{self, Unknown};
+use super::progress::Progress;
 use super::tree::{self, Node};
+use crate::math::Stopped;
 
 /// One front, without the rows that are delayed to it.
 #[derive(Clone, Debug)]
@@ -54,10 +56,12 @@ impl Fronts {
         rows: &[u32],
         cols: &[u32],
         unknowns: Option<&[Unknown]>,
-    ) -> (Graph, Self) {
-        let graph = Graph::new(order, rows, cols);
+        progress: &mut Progress<'_>,
+    ) -> Result<(Graph, Self), Stopped> {
+        let graph = Graph::new(order, rows, cols, progress)?;
+        progress.add(rows.len())?;
         let elimination = order::of(&graph, unknowns);
-        let nodes = tree::nodes(&graph, &elimination);
+        let nodes = tree::nodes(&graph, &elimination, progress)?;
         let mut fronts = Self {
             order,
             rows: rows.to_vec(),
@@ -68,8 +72,8 @@ impl Fronts {
             entries: Vec::with_capacity(rows.len()),
             places: Vec::new(),
         };
-        fronts.lay_out(&nodes);
-        (graph, fronts)
+        fronts.lay_out(&nodes, progress)?;
+        Ok((graph, fronts))
     }
 
     /// Number of unknowns.
@@ -91,7 +95,7 @@ impl Fronts {
         self.list.iter().map(of_front).sum()
     }
 
-    fn lay_out(&mut self, nodes: &[Node]) {
+    fn lay_out(&mut self, nodes: &[Node], progress: &mut Progress<'_>) -> Result<(), Stopped> {
         // Front that eliminates each unknown, and the place there.
         let mut home = vec![(0, 0); self.order];
         for (k, node) in nodes.iter().enumerate() {
@@ -99,6 +103,7 @@ impl Fronts {
                 home[unknown as usize] = (k as u32, place as u32);
             }
         }
+        progress.add(self.rows.len())?;
         let begins = self.sort_entries(&home, nodes.len());
         let mut local = vec![0; self.order];
         for (k, node) in nodes.iter().enumerate() {
@@ -106,6 +111,7 @@ impl Fronts {
                 local[unknown as usize] = place as u32;
             }
             let entries = begins[k]..begins[k + 1];
+            progress.add(node.unknowns.len() + entries.len())?;
             for entry in &mut self.entries[entries.clone()] {
                 let (row, col) = (entry.row as usize, entry.column as usize);
                 let (a, b) = (local[row], local[col]);
@@ -133,6 +139,7 @@ impl Fronts {
                 is_root: true,
             });
         }
+        Ok(())
     }
 
     /// Sorts the entries by front and returns where those of each begin; their places are still those in the matrix.

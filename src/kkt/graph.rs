@@ -1,5 +1,8 @@
 //! The graph of a symmetric matrix: which unknowns share an entry.
 
+use super::progress::Progress;
+use crate::math::Stopped;
+
 /// Neighbours of each unknown in ascending order, itself left out.
 #[derive(Clone, Debug)]
 pub(super) struct Graph {
@@ -9,7 +12,13 @@ pub(super) struct Graph {
 
 impl Graph {
     /// The graph of a matrix of `order` unknowns with entries at `rows` and `cols`, of either triangle or both.
-    pub(super) fn new(order: usize, rows: &[u32], cols: &[u32]) -> Self {
+    pub(super) fn new(
+        order: usize,
+        rows: &[u32],
+        cols: &[u32],
+        progress: &mut Progress<'_>,
+    ) -> Result<Self, Stopped> {
+        progress.add(rows.len())?;
         let mut starts = vec![0; order + 1];
         let pairs = || rows.iter().zip(cols).filter(|(row, col)| row != col);
         for (&row, &col) in pairs() {
@@ -21,6 +30,7 @@ impl Graph {
         }
         let mut next = starts.clone();
         let mut mixed = vec![0; starts[order] as usize];
+        progress.add(mixed.len())?;
         let mut put = |list: &mut [u32], from: u32, to: u32| {
             let place = &mut next[from as usize];
             list[*place as usize] = to;
@@ -30,6 +40,7 @@ impl Graph {
             put(&mut mixed, row, col);
             put(&mut mixed, col, row);
         }
+        progress.add(mixed.len())?;
         // A symmetric list, transposed, is in order.
         let mut next = starts.clone();
         let mut sorted = vec![0; mixed.len()];
@@ -40,7 +51,8 @@ impl Graph {
                 *place += 1;
             }
         }
-        Self::without_duplicates(starts, sorted)
+        progress.add(sorted.len())?;
+        Ok(Self::without_duplicates(starts, sorted))
     }
 
     fn without_duplicates(mut starts: Vec<u32>, mut sorted: Vec<u32>) -> Self {

@@ -3,6 +3,8 @@
 use super::condense::Condensation;
 use super::fronts::Fronts;
 use super::order::Unknown;
+use super::progress::Progress;
+use crate::math::{IsOver, Stopped};
 
 /// Order of elimination, fronts and maps for all matrices of one pattern.
 #[derive(Clone, Debug)]
@@ -21,6 +23,26 @@ impl Plan {
     /// If lengths or indices contradict each other.
     #[must_use]
     pub fn new(order: usize, rows: &[u32], cols: &[u32], unknowns: Option<&[Unknown]>) -> Self {
+        let planned = Self::new_unless(order, rows, cols, unknowns, &|| false);
+        planned.expect("nothing stops it")
+    }
+
+    /// The same, unless it is told to stop, as it asks after some milliseconds again and again.
+    ///
+    /// # Errors
+    ///
+    /// Where `is_over` said so.
+    ///
+    /// # Panics
+    ///
+    /// If lengths or indices contradict each other.
+    pub fn new_unless(
+        order: usize,
+        rows: &[u32],
+        cols: &[u32],
+        unknowns: Option<&[Unknown]>,
+        is_over: IsOver<'_>,
+    ) -> Result<Self, Stopped> {
         assert_eq!(rows.len(), cols.len(), "as many rows as columns");
         if let Some(unknowns) = unknowns {
             assert_eq!(unknowns.len(), order, "a word on each unknown");
@@ -30,15 +52,20 @@ impl Plan {
             is_inside(rows) && is_inside(cols),
             "a matrix of order {order}"
         );
-        let (graph, fronts) = Fronts::new(order, rows, cols, unknowns);
+        let progress = &mut Progress::new(is_over);
+        let (graph, fronts) = Fronts::new(order, rows, cols, unknowns, progress)?;
         let multiplications = fronts.multiplications();
-        let condensation = unknowns.and_then(|unknowns| {
-            Condensation::new(&graph, unknowns, (rows, cols), multiplications)
-        });
-        Self {
+        let condensation = match unknowns {
+            Some(unknowns) => {
+                let pattern = (rows, cols);
+                Condensation::new(&graph, unknowns, pattern, multiplications, progress)?
+            }
+            None => None,
+        };
+        Ok(Self {
             fronts,
             condensation,
-        }
+        })
     }
 
     /// Number of unknowns.

@@ -5,6 +5,8 @@
 
 use super::graph::Graph;
 use super::order::Elimination;
+use super::progress::Progress;
+use crate::math::Stopped;
 
 /// Nodes with fewer columns than this are joined as long as the zeros stay below its square.
 const SMALL: usize = 16;
@@ -24,14 +26,23 @@ pub(super) struct Node {
 }
 
 /// The nodes, children before their parents and next to them (a postorder).
-pub(super) fn nodes(graph: &Graph, elimination: &Elimination) -> Vec<Node> {
+pub(super) fn nodes(
+    graph: &Graph,
+    elimination: &Elimination,
+    progress: &mut Progress<'_>,
+) -> Result<Vec<Node>, Stopped> {
+    let (_, neighbours) = graph.lists();
+    progress.add(neighbours.len())?;
     let order = postorder(&elimination.order, &parents(graph, &elimination.order));
+    progress.add(neighbours.len())?;
     let parents = parents(graph, &order);
     let mut build = Build::new(graph, elimination, &order);
     for column in 0..order.len() {
+        let before = build.rows.len();
         build.add(column, &parents);
+        progress.add(1 + build.rows.len() - before)?;
     }
-    build.into_nodes()
+    Ok(build.into_nodes())
 }
 
 fn inverse(order: &[u32]) -> Vec<u32> {

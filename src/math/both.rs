@@ -6,6 +6,8 @@ use std::thread::available_parallelism;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use crate::math::pool::join;
+
 /// Cores of this machine; asked once, because the answer takes reading files.
 pub fn cores() -> usize {
     static CORES: LazyLock<usize> =
@@ -14,7 +16,7 @@ pub fn cores() -> usize {
 }
 
 thread_local! {
-    /// This thread and one more for each other core; none where the thread belongs to a pool already.
+    /// This thread and one more for each other core; none where the thread belongs to a pool already, or no thread can be had.
     static POOL: OnceCell<Option<ThreadPool>> = const { OnceCell::new() };
 }
 
@@ -34,7 +36,7 @@ pub(crate) fn both<A: Send, B: Send>(
         });
         match pool {
             Some(pool) => pool.join(a, b),
-            None => rayon::join(a, b),
+            None => join(a, b),
         }
     })
 }

@@ -6,6 +6,7 @@ mod counted;
 mod derivatives;
 mod digits;
 mod jet;
+mod pool;
 pub mod random;
 mod sets;
 mod stopped;
@@ -16,6 +17,7 @@ pub(crate) use counted::counted;
 pub use derivatives::{Derivatives, Local};
 pub use digits::{shortest, significant};
 pub use jet::Jet;
+pub(crate) use pool::{has_pool, join};
 pub use sets::DisjointSets;
 pub use stopped::{IsOver, Stopped};
 

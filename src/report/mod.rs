@@ -38,6 +38,7 @@ pub use run::{Branch, Figures, Run, Told};
 
 use rayon::prelude::*;
 
+use crate::math::{has_pool, join};
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 
@@ -52,7 +53,7 @@ const PAGE: &str = "report.html";
 /// A file cannot be written.
 pub fn write_run(files: &mut FileSet, run: &Run<'_>) -> Result<(), WriteError> {
     let page = || run.told.map(|told| page::html(run, told));
-    let (page, mut texts) = rayon::join(page, || tables_and_figures(run));
+    let (page, mut texts) = join(page, || tables_and_figures(run));
     match page {
         Some(page) => texts.push((PAGE, page)),
         None => files.remove(PAGE),
@@ -136,8 +137,13 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
             (!tracked.is_empty()).then(|| ("tracking.svg", svg()))
         },
     ];
-    let each = makers.par_iter().with_max_len(1);
-    each.filter_map(|make| make()).collect()
+    match has_pool() {
+        true => {
+            let each = makers.par_iter().with_max_len(1);
+            each.filter_map(|make| make()).collect()
+        }
+        false => makers.iter().filter_map(|make| make()).collect(),
+    }
 }
 
 /// Writes table, figure and page of a state of rest, a motion of one instant.

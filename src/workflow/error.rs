@@ -47,7 +47,8 @@ impl WorkflowError {
             BoundaryError::NoEquilibrium {
                 source: EquilibriumError::Stopped(status),
                 ..
-            } => return Self::Stopped(*status),
+            }
+            | BoundaryError::Stopped(status) => return Self::Stopped(*status),
             BoundaryError::Limit { place, reason } => (*place, reason.clone()),
             BoundaryError::NoEquilibrium { place, source } => {
                 let reason = source.to_string();
@@ -98,7 +99,7 @@ impl WorkflowError {
     pub(crate) fn ipopt(error: &IpoptError) -> Self {
         let place = match error {
             IpoptError::OptionRejected { .. } => "control.solver.ipopt",
-            IpoptError::NoStages(_) => "control.solver.linear_solver",
+            IpoptError::NoStages(_) | IpoptError::NoRoom => "control.solver.linear_solver",
             IpoptError::ProblemNotCreated { .. } => "control",
         };
         Self::Problem {

@@ -215,7 +215,10 @@ pub fn optimise(
             break;
         };
         phase("solving again, from the state that the first solution reached");
-        let program = Transcription::of_any(&model, &boundary, control, &initial);
+        // What cannot be built in the time that is left leaves the solution as it is.
+        let Ok(program) = Transcription::of_any(&model, &boundary, control, &initial) else {
+            break;
+        };
         let options = Options {
             max_seconds: allowed.seconds.map(left),
             start: Start::PRIMAL,
@@ -346,11 +349,11 @@ pub(crate) fn prepare<'m>(
     };
     let earlier = earlier.or(named.as_deref());
     let initial = guess(model, boundary, control, interval(control), earlier);
-    let mut program = match counted {
-        Counted::Yes => Transcription::new(model, boundary, control, &initial)
-            .map_err(|error| WorkflowError::boundary("control", &error))?,
+    let program = match counted {
+        Counted::Yes => Transcription::new(model, boundary, control, &initial),
         Counted::No => Transcription::of_any(model, boundary, control, &initial),
     };
+    let mut program = program.map_err(|error| WorkflowError::boundary("control", &error))?;
     let point = program.start(&initial);
     let carried = initial.carried;
     let is_same_grid = |earlier: &Solution| {

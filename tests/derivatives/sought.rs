@@ -175,7 +175,7 @@ fn a_parameter_is_one_column_and_given_ones_leave_none() {
     let columns = |control: &Control| {
         let (model, boundary) = BoundaryConditions::resolve(&system, control, H).unwrap();
         let initial = guess(&model, &boundary, control, H, None);
-        let program = Transcription::of_any(&model, &boundary, control, &initial);
+        let program = Transcription::of_any(&model, &boundary, control, &initial).unwrap();
         let columns = program.unknowns().columns.clone();
         let role = |c: &Column| c.of(&model.variables).role;
         let count = |which: Role| columns.iter().filter(|c| role(c) == which).count();

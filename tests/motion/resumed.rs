@@ -7,7 +7,7 @@ use proboscis::System;
 use proboscis::control::problem::{Simulation, Task};
 use proboscis::dynamics::{DiscreteTrajectory, StepError};
 use proboscis::files::read_problem;
-use proboscis::ipopt::interrupt;
+use proboscis::ipopt::interrupt::{self, Questions};
 use proboscis::workflow::{Simulated, integrate, integrate_on};
 
 /// A kept simulation with overrides.
@@ -175,7 +175,7 @@ fn muscles_of_finite_elements_go_on_to_the_bit() {
     stop("fe_trunk", &set, &[2, 5]);
 }
 
-/// A watch ends a motion anywhere within a step.
+/// A watch ends a motion at any of its questions, which are many within a step; what goes on after ever more of them is the whole motion.
 #[test]
 fn a_stop_within_a_step_changes_nothing() {
     let set = [
@@ -184,34 +184,31 @@ fn a_stop_within_a_step_changes_nothing() {
     ]
     .concat();
     let (system, task) = simulation("clamped_stack_step", &set);
-    let began = std::time::Instant::now();
-    let whole = all(&system, &task);
-    let mut seconds = 0.1 * began.elapsed().as_secs_f64();
-    let (mut begun, mut stops) = (None, 0);
-    for _ in 0..200 {
-        let watch = interrupt::watch(Some(seconds));
-        let run = integrate_on(&system, &task, begun.clone(), |_, _| {
-            ControlFlow::Continue(())
-        });
+    let watched = |begun: Option<DiscreteTrajectory>, allowed| {
+        let questions = Questions::allowed(allowed);
+        let watch = interrupt::watch_questions(&questions);
+        let run = integrate_on(&system, &task, begun, |_, _| ControlFlow::Continue(()));
         drop(watch);
-        // Time may be over before the first step.
-        let Ok(run) = run else {
-            seconds *= 1.2;
-            continue;
-        };
+        (run, questions.asked())
+    };
+    let (whole, asked) = watched(None, u64::MAX);
+    let whole = whole.unwrap().history;
+    let steps = whole.intervals() as u64;
+    assert!(asked > 3 * steps, "{asked} questions in {steps} steps");
+    let (mut begun, mut stops, mut allowed) = (None, 0, asked / 7 + 1);
+    loop {
+        let (run, _) = watched(begun.clone(), allowed);
+        let run = run.expect("time for the first step");
         assert_eq!(run.failure, None);
-        if run.history.intervals() < whole.intervals() {
-            (begun, stops, seconds) = (Some(run.history), stops + 1, 1.2 * seconds);
-            continue;
+        if run.history.intervals() == whole.intervals() {
+            assert_same(&run.history, &whole, "stopped anywhere");
+            break;
         }
-        assert_same(&run.history, &whole, "stopped anywhere");
-        if stops > 1 {
-            return;
-        }
-        // Other work has made the first run slow: again, in less time.
-        (begun, stops, seconds) = (None, 0, 0.5 * seconds);
+        // No multiple of the questions of a step.
+        (begun, stops, allowed) = (Some(run.history), stops + 1, allowed + 1);
+        assert!(stops < 20, "it does not go on");
     }
-    panic!("not stopped twice on its way");
+    assert!(stops > 2, "stopped {stops} times on its way");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::mem;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// The arrays of the iterate that is kept in a folder, in the file that it names; also of a run that goes on.
 fn kept(results: &Path) -> BTreeMap<String, Vec<f64>> {
@@ -27,7 +27,6 @@ fn killed(folder: &Path, arguments: &[&str]) -> (PathBuf, Vec<u8>) {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    let began = Instant::now();
     let (mut before, mut latest) = (Vec::new(), Vec::new());
     let mut is_kept = || {
         let is_there = |rows: &Vec<f64>| rows.iter().any(|y| y.abs() > 1e-9);
@@ -40,7 +39,6 @@ fn killed(folder: &Path, arguments: &[&str]) -> (PathBuf, Vec<u8>) {
     while !is_kept() {
         let ended = child.try_wait().unwrap();
         assert!(ended.is_none(), "too short a run: {ended:?}");
-        assert!(began.elapsed() < Duration::from_secs(120), "nothing kept");
         thread::sleep(Duration::from_millis(20));
     }
     child.kill().unwrap();

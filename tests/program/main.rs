@@ -19,6 +19,7 @@ mod output;
 mod page;
 mod paraview;
 mod parts;
+mod process;
 mod refusals;
 mod report;
 mod resume;

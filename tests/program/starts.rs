@@ -312,7 +312,7 @@ fn starts_that_make_no_sense_are_refused() {
 fn ctrl_c_ends_all_starts_and_keeps_the_best() {
     use std::os::unix::process::CommandExt;
     use std::process::{Command, Stdio};
-    use std::time::{Duration, Instant};
+    use std::time::Duration;
     let folder = tempdir().unwrap();
     let path = folder.path();
     let trunk = problem("elephant_trunk");
@@ -335,13 +335,9 @@ fn ctrl_c_ends_all_starts_and_keeps_the_best() {
         .process_group(0)
         .spawn()
         .unwrap();
-    let began = Instant::now();
     // The folder of a start is made when its first iterate is told.
     while !path.join("out/starts/01").exists() {
-        assert!(
-            began.elapsed() < Duration::from_secs(60),
-            "it does not start"
-        );
+        assert_eq!(child.try_wait().unwrap(), None, "it has ended");
         std::thread::sleep(Duration::from_millis(5));
     }
     // As a terminal does: to the whole group.

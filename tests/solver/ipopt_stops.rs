@@ -2,13 +2,13 @@
 
 use crate::common::programs::{HS071_OPTIMUM, HS071_START, Program, bounds, hs071, rosenbrock};
 use crate::ipopt::{from, run};
+use proboscis::ipopt::interrupt::{self, Questions};
 use proboscis::ipopt::{Iteration, Multipliers, Options, Reached, Status, solve};
 use std::fs;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::Command;
 use std::thread;
-use std::time::{Duration, Instant};
 
 /// hs071 whose named function panics at its `k`-th call.
 fn panicking(function: &'static str, k: usize) -> Program {
@@ -210,23 +210,59 @@ fn the_better_of_the_last_two_points_is_returned() {
 }
 
 #[test]
-fn wall_time_is_limited() {
-    let mut slow = rosenbrock();
-    let mut objective = rosenbrock().f;
-    slow.f = Box::new(move |x| {
-        thread::sleep(Duration::from_millis(20));
-        objective(x)
-    });
+fn time_is_limited_at_any_question() {
+    let solved = |allowed| {
+        let questions = Questions::allowed(allowed);
+        let watch = interrupt::watch_questions(&questions);
+        let solution = run(&mut rosenbrock(), &[-1.2, 1.0], &Options::default());
+        drop(watch);
+        (solution, questions.asked())
+    };
+    let (whole, asked) = solved(u64::MAX);
+    assert!(whole.status.is_solved() && asked > 100, "{asked}");
+    for allowed in [0, 1, 7, asked / 3, asked / 2, asked - 10] {
+        let (stopped, asked) = solved(allowed);
+        assert_eq!(
+            stopped.status,
+            Status::TimeLimit,
+            "after {allowed} questions"
+        );
+        // Ipopt gets no answer any more and gives up.
+        assert!(asked < allowed + 20, "{asked} questions of {allowed}");
+    }
     let options = Options {
-        max_seconds: Some(0.1),
+        max_seconds: Some(0.0),
         ..Options::default()
     };
-    let began = Instant::now();
-    let solution = run(&mut slow, &[-1.2, 1.0], &options);
-    assert_eq!(solution.status, Status::TimeLimit);
-    // The limit is looked at once per iteration, and an iteration tries a few points of 20 ms each.
-    assert!(began.elapsed() < Duration::from_secs(5));
-    assert!(solution.seconds.objective > 0.5 * solution.seconds.total);
+    let solution = run(&mut rosenbrock(), &[-1.2, 1.0], &options);
+    assert_eq!(
+        (solution.status, solution.iterations.len()),
+        (Status::TimeLimit, 0)
+    );
+}
+
+/// Ipopt asks for ever for the factors of a matrix that overflows, unless these fail.
+#[test]
+fn a_matrix_that_overflows_ends_the_solve() {
+    let mut program = Program {
+        variables: bounds(&[(f64::NEG_INFINITY, f64::INFINITY); 2]),
+        constraints: bounds(&[(1e200, 1e200), (0.0, 0.0)]),
+        jacobian_places: vec![(0, 0), (1, 0), (1, 1)],
+        hessian_places: vec![(0, 0), (1, 1)],
+        f: Box::new(|x| x[0] * x[0] + x[1] * x[1]),
+        grad: Box::new(|x, grad| grad.copy_from_slice(&[2.0 * x[0], 2.0 * x[1]])),
+        g: Box::new(|x, g| g.copy_from_slice(&[x[0].sin(), x[0] - x[1]])),
+        jac: Box::new(|x, values| values.copy_from_slice(&[x[0].cos(), 1.0, -1.0])),
+        hess: Box::new(|x, sigma, y, values| {
+            values.copy_from_slice(&[2.0 * sigma - y[0] * x[0].sin(), 2.0 * sigma]);
+        }),
+    };
+    let options = Options {
+        max_iterations: 50,
+        ..Options::default()
+    };
+    let solution = run(&mut program, &[0.5, 0.2], &options);
+    assert!(!solution.status.is_solved(), "{:?}", solution.status);
 }
 
 #[test]

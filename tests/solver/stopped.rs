@@ -4,6 +4,7 @@ use crate::common::programs::{Program, bounds};
 use crate::horizon::{Horizon, System};
 use crate::ipopt::from;
 use crate::matrices::Random;
+use proboscis::ipopt::interrupt::{self, Questions};
 use proboscis::ipopt::{Iteration, Options, Reached, Solver, Status};
 use proboscis::kkt::{Plan, Solver as Factors, Stopped};
 use std::cell::RefCell;
@@ -11,8 +12,6 @@ use std::ops::ControlFlow;
 use std::rc::Rc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
-use std::thread;
-use std::time::{Duration, Instant};
 
 const SMALL: Horizon = Horizon {
     intervals: 40,
@@ -92,6 +91,35 @@ fn a_factorisation_stops_at_any_question_and_leaves_no_trace() {
     }
 }
 
+/// An analysis stops at any of its questions, and takes no more than so many numbers between two of them.
+#[test]
+fn an_analysis_stops_at_any_question() {
+    const BETWEEN: usize = 1 << 22;
+    let system = System::full(2200, |_, _| 1.0);
+    let unknowns = Some(system.unknowns.as_slice());
+    let asked = AtomicUsize::new(0);
+    let last = AtomicUsize::new(usize::MAX);
+    let is_over = || asked.fetch_add(1, Ordering::Relaxed) >= last.load(Ordering::Relaxed);
+    let analysed = || {
+        asked.store(0, Ordering::Relaxed);
+        let order = system.order();
+        let plan = Plan::new_unless(order, &system.rows, &system.cols, unknowns, &is_over);
+        (plan.map(|plan| plan.order()), asked.load(Ordering::Relaxed))
+    };
+    let (whole, questions) = analysed();
+    assert_eq!(whole, Ok(system.order()));
+    // Each entry is looked at several times.
+    let least = system.rows.len() / BETWEEN + 3;
+    assert!(
+        questions >= least,
+        "{questions} questions, expected {least}"
+    );
+    for stopped_at in 0..questions {
+        last.store(stopped_at, Ordering::Relaxed);
+        assert_eq!(analysed(), (Err(Stopped), stopped_at + 1));
+    }
+}
+
 /// A question takes as long as some hundred multiplications.
 #[test]
 fn a_small_system_asks_once() {
@@ -100,8 +128,8 @@ fn a_small_system_asks_once() {
     assert_eq!(questions(&system), 1);
 }
 
-/// When the Hessian answers next time: at once, or shortly before the time is over.
-type Answer = Arc<Mutex<Option<(usize, Instant)>>>;
+/// After how many answers of the Hessian the time is over at the next question.
+type Answer = Arc<Mutex<Option<(usize, Questions)>>>;
 
 /// Σ over all pairs of `½ aᵢⱼ xᵢ xⱼ + ¼ xᵢ⁴ − xᵢ` on a sphere: the Hessian is dense.
 fn large(order: usize, answer: Answer) -> Program {
@@ -150,10 +178,11 @@ fn large(order: usize, answer: Answer) -> Program {
                 to[at] += sigma * 3.0 * x * x + 2.0 * y[0];
             }
             let mut answer = answer.lock().unwrap();
-            if let Some((calls, at)) = answer.take() {
+            if let Some((calls, questions)) = answer.take() {
                 match calls {
-                    1 => thread::sleep(at.saturating_duration_since(Instant::now())),
-                    calls => *answer = Some((calls - 1, at)),
+                    // One more question: whether this answer came in time.
+                    1 => questions.end_after(1),
+                    calls => *answer = Some((calls - 1, questions)),
                 }
             }
         }),
@@ -175,7 +204,7 @@ fn observer(heard: &Heard, last: usize) -> impl FnMut(&Iteration, &Reached<'_>) 
     }
 }
 
-/// The Hessian of the third iterate comes shortly before the time is over, so that the factorisation is stopped: what is left is the same as if
+/// The time is over when the Hessian of the third iterate has answered, so that the factorisation is stopped: what is left is the same as if
 /// the observer had stopped at this iterate.
 #[test]
 fn a_limit_within_a_factorisation_leaves_the_last_iterate() {
@@ -185,15 +214,10 @@ fn a_limit_within_a_factorisation_leaves_the_last_iterate() {
     let point = from(&vec![0.3; ORDER]);
     let heard = Heard::default();
     let mut solver = Solver::new(large(ORDER, answer.clone()), Options::default());
-    let began = Instant::now();
     let whole = solver.solve(&point, &mut observer(&heard, usize::MAX));
     let whole = whole.unwrap().clone();
-    let took = began.elapsed();
     assert!(whole.status.is_solved() && whole.iterations.len() > LAST + 2);
     let of_whole = heard.take();
-    let stages = whole.linear.stages.unwrap();
-    let count = stages.statistics.factorisations;
-    let of_one = Duration::from_secs_f64(stages.factorisation / count as f64);
 
     let asked = solver.solve(&point, &mut observer(&heard, LAST)).unwrap();
     let asked = asked.clone();
@@ -202,22 +226,14 @@ fn a_limit_within_a_factorisation_leaves_the_last_iterate() {
     let of_asked = heard.take();
     assert!(of_asked == of_whole[..=LAST]);
 
-    // Where another program takes the core in the wrong moment the time is over before this factorisation, perhaps in an earlier one, or after it.
-    let limit = took + of_one;
-    let stopped = (0..10).find_map(|_| {
-        heard.take();
-        let began = Instant::now();
-        *answer.lock().unwrap() = Some((LAST + 1, began + limit - of_one / 2));
-        solver.set_options(Options {
-            max_seconds: Some(limit.as_secs_f64()),
-            ..Options::default()
-        });
-        let result = solver.solve(&point, &mut observer(&heard, usize::MAX));
-        let result = result.unwrap().clone();
-        let is_within = result.linear.stages.unwrap().stopped.is_some();
-        (is_within && heard.borrow().len() == of_asked.len()).then_some(result)
-    });
-    let stopped = stopped.expect("a time that is over within the factorisation");
+    let questions = Questions::allowed(u64::MAX);
+    *answer.lock().unwrap() = Some((LAST + 1, questions.clone()));
+    let watch = interrupt::watch_questions(&questions);
+    let stopped = solver.solve(&point, &mut observer(&heard, usize::MAX));
+    let stopped = stopped.unwrap().clone();
+    drop(watch);
+    let within = stopped.linear.stages.unwrap().stopped;
+    assert_eq!(within, Some(Status::TimeLimit), "within the factorisation");
     assert_eq!(stopped.status, Status::TimeLimit);
     assert!(heard.take() == of_asked);
     assert_eq!(stopped.x, asked.x);

@@ -18,7 +18,7 @@ fn check(system: &System, control: &Control) -> [usize; 2] {
     let (intervals, h) = (control.intervals, 10.0);
     let (model, boundary) = BoundaryConditions::resolve(system, control, h).unwrap();
     let initial = guess(&model, &boundary, control, h, None);
-    let program = Transcription::of_any(&model, &boundary, control, &initial);
+    let program = Transcription::of_any(&model, &boundary, control, &initial).unwrap();
     let unknowns = program.unknowns();
     let columns: Vec<String> = (0..unknowns.columns.len())
         .map(|i| program.variable_name(i))

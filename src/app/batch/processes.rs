@@ -2,9 +2,12 @@
 
 use std::io::{Read, Seek};
 use std::ops::ControlFlow;
-use std::process::ExitStatus;
+use std::process::{Child, ExitStatus};
 use std::thread;
 use std::time::{Duration, Instant};
+
+#[cfg(unix)]
+use rustix::process::{Pid, Signal, kill_process};
 
 use super::end::{RunEnd, Said, of_status};
 use super::launch::{Running, launch};
@@ -17,8 +20,8 @@ use crate::workflow::at_once::cores;
 /// Time between two looks at the processes.
 const PATIENCE: Duration = Duration::from_millis(10);
 
-/// Time that processes have to end in good order after Ctrl-C.
-const GRACE: Duration = Duration::from_secs(3);
+/// Time that processes have to write their results after Ctrl-C; who will not wait presses it again.
+const GRACE: Duration = Duration::from_secs(20);
 
 /// The solves that run; none of them outlives this list.
 struct All(Vec<Running>);
@@ -44,6 +47,7 @@ pub(super) fn run_all(
     loop {
         if interrupt::requested() && stop_at.is_none() {
             stop_at = Some(Instant::now() + GRACE);
+            running.0.iter().for_each(|one| ask_to_stop(&one.child));
         }
         while running.0.len() < cores() {
             let Some((index, run)) = waiting.next() else {
@@ -87,6 +91,16 @@ pub(super) fn run_all(
         }
         thread::sleep(PATIENCE);
     }
+}
+
+/// Asks a process to stop: a signal may have come to this one alone, and another one that came to both is not the same.
+fn ask_to_stop(child: &Child) {
+    #[cfg(unix)]
+    if let Err(cause) = kill_process(Pid::from_child(child), Signal::TERM) {
+        tracing::debug!("a process cannot be asked to stop: {cause}");
+    }
+    #[cfg(not(unix))]
+    let _ = child;
 }
 
 /// What a process said when it ended with a status.

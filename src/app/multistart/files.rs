@@ -61,7 +61,8 @@ pub(super) fn write(
     if let Some(best) = best {
         copy(&folder_of(folder, best.start), folder, &section)?;
     }
-    let is_solved = solved > 0;
+    let is_stopped = interrupt::requested();
+    let is_solved = solved > 0 && !is_stopped;
     let counts = format!(
         "{solved} of {} starts solved, {distinct} distinct {}, {seconds:.2} s, {}",
         ended.len(),
@@ -70,6 +71,9 @@ pub(super) fn write(
     );
     let head = match best.and_then(|best| best.objective) {
         Some(objective) if is_solved => format!("solved: objective {objective:.7}, {counts}"),
+        Some(objective) if solved > 0 => {
+            format!("interrupted: best objective {objective:.7}, {counts}")
+        }
         _ => format!("not solved: {counts}"),
     };
     let mut notes = best.map_or_else(Vec::new, |best| best.notes.clone());
@@ -77,7 +81,7 @@ pub(super) fn write(
         let told = one.message.as_deref().map(printable);
         notes.extend(told.map(|message| format!("start {} failed: {message}", one.start)));
     }
-    if interrupt::requested() {
+    if is_stopped {
         notes.push("interrupted; the files hold the best start that had ended".to_owned());
     }
     Ok(CommandOutput {

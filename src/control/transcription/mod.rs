@@ -122,7 +122,7 @@ impl<'m> Transcription<'m> {
     /// Transcribes a control problem; the guess sets the scales, and the interval length where the duration is free.
     ///
     /// # Errors
-    /// There are more equations than unknowns.
+    /// There are more equations than unknowns, or it is time to stop.
     pub fn new(
         model: &'m Model,
         boundary: &BoundaryConditions,
@@ -132,17 +132,20 @@ impl<'m> Transcription<'m> {
         let layout = Layout::new(model, boundary, control, control.intervals);
         match overdetermined(&layout, model, control.intervals) {
             Some(error) => Err(error),
-            None => Ok(Self::laid_out(model, boundary, control, initial, layout)),
+            None => Self::laid_out(model, boundary, control, initial, layout),
         }
     }
 
     /// Transcribes like [`new`](Self::new), also where there are more equations than unknowns: derivatives exist all the same.
+    ///
+    /// # Errors
+    /// It is time to stop.
     pub fn of_any(
         model: &'m Model,
         boundary: &BoundaryConditions,
         control: &Control,
         initial: &InitialGuess,
-    ) -> Self {
+    ) -> Result<Self, BoundaryError> {
         let layout = Layout::new(model, boundary, control, control.intervals);
         Self::laid_out(model, boundary, control, initial, layout)
     }
@@ -153,7 +156,7 @@ impl<'m> Transcription<'m> {
         control: &Control,
         initial: &InitialGuess,
         layout: Layout,
-    ) -> Self {
+    ) -> Result<Self, BoundaryError> {
         let motion = &model.action.motion;
         let unknown_count = motion.unknowns();
         let variables = &model.variables;
@@ -275,12 +278,12 @@ impl<'m> Transcription<'m> {
             kilovolts,
             unknowns,
         };
-        out.lay_jacobian();
-        out.lay_hessian();
+        out.lay_jacobian()?;
+        out.lay_hessian()?;
         out.set_scales(&initial.history, initial.h);
         out.set_bounds(control);
         out.set_row_bounds();
-        out
+        Ok(out)
     }
 
     /// Number of intervals N.

@@ -1,18 +1,21 @@
 //! Which entries of the periodic values the Jacobian and the Hessian keep.
 
+use crate::control::BoundaryError;
 use crate::control::numbering::Row;
 use crate::control::transcription::energy_rows::Jump;
 use crate::control::transcription::limit_rows::SCALAR;
 use crate::control::transcription::{Gather, Transcription};
+use crate::ipopt::interrupt;
 use crate::model::Role;
 use crate::nlp::Entries;
 
 impl Transcription<'_> {
-    fn jacobian_of(&self) -> Vec<(usize, usize, usize)> {
+    fn jacobian_of(&self) -> Result<Vec<(usize, usize, usize)>, BoundaryError> {
         let layout = self.model.action.layout();
         let u = &self.unknowns;
         let mut list = Vec::new();
         for k in 0..=self.intervals {
+            go_on()?;
             for (slot, (i, j)) in layout.same.entries().enumerate() {
                 list.push((u.row(k, i), u.unknown(k, j), layout.same_at(k) + slot));
             }
@@ -68,12 +71,12 @@ impl Transcription<'_> {
                 place += 1;
             }
         }
-        list.into_iter()
-            .filter_map(|(row, col, place)| Some((row?, col?, place)))
-            .collect()
+        let list = list.into_iter();
+        let known = list.filter_map(|(row, col, place)| Some((row?, col?, place)));
+        Ok(known.collect())
     }
 
-    pub(super) fn lay_jacobian(&mut self) {
+    pub(super) fn lay_jacobian(&mut self) -> Result<(), BoundaryError> {
         // The horizon column has no entry in the rows of constraints, which are instantaneous.
         let horizon = self.unknowns.horizon();
         let lasts = |row: Row| {
@@ -83,19 +86,22 @@ impl Transcription<'_> {
         let exists = |&(row, col, _): &(usize, usize, usize)| {
             Some(col) != horizon || lasts(self.unknowns.rows[row])
         };
-        let list: Vec<_> = self.jacobian_of().into_iter().filter(exists).collect();
+        let list: Vec<_> = self.jacobian_of()?.into_iter().filter(exists).collect();
+        go_on()?;
         for (row, col, place) in list {
             self.jacobian_entries.rows.push(row as u32);
             self.jacobian_entries.cols.push(col as u32);
             self.jacobian.push(Gather { place, scale: 1.0 });
         }
+        Ok(())
     }
 
-    pub(super) fn lay_hessian(&mut self) {
+    pub(super) fn lay_hessian(&mut self) -> Result<(), BoundaryError> {
         let layout = self.model.action.layout();
         let u = &self.unknowns;
         let mut list: Vec<(Option<usize>, Option<usize>, usize)> = Vec::new();
         for k in 0..=self.intervals {
+            go_on()?;
             for (slot, (i, j)) in layout
                 .same
                 .entries()
@@ -142,6 +148,7 @@ impl Transcription<'_> {
             u.horizon(),
             layout.horizon_square_at(self.intervals),
         ));
+        go_on()?;
         let mut entries = Entries::default();
         for (row, col, place) in list {
             let (Some(row), Some(col)) = (row, col) else {
@@ -170,5 +177,14 @@ impl Transcription<'_> {
             }
         }
         self.hessian_entries = entries;
+        go_on()
+    }
+}
+
+/// Whether it is time to stop.
+fn go_on() -> Result<(), BoundaryError> {
+    match interrupt::stop() {
+        Some(status) => Err(BoundaryError::Stopped(status)),
+        None => Ok(()),
     }
 }

@@ -89,10 +89,25 @@ pub fn check_along(
         costates,
         jacobian: nlp.jacobian_structure(),
     };
+    let mut report = Report::default();
+    let mut is_over = || {
+        let is_over = stop();
+        report.left = if is_over { columns.len() } else { 0 };
+        is_over
+    };
+    if is_over() {
+        return report;
+    }
     let here = DirectionSample::at(nlp, &lagrangian, x);
+    if is_over() {
+        return report;
+    }
     let mut hessian = vec![0.0; nlp.hessian_structure().rows.len()];
     nlp.hessian(x, lagrangian.sigma, &lagrangian.costates, &mut hessian);
 
+    if is_over() {
+        return report;
+    }
     let gradient_places = Entries {
         rows: vec![0; n],
         cols: (0..).take(n).collect(),
@@ -107,10 +122,12 @@ pub fn check_along(
     let terms = here.constraints.iter().map(|g| g.abs()).collect();
     let mut jacobian = Comparison::new(&lagrangian.jacobian, &here.jacobian, terms, n);
     jacobian.add_linear_terms(x);
+    if is_over() {
+        return report;
+    }
     let terms = lagrangian.term_sizes(&here);
     let mut hessian = Comparison::new(&nlp.hessian_structure(), &hessian, terms, n);
 
-    let mut report = Report::default();
     let step = |j: usize| f64::EPSILON.cbrt() * sizes[j] * x[j].abs().max(1.0);
     for &j in columns {
         if stop() {

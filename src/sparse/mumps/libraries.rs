@@ -7,9 +7,10 @@
 
 use std::env;
 use std::ffi::{CStr, c_int, c_void};
+use std::hint;
 use std::mem;
 use std::ptr::NonNull;
-use std::sync::Once;
+use std::sync::{LazyLock, Once};
 
 /// What SCOTCH asks the environment for.
 const SCOTCH_THREADS: &str = "SCOTCH_PTHREAD_NUMBER";
@@ -36,20 +37,6 @@ fn use_one_blas_thread() {
     }
 }
 
-/// Ends the threads of OpenBLAS, if it is loaded, in a process where nothing else works with them: from the time it is loaded they
-/// wait for work in a loop, which keeps a core busy for a tenth of a second.
-#[cfg(feature = "cli")]
-pub(crate) fn end_blas_threads() {
-    use_one_blas_thread();
-    if let Some(symbol) = loaded(c"blas_thread_shutdown_") {
-        // SAFETY: OpenBLAS declares `int blas_thread_shutdown_(void)`, which it calls itself before a process forks.
-        let shut_down =
-            unsafe { mem::transmute::<NonNull<c_void>, unsafe extern "C" fn() -> c_int>(symbol) };
-        // SAFETY: the caller has no work in other threads; should one thread not be enough later, OpenBLAS starts others.
-        unsafe { shut_down() };
-    }
-}
-
 /// Makes SCOTCH order in one thread, unless the environment says otherwise: from several threads, as many as there are cores, the order
 /// differs from run to run, and with it the last digits of every solution.
 ///
@@ -70,6 +57,22 @@ pub(super) fn restart_random_numbers() {
         // SAFETY: as above.
         unsafe { reset() };
     }
+}
+
+/// Whether there is room for the memory that OpenBLAS takes when it is called first, if it is loaded. Where there is none it asks again and
+/// again and never returns.
+pub(crate) fn has_room() -> bool {
+    /// What it takes, and a little.
+    const ROOM: usize = 136 << 20;
+    static HAS_ROOM: LazyLock<bool> = LazyLock::new(|| {
+        let is_needed = loaded(c"openblas_set_num_threads").is_some();
+        let mut room = Vec::<u8>::new();
+        let taken = room.try_reserve_exact(ROOM);
+        // What nobody looks at may not be taken at all.
+        hint::black_box(&mut room);
+        !is_needed || taken.is_ok()
+    });
+    *HAS_ROOM
 }
 
 /// A function of a library that is loaded, if there is one of this name.

@@ -13,9 +13,12 @@ use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Singular, Symmetry};
 
 use ffi::{Instance, Job};
-#[cfg(feature = "cli")]
-pub(crate) use libraries::end_blas_threads;
+pub(crate) use libraries::has_room;
 pub(crate) use lock::{Exclusive, exclusive};
+
+/// What is told where [`has_room`] says no.
+pub(crate) const NO_ROOM: &str =
+    "MUMPS needs more address space than this process may have: OpenBLAS takes 128 MB at once";
 
 /// Ordering of the elimination, ICNTL(7), as measured by `benches/factorisation.rs`: SCOTCH.
 const ORDERING: i32 = 3;
@@ -91,6 +94,7 @@ impl Factorisation for Mumps {
     }
 
     fn factor(&mut self, values: &[f64]) -> Result<(), Singular> {
+        assert!(has_room(), "{NO_ROOM}");
         self.values.copy_from_slice(values);
         loop {
             match self.instance.run(Job::Factor, &mut self.values) {
