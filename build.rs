@@ -1,4 +1,4 @@
-//! Finds Ipopt, the MUMPS it was linked with and the code of pages, holds the declarations of `src/ipopt/ffi.rs` against the header of Ipopt,
+//! Finds Ipopt, the MUMPS it was linked with and the code of pages, holds the declarations of `src/ipopt/declarations.rs` against the header of Ipopt,
 //! compiles what knows the structure of MUMPS, and notes the versions that results name.
 
 use std::env;
@@ -161,7 +161,7 @@ fn read(bytes: &[u8]) -> Option<(Vec<String>, bool)> {
     Some((own(&library.libs), has_mumps))
 }
 
-/// Compiles the declarations of `src/ipopt/ffi.rs` beside those of the header.
+/// Compiles the declarations of `src/ipopt/declarations.rs` beside those of the header.
 fn check_declarations(ipopt: &pkg_config::Library) -> Result<(), String> {
     const DECLARATIONS: &str = "src/ipopt/header.c";
     println!("cargo::rerun-if-changed={DECLARATIONS}");

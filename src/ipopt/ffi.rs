@@ -1,119 +1,23 @@
-//! The C interface of Ipopt: declarations, and the callbacks over one guard against panics.
-//!
-//! The header differs between versions: up to 3.13 `Bool` is `int`, `Number` is `double` and `Index` is `int`; since
-//! 3.14 `Bool` is `bool`, and the other two are old names of `ipnumber` and `ipindex`, which are `double` and `int`
-//! unless Ipopt was built for single precision or long indices (then the build ends). So truth values are written with
-//! `Bool::from` and read by comparison with it, and nothing else depends on the version. `header.c` holds the declarations
-//! below against the header.
+//! The C interface of Ipopt: problems, and the callbacks over one guard against panics.
 
 #![expect(unsafe_code, reason = "C interface of Ipopt")]
 
 use std::any::Any;
-use std::ffi::{CString, c_char, c_int, c_void};
+use std::ffi::{CString, c_int, c_void};
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::ptr::{self, NonNull};
 use std::slice;
 
+use crate::ipopt::declarations::{
+    AddIpoptIntOption, AddIpoptNumOption, AddIpoptStrOption, Bool, CreateIpoptProblem,
+    FreeIpoptProblem, IpoptProblemInfo, IpoptSolve, SetIntermediateCallback,
+};
 use crate::ipopt::evaluation::Evaluator;
 use crate::ipopt::options::OptionValue;
 use crate::ipopt::solution::{Iteration, Multipliers};
 use crate::nlp::{Bounds, Entries};
 use crate::sparse::mumps::{self, Exclusive};
-
-/// Truth values of this Ipopt.
-#[cfg(ipopt_bool)]
-type Bool = bool;
-/// Truth values of this Ipopt.
-#[cfg(not(ipopt_bool))]
-type Bool = c_int;
-
-/// `struct IpoptProblemInfo`, which only Ipopt looks into.
-#[repr(C)]
-struct IpoptProblemInfo {
-    _inside: [u8; 0],
-}
-
-type Objective = unsafe extern "C" fn(c_int, *mut f64, Bool, *mut f64, *mut c_void) -> Bool;
-type Gradient = unsafe extern "C" fn(c_int, *mut f64, Bool, *mut f64, *mut c_void) -> Bool;
-type Constraint = unsafe extern "C" fn(c_int, *mut f64, Bool, c_int, *mut f64, *mut c_void) -> Bool;
-type Jacobian = unsafe extern "C" fn(
-    c_int,
-    *mut f64,
-    Bool,
-    c_int,
-    c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut f64,
-    *mut c_void,
-) -> Bool;
-type Hessian = unsafe extern "C" fn(
-    c_int,
-    *mut f64,
-    Bool,
-    f64,
-    c_int,
-    *mut f64,
-    Bool,
-    c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut f64,
-    *mut c_void,
-) -> Bool;
-type Intermediate = unsafe extern "C" fn(
-    c_int,
-    c_int,
-    f64,
-    f64,
-    f64,
-    f64,
-    f64,
-    f64,
-    f64,
-    f64,
-    c_int,
-    *mut c_void,
-) -> Bool;
-
-unsafe extern "C" {
-    fn CreateIpoptProblem(
-        n: c_int,
-        x_lower: *mut f64,
-        x_upper: *mut f64,
-        m: c_int,
-        g_lower: *mut f64,
-        g_upper: *mut f64,
-        jacobian_entries: c_int,
-        hessian_entries: c_int,
-        first_index: c_int,
-        objective: Objective,
-        constraint: Constraint,
-        gradient: Gradient,
-        jacobian: Jacobian,
-        hessian: Hessian,
-    ) -> *mut IpoptProblemInfo;
-    fn FreeIpoptProblem(problem: *mut IpoptProblemInfo);
-    fn AddIpoptStrOption(
-        problem: *mut IpoptProblemInfo,
-        name: *mut c_char,
-        value: *mut c_char,
-    ) -> Bool;
-    fn AddIpoptNumOption(problem: *mut IpoptProblemInfo, name: *mut c_char, value: f64) -> Bool;
-    fn AddIpoptIntOption(problem: *mut IpoptProblemInfo, name: *mut c_char, value: c_int) -> Bool;
-    fn SetIntermediateCallback(problem: *mut IpoptProblemInfo, iteration: Intermediate) -> Bool;
-    fn IpoptSolve(
-        problem: *mut IpoptProblemInfo,
-        x: *mut f64,
-        g: *mut f64,
-        objective: *mut f64,
-        of_constraints: *mut f64,
-        of_lower: *mut f64,
-        of_upper: *mut f64,
-        session: *mut c_void,
-    ) -> c_int;
-}
 
 /// A problem known to Ipopt, for any number of solves; while one exists that uses MUMPS, no other thread has such a one or calls MUMPS.
 pub(super) struct Problem {

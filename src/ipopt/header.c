@@ -1,4 +1,4 @@
-/* Declarations of src/ipopt/ffi.rs, held against the header of the Ipopt at hand: this file compiles where they agree.
+/* Declarations of src/ipopt/declarations.rs, held against the header of the Ipopt at hand: this file compiles where they agree.
    TRUTH is the type that build.rs expects of Bool. */
 
 #include <stdbool.h>

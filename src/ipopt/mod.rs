@@ -4,6 +4,7 @@
 //! more, one runs at a time in a process and a second call waits; an observer or an [`Nlp`] must not call [`solve`] itself then.
 
 mod centre;
+mod declarations;
 mod error;
 mod evaluation;
 mod ffi;
