@@ -1,7 +1,6 @@
 //! One step forward: Newton on the equations of a method, and halves of the step where it fails.
 
 use crate::dynamics::contraction::{Contraction, Verdict};
-use crate::dynamics::controlled::{Controlled, factor};
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equations::Equations;
 use crate::dynamics::error::StepError;
@@ -31,12 +30,12 @@ pub struct Steps<E> {
     /// Step of the tangent that is factorised.
     pub(super) factored: Option<f64>,
     /// Whether the last attempt began with the tangent of a step before.
-    stale: bool,
+    pub(super) stale: bool,
     residual: Vec<f64>,
     /// Local error that is allowed per ms; none of steps of given length.
-    allowed: Option<f64>,
+    pub(super) allowed: Option<f64>,
     /// Local error of the last attempt as a part of what is allowed.
-    used: f64,
+    pub(super) used: f64,
     /// Energy balance of the last attempt, where the method has one.
     balance: Option<Balance>,
     pub(super) report: StepperReport,
@@ -158,65 +157,13 @@ impl<E: Equations> Steps<E> {
         Ok(multipliers.unwrap_or_default())
     }
 
-    /// Goes on between two times of the drive by at most all of the `h` ms, with a local error of at most `allowed` per ms; returns
-    /// how far it went and how far it would go next.
-    ///
-    /// # Errors
-    /// Steps down to `least` ms fail; the state is then that of the last accepted step.
-    pub(super) fn step_within(
-        &mut self,
-        [from, to]: [f64; 2],
-        h: f64,
-        [least, allowed]: [f64; 2],
-        drive: &dyn Drive,
-    ) -> Result<Controlled, StepError> {
-        self.allowed = Some(allowed);
-        let mut part = h;
-        loop {
-            let end = if part < h { from + part } else { to };
-            self.equations.begin([from, end], drive);
-            self.used = 0.0;
-            let error = match self.attempt(part) {
-                Ok(()) => break,
-                Err(stopped @ StepError::Stopped { .. }) => return Err(stopped),
-                Err(error) => error,
-            };
-            if std::mem::take(&mut self.stale) || self.make_exact_after(&error) {
-                self.factored = None;
-                if self.used <= 1.0 {
-                    continue;
-                }
-            }
-            let shorter = part * factor(self.used).min(0.5);
-            if shorter < least {
-                if !self.updates.make_double() {
-                    return Err(error);
-                }
-                (self.factored, part) = (None, h);
-                continue;
-            }
-            self.report.halved += 1;
-            part = shorter;
-        }
-        // A step that hardly changes keeps its factorisation.
-        let next = match factor(self.used) {
-            close if (1.0..1.3).contains(&close) => part,
-            other => part * other.min(2.0),
-        };
-        Ok(Controlled {
-            taken: part,
-            next,
-            multipliers: self.equations.multipliers().to_vec(),
-        })
-    }
-
     /// Lets the whole tangent be factorised where an iteration failed; whether it was not before.
-    fn make_exact_after(&mut self, error: &StepError) -> bool {
+    pub(super) fn make_exact_after(&mut self, error: &StepError) -> bool {
         matches!(error, StepError::NoConvergence { .. }) && self.updates.make_exact()
     }
 
     /// One Newton solution; accepted only when it converged.
-    fn attempt(&mut self, h: f64) -> Result<(), StepError> {
+    pub(super) fn attempt(&mut self, h: f64) -> Result<(), StepError> {
         self.equations.guess(h);
         let mut residuals = Vec::with_capacity(ITERATIONS);
         // A tangent of another step length is another matrix.

@@ -14,13 +14,14 @@ use crate::ipopt::{
 use crate::model::{Model, System};
 use crate::nlp::Nlp;
 use crate::workflow::active::{Active, active};
+use crate::workflow::cause::Cause;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::iterate::Iterate;
 use crate::workflow::memory;
 use crate::workflow::motion::solved;
 use crate::workflow::ordering::ordering;
 use crate::workflow::phase::phase;
-use crate::workflow::resimulate::{Cause, Resimulation, resimulate};
+use crate::workflow::resimulate::{Resimulation, resimulate};
 use crate::workflow::resolve::{interval, resolve, with_found};
 use crate::workflow::second_start::{ITERATIONS, displaced, is_infeasible, one_of_both};
 use crate::workflow::violations::{Violation, violations};

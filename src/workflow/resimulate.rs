@@ -11,19 +11,17 @@ use serde::Serialize;
 
 use crate::control::{BoundaryConditions, Solution};
 use crate::dynamics::{DiscreteTrajectory, Start, StepError, simulate};
-use crate::ipopt::interrupt;
 use crate::model::Model;
-use crate::model::system::JointKind;
+use crate::workflow::cause::Cause;
 use crate::workflow::distance::Distance;
 use crate::workflow::motion::solved;
+use crate::workflow::repeat::{Repeat, go_on};
 
 /// Durations of the motion for which the goal is held.
 const HELD: usize = 5;
 /// Distance from the optimum on its own grid that counts as none, in rad and lengths of the system, and in tolerances of the
 /// solver.
 const SAME: (f64, f64) = (1e-4, 1e2);
-/// A distance that grows by this factor within one step is no growth of rounding.
-const JUMP: f64 = 1e3;
 /// Estimated errors along the motion, as parts of its path length, from which on it is warned, and refused.
 const COARSE: f64 = 0.05;
 const TOO_COARSE: f64 = 0.25;
@@ -85,45 +83,6 @@ pub struct Finer {
     /// Why it ended early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
-}
-
-/// Why an optimum of the discrete equations is no motion of the system.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Cause {
-    /// In one interval it is another root of the equations of a step than a step forward finds.
-    Root {
-        /// The interval, from 0.
-        interval: usize,
-        /// Its time in s.
-        time: f64,
-        /// The joint that turns farthest in it, and by how much in rad.
-        turns: Option<(String, f64)>,
-        /// How far the simulation is from the optimum after it.
-        distance: Distance,
-    },
-    /// A simulation with so many steps for an interval ends early.
-    Ends {
-        /// Steps for an interval.
-        steps: usize,
-        /// Why.
-        failure: String,
-    },
-    /// Rounding grows until the motion is another one.
-    Unstable {
-        /// Rate of growth in 1/s.
-        rate: f64,
-        /// Greatest distance from the optimum.
-        distance: Distance,
-    },
-    /// The grid does not resolve the motion.
-    Coarse {
-        /// Estimated error as a part of the path length.
-        error: f64,
-        /// Greatest distance from the optimum with finer steps.
-        distance: Distance,
-        /// Whether two refinements agree on it.
-        is_confirmed: bool,
-    },
 }
 
 /// Simulates optimal voltages; what the solver of a `tolerance` leaves of its equations is no deviation.
@@ -284,157 +243,6 @@ impl Resimulation {
              {:.0} % of the path length ({deviation}); use more intervals, or --accuracy",
             100.0 * error
         ))
-    }
-}
-
-/// A simulation under optimal voltages, with so many steps for an interval.
-struct Repeat {
-    history: DiscreteTrajectory,
-    motion: Solution,
-    /// Distances from the optimum at its instants, as far as it goes.
-    distances: Vec<Distance>,
-    failure: Option<String>,
-    /// Whether some of its steps had to be halved.
-    is_halved: bool,
-    /// Whether redundant constraints keep a step forward from being taken at all.
-    is_untestable: bool,
-}
-
-impl Repeat {
-    fn of(model: &Model, start: &Start, optimal: &Solution, steps: usize) -> Self {
-        let n = optimal.intervals();
-        let h = optimal.times[n] / n as f64;
-        let scalars = |from: f64, to: f64| {
-            let k = (0.5 * (from + to) / h) as usize;
-            model.scalars(&optimal.voltages[k.min(n - 1)])
-        };
-        let step = h / steps as f64;
-        let (history, failure) = simulate(model, start, step, steps * n, scalars, |_| go_on());
-        let motion = solved(model, &history, None);
-        let instants = 0..=history.intervals() / steps;
-        let of = |k: usize| Distance::between(model, &motion, steps * k, optimal, k);
-        let ended = (history.intervals() < steps * n).then(|| "interrupted".to_owned());
-        let is_untestable = history.intervals() == 0
-            && matches!(&failure, Some(StepError::Singular { redundant, .. }) if !redundant.is_empty());
-        Self {
-            is_untestable,
-            is_halved: history.report.halved > 0,
-            distances: instants.map(of).collect(),
-            failure: failure.map(|error| error.to_string()).or(ended),
-            history,
-            motion,
-        }
-    }
-
-    /// Greatest distance from the same motion in half the steps, at all its instants: between those of the optimum a vibration that the steps
-    /// do not resolve shows.
-    fn apart(&self, model: &Model, half: &Self) -> Distance {
-        let of = |k: usize| Distance::between(model, &self.motion, k, &half.motion, 2 * k);
-        let all = (0..self.motion.times.len()).map(of);
-        all.fold(Distance::default(), Distance::max)
-    }
-
-    fn greatest(&self) -> Distance {
-        let all = self.distances.iter().copied();
-        all.fold(Distance::default(), Distance::max)
-    }
-
-    /// Why a simulation with the step of the optimum is another motion, where it is by more than `same`.
-    fn cause(&self, model: &Model, optimal: &Solution, same: f64) -> Option<Cause> {
-        if self.is_halved && self.failure.is_none() {
-            return None;
-        }
-        let sizes: Vec<f64> = self.distances.iter().map(|d| d.size(model)).collect();
-        let Some(k) = sizes.iter().position(|&size| size > same || size.is_nan()) else {
-            let failure = self.failure.clone().filter(|_| !self.is_untestable)?;
-            return Some(Cause::Ends { steps: 1, failure });
-        };
-        let k = k.max(1);
-        let before = sizes[k - 1].max(f64::EPSILON);
-        if sizes[k] >= JUMP * before || sizes[k].is_nan() {
-            return Some(Cause::Root {
-                interval: k - 1,
-                time: optimal.times[k - 1] / 1e3,
-                turns: turns(model, optimal, k),
-                distance: self.distances[k],
-            });
-        }
-        let first = sizes
-            .iter()
-            .position(|&size| size > f64::EPSILON)
-            .unwrap_or(k);
-        let elapsed = (optimal.times[k] - optimal.times[first.min(k - 1)]) / 1e3;
-        Some(Cause::Unstable {
-            rate: (sizes[k] / sizes[first.min(k - 1)].max(f64::EPSILON)).ln() / elapsed,
-            distance: self.greatest(),
-        })
-    }
-}
-
-/// The joint that turns farthest in the interval that ends at instant `k`.
-fn turns(model: &Model, motion: &Solution, k: usize) -> Option<(String, f64)> {
-    let [a, b] = [&motion.joints[k - 1], &motion.joints[k]];
-    let angles = a.iter().zip(b).map(|(a, b)| (a - b).abs());
-    let joints = model.system.joints.iter().zip(angles);
-    let turning = joints.filter(|(joint, _)| matches!(joint.kind, JointKind::Revolute { .. }));
-    let (joint, angle) = turning.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some((joint.name.clone(), angle))
-}
-
-/// Goes on unless Ctrl-C asks to stop.
-fn go_on() -> ControlFlow<()> {
-    match interrupt::requested() {
-        true => ControlFlow::Break(()),
-        false => ControlFlow::Continue(()),
-    }
-}
-
-impl Cause {
-    /// In words.
-    pub(crate) fn told(&self) -> String {
-        match self {
-            Self::Root {
-                interval,
-                time,
-                turns,
-                distance,
-            } => {
-                let turn = turns.as_ref().map_or(String::new(), |(joint, angle)| {
-                    format!(", where joint \"{joint}\" turns by {angle:.2} rad")
-                });
-                format!(
-                    "forward simulation under the optimal voltages gives another motion: in interval {interval} (from \
-                     {time:.4} s){turn}, the equations have several roots, and the optimum has another one than a forward step \
-                     ({distance} apart after it); the intervals are too long for the motion"
-                )
-            }
-            Self::Ends { steps: 1, failure } => {
-                format!("forward simulation under the optimal voltages ends early: {failure}")
-            }
-            Self::Ends { steps, failure } => format!(
-                "forward simulation under the optimal voltages with {steps} steps per interval ends early: {failure}"
-            ),
-            Self::Unstable { rate, distance } => format!(
-                "forward simulation under the optimal voltages leaves the optimum ({distance}): the motion is unstable, round-off grows at a rate of {rate:.3} 1/s"
-            ),
-            Self::Coarse {
-                error,
-                distance,
-                is_confirmed,
-            } => {
-                let further = match is_confirmed {
-                    true => "",
-                    false => {
-                        "; steps that are still finer lead elsewhere, so that more is possible"
-                    }
-                };
-                format!(
-                    "the intervals do not resolve the motion: under the same voltages the motion with finer steps deviates \
-                     from it by up to {:.0} % of the path length ({distance}){further}",
-                    100.0 * error
-                )
-            }
-        }
     }
 }
 

@@ -1,0 +1,91 @@
+//! Causes for which an optimum of the discrete equations is no motion of the system.
+
+use crate::workflow::distance::Distance;
+
+/// Why an optimum of the discrete equations is no motion of the system.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cause {
+    /// In one interval it is another root of the equations of a step than a step forward finds.
+    Root {
+        /// The interval, from 0.
+        interval: usize,
+        /// Its time in s.
+        time: f64,
+        /// The joint that turns farthest in it, and by how much in rad.
+        turns: Option<(String, f64)>,
+        /// How far the simulation is from the optimum after it.
+        distance: Distance,
+    },
+    /// A simulation with so many steps for an interval ends early.
+    Ends {
+        /// Steps for an interval.
+        steps: usize,
+        /// Why.
+        failure: String,
+    },
+    /// Rounding grows until the motion is another one.
+    Unstable {
+        /// Rate of growth in 1/s.
+        rate: f64,
+        /// Greatest distance from the optimum.
+        distance: Distance,
+    },
+    /// The grid does not resolve the motion.
+    Coarse {
+        /// Estimated error as a part of the path length.
+        error: f64,
+        /// Greatest distance from the optimum with finer steps.
+        distance: Distance,
+        /// Whether two refinements agree on it.
+        is_confirmed: bool,
+    },
+}
+
+impl Cause {
+    /// In words.
+    pub(crate) fn told(&self) -> String {
+        match self {
+            Self::Root {
+                interval,
+                time,
+                turns,
+                distance,
+            } => {
+                let turn = turns.as_ref().map_or(String::new(), |(joint, angle)| {
+                    format!(", where joint \"{joint}\" turns by {angle:.2} rad")
+                });
+                format!(
+                    "forward simulation under the optimal voltages gives another motion: in interval {interval} (from \
+                     {time:.4} s){turn}, the equations have several roots, and the optimum has another one than a forward step \
+                     ({distance} apart after it); the intervals are too long for the motion"
+                )
+            }
+            Self::Ends { steps: 1, failure } => {
+                format!("forward simulation under the optimal voltages ends early: {failure}")
+            }
+            Self::Ends { steps, failure } => format!(
+                "forward simulation under the optimal voltages with {steps} steps per interval ends early: {failure}"
+            ),
+            Self::Unstable { rate, distance } => format!(
+                "forward simulation under the optimal voltages leaves the optimum ({distance}): the motion is unstable, round-off grows at a rate of {rate:.3} 1/s"
+            ),
+            Self::Coarse {
+                error,
+                distance,
+                is_confirmed,
+            } => {
+                let further = match is_confirmed {
+                    true => "",
+                    false => {
+                        "; steps that are still finer lead elsewhere, so that more is possible"
+                    }
+                };
+                format!(
+                    "the intervals do not resolve the motion: under the same voltages the motion with finer steps deviates \
+                     from it by up to {:.0} % of the path length ({distance}){further}",
+                    100.0 * error
+                )
+            }
+        }
+    }
+}
