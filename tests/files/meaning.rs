@@ -64,7 +64,7 @@ fn a_scene_means_what_is_written() {
     };
     assert_eq!(
         control.goal,
-        BoundaryState::RestAtVoltages(vec![1700.0, 0.0], Rest::Everything)
+        BoundaryState::RestAtVoltages(vec![1700.0, 0.0], Rest::Attainable)
     );
     assert_eq!(
         control.limits[1..],
