@@ -51,6 +51,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
     let problem = Control {
         duration: Duration::Given(TIME),
         intervals,
+        is_refined: false,
         start: rest_at(0.0),
         goal: rest_at(GOAL),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],

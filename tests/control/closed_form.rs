@@ -52,6 +52,7 @@ fn optimum(
     let problem = Control {
         duration: Duration::Given(time),
         intervals,
+        is_refined: false,
         start: rest_at(0.0),
         goal: rest_at(goal),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
