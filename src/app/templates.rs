@@ -52,7 +52,12 @@ impl Template {
             Self::Satellite => "simulate",
             _ => "solve",
         };
-        let problem = folder.join("problem.json").display().to_string();
+        let problem = Path::new("problem.json");
+        let problem = match folder == Path::new(".") {
+            true => problem.to_owned(),
+            false => folder.join(problem),
+        };
+        let problem = problem.display().to_string();
         let mut words = vec!["proboscis".to_owned(), command.to_owned(), problem];
         if let Some(name) = folder.file_name() {
             let results = Path::new("results").join(name);

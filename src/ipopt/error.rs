@@ -2,22 +2,9 @@
 
 use thiserror::Error;
 
+use crate::ipopt::no_stages::NoStages;
 use crate::ipopt::options::OptionValue;
 use crate::sparse::mumps;
-
-/// Version of the Ipopt that the program was built with.
-pub const VERSION: &str = env!("PROBOSCIS_IPOPT");
-
-/// Why this Ipopt does not take the linear solver along the horizon.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-pub enum NoStages {
-    /// Nothing can be in the place of MA57.
-    #[error("this Ipopt ({VERSION}) was built to load no linear solvers")]
-    WithoutMa57,
-    /// Nothing takes the functions.
-    #[error("this Ipopt ({VERSION}) shows no function that takes a linear solver")]
-    WithoutSetter,
-}
 
 /// Why Ipopt could not be called.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -13,9 +13,9 @@ use std::ptr::NonNull;
 use std::slice;
 use std::sync::OnceLock;
 
-use crate::ipopt::error::NoStages;
 use crate::ipopt::ffi;
 use crate::ipopt::loaded::Loaded;
+use crate::ipopt::no_stages::NoStages;
 use crate::ipopt::session::with_current;
 
 /// Numbers in `info`, in `icntl` and in `cntl`.

@@ -1,6 +1,6 @@
 //! What the linear systems of a solve took.
 
-use crate::ipopt::error::NoStages;
+use crate::ipopt::no_stages::NoStages;
 use crate::ipopt::status::Status;
 use crate::kkt::Statistics;
 

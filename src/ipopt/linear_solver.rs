@@ -1,7 +1,7 @@
 //! Who solves the linear systems of Ipopt.
 
-use crate::ipopt::error::NoStages;
 use crate::ipopt::hook;
+use crate::ipopt::no_stages::NoStages;
 
 /// How Ipopt calls MUMPS.
 pub(super) const MUMPS: &str = "mumps";

@@ -14,6 +14,7 @@ mod known_bounds;
 mod linear_report;
 mod linear_solver;
 mod loaded;
+mod no_stages;
 mod options;
 mod reached;
 mod record;
@@ -28,11 +29,12 @@ use std::ops::ControlFlow;
 
 use crate::nlp::Nlp;
 
-pub use error::{IpoptError, NoStages, VERSION};
+pub use error::IpoptError;
 #[doc(hidden)]
 pub use hook::functions_of_ma57;
 pub use linear_report::{LinearReport, StagesReport};
 pub use linear_solver::LinearSolver;
+pub use no_stages::{NoStages, VERSION};
 pub use options::{MUMPS_ORDERING, OptionValue, Options, Start};
 pub use reached::{Before, Reached};
 pub use solution::{Evaluations, Iteration, Multipliers, Seconds, SolverResult, StartingPoint};

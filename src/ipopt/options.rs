@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::ipopt::error::NoStages;
 use crate::ipopt::linear_solver::{LinearSolver, MUMPS, Taken};
+use crate::ipopt::no_stages::NoStages;
 
 /// Ordering of the linear solver's elimination unless `mumps_pivot_order` says otherwise: approximate minimum fill.
 ///

