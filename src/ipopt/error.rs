@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::ipopt::no_stages::NoStages;
-use crate::ipopt::options::OptionValue;
+use crate::ipopt::option_value::OptionValue;
 use crate::sparse::mumps;
 
 /// Why Ipopt could not be called.

@@ -14,7 +14,7 @@ use crate::ipopt::declarations::{
     FreeIpoptProblem, IpoptProblemInfo, IpoptSolve, SetIntermediateCallback,
 };
 use crate::ipopt::evaluation::Evaluator;
-use crate::ipopt::options::OptionValue;
+use crate::ipopt::option_value::OptionValue;
 use crate::ipopt::solution::{Iteration, Multipliers};
 use crate::nlp::{Bounds, Entries};
 use crate::sparse::mumps::{self, Exclusive};

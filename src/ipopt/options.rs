@@ -1,10 +1,10 @@
 //! What a solve is asked: tolerance, limits, kind of start, and any option of Ipopt by name.
 
 use std::collections::BTreeMap;
-use std::fmt;
 
 use crate::ipopt::linear_solver::{LinearSolver, MUMPS, Taken};
 use crate::ipopt::no_stages::NoStages;
+use crate::ipopt::option_value::OptionValue;
 
 /// Ordering of the linear solver's elimination unless `mumps_pivot_order` says otherwise: approximate minimum fill.
 ///
@@ -15,27 +15,6 @@ pub const MUMPS_ORDERING: i32 = 2;
 
 /// Distance kept from bounds, and fraction of their gap, when a warm start is pushed inside them.
 const PUSH: f64 = 1e-9;
-
-/// A value of an Ipopt option.
-#[derive(Clone, Debug, PartialEq)]
-pub enum OptionValue {
-    /// Integer option.
-    Integer(i32),
-    /// Real option.
-    Number(f64),
-    /// Text option.
-    Text(String),
-}
-
-impl fmt::Display for OptionValue {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Integer(value) => write!(f, "{value}"),
-            Self::Number(value) => write!(f, "{value:?}"),
-            Self::Text(value) => write!(f, "\"{value}\""),
-        }
-    }
-}
 
 /// `bound_relax_factor` where nothing else is asked for.
 const RELAXED: f64 = 1e-8;
