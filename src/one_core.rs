@@ -34,9 +34,9 @@ extern "C" fn begin() {
 
 /// Gives the process its cores back.
 pub(crate) fn end() {
-    if let Some(cores) = CORES.get() {
-        if let Err(error) = sched_setaffinity(None, cores) {
-            tracing::warn!("this process works on one core: {error}");
-        }
+    if let Some(cores) = CORES.get()
+        && let Err(error) = sched_setaffinity(None, cores)
+    {
+        tracing::warn!("this process works on one core: {error}");
     }
 }

@@ -74,10 +74,11 @@ fn stop_at(signal: c_int) -> io::Result<()> {
 /// Whether a signal has asked for a stop, which is told once.
 pub(super) fn have_asked() -> bool {
     let have = REQUESTED.load(Ordering::Relaxed);
-    if have && !TOLD.swap(true, Ordering::Relaxed) {
-        if let Some(tell) = TELL.get() {
-            tell(WORDS);
-        }
+    if have
+        && !TOLD.swap(true, Ordering::Relaxed)
+        && let Some(tell) = TELL.get()
+    {
+        tell(WORDS);
     }
     have
 }

@@ -81,7 +81,7 @@ pub(crate) fn mirrored(robot: &Robot, normal: usize) -> Robot {
 fn mapped(robot: &Robot, map: Matrix3<f64>) -> Robot {
     let mut twin = robot.clone();
     each_place(&mut twin.scene, &|place| {
-        *place = written(map * read(place))
+        *place = written(map * read(place));
     });
     let axial = map * map.determinant();
     for joint in twin.scene["joints"].as_array_mut().unwrap() {

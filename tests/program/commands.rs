@@ -249,7 +249,8 @@ fn blocks_leave_what_is_promised() {
     let problem = "problems/clamped_stack.json";
     let arguments = ["equilibrium", problem, "--set", COARSE, "-o", "rest"];
     let (status, out, err) = run(path, &arguments);
-    assert_eq!((status, err.as_str()), (0, ""));
+    // Two markers moved to their nearest nodes.
+    assert_eq!((status, err.lines().count()), (0, 2), "{err}");
     assert!(out.contains("stable equilibrium"), "{out}");
     let (status, inspected, _) = run(path, &["inspect", problem, "--set", COARSE]);
     assert!(status == 0 && inspected.contains("potentials of an interval"));

@@ -233,7 +233,7 @@ pub(super) fn not_offered(word: &str) -> Option<String> {
     let word = word.to_lowercase().replace([' ', '-'], "_");
     let one = TABLE.iter().find(|entry| {
         let is_meant = |known: &&str| *known == word || word.strip_suffix('s') == Some(known);
-        entry.words.iter().any(|known| is_meant(&known))
+        entry.words.iter().any(is_meant)
     })?;
     Some(format!("which is not offered ({}: {LIMITS})", one.said))
 }
