@@ -105,7 +105,7 @@ impl<E: Equations> Steps<E> {
     /// Goes on by `h` ms under constant voltages; returns the multipliers at the start, where the method knows them there.
     ///
     /// # Errors
-    /// As of [`Self::go`].
+    /// The step and its halves fail; the state is then that of the last accepted step.
     pub fn step(&mut self, h: f64, voltages: &[f64]) -> Result<Vec<f64>, StepError> {
         let constant = |_: f64, _: f64| voltages.to_vec();
         self.go([0.0, h], h, &constant)

@@ -17,7 +17,9 @@ pub(crate) use counted::counted;
 pub use derivatives::{Derivatives, Local};
 pub use digits::{shortest, significant};
 pub use jet::Jet;
-pub(crate) use pool::{has_pool, join};
+pub(crate) use pool::has_pool;
+#[cfg(feature = "report")]
+pub(crate) use pool::join;
 pub use sets::DisjointSets;
 pub use stopped::{IsOver, Stopped};
 

@@ -16,13 +16,14 @@ const TIMES: [usize; 3] = [2, 4, 8];
 const VARIABLES: usize = 2_000_000;
 
 /// An optimum and the way to it.
-pub(crate) struct Cured {
+#[derive(Debug)]
+pub struct Cured {
     /// The one of the problem's own grid, or the first one on a finer grid that is reproduced.
-    pub(crate) optimum: Optimum,
+    pub optimum: Optimum,
     /// Iterations on all grids.
-    pub(crate) iterations: usize,
+    pub iterations: usize,
     /// Why another grid was taken, or that none gave an optimum that is reproduced.
-    pub(crate) note: Option<String>,
+    pub note: Option<String>,
 }
 
 /// Solves a control problem on its own grid; where the optimum is not reproduced, on finer ones, each from the optimum

@@ -29,7 +29,7 @@ pub(crate) fn unbalanced(history: &DiscreteTrajectory) -> Option<String> {
 }
 
 /// The step that is taken where the one that is written does not divide the duration.
-pub(crate) fn divided(task: &Simulation) -> Option<String> {
+pub fn divided(task: &Simulation) -> Option<String> {
     let (steps, step) = grid(task);
     let is_other = (step - task.step).abs() > 1e-6 * task.step;
     (task.tolerance.is_none() && is_other).then(|| {
@@ -88,7 +88,7 @@ pub(crate) fn told(
 }
 
 /// A warning where the error of a motion is not confirmed to be below its tolerance.
-pub(crate) fn beyond(error: Option<EstimatedError>, task: &Simulation) -> Option<String> {
+pub fn beyond(error: Option<EstimatedError>, task: &Simulation) -> Option<String> {
     let (error, tolerance) = (error?, task.tolerance?);
     let size = significant(error.error, 2);
     match (error.error <= tolerance, error.is_confirmed) {

@@ -15,7 +15,7 @@ use crate::workflow::iterate::Iterate;
 use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
 
 /// Deviation of the motion under the optimal voltages that is confirmed where no accuracy is asked for, as a part of the path length.
-pub(crate) const ACCURACY: f64 = 0.01;
+pub const ACCURACY: f64 = 0.01;
 /// The part of the accuracy that the next grid is made for.
 const AIMED: f64 = 0.7;
 /// Least and greatest factor between the intervals of two grids, and that where the error is not known.
@@ -31,7 +31,7 @@ const VARIABLES: f64 = 2e6;
 ///
 /// # Errors
 /// As of [`optimise`].
-pub(crate) fn verified(
+pub fn verified(
     system: &System,
     control: &Control,
     accuracy: f64,
