@@ -52,7 +52,6 @@ class Questions:
         self,
         *,
         duration: entries.Duration,
-        intervals: int,
         objective: entries.Objective,
         start: entries.Start,
         voltage_bounds: Sequence[Quantity] | Numbers,
@@ -61,6 +60,7 @@ class Questions:
         goal: entries.Goal | None = None,
         guess: entries.Guess | None = None,
         hold: entries.Hold | None = None,
+        intervals: entries.Intervals | None = None,
         limits: Sequence[entries.Limit] | None = None,
         solver: entries.Solver | None = None,
         voltages: entries.Voltages | None = None,
@@ -68,16 +68,18 @@ class Questions:
         """Returns the optimal control problem with these entries of `control` in a problem file.
 
         * `duration`: Final time, SI unit s, or its bounds and a guess.
-        * `intervals`: Number of intervals, 1 or more.
         * `objective`: What is minimised.
         * `start`: Initial state.
         * `voltage_bounds`: Lower and upper bound of every voltage that is sought, SI unit V.
         * `coordinates`: Coordinates.
         * `free`: Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`.
         * `goal`: Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then.
-        * `guess`: Where the solver starts.
+        * `guess`: Where the solver starts; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages,
+          otherwise `"interpolate"`.
         * `hold`: What becomes of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is `reported`
           (where not written), or refused where holding it is `required`.
+        * `intervals`: Number of intervals, 1 or more, or `"auto"`, as where it is not written: as many as the verification of the optimum
+          needs to confirm an error of 1 % of the path length, or of what `--accuracy` says.
         * `limits`: Path limits.
         * `solver`: Options of the solver.
         * `voltages`: Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no
@@ -88,7 +90,6 @@ class Questions:
             "control",
             {
                 "duration": duration,
-                "intervals": intervals,
                 "objective": objective,
                 "start": start,
                 "voltage_bounds": voltage_bounds,
@@ -97,6 +98,7 @@ class Questions:
                 "goal": goal,
                 "guess": guess,
                 "hold": hold,
+                "intervals": intervals,
                 "limits": limits,
                 "solver": solver,
                 "voltages": voltages,

@@ -164,7 +164,7 @@ class Pair(TypedDict):
     """Sides of the rectangular cross-section at rest, SI unit m."""
 
     element: NotRequired[Element]
-    """Which hexahedron; of `finite_elements` only."""
+    """Which hexahedron; `hex8` where not written. Of `finite_elements` only."""
 
     elements: NotRequired[Sequence[int] | Numbers]
     """Elements along both sides of the cross-section and along the span; of `finite_elements` only."""
@@ -453,6 +453,14 @@ IntegratorWord: TypeAlias = "Literal['midpoint', 'implicit_euler', 'generalised_
 """A method by its name."""
 
 
+Intervals: TypeAlias = "IntervalsWord | int"
+"""How many intervals there are."""
+
+
+IntervalsWord: TypeAlias = "Literal['auto']"
+"""Intervals of no given number."""
+
+
 class JointAngleLimit(TypedDict):
     """Limits of a joint coordinate: `min`, `max` or both."""
 
@@ -593,7 +601,9 @@ class RestGoal(TypedDict):
     """A state at the end, at rest: `rest_at_voltages`, or `joint_angles`, or `markers` and `orientations`."""
 
     hold: NotRequired[Mapping[Any, Quantity]]
-    """Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named."""
+    """Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named. Of elastic blocks the motion
+    under them is the guess, where no other is written.
+    """
 
     joint_angles: NotRequired[Mapping[Any, Quantity]]
     """Joint coordinates by joint, SI unit rad or m; free where not named."""
@@ -605,8 +615,9 @@ class RestGoal(TypedDict):
     """Orientations by body."""
 
     rest: NotRequired[Rest]
-    """What comes to rest at an equilibrium, at positions of markers and at orientations: `everything` (where not written), or `bodies` and these
-    markers alone, for elastic blocks, which a few voltages cannot bring to rest everywhere.
+    """What comes to rest at an equilibrium, at positions of markers and at orientations: `everything`, or `bodies` and these markers alone, also
+    called `markers`. Where not written everything, or, of elastic blocks that have more coordinates than the voltages can bring to rest, bodies
+    and these markers.
     """
 
     rest_at_voltages: NotRequired[Mapping[Any, Quantity]]
@@ -823,15 +834,19 @@ class Control(TypedDict):
     """Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then."""
 
     guess: NotRequired[Guess]
-    """Where the solver starts."""
+    """Where the solver starts; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages, otherwise
+    `"interpolate"`.
+    """
 
     hold: NotRequired[Hold]
     """What becomes of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is `reported` (where not
     written), or refused where holding it is `required`.
     """
 
-    intervals: int
-    """Number of intervals, 1 or more."""
+    intervals: NotRequired[Intervals]
+    """Number of intervals, 1 or more, or `"auto"`, as where it is not written: as many as the verification of the optimum needs to confirm an
+    error of 1 % of the path length, or of what `--accuracy` says.
+    """
 
     limits: NotRequired[Sequence[Limit]]
     """Path limits."""

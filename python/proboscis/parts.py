@@ -27,7 +27,7 @@ class Material(Part):
     * `c1`: Constant of the term c₁ E·E, SI unit F/m = N/V².
     * `c2`: Constant of the term c₂ C:(E⊗E), SI unit F/m = N/V².
     * `density`: Density, SI unit kg/m³; without it muscles are massless.
-    * `dielectric`: How `relative_permittivity` enters the energy.
+    * `dielectric`: How `relative_permittivity` enters the energy; `first_order` where not written.
     * `lame_lambda`: First Lamé constant λ, SI unit Pa; or give `poisson_ratio`. Finite elements need one of them.
     * `poisson_ratio`: Poisson's ratio, between −1 and 0.5; or give `lame_lambda`.
     * `relative_permittivity`: Relative permittivity, 1 or more; or give `c1` and `c2`; without either the material has no electric term.
@@ -163,7 +163,7 @@ class Muscle(Part):
     * `layer_thickness`: Thickness of one layer at rest, SI unit m.
     * `material`: Name of the material.
     * `to`: End.
-    * `element`: Which hexahedron; of `finite_elements` only.
+    * `element`: Which hexahedron; `hex8` where not written. Of `finite_elements` only.
     * `elements`: Elements along both sides of the cross-section and along the span; of `finite_elements` only.
     * `layers`: Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
     * `model`: Model; `lumped` where not written.
@@ -211,7 +211,7 @@ class Solid(Part):
 
     * `box`: Box with edges along the axes of the ground frame.
     * `electrodes`: Electrodes; without any the block has no potential.
-    * `element`: Which hexahedron.
+    * `element`: Which hexahedron; `hex8` where not written.
     * `fixed`: Faces and other places that are held. A node that is glued as well moves with its body.
     * `glued`: Names of bodies by the faces that are glued to them; a face glued to `ground` is clamped.
     * `material`: Name of the material.
