@@ -354,8 +354,9 @@ def test_ctrl_c_ends_all_that_takes_long(pair: pb.Problem) -> None:
             call()
         thread.join()
         result = caught.value.result
-        if isinstance(result, dict):
-            assert not result["agrees"] and result["checked"] < result["variables"]
+        if call is calls[0]:
+            # While the program is built there is nothing to tell yet.
+            assert result is None or (not result["agrees"] and result["checked"] < result["variables"])
         else:
             assert "not_run" in set(result["status"]) or "interrupted" in set(result["status"]), set(result["status"])
     assert pair.solve().is_solved
