@@ -10,6 +10,7 @@ use std::thread;
 use std::time::Duration;
 
 use common::programs::{HS071_START, hs071};
+use common::signals::Listening as _;
 use proboscis::ipopt::{Options, StartingPoint, Status, interrupt, solve};
 
 /// Run in a process of its own by the next test: solves until interrupted, then waits for the second Ctrl-C.
@@ -54,7 +55,7 @@ fn ctrl_c_stops_the_solve_and_the_second_one_the_process() {
         ])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
-        .spawn()
+        .spawn_listening()
         .expect("it can be run again");
     let _input = child.stdin.take();
     let mut lines = BufReader::new(child.stdout.take().expect("its output")).lines();

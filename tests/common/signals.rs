@@ -1,9 +1,34 @@
 //! Signals to programs under test, without another program to send them.
 #![allow(dead_code, reason = "each test binary uses a part")]
 
-use nix::sys::signal::{Signal, kill, killpg};
+use nix::sys::signal::{SigHandler, Signal, kill, killpg, signal};
 use nix::unistd::Pid;
-use std::process::Child;
+use std::io;
+use std::process::{Child, Command};
+use std::sync::Once;
+
+/// Programs that hear of signals.
+pub(crate) trait Listening {
+    /// Starts a program as a terminal does: with the signals of a stop neither caught nor ignored.
+    ///
+    /// A shell without job control starts what runs in its background with SIGINT ignored, and so do its tests; a program
+    /// that inherits this never hears of Ctrl-C, as it should.
+    fn spawn_listening(&mut self) -> io::Result<Child>;
+}
+
+impl Listening for Command {
+    fn spawn_listening(&mut self) -> io::Result<Child> {
+        static TO_DEFAULT: Once = Once::new();
+        TO_DEFAULT.call_once(|| {
+            for asking in [Signal::SIGINT, Signal::SIGTERM, Signal::SIGHUP] {
+                #[expect(unsafe_code, reason = "handlers may be unsafe, the default is not")]
+                // SAFETY: the default action runs no code of this process.
+                unsafe { signal(asking, SigHandler::SigDfl) }.expect("a signal that may be caught");
+            }
+        });
+        self.spawn()
+    }
+}
 
 fn pid(child: &Child) -> Pid {
     Pid::from_raw(

@@ -1,5 +1,6 @@
 //! The program as its users meet it: files in, one line and files out, an exit status.
 
+use crate::common::signals::Listening as _;
 use crate::refusals::refused_run;
 use crate::runs::{read, run, workshop};
 use serde_json::{Value, json};
@@ -356,7 +357,7 @@ fn ctrl_c_keeps_the_files() {
         ])
         .args(["--set", "control.intervals=1500"])
         .stdout(std::process::Stdio::piped())
-        .spawn()
+        .spawn_listening()
         .unwrap();
     // The folder is made when the first iterate is told.
     while !folder.path().join("stopped").exists() {

@@ -1,6 +1,7 @@
 //! A process without what it takes for granted: where to write, threads, memory, room in files; and signals that ask it to stop.
 #![cfg(unix)]
 
+use crate::common::signals::Listening as _;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use rustix::process::geteuid;
@@ -252,7 +253,7 @@ fn long(folder: &Path, more: &[&str]) -> Child {
         .current_dir(folder)
         .stdout(Stdio::null())
         .stderr(File::create(folder.join("errors")).unwrap())
-        .spawn()
+        .spawn_listening()
         .unwrap()
 }
 
@@ -305,7 +306,7 @@ fn a_signal_that_was_ignored_before_is_ignored() {
         .current_dir(folder.path())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
-        .spawn()
+        .spawn_listening()
         .unwrap();
     wait_for(&mut child, &out);
     send(&child, Signal::SIGHUP);

@@ -1,5 +1,6 @@
 //! Several starting points, in threads and in processes.
 
+use crate::common::signals::Listening as _;
 use crate::runs::{problem, read, run};
 use proboscis::ipopt::LinearSolver;
 use serde_json::Value;
@@ -333,7 +334,7 @@ fn ctrl_c_ends_all_starts_and_keeps_the_best() {
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .process_group(0)
-        .spawn()
+        .spawn_listening()
         .unwrap();
     // The folder of a start is made when its first iterate is told.
     while !path.join("out/starts/01").exists() {

@@ -1,5 +1,6 @@
 //! What accuracy costs: studies of motions with a closed form, refused studies, points that fail, and their files.
 
+use crate::common::signals::Listening as _;
 use crate::runs::run;
 use proboscis::control::problem::Task;
 use proboscis::files::read_problem;
@@ -326,7 +327,7 @@ fn ctrl_c_keeps_the_results_so_far() {
         .args(["study", "study.json", "-o", "out", "-q"])
         .stdout(Stdio::null())
         .stderr(Stdio::null())
-        .spawn()
+        .spawn_listening()
         .unwrap();
     // The folder is made once Ctrl-C is listened to.
     while !folder.path().join("out").exists() {

@@ -1,6 +1,7 @@
 //! What the user is told: that a run was stopped, which derivatives are wrong, what a command does not know.
 
 use crate::common::programs::{HS071_START, Program, hs071, one_variable};
+use crate::common::signals::Listening as _;
 use crate::runs::{problem, read, run};
 use proboscis::control::problem::Task;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
@@ -137,7 +138,7 @@ fn ctrl_c_stops_a_motion_of_elements_within_a_step() {
         ])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
-        .spawn()
+        .spawn_listening()
         .unwrap();
     // The folder is made after the first step.
     while !folder.path().join("out").exists() && child.try_wait().unwrap().is_none() {
