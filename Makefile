@@ -13,7 +13,7 @@ MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight
 FUZZ_SECONDS := 600
 ADVERSARY_SECONDS := 600
 
-.PHONY: help trunk blocks gallery build test test-python test-browser wheel docs fuzz adversary check bench studies install-deps try-fresh clean
+.PHONY: help trunk blocks gallery build test test-python test-browser wheel docs fuzz adversary check audit bench studies install-deps try-fresh clean
 
 help:
 	@echo 'make trunk         solve the elephant trunk, let it swing under constant voltages, and say where the pictures are'
@@ -27,6 +27,7 @@ help:
 	@echo 'make fuzz          look for files that the reader does not survive, for FUZZ_SECONDS=$(FUZZ_SECONDS)'
 	@echo 'make adversary     random robots in many forms, with fresh seeds, for ADVERSARY_SECONDS=$(ADVERSARY_SECONDS)'
 	@echo 'make check         formatting, lints, documentation'
+	@echo 'make audit         licences, sources and known vulnerabilities of all crates, by cargo-deny (installed where it is missing)'
 	@echo 'make bench         measure; rewrite the tables of benches/README.md'
 	@echo 'make studies       what accuracy costs, hard cases, effects, random goals, warm starts, a peer: rewrite their pages in $(GALLERY)'
 	@echo 'make try-fresh     run both commands of the README in bare roots of Debian (debootstrap, as root)'
@@ -81,6 +82,9 @@ check: install-deps
 	@$(CARGO) clippy --quiet --locked --all-targets --no-deps --manifest-path python/Cargo.toml --target-dir "$${CARGO_TARGET_DIR:-target}" -- -D warnings
 	@RUSTDOCFLAGS='-D warnings' $(CARGO) doc --quiet --locked --no-deps
 	@RUSTDOCFLAGS='-D warnings --cfg internals' $(CARGO) doc --quiet --locked --no-deps
+
+audit:
+	@.ci/audit
 
 bench: install-deps
 	@$(CARGO) bench --locked --bench transcription --bench step

@@ -43,6 +43,9 @@ pub(crate) enum Command {
         /// Solve from each starting point in a process of its own, in place of threads; with MUMPS it is always so.
         #[arg(long, requires = "starts")]
         processes: bool,
+        /// Do nothing where the folder holds this result already, with all its files as they were written.
+        #[arg(long, conflicts_with_all = ["starts", "from"])]
+        once: bool,
     },
     /// Simulate forward in time, of a problem that asks for it; one that asks for optimal voltages is for solve.
     Simulate(InTime),

@@ -15,7 +15,7 @@ use arguments::{Arguments, Command, File, New, typed};
 use choices::run_in;
 use clap::{CommandFactory, Parser};
 use proboscis::app::{self, CommandError, CommandInput, CommandOutput, Template};
-use proboscis::files::printable;
+use proboscis::files::{lines, message, note, printable_json};
 use proboscis::ipopt::interrupt;
 use proboscis::study::study;
 use proboscis::sweep::sweep;
@@ -40,11 +40,11 @@ fn main() -> ExitCode {
     }
     match answer(arguments.command) {
         Ok(told) => {
-            told.notes.iter().for_each(|note| tell(note));
-            answered(&told.result, if told.is_solved { 0 } else { 1 })
+            told.notes.iter().for_each(|one| tell(&note(one)));
+            answered(&lines(&told.result), if told.is_solved { 0 } else { 1 })
         }
         Err(error) => {
-            tell(&format!("error: {}", printable(&error.to_string())));
+            tell(&format!("error: {}", message(&error.to_string())));
             if let Some(excerpt) = error.excerpt() {
                 tell(excerpt.trim_end());
             }
@@ -56,6 +56,12 @@ fn main() -> ExitCode {
 /// The end of a command that asks for help or version, or is none.
 fn helped(other: &clap::Error) -> ExitCode {
     let status = u8::try_from(other.exit_code()).unwrap_or(2);
+    let mut typed = env::args_os();
+    let is_plain = typed.all(|word| note(&word.to_string_lossy()) == word.to_string_lossy());
+    if other.use_stderr() && !is_plain {
+        tell(note(&other.to_string()).trim_end());
+        return ExitCode::from(status);
+    }
     let printed = other.print();
     match other.use_stderr() {
         true => ExitCode::from(status),
@@ -94,6 +100,7 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
             starts,
             seed,
             processes,
+            once,
         } => {
             let json = problem.json();
             let request = CommandInput {
@@ -103,6 +110,7 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
             let run_in = run_in(processes);
             told(json, &request, |request| match starts {
                 Some(starts) => app::solve_from_starts(request, starts, seed, run_in),
+                None if once => app::run_once(request),
                 None => app::run(request),
             })
         }
@@ -177,13 +185,13 @@ fn told(
         Err(error @ CommandError::NoEquilibrium { .. }) if json => CommandOutput {
             is_solved: false,
             result: String::new(),
-            notes: vec![format!("error: {}", printable(&error.to_string()))],
+            notes: vec![format!("error: {}", message(&error.to_string()))],
         },
         other => other?,
     };
     Ok(match json {
         true => CommandOutput {
-            result: app::written_summary(request)?,
+            result: printable_json(&app::written_summary(request)?),
             ..told
         },
         false => told,

@@ -45,7 +45,7 @@ fn is_ours() -> bool {
 fn count(asked: usize, bytes: isize) {
     if is_ours() {
         ASKED.fetch_add(asked, Ordering::Relaxed);
-        KEPT.fetch_add(bytes, Ordering::Relaxed);
+        took(bytes);
     }
 }
 
@@ -53,6 +53,15 @@ static ASKED: AtomicUsize = AtomicUsize::new(0);
 
 /// Bytes that are in use.
 static KEPT: AtomicIsize = AtomicIsize::new(0);
+
+/// Most bytes that were in use.
+static MOST: AtomicIsize = AtomicIsize::new(0);
+
+/// More bytes are in use.
+fn took(bytes: isize) {
+    let now = KEPT.fetch_add(bytes, Ordering::Relaxed) + bytes;
+    MOST.fetch_max(now, Ordering::Relaxed);
+}
 
 // SAFETY: every call goes to the allocator of the system with unchanged arguments.
 unsafe impl GlobalAlloc for Counting {
@@ -360,5 +369,40 @@ fn evaluations_allocate_nothing() {
             let counts = allocations(&system, &control);
             assert_eq!(counts, [0; 5], "{name} in {coordinates:?} coordinates");
         }
+    }
+}
+
+/// Peak of memory, in bytes for each byte of a problem file with a table of this many intervals; the least of some readings, since other tests
+/// take memory meanwhile.
+fn bytes_of_a_byte(intervals: usize, voltage: &str) -> f64 {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.json");
+    let scene = format!("{}/problems/scenes/pair.json", env!("CARGO_MANIFEST_DIR"));
+    let times: Vec<String> = (0..=intervals)
+        .map(|i| format!("{:.6}", 1e-6 * i as f64))
+        .collect();
+    let values = vec![voltage; intervals].join(", ");
+    let text = format!(
+        "{{ \"scene\": \"{scene}\", \"simulate\": {{ \"duration\": 1, \"step\": 0.01, \"voltages\": {{ \"time\": [{}], \"voltages\": {{ \"muscle2\": [{values}] }} }} }} }}",
+        times.join(", ")
+    );
+    fs::write(&path, &text).unwrap();
+    let size = text.len() as f64;
+    drop(text);
+    let peaks = (0..3).map(|_| {
+        let before = KEPT.load(Ordering::Relaxed);
+        MOST.store(before, Ordering::Relaxed);
+        proboscis::files::read_problem(&path, &[]).unwrap();
+        (MOST.load(Ordering::Relaxed) - before) as f64 / size
+    });
+    peaks.fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn reading_takes_less_than_eight_bytes_of_memory_for_a_byte() {
+    for voltage in ["0.25", "\"0.25 kV\""] {
+        let bytes = bytes_of_a_byte(400_000, voltage);
+        // The text itself is there.
+        assert!(bytes > 1.0 && bytes < 8.0, "{voltage}: {bytes}");
     }
 }

@@ -60,6 +60,8 @@ class Table(Mapping[str, Array]):
     def _of(cls, headed: Mapping[str, Array]) -> Table:
         columns, units = {}, {}
         for header, values in headed.items():
+            if header[:2] in ("'=", "'+", "'-", "'@"):  # kept from spreadsheets, which would take it for a formula
+                header = header[1:]
             name, _, unit = header.removesuffix("]").partition(" [")
             scale, units[name] = si(unit)
             columns[name] = values / scale

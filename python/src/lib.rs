@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use proboscis::app::{self, CommandError, CommandInput};
-use proboscis::files::printable;
+use proboscis::files::message;
 use pyo3::prelude::*;
 use serde::Serialize;
 
@@ -26,7 +26,7 @@ fn raised(py: Python<'_>, told: (String, String, String)) -> PyErr {
 /// What a command says of its input.
 fn error(py: Python<'_>, mistake: &CommandError) -> PyErr {
     let told = (
-        printable(&mistake.to_string()).into_owned(),
+        message(&mistake.to_string()),
         mistake.place().to_owned(),
         mistake.excerpt().unwrap_or_default(),
     );

@@ -32,24 +32,21 @@ fn wrong(reason: String) -> CommandError {
     }
 }
 
-/// What a simulation is asked, without its end: a motion goes on where this is the same.
-pub(super) fn asked(loaded: &Loaded, task: &Simulation) -> Value {
-    let mut simulate = loaded.problem["simulate"].clone();
-    if let Some(entries) = simulate.as_object_mut() {
-        entries.remove("duration");
-    }
+/// The JSON text of what a simulation is asked, without its end: a motion goes on where this is the same.
+pub(super) fn asked(loaded: &Loaded, task: &Simulation) -> String {
     let mut task = task.clone();
     task.duration = 0.0;
     if task.tolerance.is_some() {
         // That of the first attempt is a part of the duration.
         task.step = 0.0;
     }
-    json!({
-        "scene": loaded.scene,
-        "simulate": simulate,
-        "program": Origin::program(),
-        "digest": digest(format_args!("{:?}{task:?}", loaded.system), DIGITS),
-    })
+    let digest = digest(format_args!("{:?}{task:?}", loaded.system), DIGITS);
+    let (program, digest) = (json!(Origin::program()), json!(digest));
+    let simulate = loaded.entry_without("simulate", "duration");
+    let scene = &loaded.scene;
+    format!(
+        "{{\"scene\":{scene},\"simulate\":{simulate},\"program\":{program},\"digest\":{digest}}}"
+    )
 }
 
 /// The motion that a folder holds, where it is one of this problem that has not come to its end.
@@ -58,7 +55,7 @@ pub(super) fn asked(loaded: &Loaded, task: &Simulation) -> Value {
 /// There is none, or it is one of another problem.
 pub(super) fn begun(
     folder: &Path,
-    asked: &Value,
+    asked: &str,
     task: &Simulation,
 ) -> Result<DiscreteTrajectory, CommandError> {
     let paths = [UNFINISHED, ENDED].map(|name| folder.join(name));
@@ -71,7 +68,9 @@ pub(super) fn begun(
     let file = path.display();
     let read = read(path).map_err(|error| wrong(format!("{file}: {error}")))?;
     let Continuation { history, problem } = read;
-    if let Some(other) = difference(&problem, asked) {
+    let [problem, asked]: [Value; 2] =
+        [&problem, asked].map(|text| serde_json::from_str(text).unwrap_or_default());
+    if let Some(other) = difference(&problem, &asked) {
         return Err(wrong(format!(
             "{file} is a motion of another problem: {other}"
         )));

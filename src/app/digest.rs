@@ -8,8 +8,19 @@ use sha2::{Digest, Sha256};
 pub(crate) fn digest(written: fmt::Arguments<'_>, digits: usize) -> String {
     let mut hash = Hash(Sha256::new());
     write!(hash, "{written}").expect("a hash takes everything");
-    let mut text = String::new();
-    for byte in hash.0.finalize().iter().take(digits / 2) {
+    let mut text = hexadecimal(&hash.0.finalize());
+    text.truncate(digits);
+    text
+}
+
+/// All hexadecimal digits of the SHA-256 of bytes.
+pub(crate) fn digest_of(bytes: &[u8]) -> String {
+    hexadecimal(&Sha256::digest(bytes))
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(2 * bytes.len());
+    for byte in bytes {
         write!(text, "{byte:02x}").expect("room for digits");
     }
     text

@@ -62,6 +62,19 @@ pub enum CommandError {
     /// A file stands where a new one was to be written.
     #[error("{} exists already and is left as it is; choose another folder", .0.display())]
     Exists(PathBuf),
+    /// Results would replace those of another problem.
+    #[error(
+        "{} has results of {}, which those of {} would replace; expected another folder, by -o, or the same one by -o to replace them",
+        folder.display(), input.display(), own.display()
+    )]
+    Foreign {
+        /// The folder.
+        folder: PathBuf,
+        /// The problem file whose results are there.
+        input: PathBuf,
+        /// The one that was typed.
+        own: PathBuf,
+    },
     /// A result that was written cannot be read.
     #[error("cannot read {}: {cause}", file.display())]
     Unreadable {

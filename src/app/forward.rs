@@ -4,8 +4,6 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-use serde_json::Value;
-
 use crate::app::blocks::BlockSizes;
 use crate::app::comparison::{self, Comparison};
 use crate::app::continuation;
@@ -148,7 +146,7 @@ pub(super) fn simulation(
         || {
             let motion = Trajectory::from_history(&model, &history);
             let write = || {
-                let goes_on = goes_on.then_some(&problem);
+                let goes_on = goes_on.then_some(&*problem);
                 write_motion(&mut files, (&model, &history, &motion), goes_on)?;
                 fields::write(&mut files, &model, &history, &origin)
             };
@@ -289,7 +287,7 @@ pub(super) fn simulation(
 fn write_motion(
     files: &mut FileSet,
     (model, history, motion): (&Model, &DiscreteTrajectory, &Trajectory),
-    goes_on: Option<&Value>,
+    goes_on: Option<&str>,
 ) -> Result<(), WriteError> {
     let is_motion = motion.intervals() > 0;
     if is_motion {
@@ -314,7 +312,7 @@ fn write_motion(
 fn write_continuation(
     path: &Path,
     history: &DiscreteTrajectory,
-    asked: &Value,
+    asked: &str,
 ) -> Result<(), WriteError> {
     let bytes = continuation_file::bytes(history, asked);
     let bytes = bytes.map_err(|cause| WriteError {

@@ -4,12 +4,13 @@
 //! - `batch`: several solves at once, in threads or processes; `multistart`: a control problem from several guesses.
 //! - `inspect`, `sparsity`, `check`, `templates`: the other commands; `program`: what is asked from other languages in place of files.
 //! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
-//! - `continuation`: runs that go on from the result of another; `digest`: what tells that two are the same.
+//! - `continuation`: runs that go on from the result of another; `digest`, `identity`: what tells that two are the same.
+//! - `once`, `record`: a result that is made once, and what tells that its files are whole.
 //! - `shown`: which part of a motion tables, figures and page show.
 //! - `side_by_side`: several results on one page.
 //! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`, `moved_markers`: what is told of a result.
 //! - `other_task`: what is said where a problem asks for another command; `no_equilibrium`: what is written where nothing rests.
-//! - `page`, `solve_page`: what the page tells; `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `progress`, `ticker`, `request`, `error`: what commands share.
+//! - `page`, `solve_page`: what the page tells; `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `foreign`, `progress`, `ticker`, `request`, `error`: what commands share.
 
 mod accuracy_table;
 mod batch;
@@ -24,17 +25,21 @@ mod extent;
 mod fields;
 mod folder;
 mod followed;
+mod foreign;
 mod forward;
+mod identity;
 mod inspect;
 mod linear_systems;
 mod moved_markers;
 mod multistart;
 mod no_equilibrium;
+mod once;
 mod other_task;
 mod page;
 mod path;
 mod program;
 mod progress;
+mod record;
 mod request;
 mod rest;
 mod rest_observed;
@@ -59,14 +64,16 @@ pub(crate) use batch::{Batch, RunEnd, Said, check_run_in, run_all, task_runs_at_
 pub use batch::{RunIn, end_with_parent};
 pub use blocks::{BlockSize, BlockSizes};
 pub use check::{Checked, check, checked};
-pub(crate) use digest::digest;
 pub use error::CommandError;
 pub(crate) use folder::make_folder;
+pub(crate) use identity::Identity;
 pub use inspect::{Inspected, inspect, inspected};
 pub use multistart::{solve_from_starts, solve_text_from_starts};
+pub use once::run_once;
 pub use program::{changed_text, check_text, with_program};
 pub(crate) use progress::{Progress, progress_bar};
 pub use progress::{ProgressDisplay, Reached};
+pub(crate) use record::{FileRecords, Found, OF_VARIANT, is_unfinished};
 pub use request::{CommandInput, CommandOutput, PageWanted};
 pub use rest::equilibrium_of_file;
 pub use side_by_side::compare;

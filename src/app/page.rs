@@ -1,14 +1,12 @@
 //! What every page tells: how it ended, what else there is to say, what was asked.
 
-use serde_json::Value;
-
 use crate::app::summary::Summary;
-use crate::files::{Loaded, lay_out};
+use crate::files::{Loaded, compact, lay_out};
 use crate::report::Told;
 
 /// Names and texts of problem and scene as they were read, overrides applied.
 pub(super) fn asked(loaded: &Loaded) -> Vec<(String, String)> {
-    let text = |value: &Value| lay_out(&value.to_string());
+    let text = |written: &str| lay_out(&compact(written));
     let mut documents = vec![("Problem".to_owned(), text(&loaded.problem))];
     if loaded.scene_path.is_some() {
         documents.push(("Scene".to_owned(), text(&loaded.scene)));

@@ -28,11 +28,12 @@ pub fn check_text(input: &Path, text: &str, set: &[String]) -> Result<&'static s
 /// The problem that it then is is wrong.
 pub fn changed_text(input: &Path, text: &str, set: &[String]) -> Result<String, CommandError> {
     let loaded = read(input, Some(text), set)?;
-    let mut problem = loaded.problem;
+    let value = |text: &str| serde_json::from_str::<Value>(text).unwrap_or_default();
+    let mut problem = value(&loaded.problem);
     let is_of_scene = |change: &String| change.trim_start().starts_with("scene.");
     let file = problem["scene"].as_str().map(PathBuf::from);
     if let Some(file) = file.filter(|_| set.iter().any(is_of_scene)) {
-        let mut scene = loaded.scene;
+        let mut scene = value(&loaded.scene);
         let folder = file.parent().unwrap_or(Path::new(""));
         let solids = scene.get_mut("solids").and_then(Value::as_array_mut);
         for solid in solids.into_iter().flatten() {

@@ -1,7 +1,7 @@
 //! What is typed and what is told: a command with its options, and its answer.
 
-use std::ffi::OsStr;
-use std::path::PathBuf;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 
 use crate::app::progress::ProgressDisplay;
 use crate::files::is_standard_input;
@@ -18,7 +18,7 @@ pub struct CommandInput {
     pub input: PathBuf,
     /// Overrides `path=value`.
     pub set: Vec<String>,
-    /// Folder for the results; `results/<name of the problem>` where not given.
+    /// Folder for the results; `results/<name of the problem>` where not given, see [`CommandInput::folder`].
     pub output: Option<PathBuf>,
     /// Seconds that the whole run may take.
     pub max_seconds: Option<f64>,
@@ -65,14 +65,14 @@ pub struct CommandOutput {
 }
 
 impl CommandInput {
-    /// Folder for the results.
+    /// Folder for the results: that of the name of the file, or of its folder where the file is called `problem.json` or `scene.json`, as those of `new`.
     pub fn folder(&self) -> PathBuf {
         self.output.clone().unwrap_or_else(|| {
-            let stem = match is_standard_input(&self.input) {
-                true => OsStr::new("stdin"),
-                false => self.input.file_stem().unwrap_or_default(),
+            let name = match is_standard_input(&self.input) {
+                true => "stdin".into(),
+                false => name(&self.input),
             };
-            PathBuf::from("results").join(stem)
+            PathBuf::from("results").join(name)
         })
     }
 
@@ -89,4 +89,20 @@ impl CommandInput {
             },
         }
     }
+}
+
+/// Names of files that say nothing of what is in them.
+const GENERIC: [&str; 2] = ["problem", "scene"];
+
+/// The name of a problem: that of its file, or of its folder.
+fn name(input: &Path) -> OsString {
+    let stem = input.file_stem().unwrap_or_default();
+    let folder = match input.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let of_folder = || Some(folder.canonicalize().ok()?.file_name()?.to_owned());
+    let is_generic = GENERIC.iter().any(|&name| stem == name);
+    let name = is_generic.then(of_folder).flatten();
+    name.unwrap_or_else(|| stem.to_owned())
 }

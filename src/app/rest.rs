@@ -6,6 +6,7 @@ use crate::app::blocks::BlockSizes;
 use crate::app::error::CommandError;
 use crate::app::fields;
 use crate::app::folder::make_folder;
+use crate::app::foreign::refuse_foreign;
 use crate::app::moved_markers::moved_markers;
 use crate::app::other_task::no_equilibrium;
 use crate::app::page;
@@ -46,6 +47,7 @@ pub fn equilibrium_of_file(
     let began = Instant::now();
     let _progress = Progress::of_phases(request.progress);
     phase("reading");
+    refuse_foreign(request)?;
     if let Some(voltages) = voltages {
         let system = read_system(&request.input, &request.set)?;
         memory::of_elements(&system).map_err(CommandError::of(&request.input))?;

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use crate::app::continuation;
 use crate::app::error::CommandError;
+use crate::app::foreign::refuse_foreign;
 use crate::app::forward;
 use crate::app::no_equilibrium;
 use crate::app::other_task::refuse_all_but_motions;
@@ -96,8 +97,9 @@ pub(super) fn read(
     Ok(loaded)
 }
 
-/// Refuses results in the place of the one from whose end the motion starts.
+/// Refuses results in the place of those of another problem, or of the one from whose end the motion starts.
 pub(super) fn refuse_replacing(request: &CommandInput, task: &Task) -> Result<(), CommandError> {
+    refuse_foreign(request)?;
     let (place, start) = match task {
         Task::Control(control) => ("control.start.end_of", &control.start),
         Task::Simulate(simulation) => ("simulate.start.end_of", &simulation.start),

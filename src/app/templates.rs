@@ -46,7 +46,7 @@ impl Template {
         }
     }
 
-    /// The command that does what its problem asks, with results in a folder of its own name.
+    /// The command that does what its problem asks, whose results go to a folder of its own name.
     fn next(self, folder: &Path) -> String {
         let command = match self {
             Self::Satellite => "simulate",
@@ -58,11 +58,7 @@ impl Template {
             false => folder.join(problem),
         };
         let problem = problem.display().to_string();
-        let mut words = vec!["proboscis".to_owned(), command.to_owned(), problem];
-        if let Some(name) = folder.file_name() {
-            let results = Path::new("results").join(name);
-            words.extend(["-o".to_owned(), results.display().to_string()]);
-        }
+        let words = ["proboscis", command, &problem].map(str::to_owned);
         shell::command(words)
     }
 }
@@ -71,12 +67,15 @@ impl Template {
 /// exist are left alone.
 ///
 /// # Errors
-/// A trunk has no segments, a file exists, or cannot be written.
+/// A trunk has no segments or too many, a file exists, or cannot be written.
 pub fn new_files(template: Template, folder: &Path) -> Result<CommandOutput, CommandError> {
-    if template == (Template::Trunk { segments: 0 }) {
+    if let Template::Trunk { segments } = template
+        && !(1..=files::LONGEST_CHAIN).contains(&segments)
+    {
+        let most = files::LONGEST_CHAIN;
         return Err(CommandError::Option {
             option: "--segments",
-            reason: "a trunk has 1 segment or more".to_owned(),
+            reason: format!("found {segments}, expected a number of segments from 1 to {most}"),
         });
     }
     let (scene, problem) = template.files();

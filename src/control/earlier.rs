@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::error::Error;
 use std::fmt::Debug;
+use std::path::Path;
 use std::sync::Arc;
 
 use crate::control::Solution;
@@ -15,6 +16,11 @@ pub trait EarlierSolution: Debug + Send + Sync {
     /// # Errors
     /// It cannot be read, or belongs to another system.
     fn solution(&self, model: &Model) -> Result<Cow<'_, Solution>, Box<dyn Error + Send + Sync>>;
+
+    /// The file that it is read from; none where it is in memory.
+    fn file(&self) -> Option<&Path> {
+        None
+    }
 }
 
 impl EarlierSolution for Solution {
@@ -42,6 +48,11 @@ impl Earlier {
         model: &Model,
     ) -> Result<Cow<'_, Solution>, Box<dyn Error + Send + Sync>> {
         self.0.solution(model)
+    }
+
+    /// The file that it is read from; none where it is in memory.
+    pub fn file(&self) -> Option<&Path> {
+        self.0.file()
     }
 }
 

@@ -39,19 +39,11 @@ impl<'a> Changes<'a> {
 
     /// A mistake of an override, told at its place in that file; any other stays where it is.
     pub(crate) fn at_fault(&self, error: SceneError, file: &Path) -> SceneError {
-        if !error.is_overridden() {
-            return error;
-        }
-        let Some(wrong) = JsonPath::parse(error.path()) else {
+        let Some(typed) = error.overridden() else {
             return error;
         };
-        let in_scene = JsonPath::parse(&format!("scene.{}", error.path())).unwrap_or_default();
-        let touches = |place: &JsonPath| {
-            [&wrong, &in_scene]
-                .iter()
-                .any(|wrong| wrong.is_within(place) || place.is_within(wrong))
-        };
-        let Some((_, scope)) = self.from.iter().rev().find(|(place, _)| touches(place)) else {
+        let mut from = self.from.iter().rev();
+        let Some((_, scope)) = from.find(|(place, _)| place == typed) else {
             return error;
         };
         let found = format!(

@@ -23,6 +23,14 @@ fn parts(header: &str) -> (&str, Option<&str>) {
     unit.map_or((header, None), |(name, unit)| (name.trim_end(), Some(unit)))
 }
 
+/// A cell without the apostrophe that keeps a spreadsheet from taking a text for a formula.
+fn plain(cell: &str) -> &str {
+    match cell.strip_prefix('\'') {
+        Some(text) if text.starts_with(['=', '+', '-', '@']) => text,
+        _ => cell,
+    }
+}
+
 impl Columns {
     /// Reads a file that a problem names: relative to the problem, otherwise to the current folder.
     pub(crate) fn read(path: &str, scope: &Scope<'_>) -> Result<Self, SceneError> {
@@ -39,7 +47,8 @@ impl Columns {
             .comment(Some(b'#'))
             .trim(Trim::All)
             .from_reader(file);
-        let headers = reader.headers().map_err(|cause| mistake(&cause))?.clone();
+        let headers = reader.headers().map_err(|cause| mistake(&cause))?;
+        let headers = headers.iter().map(plain).collect();
         let rows: Result<_, _> = reader.records().collect();
         Ok(Self {
             rows: rows.map_err(|cause| mistake(&cause))?,

@@ -6,8 +6,6 @@
 use std::io;
 use std::path::Path;
 
-use serde_json::Value;
-
 use crate::dynamics::{DiscreteTrajectory, StepState, StepperReport, TangentState};
 use crate::files::npz::{self, Array, Npz, NpzError, NpzWriter};
 use crate::sparse::MethodState;
@@ -26,8 +24,8 @@ const STATE: &str = "state/";
 pub struct Continuation {
     /// The motion.
     pub history: DiscreteTrajectory,
-    /// What was asked.
-    pub problem: Value,
+    /// The JSON text of what was asked.
+    pub problem: String,
 }
 
 /// Why a file is none.
@@ -45,9 +43,9 @@ pub enum ContinuationError {
 ///
 /// # Errors
 /// A motion with names too long for the format; no method has them.
-pub fn bytes(history: &DiscreteTrajectory, problem: &Value) -> io::Result<Vec<u8>> {
+pub fn bytes(history: &DiscreteTrajectory, problem: &str) -> io::Result<Vec<u8>> {
     let mut arrays = NpzWriter::default();
-    arrays.text(PROBLEM, &problem.to_string());
+    arrays.text(PROBLEM, problem);
     arrays.list("times", &history.times);
     arrays.rows("z", &history.z);
     arrays.rows("momenta", &history.momenta);
@@ -106,8 +104,7 @@ pub fn bytes(history: &DiscreteTrajectory, problem: &Value) -> io::Result<Vec<u8
 /// It is none.
 pub fn read(path: &Path) -> Result<Continuation, ContinuationError> {
     let mut file = npz::read(path, |_| true)?;
-    let problem = file.texts.get(PROBLEM);
-    let problem = problem.and_then(|text| serde_json::from_str(text).ok());
+    let problem = file.texts.remove(PROBLEM);
     let problem = problem.ok_or(ContinuationError::Missing(PROBLEM))?;
     let end = state(&mut file)?;
     let history = DiscreteTrajectory {

@@ -20,18 +20,23 @@ mod typed;
 pub mod units;
 
 pub(crate) use columns::Columns;
-pub(crate) use json::document::{Document, is_standard_input};
-pub use json::error::{SceneError, printable};
+pub(crate) use json::document::Document;
+pub use json::error::{SceneError, lines, message, note, printable, printable_json};
 pub(crate) use json::layout::lay_out;
 pub(crate) use json::locate::JsonPath;
+pub(crate) use json::scan::compact;
 pub(crate) use json::scope::Scope;
+pub(crate) use json::source::is_standard_input;
+pub(crate) use scene::build::LONGEST_CHAIN;
 pub use scene::trunk::new_trunk;
 pub use typed::{driven_voltages, read_system};
+pub(crate) use units::si;
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 use crate::control::problem::Task;
+use crate::files::json::scan::{Entry, Scanner, string};
 use crate::files::json::set::Override;
 use crate::files::problem::build::build_problem;
 use crate::files::problem::output::{Output, output};
@@ -54,10 +59,32 @@ pub struct Loaded {
     pub output: Output,
     /// File of the scene; `None` where the problem holds the scene itself.
     pub scene_path: Option<PathBuf>,
-    /// The scene as written, overrides applied.
-    pub scene: Value,
-    /// The problem as written, overrides applied.
-    pub problem: Value,
+    /// The JSON text of the scene as written, overrides applied.
+    pub scene: String,
+    /// That of the problem.
+    pub problem: String,
+}
+
+impl Loaded {
+    /// The text of an object of the problem without one of its keys; `null` where there is no such object.
+    pub(crate) fn entry_without(&self, entry: &str, key: &str) -> String {
+        let text = &self.problem;
+        let Some(found) = Scanner::of(text).entry(entry) else {
+            return "null".to_owned();
+        };
+        let inside = Scanner::from(text, found.value.start);
+        let is_key = |one: &Entry| {
+            let found = one.key.clone().and_then(|found| string(text, found));
+            found.as_deref() == Some(key)
+        };
+        let left = inside.entries().filter(|one| !is_key(one));
+        let written = |one: Entry| {
+            let start = one.key.map_or(one.value.start, |key| key.start);
+            &text[start..one.value.end]
+        };
+        let left: Vec<&str> = left.map(written).collect();
+        format!("{{{}}}", left.join(","))
+    }
 }
 
 /// Reads a problem file, or standard input where it is `-`, and its scene, with overrides such as `control.intervals=80` or `scene.gravity=[0,0,0]`.
@@ -95,7 +122,9 @@ fn problem_of(
     for change in &of_problem {
         change.apply(&mut document)?;
     }
-    let scene_apart = document.value.get("scene").is_some_and(Value::is_string);
+    let scene_apart = document
+        .entry("scene")
+        .is_some_and(|scene| scene.starts_with('"'));
     if !scene_apart {
         for change in &of_scene {
             change.apply(&mut document)?;
@@ -107,7 +136,12 @@ fn problem_of(
         SceneSource::Inline(scene) => {
             let system = build_scene(scene, &scope.key("scene"))?;
             let written = scene.as_ref().clone();
-            (written, system, document.value["scene"].clone(), None)
+            (
+                written,
+                system,
+                document.entry("scene").unwrap_or_default().to_owned(),
+                None,
+            )
         }
         SceneSource::Path(path) => {
             let file = scope.key("scene").file(path, "the path of a scene file")?;
@@ -117,7 +151,7 @@ fn problem_of(
             }
             let written: SceneSpec = scene.parse()?;
             let system = build_scene(&written, &Scope::of(&scene))?;
-            (written, system, scene.value, Some(file))
+            (written, system, scene.text().to_owned(), Some(file))
         }
     };
     let task = build_problem(&problem, (&written, &system), &scope)?;
@@ -136,7 +170,7 @@ fn problem_of(
         system,
         scene_path,
         scene,
-        problem: document.value.clone(),
+        problem: document.text().to_owned(),
     })
 }
 

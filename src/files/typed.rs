@@ -19,7 +19,7 @@ use crate::model::system::{Source, System};
 /// The file, its scene or an override is wrong.
 pub fn read_system(path: &Path, overrides: &[String]) -> Result<System, SceneError> {
     let mut document = Document::read_typed(path)?;
-    if document.value.get("scene").is_some() {
+    if document.entry("scene").is_some() {
         return Ok(crate::files::read_problem(path, overrides)?.system);
     }
     for written in overrides {
@@ -44,7 +44,7 @@ pub fn driven_voltages(words: &[String], system: &System) -> Result<Vec<f64>, Sc
             expected,
             nearest,
             source: None,
-            overridden: false,
+            overridden: None,
         }
         .into()
     };

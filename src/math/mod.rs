@@ -1,11 +1,12 @@
 //! Numbers that carry their derivatives, numbers drawn at random, numbers as people read them, disjoint sets of them, two
-//! computations at once, and when to stop them.
+//! computations at once, when to stop them, and the memory that is there for them.
 
 mod both;
 mod counted;
 mod derivatives;
 mod digits;
 mod jet;
+pub(crate) mod memory;
 mod pool;
 pub mod random;
 mod sets;

@@ -145,11 +145,16 @@ fn csv_under(line: &str, rows: impl Iterator<Item = Vec<String>>) -> String {
     text
 }
 
-/// A cell of RFC 4180: quoted where a comma, a quote or a line break asks for it.
+/// A cell of RFC 4180: quoted where a comma, a quote or a line break asks for it, or where a spreadsheet would take it for a formula.
 fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", cell.replace('"', "\"\""))
+    let is_formula = cell.starts_with(FORMULA) && cell.parse::<f64>().is_err();
+    let mark = if is_formula { "'" } else { "" };
+    if is_formula || cell.contains([',', '"', '\n', '\r']) {
+        format!("\"{mark}{}\"", cell.replace('"', "\"\""))
     } else {
         cell.to_owned()
     }
 }
+
+/// What a spreadsheet takes for the begin of a formula; an apostrophe before it says that it is a text.
+const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];

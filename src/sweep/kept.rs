@@ -7,24 +7,15 @@ use csv::ReaderBuilder;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::app::{CommandError, RunEnd, Said, make_folder};
+use crate::app::{
+    CommandError, FileRecords, Found, OF_VARIANT, RunEnd, Said, is_unfinished, make_folder,
+};
 use crate::files::lay_out;
-use crate::report::atomic;
+use crate::report::atomic::{self, WriteError};
 use crate::sweep::read::Variant;
 
-/// The file.
-const NAME: &str = "variant.json";
 /// Begins the headings of numbers at the end of a motion, or at rest.
 pub(super) const END: &str = "end: ";
-/// What can be otherwise the next time.
-const UNFINISHED: [&str; 5] = [
-    "not_started",
-    "interrupted",
-    "time_limit",
-    "failed",
-    "out_of_memory",
-];
-
 /// How a variant ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Kept {
@@ -42,6 +33,9 @@ pub(super) struct Kept {
     pub(super) seconds: f64,
     /// Numbers of its results, by the heading of their column.
     pub(super) numbers: Map<String, Value>,
+    /// The files of its folder as they were written.
+    #[serde(default)]
+    files: FileRecords,
 }
 
 #[derive(Deserialize)]
@@ -71,6 +65,7 @@ impl Kept {
             message: message.filter(|text| !text.is_empty()).cloned(),
             seconds: end.seconds,
             numbers: Map::new(),
+            files: FileRecords::default(),
         };
         if matches!(end.said, Said::Solved | Said::Unsolved(_)) {
             kept.read_results(folder);
@@ -85,27 +80,38 @@ impl Kept {
         Self::of(variant, &end, Path::new(""))
     }
 
-    /// What the folder of a variant holds, if that is the end of this variant and nothing is left to do.
-    pub(super) fn read(variant: &Variant, folder: &Path) -> Option<Self> {
-        let text = fs::read_to_string(folder.join(NAME)).ok()?;
-        let kept: Self = serde_json::from_str(&text).ok()?;
-        let is_it = kept.identity == variant.identity.as_str();
-        (is_it && !kept.is_unfinished()).then_some(kept)
+    /// What the folder of a variant holds of its end, if nothing is left to do then.
+    pub(super) fn found(variant: &Variant, folder: &Path) -> Found<Self> {
+        let Ok(text) = fs::read_to_string(folder.join(OF_VARIANT)) else {
+            return Found::Nothing;
+        };
+        let Ok(kept) = serde_json::from_str::<Self>(&text) else {
+            return Found::Deviates(format!("{OF_VARIANT} is not as it was written"));
+        };
+        if kept.identity != variant.identity.as_str() || kept.is_unfinished() {
+            return Found::Nothing;
+        }
+        match kept.files.deviation(folder) {
+            Some(words) => Found::Deviates(words),
+            None => Found::Whole(kept),
+        }
     }
 
     /// Whether another attempt may end otherwise.
     pub(super) fn is_unfinished(&self) -> bool {
-        UNFINISHED.contains(&self.status.as_str())
+        is_unfinished(&self.status)
     }
 
-    /// Writes it into the folder of the variant.
-    pub(super) fn write(&self, folder: &Path) -> Result<(), CommandError> {
+    /// Writes it into the folder of the variant, with what tells whether the files there are still whole.
+    pub(super) fn write(&mut self, folder: &Path) -> Result<(), CommandError> {
         make_folder(folder)?;
+        let path = folder.join(OF_VARIANT);
+        self.files = FileRecords::of(folder).map_err(|cause| WriteError {
+            path: path.clone(),
+            cause,
+        })?;
         let text = serde_json::to_string(self).expect("words and numbers are JSON");
-        Ok(atomic::write(
-            &folder.join(NAME),
-            lay_out(&text).as_bytes(),
-        )?)
+        Ok(atomic::write(&path, lay_out(&text).as_bytes())?)
     }
 
     fn read_results(&mut self, folder: &Path) {

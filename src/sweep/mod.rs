@@ -1,9 +1,8 @@
 //! Variants of one problem, solved at once, each in a folder of its own; what is solved already is not solved again.
 //!
-//! - `request`: the command; `read`, `values`: the sweep file and its variants; `identity`: which of them are one.
+//! - `request`: the command; `read`, `values`: the sweep file and its variants.
 //! - `kept`: what a variant leaves; `table`, `page`: what all of them tell.
 
-mod identity;
 mod kept;
 mod page;
 mod read;
@@ -19,8 +18,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::app::{
-    Batch, CommandError, CommandInput, CommandOutput, PageWanted, Progress, RunEnd, check_run_in,
-    make_folder, run_all,
+    Batch, CommandError, CommandInput, CommandOutput, Found, PageWanted, Progress, RunEnd,
+    check_run_in, make_folder, run_all,
 };
 use crate::ipopt;
 use crate::ipopt::interrupt;
@@ -32,6 +31,8 @@ use crate::sweep::read::{Sweep, Variant, read_sweep};
 
 /// Folder of the variants within that of the results.
 const VARIANTS: &str = "variants";
+/// Most notes of one kind.
+const NOTES: usize = 10;
 
 /// Solves the variants of a sweep that are not solved yet, and writes the table of all.
 ///
@@ -49,7 +50,7 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
     let mut ends: BTreeMap<&str, Kept> = BTreeMap::new();
     let mut todo: Vec<&Variant> = Vec::new();
     let mut chosen = BTreeSet::new();
-    let mut found = 0;
+    let mut before = Before::default();
     for (index, variant) in sweep.variants.iter().enumerate() {
         let identity = variant.identity.as_str();
         if !chosen.insert(identity) {
@@ -57,7 +58,7 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
         }
         let kept = match &variant.refused {
             Some(message) => Some(Kept::refused(variant, message)),
-            None => Kept::read(variant, &of(variant)).inspect(|_| found += 1),
+            None => before.of(variant, &of(variant)),
         };
         match kept {
             Some(kept) => {
@@ -78,7 +79,35 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
         })
         .collect();
     write(request, &sweep, &ends, &folder)?;
-    Ok(told(request.shard, &sweep, &ends, found, &folder, began))
+    Ok(told(request.shard, &sweep, &ends, before, &folder, began))
+}
+
+/// What the folders of the variants held before.
+#[derive(Default)]
+struct Before {
+    /// Variants that were whole.
+    found: usize,
+    /// Words on those that were not.
+    deviations: Vec<String>,
+}
+
+impl Before {
+    /// The end of a variant, where its folder holds all of it.
+    fn of(&mut self, variant: &Variant, folder: &Path) -> Option<Kept> {
+        match Kept::found(variant, folder) {
+            Found::Whole(kept) => {
+                self.found += 1;
+                Some(kept)
+            }
+            Found::Deviates(words) => {
+                let name = variant.identity.as_str();
+                self.deviations
+                    .push(format!("variant {name} does not count as solved: {words}"));
+                None
+            }
+            Found::Nothing => None,
+        }
+    }
 }
 
 /// Solves variants, and keeps each as soon as it has ended.
@@ -117,7 +146,7 @@ fn solve<'a>(
     let mut counts = [0, 0];
     let mut unwritten = None;
     run_all(&batch, &mut |index, end| {
-        let kept = Kept::of(todo[index], &end, &folder(todo[index]));
+        let mut kept = Kept::of(todo[index], &end, &folder(todo[index]));
         if !kept.is_unfinished() {
             unwritten = kept.write(&folder(todo[index])).err();
         }
@@ -158,7 +187,7 @@ fn told(
     shard: Shard,
     sweep: &Sweep,
     ends: &[Kept],
-    found: usize,
+    before: Before,
     folder: &Path,
     began: Instant,
 ) -> CommandOutput {
@@ -169,21 +198,23 @@ fn told(
     }
     let words = words.iter().map(|(word, count)| format!("{count} {word}"));
     let words: Vec<String> = words.collect();
-    let mut notes: Vec<String> = Vec::new();
     let mut messages = BTreeSet::new();
+    let mut told = Vec::new();
     for (variant, end) in sweep.variants.iter().zip(ends) {
         let message = end.message.as_ref();
         if let Some(message) = message.filter(|message| messages.insert(message.as_str())) {
-            notes.push(format!("{}: {message}", variant.set.join(", ")));
+            told.push(format!("{}: {message}", variant.set.join(", ")));
         }
     }
+    let mut notes = first(before.deviations);
+    notes.extend(first(told));
     let own = ends.iter().enumerate();
     let mut own = own.filter(|(index, _)| shard.has(*index));
     let is_complete = own.all(|(_, end)| !end.is_unfinished());
     if interrupt::requested() {
         notes.push("interrupted; the same command goes on".to_owned());
     }
-    let before = match found {
+    let before = match before.found {
         0 => String::new(),
         found => format!(", {found} found solved before"),
     };
@@ -198,4 +229,14 @@ fn told(
         ),
         notes,
     }
+}
+
+/// The first notes of one kind, and how many more there are.
+fn first(mut notes: Vec<String>) -> Vec<String> {
+    if notes.len() > NOTES {
+        let more = notes.len() - NOTES;
+        notes.truncate(NOTES);
+        notes.push(format!("and {more} more like this"));
+    }
+    notes
 }

@@ -5,12 +5,11 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::app::task_runs_at_once;
+use crate::app::{Identity, task_runs_at_once};
 use crate::files::changes::Changes;
 use crate::files::sweep::{CombineSpec, SweepSpec};
 use crate::files::{Columns, Document, SceneError, Scope, read_problem};
 use crate::math::random::Random;
-use crate::sweep::identity::Identity;
 use crate::sweep::values::Values;
 
 /// Most variants of a sweep.

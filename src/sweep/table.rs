@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use crate::files::si;
 use crate::sweep::kept::{END, Kept};
 use crate::sweep::read::Sweep;
 
@@ -15,21 +16,60 @@ pub(super) fn table(sweep: &Sweep, ends: &[Kept]) -> Vec<Vec<String>> {
     }
     names.sort_by_key(|name| name.starts_with(END));
     let fixed = ["variant", "status", "seconds [s]"].map(str::to_owned);
-    let places = sweep.places.iter().cloned();
+    let columns: Vec<Varied> = (0..sweep.places.len())
+        .map(|place| Varied::of(sweep, place))
+        .collect();
+    let places = columns.iter().map(|column| column.heading.clone());
     let head = fixed.into_iter().chain(places);
     let head = head.chain(names.iter().map(|&name| name.clone())).collect();
-    let rows = sweep.variants.iter().zip(ends).map(|(variant, end)| {
+    let rows = ends.iter().enumerate().map(|(row, end)| {
         let fixed = [
             end.identity.clone(),
             end.status.clone(),
             format!("{:?}", end.seconds),
         ];
-        let values = variant.values.iter().map(cell);
+        let values = columns.iter().map(|column| column.cells[row].clone());
         let numbers = names.iter().map(|&name| end.numbers.get(name));
         let numbers = numbers.map(|number| number.map_or_else(String::new, cell));
         fixed.into_iter().chain(values).chain(numbers).collect()
     });
     [head].into_iter().chain(rows).collect()
+}
+
+/// What varies at one place.
+struct Varied {
+    heading: String,
+    cells: Vec<String>,
+}
+
+impl Varied {
+    /// Quantities are numbers in the International System, with their unit in the heading, if all of the place have the same; what else
+    /// varies is written as in the sweep.
+    fn of(sweep: &Sweep, place: usize) -> Self {
+        let name = &sweep.places[place];
+        let values = || sweep.variants.iter().map(|variant| &variant.values[place]);
+        let quantities: Option<Vec<_>> = values()
+            .map(|value| match value {
+                Value::Number(number) => Some((number.as_f64()?, None)),
+                value => si(value.as_str()?).map(|(number, unit)| (number, Some(unit))),
+            })
+            .collect();
+        let quantities = quantities.unwrap_or_default();
+        let mut units = quantities.iter().filter_map(|(_, unit)| unit.as_ref());
+        let unit = units
+            .next()
+            .filter(|&first| units.all(|unit| unit == first));
+        match unit {
+            Some(unit) => Self {
+                heading: format!("{name} [{unit}]"),
+                cells: quantities.iter().map(|(n, _)| format!("{n:?}")).collect(),
+            },
+            None => Self {
+                heading: name.clone(),
+                cells: values().map(cell).collect(),
+            },
+        }
+    }
 }
 
 fn cell(value: &Value) -> String {

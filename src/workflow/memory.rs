@@ -1,7 +1,6 @@
 //! What a run is sure to need of the machine's memory, told before it begins to fill it.
 
-use std::fs;
-
+use crate::math::memory::{available, readable};
 use crate::model::system::Fidelity;
 use crate::model::{Model, System, Time};
 use crate::workflow::error::WorkflowError;
@@ -85,31 +84,4 @@ fn enough(place: &str, what: &str, bytes: f64) -> Result<(), WorkflowError> {
         }),
         _ => Ok(()),
     }
-}
-
-fn readable(bytes: f64) -> String {
-    format!("{:.1} GB", bytes / 1e9)
-}
-
-/// Bytes that the machine and the group of this process leave; `None` where that is not known.
-fn available() -> Option<f64> {
-    let machine = fs::read_to_string("/proc/meminfo").ok();
-    let machine = machine.as_deref().and_then(of_machine);
-    let of_group = |name: &str| -> Option<f64> {
-        let text = fs::read_to_string(format!("/sys/fs/cgroup/{name}")).ok()?;
-        text.trim().parse().ok()
-    };
-    let group = of_group("memory.max").zip(of_group("memory.current"));
-    // What is cached is given back when it is needed.
-    let group = group.map(|(limit, used)| (limit - used).max(0.5 * limit));
-    [machine, group].into_iter().flatten().reduce(f64::min)
-}
-
-/// What `/proc/meminfo` says is available, in bytes.
-fn of_machine(text: &str) -> Option<f64> {
-    let line = text
-        .lines()
-        .find(|line| line.starts_with("MemAvailable:"))?;
-    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(1024.0 * kilobytes)
 }

@@ -158,6 +158,55 @@ fn a_job_that_lost_its_client_is_collected_and_not_done_again() {
     assert_eq!(tasks(folder), 6);
 }
 
+/// A server that is killed and begins again from its journal has lost the end of some tasks, and hands them out once more.
+#[test]
+fn a_task_that_is_handed_out_again_does_nothing() {
+    let folder = workshop();
+    let folder = folder.path();
+    prepare(folder);
+    assert_eq!(sweep(folder).0, 0);
+    let lines = fs::read_to_string(folder.join("bin/done")).unwrap();
+    let variants: Vec<_> = fs::read_dir(folder.join("it's out/variants"))
+        .unwrap()
+        .map(|one| one.unwrap().path())
+        .collect();
+    let written = || {
+        let of = |file: &str| {
+            let paths = variants.iter().map(|variant| variant.join(file));
+            let times = paths.map(|path| fs::metadata(path).unwrap().modified().unwrap());
+            times.collect::<Vec<_>>()
+        };
+        [of("summary.json"), of("solution.json")]
+    };
+    let again = || {
+        for line in lines.lines() {
+            let mut task = std::process::Command::new("sh");
+            let task = task.args(["-c", "eval \"exec $HQ_ENTRY\""]);
+            let ended = task.env("HQ_ENTRY", line).current_dir(folder).output();
+            let ended = ended.unwrap();
+            let told = String::from_utf8(ended.stdout).unwrap();
+            // The exit status is that of the first time: one of the two has too few iterations.
+            let expected = if told.contains("iteration limit") {
+                1
+            } else {
+                0
+            };
+            assert_eq!(ended.status.code(), Some(expected), "{told}");
+        }
+    };
+    let before = written();
+    again();
+    assert_eq!(written(), before);
+    let (_, out, _) = sweep(folder);
+    assert!(out.contains("2 found solved before"), "{out}");
+
+    // What was killed in the middle is done.
+    fs::remove_file(variants[0].join("solution.json")).unwrap();
+    again();
+    let after = written();
+    assert!(after[0][0] > before[0][0] && after[0][1] == before[0][1]);
+}
+
 #[test]
 fn a_missing_server_is_told_before_anything_is_written() {
     let folder = workshop();

@@ -13,9 +13,7 @@ fn new_files_name_their_schemas_and_the_next_command() {
         let place = format!("my robots/{robot}");
         let (status, out, err) = run(path, &["new", robot, &place]);
         assert_eq!(status, 0, "{err}");
-        let next = format!(
-            "next: proboscis {command} 'my robots/{robot}/problem.json' -o results/{robot}"
-        );
+        let next = format!("next: proboscis {command} 'my robots/{robot}/problem.json'");
         assert_eq!(out.lines().last(), Some(&*next), "{out}");
         assert_eq!(out.lines().count(), 5, "{out}");
         for file in ["scene", "problem"] {

@@ -73,8 +73,8 @@ fn each_variant_is_solved_once_and_as_if_alone() {
         ["3", "3", "3", "4", "4", "4", "3", "3", "3"]
     );
     assert_eq!(
-        &column(&first, MODULUS)[2..5],
-        ["125 kPa", "80 kPa", "100 kPa"]
+        &column(&first, &format!("{MODULUS} [Pa]"))[2..5],
+        ["125000.0", "80000.0", "100000.0"]
     );
     let ends = column(&first, "end: joint1 [rad]");
     assert!(ends.iter().all(|end| end.parse::<f64>().unwrap() != 0.0));
@@ -120,7 +120,7 @@ fn each_variant_is_solved_once_and_as_if_alone() {
     assert_eq!(times.iter().filter(|time| after.contains(time)).count(), 6);
 
     let page = fs::read_to_string(folder.join("results/sweeps/sweep/report.html")).unwrap();
-    assert!(page.contains("3 of 3 variants") && page.contains("90 kPa") && !page.contains("src="));
+    assert!(page.contains("3 of 3 variants") && page.contains("90000.0") && !page.contains("src="));
 }
 
 #[test]
@@ -160,6 +160,87 @@ fn machines_share_a_sweep() {
     let values: BTreeSet<String> = column(&table(folder), PERMITTIVITY).into_iter().collect();
     let numbers: Vec<f64> = values.iter().map(|text| text.parse().unwrap()).collect();
     assert!(numbers.len() == 5 && numbers.iter().all(|v| (2.0..4.0).contains(v)));
+}
+
+#[test]
+fn what_is_not_whole_is_solved_again() {
+    let folder = workshop();
+    let folder = folder.path();
+    write(folder, json!({ "vary": { PERMITTIVITY: [3] } }));
+    assert_eq!(run(folder, &["sweep", "sweep.json"]).0, 0);
+    let name = column(&table(folder), "variant")[0].clone();
+    let variant = folder.join("results/sweeps/sweep/variants").join(&name);
+    let whole = fs::read(variant.join("trajectory.csv")).unwrap();
+    let solved_again = |words: &str| {
+        let (status, out, err) = run(folder, &["sweep", "sweep.json"]);
+        assert!(status == 0 && !out.contains("found"), "{words}: {out}{err}");
+        assert!(err.contains(&name) && err.contains(words), "{words}: {err}");
+        assert!(fs::read(variant.join("trajectory.csv")).unwrap() == whole);
+        let (_, out, err) = run(folder, &["sweep", "sweep.json"]);
+        assert!(out.contains("1 found solved before"), "{out}{err}");
+    };
+    for file in [
+        "solution.json",
+        "summary.json",
+        "configuration.svg",
+        "report.html",
+    ] {
+        fs::remove_file(variant.join(file)).unwrap();
+        solved_again(&format!("{file} is missing"));
+    }
+    let long = whole.len();
+    fs::write(variant.join("trajectory.csv"), &whole[..long / 2]).unwrap();
+    solved_again(&format!("{} of {long} bytes", long / 2));
+    let mut changed = whole.clone();
+    *changed.last_mut().unwrap() = b' ';
+    fs::write(variant.join("trajectory.csv"), &changed).unwrap();
+    solved_again("trajectory.csv has been changed");
+    fs::write(variant.join("variant.json"), "{\"set\": [").unwrap();
+    solved_again("variant.json is not as it was written");
+}
+
+#[test]
+fn what_is_written_of_a_motion_is_a_part_of_a_variant() {
+    let folder = workshop();
+    let folder = folder.path();
+    write(
+        folder,
+        json!({ "vary": { "output.quantities": [["joints"], ["markers"]] } }),
+    );
+    let (status, out, err) = run(folder, &["sweep", "sweep.json"]);
+    assert!(
+        status == 0 && out.contains("2 variants: 2 solved"),
+        "{out}{err}"
+    );
+    let table = table(folder);
+    let names: BTreeSet<String> = column(&table, "variant").into_iter().collect();
+    assert_eq!(names.len(), 2);
+    let ends = column(&table, "end: joint1 [rad]");
+    assert!(!ends[0].is_empty() && ends[1].is_empty(), "{ends:?}");
+}
+
+#[test]
+fn a_variant_knows_the_solution_that_it_starts_from() {
+    let folder = workshop();
+    let folder = folder.path();
+    let solve = |intervals: &str| {
+        let set = format!("control.intervals={intervals}");
+        let words = ["solve", "problems/pair.json", "-o", "guess", "--set", &set];
+        assert_eq!(run(folder, &words).0, 0);
+    };
+    solve("6");
+    write(
+        folder,
+        json!({ "vary": { PERMITTIVITY: [3] }, "set": { "control.intervals": 8,
+            "control.guess": { "solution": "../guess/solution.json" } } }),
+    );
+    let (status, out, err) = run(folder, &["sweep", "sweep.json"]);
+    assert!(status == 0, "{out}{err}");
+    let (_, out, _) = run(folder, &["sweep", "sweep.json"]);
+    assert!(out.contains("1 found"), "{out}");
+    solve("5");
+    let (_, out, _) = run(folder, &["sweep", "sweep.json"]);
+    assert!(out.contains("1 solved") && !out.contains("found"), "{out}");
 }
 
 #[test]

@@ -2,14 +2,16 @@
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use std::fs;
-use std::io::{self, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
 
-use crate::files::json::error::{Mistake, SceneError, is_printable, nearest};
-use crate::files::json::locate::{JsonPath, Step, locate};
+use crate::files::json::error::{Excerpt, Mistake, SceneError, is_printable, nearest};
+use crate::files::json::locate::{JsonPath, Step, around, find, repeated, wrong_string};
+use crate::files::json::reader::Reader;
+use crate::files::json::scan::Scanner;
+use crate::files::json::source::{
+    NoBytes, check_json, is_standard_input, of_file, of_standard_input,
+};
 use crate::files::json::wording::wording;
 
 /// A JSON file.
@@ -17,56 +19,52 @@ use crate::files::json::wording::wording;
 pub(crate) struct Document {
     /// Where it was read.
     pub(crate) path: PathBuf,
-    /// Values, with overrides applied.
-    pub(crate) value: Value,
     /// Places set on the command line.
-    pub(crate) set: Vec<JsonPath>,
+    pub(crate) set: Vec<Set>,
+    /// As it was read.
     text: String,
+    /// The same with overrides.
+    changed: Option<String>,
+    /// Values in place of the text, where parts of them are from another file.
+    completed: Option<Value>,
 }
 
-/// Whether a file that is typed stands for standard input.
-pub(crate) fn is_standard_input(path: &Path) -> bool {
-    path == Path::new("-")
-}
-
-/// What came through standard input. A process reads it once: several starts have the same problem.
-fn standard_input() -> io::Result<Vec<u8>> {
-    static READ: Mutex<Option<Vec<u8>>> = Mutex::new(None);
-    let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(bytes) = &*read {
-        return Ok(bytes.clone());
-    }
-    let mut bytes = Vec::new();
-    io::stdin().lock().read_to_end(&mut bytes)?;
-    Ok(read.insert(bytes).clone())
+/// A place that was set.
+#[derive(Debug)]
+pub(crate) struct Set {
+    /// In the document: the place itself, or the first one on the way to it that was not there.
+    pub(crate) place: JsonPath,
+    /// As it was typed.
+    pub(crate) typed: JsonPath,
 }
 
 impl Document {
     /// Reads a file that is typed: standard input where it is `-`.
     pub(crate) fn read_typed(path: &Path) -> Result<Self, SceneError> {
         match is_standard_input(path) {
-            true => Self::from_bytes(path, standard_input),
+            true => Self::from_bytes(path, of_standard_input()),
             false => Self::read(path),
         }
     }
 
     /// Reads a file.
     pub(crate) fn read(path: &Path) -> Result<Self, SceneError> {
-        Self::from_bytes(path, || fs::read(path))
+        Self::from_bytes(path, of_file(path))
     }
 
-    fn from_bytes(
-        path: &Path,
-        bytes: impl FnOnce() -> io::Result<Vec<u8>>,
-    ) -> Result<Self, SceneError> {
+    fn from_bytes(path: &Path, bytes: Result<Vec<u8>, NoBytes>) -> Result<Self, SceneError> {
         let document = Self::empty(path);
-        let bytes = bytes().map_err(|error| {
-            let found = format!("no readable file ({error})");
-            document.mistake(&JsonPath::default(), found, "a JSON file")
+        let whole = JsonPath::default();
+        let bytes = bytes.map_err(|error| match error {
+            NoBytes::Unreadable(error) => {
+                let found = format!("no readable file ({error})");
+                document.mistake(&whole, found, "a JSON file")
+            }
+            NoBytes::TooLarge(found, expected) => document.mistake(&whole, found, expected),
         })?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let found = format!("a file that is not UTF-8 text ({})", error.utf8_error());
-            document.mistake(&JsonPath::default(), found, "a JSON file")
+            document.mistake(&whole, found, "a JSON file")
         })?;
         Self::of_text(path, text)
     }
@@ -74,9 +72,10 @@ impl Document {
     fn empty(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
-            value: Value::Null,
             set: Vec::new(),
             text: String::new(),
+            changed: None,
+            completed: None,
         }
     }
 
@@ -84,10 +83,31 @@ impl Document {
     pub(crate) fn of_text(path: &Path, text: String) -> Result<Self, SceneError> {
         let mut document = Self::empty(path);
         document.text = text;
-        document.value = serde_json::from_str(&document.text)
-            .map_err(|error| document.syntax_mistake(&error))?;
+        check_json(&document.text).map_err(|error| document.syntax_mistake(&error))?;
         document.refuse_repeated_keys()?;
         Ok(document)
+    }
+
+    /// The text, with overrides.
+    pub(crate) fn text(&self) -> &str {
+        self.changed.as_deref().unwrap_or(&self.text)
+    }
+
+    /// The text of the value under a key, with overrides.
+    pub(crate) fn entry(&self, key: &str) -> Option<&str> {
+        let entry = Scanner::of(self.text()).entry(key)?;
+        Some(&self.text()[entry.value])
+    }
+
+    /// Puts a text in place of some bytes of it; positions of mistakes stay those of the text that was read.
+    pub(crate) fn replace(&mut self, bytes: Range<usize>, by: &str) {
+        let text = self.text();
+        self.changed = Some([&text[..bytes.start], by, &text[bytes.end..]].concat());
+    }
+
+    /// Takes values for those of the text.
+    pub(crate) fn complete(&mut self, completed: Value) {
+        self.completed = Some(completed);
     }
 
     /// A path that is relative to this file.
@@ -101,7 +121,11 @@ impl Document {
     /// The values as a type, or the first mistake.
     pub(crate) fn parse<T: DeserializeOwned>(&self) -> Result<T, SceneError> {
         self.refuse_unprintable()?;
-        serde_path_to_error::deserialize(&self.value).map_err(|error| {
+        let parsed = match &self.completed {
+            Some(values) => serde_path_to_error::deserialize(values),
+            None => serde_path_to_error::deserialize(&mut Reader::of(self.text())),
+        };
+        parsed.map_err(|error| {
             let steps = error.path().iter().filter_map(|segment| match segment {
                 serde_path_to_error::Segment::Seq { index } => Some(Step::Index(*index)),
                 serde_path_to_error::Segment::Map { key } => Some(Step::Key(key.clone())),
@@ -154,11 +178,12 @@ impl Document {
         nearest: Option<String>,
         at_key: bool,
     ) -> SceneError {
-        let overridden = self.set.iter().any(|set| place.is_within(set));
-        let span = if overridden {
-            None
-        } else {
-            self.span(place, at_key)
+        let mut set = self.set.iter().rev();
+        let overridden = set.find(|set| place.is_within(&set.place));
+        let overridden = overridden.map(|set| set.typed.clone());
+        let span = match overridden {
+            Some(_) => None,
+            None => self.span(place, at_key),
         };
         self.error(
             place.to_string(),
@@ -177,11 +202,11 @@ impl Document {
         expected: String,
         nearest: Option<String>,
         span: Option<Range<usize>>,
-        overridden: bool,
+        overridden: Option<JsonPath>,
     ) -> SceneError {
         let file = self.path.display().to_string();
         Mistake {
-            source: span.map(|span| (shown(&self.text), span)),
+            source: span.map(|span| Excerpt::of(&self.text, span)),
             file,
             path,
             found,
@@ -194,15 +219,11 @@ impl Document {
 
     /// Bytes of a value (or its key), or of the nearest value around it.
     fn span(&self, place: &JsonPath, at_key: bool) -> Option<Range<usize>> {
-        let all = locate(&self.text);
         let mut place = place.clone();
         let mut at_key = at_key;
         loop {
-            if let Some(found) = all.find(&place) {
-                return match &found.key {
-                    Some(key) if at_key => Some(key.clone()),
-                    _ => Some(found.value.clone()),
-                };
+            if let Some(found) = find(&self.text, &place) {
+                return Some(found.key.filter(|_| at_key).unwrap_or(found.value));
             }
             place = place.parent()?;
             at_key = false;
@@ -222,7 +243,7 @@ impl Document {
             at -= 1;
         }
         let is_infinite = error.to_string().starts_with("number out of range");
-        if is_infinite && let Some((place, range)) = locate(&self.text).around(at) {
+        if is_infinite && let Some((place, range)) = around(&self.text, at) {
             let written = &self.text[range];
             return self.mistake(
                 &place,
@@ -241,21 +262,19 @@ impl Document {
             "JSON".into(),
             None,
             Some(at..end),
-            false,
+            None,
         )
     }
 
     /// Names are shown in messages, figures, tables and pages: what cannot be printed has no place in any text.
     fn refuse_unprintable(&self) -> Result<(), SceneError> {
-        let Some(mut found) = unprintable(&self.value) else {
+        let Some(found) = wrong_string(self.text(), is_printable) else {
             return Ok(());
         };
-        found.steps.reverse();
-        let (place, text) = (JsonPath(found.steps), found.text);
         let expected = "a text without control characters".to_owned();
         Err(self.describe(
-            &place,
-            format!("the text {text:?}"),
+            &found.place,
+            format!("the text {:?}", found.says),
             expected,
             None,
             found.is_key,
@@ -264,62 +283,11 @@ impl Document {
 
     /// JSON readers keep the last of two equal keys without a word; here that is a mistake.
     fn refuse_repeated_keys(&self) -> Result<(), SceneError> {
-        let all = locate(&self.text);
-        if let Some((place, found)) = all.repeated() {
-            let what = format!("the key {:?} twice", place.last_key().unwrap_or_default());
-            let span = found.key.clone().unwrap_or(found.value.clone());
-            let expected = "each key once".into();
-            return Err(self.error(place.to_string(), what, expected, None, Some(span), false));
-        }
-        Ok(())
-    }
-}
-
-/// The text with question marks, as many as bytes, in place of what cannot be printed, and spaces for carriage returns; places
-/// in it stay where they are.
-fn shown(text: &str) -> String {
-    let mut shown = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '\r' => shown.push(' '),
-            '\n' | '\t' => shown.push(c),
-            _ if is_printable(c) => shown.push(c),
-            _ => shown.extend(std::iter::repeat_n('?', c.len_utf8())),
-        }
-    }
-    shown
-}
-
-/// A text that cannot be printed, with the steps to it from the innermost one outwards.
-struct Unprintable<'a> {
-    text: &'a str,
-    is_key: bool,
-    steps: Vec<Step>,
-}
-
-/// The first text among keys and values that cannot be printed.
-fn unprintable(value: &Value) -> Option<Unprintable<'_>> {
-    let check = |text, is_key| {
-        let steps = Vec::new();
-        let found = Unprintable {
-            text,
-            is_key,
-            steps,
+        let Some((place, key)) = repeated(&self.text) else {
+            return Ok(());
         };
-        (!found.text.chars().all(is_printable)).then_some(found)
-    };
-    match value {
-        Value::String(text) => check(text, false),
-        Value::Array(entries) => entries.iter().enumerate().find_map(|(index, entry)| {
-            let mut found = unprintable(entry)?;
-            found.steps.push(Step::Index(index));
-            Some(found)
-        }),
-        Value::Object(entries) => entries.iter().find_map(|(key, entry)| {
-            let mut found = check(key, true).or_else(|| unprintable(entry))?;
-            found.steps.push(Step::Key(key.clone()));
-            Some(found)
-        }),
-        _ => None,
+        let what = format!("the key {:?} twice", place.last_key().unwrap_or_default());
+        let expected = "each key once".into();
+        Err(self.error(place.to_string(), what, expected, None, Some(key), None))
     }
 }

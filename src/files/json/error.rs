@@ -5,6 +5,8 @@ use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 
+use crate::files::json::locate::JsonPath;
+
 /// A mistake in a file or in an override; [`fmt::Display`] is one readable line, [`SceneError::excerpt`] the text around it.
 #[derive(Clone, Debug)]
 pub struct SceneError(Box<Mistake>);
@@ -21,10 +23,61 @@ pub(crate) struct Mistake {
     pub(crate) expected: String,
     /// The nearest name.
     pub(crate) nearest: Option<String>,
-    /// Text of the file and the bytes of the value.
-    pub(crate) source: Option<(String, Range<usize>)>,
-    /// Whether the value comes from the command line.
-    pub(crate) overridden: bool,
+    /// The lines of the file around the value.
+    pub(crate) source: Option<Excerpt>,
+    /// The place as it was typed, where the value comes from an override.
+    pub(crate) overridden: Option<JsonPath>,
+}
+
+/// Lines of a file around a value.
+#[derive(Clone, Debug)]
+pub(crate) struct Excerpt {
+    /// The lines, as they are shown; none where one of them is too long.
+    lines: Option<String>,
+    /// Number of the first one.
+    first: usize,
+    /// Byte of the file where they begin.
+    start: usize,
+    /// Bytes of the value in the file.
+    span: Range<usize>,
+}
+
+impl Excerpt {
+    /// Around some bytes of a text.
+    pub(crate) fn of(text: &str, span: Range<usize>) -> Self {
+        let before = text.get(..span.start).unwrap_or_default();
+        let start = before
+            .rmatch_indices('\n')
+            .nth(CONTEXT)
+            .map_or(0, |(at, _)| at + 1);
+        let mut after = text.get(span.end..).unwrap_or_default().match_indices('\n');
+        let end = after
+            .nth(CONTEXT)
+            .map_or(text.len(), |(at, _)| span.end + at);
+        let lines = &text[start..end];
+        let is_long = lines.lines().any(|line| line.len() > LONGEST_LINE);
+        Self {
+            lines: (!is_long).then(|| shown(lines)),
+            first: 1 + before[..start].matches('\n').count(),
+            start,
+            span,
+        }
+    }
+}
+
+/// The text with question marks, as many as bytes, in place of what cannot be printed, and spaces for carriage returns; places
+/// in it stay where they are.
+fn shown(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\r' => shown.push(' '),
+            '\n' | '\t' => shown.push(c),
+            _ if is_printable(c) => shown.push(c),
+            _ => shown.extend(std::iter::repeat_n('?', c.len_utf8())),
+        }
+    }
+    shown
 }
 
 impl From<Mistake> for SceneError {
@@ -54,34 +107,27 @@ impl SceneError {
         self.0.nearest.as_deref()
     }
 
-    /// Whether the wrong value comes from an override.
-    pub(crate) fn is_overridden(&self) -> bool {
-        self.0.overridden
+    /// The place of the override that the wrong value comes from, as it was typed.
+    pub(crate) fn overridden(&self) -> Option<&JsonPath> {
+        self.0.overridden.as_ref()
     }
 
     /// The lines of the file around the mistake, marked, where there is such a place.
     pub fn excerpt(&self) -> Option<String> {
-        let (text, span) = self.0.source.as_ref()?;
-        let before = text.get(..span.start)?;
-        let from = before
-            .rmatch_indices('\n')
-            .nth(CONTEXT)
-            .map_or(0, |(at, _)| at + 1);
-        let mut after = text.get(span.end..)?.match_indices('\n');
-        let to = after
-            .nth(CONTEXT)
-            .map_or(text.len(), |(at, _)| span.end + at);
-        let shown = &text[from..to];
-        if shown.lines().any(|line| line.len() > LONGEST_LINE) {
-            return None;
-        }
-        let label = format!("expected {}", printable(&self.0.expected));
-        let span = span.start - from..span.end - from;
+        let Excerpt {
+            lines,
+            first,
+            start,
+            span,
+        } = self.0.source.as_ref()?;
+        let lines = lines.as_deref()?;
+        let label = format!("expected {}", printable(&shortened(&self.0.expected, TOLD)));
+        let span = span.start - start..span.end - start;
         let file = printable(&self.0.file);
-        let snippet = Snippet::source(shown)
+        let snippet = Snippet::source(lines)
             .path(file.as_ref())
-            .line_start(1 + text[..from].matches('\n').count())
-            .fold(shown.lines().count() > UNFOLDED)
+            .line_start(*first)
+            .fold(lines.lines().count() > UNFOLDED)
             .annotation(AnnotationKind::Primary.span(span).label(label));
         Some(
             Renderer::plain()
@@ -91,7 +137,7 @@ impl SceneError {
 
     /// Bytes of the wrong value in the file.
     pub fn span(&self) -> Option<Range<usize>> {
-        self.0.source.as_ref().map(|(_, span)| span.clone())
+        self.0.source.as_ref().map(|source| source.span.clone())
     }
 }
 
@@ -106,17 +152,22 @@ impl fmt::Display for SceneError {
             overridden,
             ..
         } = self.0.as_ref();
-        write!(f, "{}: ", printable(file))?;
+        let told = |text: &str| printable(&shortened(text, TOLD)).into_owned();
+        write!(f, "{}: ", told(file))?;
         if !path.is_empty() {
-            write!(f, "{}: ", printable(&shortened(path)))?;
+            write!(f, "{}: ", told(path))?;
         }
-        write!(f, "found {}", printable(&shortened(found)))?;
-        if *overridden {
+        write!(f, "found {}", told(found))?;
+        if overridden.is_some() {
             f.write_str(" (set on the command line)")?;
         }
-        write!(f, ", expected {}", printable(expected))?;
+        write!(
+            f,
+            ", expected {}",
+            printable(&shortened(expected, EXPECTED))
+        )?;
         if let Some(nearest) = nearest {
-            write!(f, "; did you mean {nearest:?}?")?;
+            write!(f, "; did you mean {:?}?", shortened(nearest, TOLD))?;
         }
         Ok(())
     }
@@ -148,15 +199,66 @@ const CONTEXT: usize = 1;
 const UNFOLDED: usize = 8;
 /// Bytes of the longest line that is shown.
 const LONGEST_LINE: usize = 2000;
-/// Characters of a path or of what was found that are told.
+/// Characters that are told of a name of a file, of a path, or of what was found.
 const TOLD: usize = 400;
+/// Characters that are told of what is expected, which may be a list of names.
+const EXPECTED: usize = 1200;
+/// Characters of the longest message.
+const MESSAGE: usize = 4000;
 
-/// A text of the file that is told in a line: its beginning, where it is long.
-fn shortened(text: &str) -> Cow<'_, str> {
-    match text.char_indices().nth(TOLD) {
-        Some((end, _)) => Cow::Owned(format!("{}…", &text[..end])),
-        None => Cow::Borrowed(text),
+/// A text of at most so many characters: of a longer one its beginning and its end.
+fn shortened(text: &str, most: usize) -> Cow<'_, str> {
+    // A character takes at most four bytes.
+    let length = match text.len() <= most {
+        true => return Cow::Borrowed(text),
+        false => text.chars().count(),
+    };
+    if length <= most {
+        return Cow::Borrowed(text);
     }
+    let kept = most - 1;
+    let (head, tail) = (kept - kept / 3, kept / 3);
+    let at = |n: usize| text.char_indices().nth(n).map_or(text.len(), |(at, _)| at);
+    Cow::Owned(format!(
+        "{}…{}",
+        &text[..at(head)],
+        &text[at(length - tail)..]
+    ))
+}
+
+/// A message as it is told, in one line of a few thousand characters, with escapes for those that are not printable.
+pub fn message(text: &str) -> String {
+    printable(&shortened(text, MESSAGE)).into_owned()
+}
+
+/// The same of a note, whose lines stay lines.
+pub fn note(text: &str) -> String {
+    lines(&shortened(text, MESSAGE))
+}
+
+/// Lines in which characters that are not printable stand as their escapes.
+pub fn lines(text: &str) -> String {
+    let lines: Vec<_> = text.split('\n').map(of_line).collect();
+    lines.join("\n")
+}
+
+/// A line, in which tabs are printable.
+fn of_line(line: &str) -> String {
+    let parts: Vec<_> = line.split('\t').map(printable).collect();
+    parts.join("\t")
+}
+
+/// A JSON text in which characters that are not printable stand as escapes of JSON.
+pub fn printable_json(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        match is_printable(c) || matches!(c, '\n' | '\t') {
+            true => shown.push(c),
+            // All of them are below 2^16.
+            false => shown.push_str(&format!("\\u{:04x}", u32::from(c))),
+        }
+    }
+    shown
 }
 
 /// The candidate most like a name, where one is like enough.
@@ -164,10 +266,14 @@ pub(crate) fn nearest<'a>(
     name: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<String> {
+    // More letters than may differ: a long text is not compared letter by letter.
+    let length = name.chars().count();
+    let allowed = |candidate: &str| candidate.chars().count().max(3) / 3;
     candidates
         .into_iter()
+        .filter(|one| one.chars().count().abs_diff(length) <= allowed(one))
         .map(|candidate| (strsim::damerau_levenshtein(name, candidate), candidate))
-        .filter(|&(distance, candidate)| distance <= candidate.chars().count().max(3) / 3)
+        .filter(|&(distance, candidate)| distance <= allowed(candidate))
         .min_by_key(|&(distance, _)| distance)
         .map(|(_, candidate)| candidate.to_owned())
 }

@@ -14,23 +14,25 @@ pub(crate) fn lay_out(compact: &str) -> String {
 /// Compact JSON, whose lists are known by their ends.
 struct Compact<'a> {
     text: &'a str,
-    /// The place behind the list that opens at a byte; zero elsewhere.
-    ends: Vec<usize>,
+    /// Where lists open, in this order, and the places behind them.
+    ends: Vec<(usize, usize)>,
 }
 
 impl<'a> Compact<'a> {
     /// Finds the ends of all lists.
     fn new(text: &'a str) -> Self {
         let bytes = text.as_bytes();
-        let mut ends = vec![0; bytes.len()];
-        let (mut open, mut at) = (Vec::new(), 0);
+        let (mut ends, mut open, mut at) = (Vec::new(), Vec::new(), 0);
         while at < bytes.len() {
             match bytes[at] {
                 b'"' => at = behind_string(bytes, at) - 1,
-                b'{' | b'[' => open.push(at),
+                b'{' | b'[' => {
+                    open.push(ends.len());
+                    ends.push((at, at));
+                }
                 b'}' | b']' => {
-                    if let Some(start) = open.pop() {
-                        ends[start] = at + 1;
+                    if let Some(opened) = open.pop() {
+                        ends[opened].1 = at + 1;
                     }
                 }
                 _ => {}
@@ -45,7 +47,10 @@ impl<'a> Compact<'a> {
         let bytes = self.text.as_bytes();
         match bytes[at] {
             b'"' => behind_string(bytes, at),
-            b'{' | b'[' => self.ends[at],
+            b'{' | b'[' => {
+                let index = self.ends.partition_point(|&(start, _)| start < at);
+                self.ends[index].1
+            }
             _ => {
                 let rest = bytes[at..].iter();
                 let length = rest.take_while(|byte| !matches!(byte, b',' | b'}' | b']'));

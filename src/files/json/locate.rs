@@ -1,8 +1,11 @@
 //! Places in a JSON document: paths such as `muscles[1].from.body`, and the bytes where their values stand.
 
-use std::collections::HashSet;
+use rustc_hash::FxHashSet;
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
+
+use crate::files::json::scan::{Entry, Scanner, string};
 
 /// One step of a path.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -82,198 +85,177 @@ impl fmt::Display for JsonPath {
     }
 }
 
-/// Where one value stands in the text.
-#[derive(Clone, Debug)]
-pub(crate) struct Found {
-    /// Index of the value that contains this one.
-    parent: Option<usize>,
-    /// The step from there to here.
-    step: Option<Step>,
-    /// Bytes of the key in front of the value, quotes included.
-    pub(crate) key: Option<Range<usize>>,
-    /// Bytes of the value.
-    pub(crate) value: Range<usize>,
-}
-
-/// All values of a JSON text in the order of their starts; of a text that is no JSON, those that end before the mistake.
-///
-/// Each knows what contains it, so that long keys of deep values are held once.
-#[derive(Debug, Default)]
-pub(crate) struct Located(Vec<Found>);
-
-/// Reads where the values of a text stand.
-pub(crate) fn locate(text: &str) -> Located {
-    let mut scanner = Scanner {
-        text,
-        at: 0,
-        found: Vec::new(),
-    };
-    scanner.value(None, None, None, 0);
-    Located(scanner.found)
-}
-
-impl Located {
-    /// The value at a place.
-    pub(crate) fn find(&self, place: &JsonPath) -> Option<&Found> {
-        let mut here = self.of(None, None, 0)?;
-        for step in &place.0 {
-            here = self.of(Some(here), Some(step), here + 1)?;
+/// Where the value at a place stands, with its key.
+pub(crate) fn find(text: &str, place: &JsonPath) -> Option<Entry> {
+    let value = Scanner::of(text).value()?;
+    let whole = Entry { key: None, value };
+    place.0.iter().try_fold(whole, |here, step| {
+        let inside = Scanner::from(text, here.value.start);
+        match step {
+            Step::Key(key) => inside.entry(key),
+            Step::Index(_) if inside.peek() != Some(b'[') => None,
+            Step::Index(index) => inside.entries().nth(*index),
         }
-        self.ended(here)
-    }
+    })
+}
 
-    /// The innermost value around a byte of the text, with its place.
-    pub(crate) fn around(&self, at: usize) -> Option<(JsonPath, Range<usize>)> {
-        let is_around = |&i: &usize| {
-            let value = self.ended(i).map(|found| &found.value);
-            value.is_some_and(|value| value.start <= at && at <= value.end)
+/// The string, number or word around a byte of the text, with its place; the text may be no JSON behind it.
+pub(crate) fn around(text: &str, at: usize) -> Option<(JsonPath, Range<usize>)> {
+    let mut found = None;
+    walk(text, &mut |walk, met| match met {
+        Met::Scalar(range) if range.start <= at && at <= range.end => {
+            found = Some((walk.place(), range));
+            None
+        }
+        _ => Some(()),
+    });
+    found
+}
+
+/// A key that stood in the same object before, with its place.
+pub(crate) fn repeated(text: &str) -> Option<(JsonPath, Range<usize>)> {
+    let mut open: Vec<FxHashSet<Cow<'_, str>>> = Vec::new();
+    let mut found = None;
+    walk(text, &mut |walk, met| {
+        match met {
+            Met::Open => open.push(FxHashSet::default()),
+            Met::Close => {
+                open.pop();
+            }
+            Met::Key(range) => {
+                let key = string(text, range.clone())?;
+                if !open.last_mut()?.insert(key) {
+                    found = Some((walk.place(), range));
+                    return None;
+                }
+            }
+            Met::Scalar(_) => {}
+        }
+        Some(())
+    });
+    found
+}
+
+/// The first string, key or value, of which a character does not belong to what is expected.
+pub(crate) fn wrong_string(text: &str, belongs: impl Fn(char) -> bool) -> Option<WrongString> {
+    let mut found = None;
+    walk(text, &mut |walk, met| {
+        let (range, is_key) = match met {
+            Met::Key(range) => (range, true),
+            Met::Scalar(range) => (range, false),
+            Met::Open | Met::Close => return Some(()),
         };
-        let index = (0..self.0.len()).rev().find(is_around)?;
-        Some((self.place(index), self.0[index].value.clone()))
-    }
-
-    /// The first value under a key that stood in the same object before, with its place.
-    pub(crate) fn repeated(&self) -> Option<(JsonPath, &Found)> {
-        let mut seen = HashSet::new();
-        let mut all = self.0.iter();
-        let index = all.position(|found| !seen.insert((found.parent, found.step.as_ref())))?;
-        Some((self.place(index), &self.0[index]))
-    }
-
-    /// Index of the value one step inside another, sought from an index on.
-    fn of(&self, parent: Option<usize>, step: Option<&Step>, from: usize) -> Option<usize> {
-        let matches = |found: &Found| (found.parent, found.step.as_ref()) == (parent, step);
-        let inside = self.0.get(from..)?;
-        Some(from + inside.iter().position(matches)?)
-    }
-
-    /// A value whose end was seen.
-    fn ended(&self, index: usize) -> Option<&Found> {
-        self.0.get(index).filter(|found| found.value.end != OPEN)
-    }
-
-    fn place(&self, index: usize) -> JsonPath {
-        let mut steps = Vec::new();
-        let mut next = Some(index);
-        while let Some(found) = next.map(|index| &self.0[index]) {
-            steps.extend(found.step.clone());
-            next = found.parent;
+        match string(text, range) {
+            Some(says) if !says.chars().all(&belongs) => {
+                found = Some(WrongString {
+                    place: walk.place(),
+                    says: says.into_owned(),
+                    is_key,
+                });
+                None
+            }
+            _ => Some(()),
         }
-        steps.reverse();
-        JsonPath(steps)
-    }
+    });
+    found
+}
+
+/// A string that is not as expected.
+#[derive(Debug)]
+pub(crate) struct WrongString {
+    pub(crate) place: JsonPath,
+    /// What it says.
+    pub(crate) says: String,
+    /// Whether it is a key.
+    pub(crate) is_key: bool,
 }
 
 /// Nesting that is followed, as deep as serde_json reads.
 const DEEPEST: usize = 128;
 
-/// End of a value whose end is not known yet.
-const OPEN: usize = usize::MAX;
-
-struct Scanner<'a> {
-    text: &'a str,
-    at: usize,
-    found: Vec<Found>,
+/// What is met on the way through a text.
+enum Met {
+    /// An object or list begins.
+    Open,
+    /// It ends.
+    Close,
+    /// The bytes of a key, which is the last step of the place.
+    Key(Range<usize>),
+    /// The bytes of a string, number or word.
+    Scalar(Range<usize>),
 }
 
-impl Scanner<'_> {
-    /// Moves past one value; `None` where the text is no JSON.
-    fn value(
-        &mut self,
-        parent: Option<usize>,
-        step: Option<Step>,
-        key: Option<Range<usize>>,
-        depth: usize,
-    ) -> Option<()> {
-        self.blanks();
-        let first = self.peek()?;
-        if depth > DEEPEST {
+/// One step of the way, by the bytes of its key.
+enum Way {
+    Key(Range<usize>),
+    Index(usize),
+}
+
+/// A way through all values of a text in their order.
+struct Walk<'a> {
+    scanner: Scanner<'a>,
+    way: Vec<Way>,
+}
+
+/// Says what is met, until it answers `None`, or the text is no JSON.
+fn walk(text: &str, visit: &mut dyn FnMut(&Walk<'_>, Met) -> Option<()>) {
+    let mut walk = Walk {
+        scanner: Scanner::of(text),
+        way: Vec::new(),
+    };
+    walk.value(visit);
+}
+
+impl Walk<'_> {
+    /// The present place.
+    fn place(&self) -> JsonPath {
+        let step = |way: &Way| match way {
+            Way::Key(key) => {
+                let key = string(self.scanner.text, key.clone()).unwrap_or_default();
+                Step::Key(key.into_owned())
+            }
+            Way::Index(index) => Step::Index(*index),
+        };
+        JsonPath(self.way.iter().map(step).collect())
+    }
+
+    fn value(&mut self, visit: &mut dyn FnMut(&Walk<'_>, Met) -> Option<()>) -> Option<()> {
+        let open = self.scanner.peek()?;
+        let close = match open {
+            b'{' => b'}',
+            b'[' => b']',
+            _ => {
+                let scalar = self.scanner.scalar()?;
+                visit(self, Met::Scalar(scalar))?;
+                self.scanner.blanks();
+                return Some(());
+            }
+        };
+        if self.way.len() > DEEPEST {
             return None;
         }
-        let here = self.found.len();
-        self.found.push(Found {
-            parent,
-            step,
-            key,
-            value: self.at..OPEN,
-        });
-        match first {
-            b'{' => self.list(b'}', |scanner, _| {
-                scanner.blanks();
-                let start = scanner.at;
-                let name = scanner.string()?;
-                let key = start..scanner.at;
-                scanner.blanks();
-                scanner.expect(b':')?;
-                scanner.value(Some(here), Some(Step::Key(name)), Some(key), depth + 1)
-            })?,
-            b'[' => self.list(b']', |scanner, index| {
-                scanner.value(Some(here), Some(Step::Index(index)), None, depth + 1)
-            })?,
-            b'"' => {
-                self.string()?;
-            }
-            _ => self.skip(|byte| !b",]}: \t\r\n".contains(&byte)),
-        }
-        self.found[here].value.end = self.at;
-        Some(())
-    }
-
-    /// Moves past the brackets and what they hold.
-    fn list(
-        &mut self,
-        close: u8,
-        mut item: impl FnMut(&mut Self, usize) -> Option<()>,
-    ) -> Option<()> {
-        self.at += 1;
-        self.blanks();
-        if self.peek()? == close {
-            self.at += 1;
-            return Some(());
-        }
+        visit(self, Met::Open)?;
+        self.scanner.expect(open)?;
         for index in 0.. {
-            item(self, index)?;
-            self.blanks();
-            match self.peek()? {
-                b',' => self.at += 1,
-                byte if byte == close => break,
-                _ => return None,
+            if self.scanner.peek()? == close {
+                break;
             }
-        }
-        self.at += 1;
-        Some(())
-    }
-
-    /// Moves past a string and returns what it says.
-    fn string(&mut self) -> Option<String> {
-        let start = self.at;
-        self.expect(b'"')?;
-        loop {
-            match self.peek()? {
-                b'"' => break,
-                b'\\' => self.at += 2,
-                _ => self.at += 1,
+            if index > 0 {
+                self.scanner.expect(b',')?;
             }
+            if open == b'{' {
+                let key = self.scanner.scalar()?;
+                self.way.push(Way::Key(key.clone()));
+                visit(self, Met::Key(key))?;
+                self.scanner.blanks();
+                self.scanner.expect(b':')?;
+            } else {
+                self.way.push(Way::Index(index));
+            }
+            self.value(visit)?;
+            self.way.pop();
         }
-        self.at += 1;
-        serde_json::from_str(self.text.get(start..self.at)?).ok()
-    }
-
-    fn blanks(&mut self) {
-        self.skip(|byte| b" \t\r\n".contains(&byte));
-    }
-
-    fn skip(&mut self, belongs: impl Fn(u8) -> bool) {
-        while self.peek().is_some_and(&belongs) {
-            self.at += 1;
-        }
-    }
-
-    fn expect(&mut self, byte: u8) -> Option<()> {
-        (self.peek()? == byte).then(|| self.at += 1)
-    }
-
-    fn peek(&self) -> Option<u8> {
-        self.text.as_bytes().get(self.at).copied()
+        self.scanner.expect(close)?;
+        visit(self, Met::Close)
     }
 }

@@ -1,6 +1,7 @@
 //! JSON text: values with their places, mistakes that quote them, overrides, the layout of what is written.
 //!
-//! - `document`, `locate`: a file and where its values stand; `scope`: a value with its place, for messages.
+//! - `source`: the bytes of a file, if there is room for them; `document`: a file; `scope`: a value with its place, for messages.
+//! - `scan`, `locate`: its text value by value, and where these stand; `reader`: values of serde from it. Beside the text nothing is kept of a file.
 //! - `error`, `wording`: mistakes, and serde's in our words; `not_offered`: words for what is not offered; `either`: values that are written in two ways.
 //! - `set`: overrides of the command line; `layout`: lines of what is written.
 
@@ -10,6 +11,9 @@ pub mod error;
 pub(crate) mod layout;
 pub(crate) mod locate;
 mod not_offered;
+pub(crate) mod reader;
+pub(crate) mod scan;
 pub(crate) mod scope;
 pub(crate) mod set;
+pub(crate) mod source;
 pub(crate) mod wording;

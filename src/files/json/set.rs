@@ -1,10 +1,13 @@
-//! Overrides from the command line: `control.intervals=80`, `scene.muscles[0].material=silicone`.
+//! Overrides from the command line: `control.intervals=80`, `scene.muscles[0].material=silicone`, `scene.springs.stay.stiffness=200`.
 
-use serde_json::{Map, Value};
+use serde_json::Value;
+use std::ops::Range;
 
-use crate::files::json::document::Document;
+use crate::files::json::document::{Document, Set};
 use crate::files::json::error::{Mistake, SceneError};
 use crate::files::json::locate::{JsonPath, Step};
+use crate::files::json::scan::{Scanner, string};
+use crate::files::json::scope::list;
 
 /// Longest path of an override; files are not nested deeper.
 const DEEPEST: usize = 64;
@@ -13,6 +16,8 @@ const DEEPEST: usize = 64;
 #[derive(Clone, Debug)]
 pub(crate) struct Override {
     pub(crate) place: JsonPath,
+    /// The place as it was typed.
+    typed: JsonPath,
     value: Value,
     written: String,
 }
@@ -24,6 +29,7 @@ impl Override {
         let read = |(path, value): (&str, &str)| {
             let place = JsonPath::parse(path.trim()).filter(|place| place.0.len() <= DEEPEST)?;
             Some(Self {
+                typed: place.clone(),
                 place,
                 value: serde_json::from_str(value).unwrap_or_else(|_| value.trim().into()),
                 written: written.to_owned(),
@@ -37,7 +43,7 @@ impl Override {
                 expected: "path=value, such as control.intervals=80".to_owned(),
                 nearest: None,
                 source: None,
-                overridden: false,
+                overridden: None,
             };
             mistake.into()
         })
@@ -56,67 +62,163 @@ impl Override {
 
     /// Puts the value in its place.
     pub(crate) fn apply(&self, document: &mut Document) -> Result<(), SceneError> {
-        document.set.push(changed(&document.value, &self.place));
-        match slot(&mut document.value, &self.place) {
-            Ok(slot) => *slot = self.value.clone(),
-            Err((found, expected)) => {
-                let found = format!("{found} in {:?}", self.written);
-                return Err(document.mistake(&self.place, found, expected));
-            }
+        let Slot {
+            place,
+            bytes,
+            missing,
+            wrong,
+        } = slot(document.text(), &self.place);
+        document.set.push(Set {
+            place,
+            typed: self.typed.clone(),
+        });
+        if let Some((found, expected)) = wrong {
+            let found = format!("{found} in {:?}", self.written);
+            return Err(document.mistake(&self.place, found, expected));
         }
+        document.replace(bytes, &missing.written(&self.value));
         Ok(())
     }
 }
 
-/// The place itself, or the first one on the way to it that is not there yet.
-fn changed(root: &Value, place: &JsonPath) -> JsonPath {
-    let mut value = Some(root);
-    let missing = place.0.iter().position(|step| {
-        value = value.and_then(|value| match step {
-            Step::Key(key) => value.get(key),
-            Step::Index(index) => value.get(index),
-        });
-        value.is_none()
-    });
-    match missing {
-        Some(position) => JsonPath(place.0[..=position].to_vec()),
-        None => place.clone(),
+/// Where a value goes.
+struct Slot {
+    /// The place itself, entries of lists by their indices, or the first place on the way to it that is not there yet.
+    place: JsonPath,
+    /// The bytes in whose place it is written.
+    bytes: Range<usize>,
+    missing: Missing,
+    /// What was found in place of a way there, and what is expected.
+    wrong: Option<(String, String)>,
+}
+
+/// What is not there yet of the way to a value.
+#[derive(Default)]
+struct Missing {
+    /// Keys, one inside the other.
+    keys: Vec<String>,
+    /// Whether there are other keys beside the first one.
+    has_others: bool,
+}
+
+impl Missing {
+    /// The text that makes the way, and stands for the value at its end.
+    fn written(&self, value: &Value) -> String {
+        let key = |key: &String| format!("{}:", Value::from(key.as_str()));
+        let way: Vec<String> = self.keys.iter().map(key).collect();
+        let inside = self.keys.len().saturating_sub(1);
+        let comma = if self.has_others { "," } else { "" };
+        format!("{}{value}{}{comma}", way.join("{"), "}".repeat(inside))
     }
 }
 
-/// Where a value goes; otherwise what was found and what is expected.
-fn slot<'a>(root: &'a mut Value, place: &JsonPath) -> Result<&'a mut Value, (String, String)> {
-    let mut value = root;
+/// Finds where a value goes: what is not there yet is made, and a key that has no meaning is found when the file is read.
+fn slot(text: &str, place: &JsonPath) -> Slot {
+    let mut slot = Slot {
+        place: JsonPath::default(),
+        bytes: Scanner::of(text).value().unwrap_or_default(),
+        missing: Missing::default(),
+        wrong: None,
+    };
     for (position, step) in place.0.iter().enumerate() {
+        let inside = Scanner::from(text, slot.bytes.start);
+        let opens = inside.peek();
         let parent = match position {
             0 => "the file".to_owned(),
             _ => JsonPath(place.0[..position].to_vec()).to_string(),
         };
-        value = match (step, value) {
-            // What is not there yet is made; a key that has no meaning is found when the file is read.
-            (Step::Key(key), Value::Object(entries)) => {
-                let next = place.0.get(position + 1);
-                entries.entry(key.clone()).or_insert_with(|| match next {
-                    Some(Step::Key(_)) => Value::Object(Map::new()),
-                    _ => Value::Null,
-                })
+        let (here, value) = match (step, opens) {
+            (Step::Key(key), Some(b'{')) => (step.clone(), inside.entry(key)),
+            (Step::Key(key), Some(b'[')) => {
+                let index = index_of(text, inside, key);
+                let entry = index.and_then(|index| inside.entries().nth(index));
+                (index.map_or(step.clone(), Step::Index), entry)
             }
-            (Step::Index(index), Value::Array(entries)) => {
-                let length = entries.len();
-                entries.get_mut(*index).ok_or_else(|| {
-                    let expected = format!("an index below {length}, the length of {parent}");
-                    (format!("the index {index}"), expected)
-                })?
-            }
-            (Step::Key(key), _) => {
-                let found = format!("the key {key:?}");
-                return Err((found, format!("no key, as {parent} is no object")));
-            }
-            (Step::Index(index), _) => {
-                let found = format!("the index {index}");
-                return Err((found, format!("no index, as {parent} is no list")));
-            }
+            (Step::Index(index), Some(b'[')) => (step.clone(), inside.entries().nth(*index)),
+            _ => (step.clone(), None),
         };
+        slot.place.0.push(here);
+        match value {
+            Some(entry) => slot.bytes = entry.value,
+            None if opens == Some(b'{') && matches!(step, Step::Key(_)) => {
+                return slot.made(text, inside, &place.0[position..]);
+            }
+            None => {
+                slot.wrong = Some(no_way(text, inside, step, &parent));
+                return slot;
+            }
+        }
     }
-    Ok(value)
+    slot
+}
+
+impl Slot {
+    /// In an object without the first of these steps.
+    fn made(mut self, text: &str, object: Scanner<'_>, steps: &[Step]) -> Self {
+        for (position, step) in steps.iter().enumerate() {
+            match step {
+                Step::Key(key) => self.missing.keys.push(key.clone()),
+                Step::Index(index) => {
+                    let parent = JsonPath(steps[..position].to_vec());
+                    let expected = format!("no index, as {parent} is no list");
+                    self.wrong = Some((format!("the index {index}"), expected));
+                    return self;
+                }
+            }
+        }
+        self.missing.has_others = object.entries().next().is_some();
+        // Behind the brace.
+        let start = Scanner::from(text, self.bytes.start).at + 1;
+        self.bytes = start..start;
+        self
+    }
+}
+
+/// The name of an object in a list.
+fn name_of<'a>(text: &'a str, object: Range<usize>) -> Option<std::borrow::Cow<'a, str>> {
+    let inside = Scanner::from(text, object.start);
+    (inside.peek() == Some(b'{')).then_some(())?;
+    string(text, inside.entry("name")?.value)
+}
+
+/// Index of the entry of a list that has a name.
+fn index_of(text: &str, list: Scanner<'_>, name: &str) -> Option<usize> {
+    let named = |range| name_of(text, range).as_deref() == Some(name);
+    list.entries().position(|entry| named(entry.value))
+}
+
+/// Most names of a list that are told.
+const NAMES: usize = 20;
+
+/// What was found in place of a value that goes on as a step does, and what is expected.
+fn no_way(text: &str, inside: Scanner<'_>, step: &Step, parent: &str) -> (String, String) {
+    let is_list = inside.peek() == Some(b'[');
+    let length = inside.entries().count();
+    match step {
+        Step::Key(key) if is_list => {
+            let names = inside.entries().filter_map(|one| name_of(text, one.value));
+            let names: Vec<_> = names.take(NAMES).collect();
+            let expected = match (names.is_empty(), length) {
+                (true, _) => format!("no key, as {parent} is a list without names"),
+                (false, length) => format!(
+                    "an index from 0 to {}, or a name in {parent}, such as {}",
+                    length - 1,
+                    list(names.iter())
+                ),
+            };
+            (format!("the name {key:?}"), expected)
+        }
+        Step::Key(key) => {
+            let expected = format!("no key, as {parent} is no object");
+            (format!("the key {key:?}"), expected)
+        }
+        Step::Index(index) if is_list => {
+            let expected = format!("an index below {length}, the length of {parent}");
+            (format!("the index {index}"), expected)
+        }
+        Step::Index(index) => {
+            let expected = format!("no index, as {parent} is no list");
+            (format!("the index {index}"), expected)
+        }
+    }
 }

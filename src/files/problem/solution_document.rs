@@ -13,9 +13,15 @@ pub(crate) fn solution_document(
     is_wanted: impl Fn(&str) -> bool,
 ) -> Result<Document, SceneError> {
     let mut document = Document::read(path)?;
-    let done = complete(path, &mut document.value, is_wanted);
-    match done {
-        Ok(()) => Ok(document),
+    if document.entry("arrays").is_none() {
+        return Ok(document);
+    }
+    let mut values = document.parse()?;
+    match complete(path, &mut values, is_wanted) {
+        Ok(()) => {
+            document.complete(values);
+            Ok(document)
+        }
         Err(reason) => Err(Scope::of(&document)
             .key("arrays")
             .wrong(reason.to_string(), "the file that was written with it")),

@@ -20,7 +20,7 @@ use crate::model::components::Components;
 use crate::model::system::{Joint, JointKind, Material, System, number_sources};
 
 /// Longest chain that the shorthand writes out.
-const LONGEST_CHAIN: usize = 1000;
+pub(crate) const LONGEST_CHAIN: usize = 1000;
 
 /// The system that a scene means.
 pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System, SceneError> {

@@ -21,6 +21,14 @@ pub enum Reason {
     /// It cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(io::Error),
+    /// There is no room for what is read from it.
+    #[error("found {found}, expected {expected}")]
+    TooLarge {
+        /// Its size.
+        found: String,
+        /// The largest one.
+        expected: String,
+    },
     /// It is not JSON.
     #[error("no JSON: {0}")]
     NoJson(serde_json::Error),

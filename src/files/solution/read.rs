@@ -3,9 +3,13 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::error::Error;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::control::{Costates, EarlierSolution, Solution};
+use crate::files::json::reader::Reader;
+use crate::files::json::scan::Scanner;
+use crate::files::json::source::{NoBytes, check_json, of_file};
 use crate::files::solution::arrays::complete;
 use crate::files::solution::error::{Reason, SolutionError};
 use crate::files::solution::record::{Body, ConfigurationRecord, File, METRE, SECOND, unit};
@@ -22,6 +26,10 @@ impl EarlierSolution for SolutionFile {
     fn solution(&self, model: &Model) -> Result<Cow<'_, Solution>, Box<dyn Error + Send + Sync>> {
         Ok(Cow::Owned(read(&self.0, model)?))
     }
+
+    fn file(&self) -> Option<&Path> {
+        Some(&self.0)
+    }
 }
 
 /// Reads a `solution.json` of the scene of a model.
@@ -35,15 +43,31 @@ pub fn read(path: &Path, model: &Model) -> Result<Solution, SolutionError> {
     })
 }
 
+/// The file as it is written, with the arrays that stand in another one.
+fn read_file(path: &Path) -> Result<File, Reason> {
+    let bytes = of_file(path).map_err(|error| match error {
+        NoBytes::Unreadable(cause) => Reason::Unreadable(cause),
+        NoBytes::TooLarge(found, expected) => Reason::TooLarge { found, expected },
+    })?;
+    let utf8 = |error| io::Error::new(io::ErrorKind::InvalidData, error);
+    let text = String::from_utf8(bytes).map_err(|error| Reason::Unreadable(utf8(error)))?;
+    check_json(&text).map_err(Reason::NoJson)?;
+    let read = match Scanner::of(&text).entry("arrays") {
+        None => serde_path_to_error::deserialize(&mut Reader::of(&text)),
+        Some(_) => {
+            let mut values = serde_json::from_str(&text).map_err(Reason::NoJson)?;
+            complete(path, &mut values, |_| true)?;
+            serde_path_to_error::deserialize(&values)
+        }
+    };
+    read.map_err(|error| Reason::NoSolution {
+        place: error.path().to_string(),
+        found: error.inner().to_string(),
+    })
+}
+
 fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
-    let text = std::fs::read_to_string(path).map_err(Reason::Unreadable)?;
-    let mut value: serde_json::Value = serde_json::from_str(&text).map_err(Reason::NoJson)?;
-    complete(path, &mut value, |_| true)?;
-    let file: File =
-        serde_path_to_error::deserialize(&value).map_err(|error| Reason::NoSolution {
-            place: error.path().to_string(),
-            found: error.inner().to_string(),
-        })?;
+    let file = read_file(path)?;
     let instants = file.time.len();
     if instants < 2 || file.time.windows(2).any(|pair| pair[0] >= pair[1]) {
         let reason = "\"time\" needs two instants or more, in increasing order";

@@ -2,3 +2,6 @@
 
 pub mod quantity;
 pub(crate) mod unit;
+mod written;
+
+pub(crate) use written::si;

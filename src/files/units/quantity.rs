@@ -9,6 +9,7 @@ use std::marker::PhantomData;
 use uom::si;
 
 use crate::files::units::unit::{Dimension, Unit, scale};
+use crate::files::units::written::{Written, parts};
 
 /// A kind of quantity: its name, an example, and the dimensions it is written in.
 #[derive(Clone, Debug)]
@@ -165,19 +166,10 @@ impl PhysicalQuantity for SoughtConstant {
     }
 }
 
-/// What was written: a number in SI units, or a text with a unit.
-#[derive(Clone, Debug, PartialEq)]
-enum Written {
-    Number(f64),
-    Text(String),
-}
-
 /// A finite quantity of one of the kinds of a [`PhysicalQuantity`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity<M> {
     written: Written,
-    number: f64,
-    unit: Option<Unit>,
     measure: PhantomData<M>,
 }
 
@@ -186,8 +178,6 @@ impl<M: PhysicalQuantity> Quantity<M> {
     pub(crate) fn try_from_number(number: f64) -> Result<Self, String> {
         Self {
             written: Written::Number(number),
-            number,
-            unit: None,
             measure: PhantomData,
         }
         .checked()
@@ -198,15 +188,7 @@ impl<M: PhysicalQuantity> Quantity<M> {
     /// # Errors
     /// The text is no number with a unit that is known here.
     pub fn try_from_text(text: &str) -> Result<Self, String> {
-        let (number, tail) = split_number(text.trim_start());
-        let number: f64 = number
-            .parse()
-            .map_err(|_| format!("{text:?}, which does not begin with a number"))?;
-        if tail.trim().is_empty() {
-            return Err(format!("{text:?}, which has no unit"));
-        }
-        let unit = Unit::parse(tail)
-            .ok_or_else(|| format!("{text:?}, where {:?} is no known unit", tail.trim()))?;
+        let (_, unit) = parts(text)?;
         if !M::kinds()
             .iter()
             .any(|kind| kind.dimensions.contains(&unit.dimension))
@@ -214,9 +196,7 @@ impl<M: PhysicalQuantity> Quantity<M> {
             return Err(format!("{text:?}, which is {}", describe(unit.dimension)));
         }
         Self {
-            written: Written::Text(text.to_owned()),
-            number,
-            unit: Some(unit),
+            written: Written::Text(text.into()),
             measure: PhantomData,
         }
         .checked()
@@ -233,9 +213,10 @@ impl<M: PhysicalQuantity> Quantity<M> {
     }
 
     fn converted(&self, kind: &Kind) -> f64 {
-        let unit = self.unit.unwrap_or(Unit::ONE);
+        let (number, unit) = self.written.parts();
+        let unit = unit.unwrap_or(Unit::ONE);
         let exponent = unit.exponent + kind.dimensions[0].internal_exponent();
-        scale(self.number * unit.factor, exponent)
+        scale(number * unit.factor, exponent)
     }
 
     /// Value in the units inside, of the only kind of this measure.
@@ -248,7 +229,8 @@ impl<M: PhysicalQuantity> Quantity<M> {
     /// # Errors
     /// Its unit is of another kind.
     pub fn value_as(&self, kind: &Kind) -> Result<f64, String> {
-        match self.unit {
+        let (_, unit) = self.written.parts();
+        match unit {
             Some(unit) if !kind.dimensions.contains(&unit.dimension) => {
                 Err(format!("{self}, which is {}", describe(unit.dimension)))
             }
@@ -269,9 +251,7 @@ impl Quantity<Length> {
         // Adding zero turns −0 into 0.
         let number = value + 0.0;
         Self {
-            written: Written::Text(format!("{number} mm")),
-            number,
-            unit: Some(Unit::millimetre()),
+            written: Written::Text(format!("{number} mm").into()),
             measure: PhantomData,
         }
     }
@@ -349,30 +329,6 @@ impl<M: PhysicalQuantity> JsonSchema for Quantity<M> {
             "description": format!("A number in SI units or a text with a unit: {}.", Self::expected()),
         })
     }
-}
-
-/// The decimal number at the start of a text, and the rest.
-fn split_number(text: &str) -> (&str, &str) {
-    let bytes = text.as_bytes();
-    let digits = |mut at: usize| {
-        while bytes.get(at).is_some_and(u8::is_ascii_digit) {
-            at += 1;
-        }
-        at
-    };
-    let sign = |at: usize| at + usize::from(matches!(bytes.get(at), Some(b'+' | b'-')));
-    let mut end = digits(sign(0));
-    if bytes.get(end) == Some(&b'.') {
-        end = digits(end + 1);
-    }
-    if matches!(bytes.get(end), Some(b'e' | b'E')) {
-        let start = sign(end + 1);
-        let exponent = digits(start);
-        if exponent > start {
-            end = exponent;
-        }
-    }
-    text.split_at(end)
 }
 
 /// What has this dimension, in words.

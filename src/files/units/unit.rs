@@ -88,11 +88,6 @@ impl Unit {
         },
     };
 
-    /// The millimetre.
-    pub(crate) fn millimetre() -> Self {
-        Self::of::<si::length::Dimension, si::length::millimeter>()
-    }
-
     /// A unit of uom.
     fn of<D: si::Dimension + ?Sized, U: Conversion<f64, T = f64>>() -> Self {
         let coefficient = U::coefficient();

@@ -141,7 +141,9 @@ fn line(command: &CommandInput) -> Result<String, CommandError> {
     let program =
         std::env::current_exe().map_err(|cause| CommandError::Engine(cause.to_string()))?;
     let mut quoted = Vec::new();
-    for word in [program.into_os_string()].into_iter().chain(words(command)) {
+    // A server that is started again from its journal may hand out a task once more that has ended.
+    let words = words(command).into_iter().chain(["--once".into()]);
+    for word in [program.into_os_string()].into_iter().chain(words) {
         let word = word.into_string().ok().filter(|word| !word.contains('\n'));
         let word = word.ok_or_else(|| CommandError::Option {
             option: "--engine hyperqueue",

@@ -1,0 +1,84 @@
+//! What tells whether two problems are one, and whether a result is that of a problem.
+
+use std::fmt;
+use std::fs;
+use std::path::Path;
+
+use crate::app::digest::{digest, digest_of};
+use crate::app::request::CommandInput;
+use crate::control::problem::{Guess, Task};
+use crate::files::Loaded;
+use crate::files::solution::file_beside;
+use crate::report::origin::Origin;
+
+/// Digits of an identity.
+const DIGITS: usize = 16;
+
+/// Hexadecimal digits of a hash of a problem as it was read, with the files that it names, and of the version of the program.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Identity(String);
+
+impl Identity {
+    /// Of a problem, with what is to be written of its motion.
+    pub(crate) fn of_problem(loaded: &Loaded) -> Self {
+        // All numbers are written so that they read back identical.
+        let Loaded {
+            system,
+            task,
+            output,
+            ..
+        } = loaded;
+        let earlier = earlier(task);
+        Self::of(format_args!("{system:?}{task:?}{output:?}{earlier:?}"))
+    }
+
+    /// Of a problem with the options of a run that have a part in its files.
+    pub(crate) fn of_run(loaded: &Loaded, request: &CommandInput) -> Self {
+        let CommandInput {
+            max_iterations,
+            wanted,
+            figures,
+            page,
+            ..
+        } = request;
+        let Self(problem) = Self::of_problem(loaded);
+        Self::of(format_args!(
+            "{problem}{max_iterations:?}{wanted:?}{figures:?}{page:?}"
+        ))
+    }
+
+    /// Of overrides that make no problem.
+    pub(crate) fn of_words(words: &[String]) -> Self {
+        Self::of(format_args!("{words:?}"))
+    }
+
+    fn of(written: fmt::Arguments<'_>) -> Self {
+        let program = Origin::program();
+        Self(digest(format_args!("{program}\n{written}"), DIGITS))
+    }
+
+    /// Its digits.
+    pub(crate) fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+/// Hashes of the files of an earlier solution from which a task starts.
+fn earlier(task: &Task) -> Vec<String> {
+    let Task::Control(control) = task else {
+        return Vec::new();
+    };
+    let Guess::Solution(earlier) = &control.guess else {
+        return Vec::new();
+    };
+    let Some(path) = earlier.file() else {
+        return Vec::new();
+    };
+    let arrays = file_beside(path).map(|name| path.with_file_name(name));
+    let of_file = |path: &Path| fs::read(path).map_or_else(|_| String::new(), |b| digest_of(&b));
+    [Some(path.to_owned()), arrays]
+        .into_iter()
+        .flatten()
+        .map(|path| of_file(&path))
+        .collect()
+}

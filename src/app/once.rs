@@ -1,0 +1,95 @@
+//! A result that is made once: a folder that holds it already, whole, is left as it is.
+
+use std::fs;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::app::error::CommandError;
+use crate::app::identity::Identity;
+use crate::app::record::{FileRecords, Found, OF_RUN, is_unfinished};
+use crate::app::request::{CommandInput, CommandOutput};
+use crate::app::task::{read, run};
+use crate::files::lay_out;
+use crate::report::atomic::{self, WriteError};
+
+/// The answer of a run that has come to its end, with its files.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Record {
+    identity: String,
+    is_solved: bool,
+    result: String,
+    notes: Vec<String>,
+    files: FileRecords,
+}
+
+/// Does what a problem file asks for, unless the folder of the results holds the answer already; a result of which a file is missing or
+/// not as it was written is made again.
+///
+/// # Errors
+/// As of [`run`].
+pub fn run_once(request: &CommandInput) -> Result<CommandOutput, CommandError> {
+    let loaded = read(&request.input, None, &request.set)?;
+    let identity = Identity::of_run(&loaded, request);
+    let folder = request.folder();
+    let deviation = match found(&folder, &identity) {
+        Found::Whole(record) => {
+            return Ok(CommandOutput {
+                is_solved: record.is_solved,
+                result: format!("found as it was written: {}", record.result),
+                notes: record.notes,
+            });
+        }
+        Found::Deviates(deviation) => Some(deviation),
+        Found::Nothing => None,
+    };
+    let mut told = run(request)?;
+    if !status(&folder).is_none_or(|status| is_unfinished(&status)) {
+        write(&folder, &identity, &told)?;
+    }
+    let again = deviation.map(|words| format!("made again: {words}"));
+    told.notes.splice(0..0, again);
+    Ok(told)
+}
+
+/// What a folder holds of the result of a run.
+fn found(folder: &Path, identity: &Identity) -> Found<Record> {
+    let Ok(text) = fs::read_to_string(folder.join(OF_RUN)) else {
+        return Found::Nothing;
+    };
+    let Ok(record) = serde_json::from_str::<Record>(&text) else {
+        return Found::Deviates(format!("{OF_RUN} is no record"));
+    };
+    if record.identity != identity.as_str() {
+        return Found::Nothing;
+    }
+    match record.files.deviation(folder) {
+        Some(words) => Found::Deviates(words),
+        None => Found::Whole(record),
+    }
+}
+
+/// The word with which a summary says how a run ended.
+fn status(folder: &Path) -> Option<String> {
+    let text = fs::read_to_string(folder.join("summary.json")).ok()?;
+    let summary: Value = serde_json::from_str(&text).ok()?;
+    Some(summary.get("status")?.as_str()?.to_owned())
+}
+
+fn write(folder: &Path, identity: &Identity, told: &CommandOutput) -> Result<(), WriteError> {
+    let path = folder.join(OF_RUN);
+    let files = FileRecords::of(folder).map_err(|cause| WriteError {
+        path: path.clone(),
+        cause,
+    })?;
+    let record = Record {
+        identity: identity.as_str().to_owned(),
+        is_solved: told.is_solved,
+        result: told.result.clone(),
+        notes: told.notes.clone(),
+        files,
+    };
+    let text = serde_json::to_string(&record).expect("words and numbers are JSON");
+    atomic::write(&path, lay_out(&text).as_bytes())
+}

@@ -1,0 +1,108 @@
+//! The files of a result as they were written: their sizes and hashes, which a record in their folder keeps.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::app::digest::digest_of;
+
+/// What can be otherwise the next time.
+const UNFINISHED: [&str; 5] = [
+    "not_started",
+    "interrupted",
+    "time_limit",
+    "failed",
+    "out_of_memory",
+];
+
+/// Whether another attempt may end with another status.
+pub(crate) fn is_unfinished(status: &str) -> bool {
+    UNFINISHED.contains(&status)
+}
+
+/// The record of a run that is made once.
+pub(crate) const OF_RUN: &str = "record.json";
+/// The record of a variant of a sweep.
+pub(crate) const OF_VARIANT: &str = "variant.json";
+
+/// A file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct FileRecord {
+    bytes: u64,
+    sha256: String,
+}
+
+/// The files of a folder and its folders, by their paths within it.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct FileRecords(BTreeMap<String, FileRecord>);
+
+/// What a folder holds of a result.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Found<T> {
+    /// All of it as it was written.
+    Whole(T),
+    /// A file is not as it was written, in words.
+    Deviates(String),
+    /// Another result, or none.
+    Nothing,
+}
+
+impl FileRecords {
+    /// The files that a folder has now, without records; what is still being written is left out.
+    ///
+    /// # Errors
+    /// A file cannot be read.
+    pub(crate) fn of(folder: &Path) -> io::Result<Self> {
+        let mut files = Self::default();
+        if folder.is_dir() {
+            files.read(folder, "")?;
+        }
+        for record in [OF_RUN, OF_VARIANT] {
+            files.0.remove(record);
+        }
+        Ok(files)
+    }
+
+    fn read(&mut self, folder: &Path, within: &str) -> io::Result<()> {
+        for entry in fs::read_dir(folder)? {
+            let path = entry?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let place = format!("{within}{name}");
+            if path.is_dir() {
+                self.read(&path, &format!("{place}/"))?;
+            } else if !name.starts_with('.') {
+                let bytes = fs::read(&path)?;
+                let record = FileRecord {
+                    bytes: bytes.len() as u64,
+                    sha256: digest_of(&bytes),
+                };
+                self.0.insert(place, record);
+            }
+        }
+        Ok(())
+    }
+
+    /// The first file that is not as it was written, in words.
+    pub(crate) fn deviation(&self, folder: &Path) -> Option<String> {
+        let mut files = self.0.iter();
+        files.find_map(|(name, record)| {
+            let path = folder.join(name);
+            let bytes = match fs::metadata(&path) {
+                Ok(found) => found.len(),
+                Err(_) => return Some(format!("{name} is missing")),
+            };
+            if bytes != record.bytes {
+                return Some(format!("{name} has {bytes} of {} bytes", record.bytes));
+            }
+            match fs::read(&path) {
+                Ok(bytes) if digest_of(&bytes) == record.sha256 => None,
+                Ok(_) => Some(format!("{name} has been changed")),
+                Err(cause) => Some(format!("{name} cannot be read ({cause})")),
+            }
+        })
+    }
+}

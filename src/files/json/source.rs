@@ -1,0 +1,135 @@
+//! The bytes of a JSON file, if the machine has room for what is read from them.
+
+use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use std::fmt;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+use crate::math::memory::{available, readable};
+
+/// Bytes of memory that reading takes for each byte of a file: its text, a copy with overrides, and 16 bytes for a number or a text in a list,
+/// which has 4 bytes or more in the file.
+const OF_BYTE: f64 = 8.0;
+/// Bytes of the largest file where the memory of the machine is not known.
+const LARGEST: u64 = 1 << 30;
+
+/// What came through standard input. A process reads it once: several starts have the same problem.
+static STANDARD_INPUT: Mutex<Option<Vec<u8>>> = Mutex::new(None);
+
+/// Why there are no bytes.
+#[derive(Debug)]
+pub(crate) enum NoBytes {
+    /// What the operating system said.
+    Unreadable(io::Error),
+    /// What was found, and what is expected.
+    TooLarge(String, String),
+}
+
+/// Whether a file that is typed stands for standard input.
+pub(crate) fn is_standard_input(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// The bytes of a file.
+pub(crate) fn of_file(path: &Path) -> Result<Vec<u8>, NoBytes> {
+    let file = File::open(path).map_err(NoBytes::Unreadable)?;
+    let size = file.metadata().map_or(0, |found| found.len());
+    limited(file, size)
+}
+
+/// The bytes of standard input.
+pub(crate) fn of_standard_input() -> Result<Vec<u8>, NoBytes> {
+    let mut read = STANDARD_INPUT
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner);
+    if let Some(bytes) = &*read {
+        return Ok(bytes.clone());
+    }
+    let bytes = limited(io::stdin().lock(), 0)?;
+    Ok(read.insert(bytes).clone())
+}
+
+/// Reads all, if that is no more than there is room for; a `size` that is known is looked at first.
+fn limited(from: impl Read, size: u64) -> Result<Vec<u8>, NoBytes> {
+    let free = available();
+    let most = free.map_or(LARGEST, |free| (free / OF_BYTE) as u64);
+    let too_large = |found: String| {
+        let of_memory = free.map_or_else(String::new, |free| {
+            let free = readable(free);
+            format!(": reading takes up to {OF_BYTE} bytes for each byte of a file, and {free} of memory are free")
+        });
+        let expected = format!("a file of at most {}{of_memory}", readable(most as f64));
+        NoBytes::TooLarge(found, expected)
+    };
+    if size > most {
+        return Err(too_large(format!("a file of {}", readable(size as f64))));
+    }
+    let mut bytes = Vec::with_capacity(size as usize);
+    let mut from = from.take(most + 1);
+    from.read_to_end(&mut bytes).map_err(NoBytes::Unreadable)?;
+    match bytes.len() as u64 > most {
+        true => Err(too_large("a file without a known end".to_owned())),
+        false => Ok(bytes),
+    }
+}
+
+/// Whether a text is JSON.
+///
+/// # Errors
+/// The first mistake in it.
+pub(crate) fn check_json(text: &str) -> Result<(), serde_json::Error> {
+    serde_json::from_str::<Anything>(text).map(|_| ())
+}
+
+/// A value of which nothing is kept: strings are decoded and numbers computed, unlike those that serde ignores.
+struct Anything;
+
+impl<'de> Deserialize<'de> for Anything {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Self)
+    }
+}
+
+impl<'de> Visitor<'de> for Anything {
+    type Value = Self;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("JSON")
+    }
+
+    fn visit_bool<E>(self, _: bool) -> Result<Self, E> {
+        Ok(self)
+    }
+
+    fn visit_i64<E>(self, _: i64) -> Result<Self, E> {
+        Ok(self)
+    }
+
+    fn visit_u64<E>(self, _: u64) -> Result<Self, E> {
+        Ok(self)
+    }
+
+    fn visit_f64<E>(self, _: f64) -> Result<Self, E> {
+        Ok(self)
+    }
+
+    fn visit_str<E>(self, _: &str) -> Result<Self, E> {
+        Ok(self)
+    }
+
+    fn visit_unit<E>(self) -> Result<Self, E> {
+        Ok(self)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self, A::Error> {
+        while list.next_element::<Self>()?.is_some() {}
+        Ok(self)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Self, A::Error> {
+        while entries.next_entry::<Self, Self>()?.is_some() {}
+        Ok(self)
+    }
+}
