@@ -6,14 +6,20 @@
 //! M v + Gᵀ μ = p,     G v = 0
 //! ```
 //!
-//! so that they meet the constraints; without constraints this is M v = p.
+//! so that they meet the constraints; without constraints this is M v = p. Where coordinates have no inertia or constraints follow from
+//! others, it is solved in a basis N of the null space of G, NᵀM N w = Nᵀp with v = N w, and what has no inertia rests.
 
 use crate::coordinates::{Configuration, Destination, Scratch};
+use crate::dynamics::momenta::{DECOMPOSED, rates_within};
 use crate::dynamics::tangent::{EntryList, Tangent};
 use crate::functional::{BlockMask, Blocks, Kind, Order, Part, Sample};
 use crate::math::Vector;
 use crate::model::Model;
 use crate::sparse::Symmetry;
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// Parts of the largest square of a constraint gradient that count as none.
+const DEPENDENT: f64 = 1e-14;
 
 /// Storage of the bordered mass matrix.
 #[derive(Debug)]
@@ -46,7 +52,8 @@ impl<'m> Kinetic<'m> {
         }
     }
 
-    /// Rates of the coordinates of a placed instant; nothing where masses are missing or constraints are redundant.
+    /// Rates of the coordinates of a placed instant; nothing where masses are missing or constraints are redundant, and coordinates too
+    /// many for a null space.
     pub(super) fn rates(
         &mut self,
         instant: &mut Configuration,
@@ -92,12 +99,43 @@ impl<'m> Kinetic<'m> {
             &mut self.scratch,
             &mut self.values,
         );
+        self.solved(momentum).or_else(|| self.within(momentum))
+    }
+
+    fn solved(&mut self, momentum: &[f64]) -> Option<Vec<f64>> {
         self.tangent.factor(&self.values).ok()?;
         let mut rates = momentum.to_vec();
-        rates.resize(action.motion.unknowns(), 0.0);
+        rates.resize(self.model.action.motion.unknowns(), 0.0);
         self.tangent.solve(&mut rates);
         rates.truncate(momentum.len());
         rates.iter().all(|rate| rate.is_finite()).then_some(rates)
+    }
+
+    /// The same in the null space of the constraints.
+    fn within(&self, momentum: &[f64]) -> Option<Vec<f64>> {
+        let n = momentum.len();
+        if n > DECOMPOSED || momentum.iter().any(|p| !p.is_finite()) {
+            return None;
+        }
+        let mut mass = DMatrix::<f64>::zeros(n, n);
+        let mut gradients = DMatrix::<f64>::zeros(n, self.model.action.motion.multipliers);
+        let entries = self.model.action.layout().same.entries();
+        for ((i, j), &value) in entries.zip(&self.values) {
+            match (i < n, j < n) {
+                (true, true) => mass[(i, j)] += value,
+                (true, false) => gradients[(i, j - n)] += value,
+                _ => {}
+            }
+        }
+        let square = SymmetricEigen::new(&gradients * gradients.transpose());
+        let least = DEPENDENT * square.eigenvalues.amax();
+        let free = (0..n).filter(|&i| square.eigenvalues[i] <= least);
+        let free: Vec<usize> = free.collect();
+        Some(rates_within(
+            &mass,
+            &square.eigenvectors.select_columns(&free),
+            momentum,
+        ))
     }
 }
 

@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 /// Eigenvalues of the mass matrix below this fraction of the largest belong to coordinates without inertia.
 const MASSLESS: f64 = 1e-13;
 /// Up to so many coordinates the mass matrix is decomposed.
-const DECOMPOSED: usize = 500;
+pub(super) const DECOMPOSED: usize = 500;
 /// The residual of rates that are iterated for, relative to the momenta.
 const LEFT: f64 = 1e-13;
 
@@ -32,17 +32,29 @@ pub(super) fn rates(model: &Model, instant: &mut Configuration, momentum: &[f64]
         mass.column_mut(i).copy_from_slice(&column);
         unit[i] = 0.0;
     }
-    let p = DVector::from_column_slice(momentum);
+    rates_within(&mass, &DMatrix::identity(n, n), momentum)
+}
+
+/// Rates with given momenta of a mass matrix, within the span of a basis with orthonormal columns.
+pub(super) fn rates_within(
+    mass: &DMatrix<f64>,
+    basis: &DMatrix<f64>,
+    momentum: &[f64],
+) -> Vec<f64> {
+    if basis.ncols() == 0 {
+        return vec![0.0; momentum.len()];
+    }
+    let p = basis.tr_mul(&DVector::from_column_slice(momentum));
     let SymmetricEigen {
         eigenvectors: q,
         eigenvalues,
-    } = SymmetricEigen::new(mass);
+    } = SymmetricEigen::new(basis.tr_mul(&(mass * basis)));
     let smallest = MASSLESS * eigenvalues.amax();
     let mut modes = q.tr_mul(&p);
     for (mode, &value) in modes.iter_mut().zip(&eigenvalues) {
         *mode = if value > smallest { *mode / value } else { 0.0 };
     }
-    (q * modes).iter().copied().collect()
+    (basis * (q * modes)).iter().copied().collect()
 }
 
 /// The same by conjugate gradients in coordinates relative to their sizes, for the well-conditioned masses of many nodes.

@@ -2,16 +2,18 @@
 //!
 //! Every row holds what is so at its instant. The midpoint rule sees charges and energies in the middle of intervals: between
 //! two of them they are interpolated linearly (where voltages switch, that is the mean of both sides). Row 0 is read at q₀ with
-//! the rates of its momenta, the last row at q_N under the last voltages, with the kinetic energy carried on from the last two
-//! intervals; all of it is of second order. Where a method means energies at instants ([`Reading::Instants`]), every row is read
-//! like row 0. The momenta are the momentum maps of p⁺ = D₂L_d + f⁺, which an invariant motion conserves exactly; reactions of
-//! joints enter with the next interval.
+//! the rates of its momenta, the last row at q_N under the last voltages with the rates of p_N; all of it is of second order.
+//! Where a method means energies at instants ([`Reading::Instants`]), every row is read like row 0.
+//!
+//! The momenta are those at the instant: between the ends the mean of the momentum maps of p⁻ = −D₁L_d − f⁻ of the interval that
+//! begins there and of p⁺ = D₂L_d + f⁺ of the one that ends there, of second order. Where no joint holds the system to the ground both
+//! are equal; otherwise the impulses of its reactions over half a step to either side lie between them, and the mean has neither.
 
 use crate::coordinates::{Configuration, Interval, Scratch};
+use crate::dynamics::at_instant::AtInstant;
 use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::interval_energies::energies;
-use crate::dynamics::kinetic::Kinetic;
-use crate::dynamics::momenta::{Places, momentum_maps, moving, rates, vector_momenta};
+use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Kind, Order};
 use crate::math::{Vector, has_pool};
@@ -59,11 +61,11 @@ pub fn observed(model: &Model, history: &DiscreteTrajectory) -> Vec<Column> {
         column.values.reserve_exact(count);
     }
     for row in rows.iter().flatten() {
-        for (column, value) in columns.iter_mut().zip(row) {
+        for (column, value) in columns.iter_mut().zip(&row.values) {
             column.values.push(*value);
         }
     }
-    let of_intervals = observer.of_intervals();
+    let [of_intervals, of_momenta] = [observer.of_intervals(), observer.of_momenta()];
     if observer.has(Kind::VirtualWork) {
         let mut dissipated = 0.0;
         for work in &mut columns[of_intervals.end].values {
@@ -74,26 +76,18 @@ pub fn observed(model: &Model, history: &DiscreteTrajectory) -> Vec<Column> {
     if history.reading == Reading::Intervals && history.times.len() > 1 {
         let last = observer.last(history);
         to_instants(&history.times, &mut columns[of_intervals], &last);
+        let before: Vec<_> = rows.iter().flatten().map(|row| row.before).collect();
+        means(&history.times, &mut columns[of_momenta], &before, &last);
     }
     columns
 }
 
 /// Turns charges, kinetic, potential and total energy in the middle of the intervals that end at the rows into those at the
-/// rows; `last` holds the charges and potential energies of the last one.
-fn to_instants(times: &[f64], columns: &mut [Column], last: &Ends) {
+/// rows; `last` holds those of the last one.
+fn to_instants(times: &[f64], columns: &mut [Column], last: &Last) {
     let end = times.len() - 1;
     let length = |k: usize| times[k] - times[k - 1];
-    // Kinetic energy half an interval after the middle of the last one.
-    let of_kinetic = &columns[last.charges.len()].values;
-    let kinetic = match end {
-        1 => 2.0 * of_kinetic[1] - of_kinetic[0],
-        _ => {
-            let slope = (of_kinetic[end] - of_kinetic[end - 1]) / (length(end) + length(end - 1));
-            of_kinetic[end] + slope * length(end)
-        }
-    };
-    let kinetic = kinetic.max(0.0);
-    let total = kinetic + last.potential.iter().sum::<f64>();
+    let total = last.kinetic + last.potential.iter().sum::<f64>();
     for column in &mut *columns {
         for k in 1..end {
             let (before, after) = (length(k), length(k + 1));
@@ -101,18 +95,45 @@ fn to_instants(times: &[f64], columns: &mut [Column], last: &Ends) {
             column.values[k] = sum / (before + after);
         }
     }
-    let ends = last.charges.iter().copied().chain([kinetic]);
+    let ends = last.charges.iter().copied().chain([last.kinetic]);
     let ends = ends.chain(last.potential.iter().copied()).chain([total]);
     for (column, value) in columns.iter_mut().zip(ends) {
         column.values[end] = value;
     }
 }
 
-/// Charges and potential energies at the last instant.
+/// Turns momenta as the interval before each row sees them into means of both intervals beside it, each weighted by the length of
+/// the other, so that a constant reaction cancels; `before` holds what the interval that ends at a row sees at the row before.
+fn means(times: &[f64], columns: &mut [Column], before: &[Momenta], last: &Last) {
+    let end = times.len() - 1;
+    for (i, column) in columns.iter_mut().enumerate() {
+        for k in 1..end {
+            let [earlier, later] = [times[k] - times[k - 1], times[k + 1] - times[k]];
+            let sum = column.values[k] * later + before[k + 1][i] * earlier;
+            column.values[k] = sum / (earlier + later);
+        }
+        column.values[end] = last.momenta[i];
+    }
+}
+
+/// Linear and angular momentum by axis.
+type Momenta = [f64; 6];
+
+/// What is observed at one instant.
+struct Row {
+    /// By column; what belongs to intervals as the one that ends here sees it, of the dissipated energy its work.
+    values: Vec<f64>,
+    /// Momenta at the instant before, as that interval sees them.
+    before: Momenta,
+}
+
+/// Charges, energies and momenta at the last instant.
 #[derive(Debug)]
-struct Ends {
+struct Last {
     charges: Vec<f64>,
+    kinetic: f64,
     potential: Vec<f64>,
+    momenta: Momenta,
 }
 
 /// The storage to observe one instant after the other.
@@ -121,8 +142,7 @@ struct Observer<'m> {
     before: Configuration,
     here: Configuration,
     scratch: Scratch,
-    /// Made where momenta are read at instants.
-    kinetic: Option<Kinetic<'m>>,
+    at_instant: AtInstant<'m>,
     /// What forces on joint coordinates do to the whole system.
     pulls: Vec<[Vector; 2]>,
 }
@@ -134,7 +154,7 @@ impl<'m> Observer<'m> {
             before: model.action.motion.instant(),
             here: model.action.motion.instant(),
             scratch: model.action.scratch(Order::Gradient),
-            kinetic: None,
+            at_instant: AtInstant::new(model),
             pulls: model.presolved.system.joint_pulls(),
         }
     }
@@ -155,19 +175,33 @@ impl<'m> Observer<'m> {
         self.model.system.muscles.len()..total + 1
     }
 
-    /// Charges and potential energies at the last instant under the last voltages.
-    fn last(&mut self, history: &DiscreteTrajectory) -> Ends {
-        let model = self.model;
-        let scalars = &history.scalars[history.intervals() - 1];
-        self.here.z.copy_from_slice(&history.z[history.intervals()]);
+    /// Columns of the momenta.
+    fn of_momenta(&self) -> Range<usize> {
+        let columns = self.columns();
+        let first = columns.iter().position(|c| c.name == "linear_momentum_x");
+        let first = first.expect("there is a momentum");
+        first..first + 6
+    }
+
+    /// Charges and energies at the last instant under the last voltages, and the momenta there.
+    fn last(&mut self, history: &DiscreteTrajectory) -> Last {
+        let (model, end) = (self.model, history.intervals());
+        let scalars = &history.scalars[end - 1];
+        self.here.z.copy_from_slice(&history.z[end]);
         model.action.motion.place(&mut self.here);
         self.before.clone_from(&self.here);
         let potential = energies(model, &self.here, &self.here, scalars, 1.0).potential;
         let immobile = model.solids.iter();
         let immobile = immobile.flat_map(|block| block.immobile_charges(&self.here.x, scalars));
         let mut charges: Vec<f64> = immobile.collect();
-        charges.extend(self.interval(scalars, 1.0).0);
-        Ends { charges, potential }
+        charges.extend(self.interval(scalars, 1.0));
+        let (kinetic, momenta) = self.moves(history, end);
+        Last {
+            charges,
+            kinetic,
+            potential,
+            momenta: self.maps(&self.here, &momenta, &vec![Vector::zeros(); momenta.len()]),
+        }
     }
 
     fn has(&self, kind: Kind) -> bool {
@@ -227,43 +261,35 @@ impl<'m> Observer<'m> {
         columns
     }
 
-    /// The values of the columns at instant k, of the dissipated energy the work of the interval before it.
-    fn row(&mut self, history: &DiscreteTrajectory, k: usize) -> Vec<f64> {
+    /// What is observed at instant k.
+    fn row(&mut self, history: &DiscreteTrajectory, k: usize) -> Row {
         let model = self.model;
         let none = vec![0.0; model.action.intervals.scalars];
         let scalars = history.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
         self.here.z.copy_from_slice(&history.z[k]);
         model.action.motion.place(&mut self.here);
-        let by_momentum = k == 0 || history.reading == Reading::Instants;
-        let (h, at_instant) = if by_momentum {
-            self.before = self.here.clone();
-            (1.0, Some(self.momentum(history, k)))
-        } else {
-            (history.times[k] - history.times[k - 1], None)
+        let is_at_instant = k == 0 || history.reading == Reading::Instants;
+        let h = match is_at_instant {
+            true => {
+                self.before = self.here.clone();
+                1.0
+            }
+            false => history.times[k] - history.times[k - 1],
         };
         let mut energies = energies(model, &self.before, &self.here, scalars, h);
         if history.reading == Reading::Instants {
             let works = k.checked_sub(1).and_then(|k| history.works.get(k));
             energies.work = works.copied().unwrap_or_default();
         }
-        let (charges, forces) = self.interval(scalars, h);
-        let (momenta, impulses) = match at_instant {
-            Some(momentum) => {
-                let rates = self.rates(history, k, &momentum);
-                let products = momentum.iter().zip(&rates).map(|(p, v)| p * v);
-                energies.kinetic = 0.5 * products.sum::<f64>();
-                let momenta = moving(model, &mut self.here, &rates);
+        let charges = self.interval(scalars, h);
+        let [before, momenta] = match is_at_instant {
+            true => {
+                let momenta;
+                (energies.kinetic, momenta) = self.moves(history, k);
                 let none = vec![Vector::zeros(); momenta.len()];
-                (momenta, none)
+                [[0.0; 6], self.maps(&self.here, &momenta, &none)]
             }
-            None => {
-                let ends = || self.before.x.iter().zip(&self.here.x);
-                let middles: Vec<Vector> = ends().map(|(a, b)| (a + b) * 0.5).collect();
-                let rates: Vec<Vector> = ends().map(|(a, b)| (b - a) / h).collect();
-                let momenta = vector_momenta(model, &middles, &rates);
-                let impulses = forces.iter().zip(&momenta).map(|(f, p)| f - p).collect();
-                (momenta, impulses)
-            }
+            false => self.of_interval(h),
         };
 
         let mut row = Vec::new();
@@ -281,15 +307,7 @@ impl<'m> Observer<'m> {
         if self.has(Kind::VirtualWork) {
             row.push(energies.work);
         }
-        let poses = model.condensed_poses(&self.here);
-        let places = Places {
-            poses: &poses,
-            x: &self.here.x,
-            pulls: &self.pulls,
-        };
-        for map in momentum_maps(&model.vectors, &places, &momenta, &impulses) {
-            row.extend(map.iter());
-        }
+        row.extend(momenta);
         row.push(self.violation());
         if model.system.components.iter().next().is_some() {
             let bodies = model.poses(&self.here);
@@ -301,11 +319,49 @@ impl<'m> Observer<'m> {
             }
         }
         std::mem::swap(&mut self.before, &mut self.here);
-        row
+        Row {
+            values: row,
+            before,
+        }
     }
 
-    /// Charges −∂W/∂V of the interval that ends here, and the momenta p⁺ of all vectors.
-    fn interval(&mut self, scalars: &[f64], h: f64) -> (Vec<f64>, Vec<Vector>) {
+    /// Kinetic energy ½ p·v at instant k, and the momenta of all vectors with its rates v.
+    fn moves(&mut self, history: &DiscreteTrajectory, k: usize) -> (f64, Vec<Vector>) {
+        let momentum = self.at_instant.momentum(history, k, &self.here);
+        let at_instant = &mut self.at_instant;
+        let rates = at_instant.rates(history, k, &mut self.here, &momentum);
+        let products = momentum.iter().zip(&rates).map(|(p, v)| p * v);
+        let kinetic = 0.5 * products.sum::<f64>();
+        (kinetic, moving(self.model, &mut self.here, &rates))
+    }
+
+    /// The momentum maps of p⁻ at the beginning of the interval that ends here, and of p⁺ at its end, from the forces of the interval.
+    fn of_interval(&self, h: f64) -> [Momenta; 2] {
+        let ends = || self.before.x.iter().zip(&self.here.x);
+        let middles: Vec<Vector> = ends().map(|(a, b)| (a + b) * 0.5).collect();
+        let rates: Vec<Vector> = ends().map(|(a, b)| (b - a) / h).collect();
+        let momenta = vector_momenta(self.model, &middles, &rates);
+        let impulses = |instant: &Configuration, sign: f64| -> Vec<Vector> {
+            let pairs = instant.forces.iter().zip(&momenta);
+            pairs.map(|(f, p)| f * sign - p).collect()
+        };
+        let at = |instant, sign| self.maps(instant, &momenta, &impulses(instant, sign));
+        [at(&self.before, -1.0), at(&self.here, 1.0)]
+    }
+
+    /// Momentum maps of momenta and impulses of all vectors of an instant.
+    fn maps(&self, instant: &Configuration, momenta: &[Vector], impulses: &[Vector]) -> Momenta {
+        let places = Places {
+            poses: &self.model.condensed_poses(instant),
+            x: &instant.x,
+            pulls: &self.pulls,
+        };
+        let [p, l] = momentum_maps(&self.model.vectors, &places, momenta, impulses);
+        [p.x, p.y, p.z, l.x, l.y, l.z]
+    }
+
+    /// Charges −∂W/∂V of the interval that ends here; leaves its forces on both instants.
+    fn interval(&mut self, scalars: &[f64], h: f64) -> Vec<f64> {
         let Self {
             before,
             here,
@@ -322,50 +378,7 @@ impl<'m> Observer<'m> {
         );
         let rows = &scratch.interval.plain.rows[self.model.variables.range(Role::Voltage)];
         let charges = rows.iter().map(|row| row / h);
-        (charges.collect(), here.forces.clone())
-    }
-
-    /// Rates of the coordinates at instant k: as recorded at the start, or those of the momentum.
-    fn rates(&mut self, history: &DiscreteTrajectory, k: usize, momentum: &[f64]) -> Vec<f64> {
-        let model = self.model;
-        if let (0, Some(known)) = (k, &history.rates) {
-            return known.clone();
-        }
-        if history.reading == Reading::Instants {
-            let kinetic = self.kinetic.get_or_insert_with(|| Kinetic::new(model));
-            if let Some(rates) = kinetic.rates(&mut self.here, momentum) {
-                return rates;
-            }
-        }
-        rates(model, &mut self.here, momentum)
-    }
-
-    /// Momentum of each coordinate at instant k: as recorded, or at the start as the first interval asks for it.
-    fn momentum(&mut self, history: &DiscreteTrajectory, k: usize) -> Vec<f64> {
-        let model = self.model;
-        if let Some(momentum) = history.momenta.get(k) {
-            return momentum.clone();
-        }
-        let n = model.coordinate_count();
-        let Some(scalars) = history.scalars.first() else {
-            return vec![0.0; n];
-        };
-        let (mut a, mut b) = (self.here.clone(), self.here.clone());
-        b.z.copy_from_slice(&history.z[1]);
-        model.action.motion.place(&mut b);
-        a.forces.fill(Vector::zeros());
-        model.action.evaluate_interval(
-            Order::Gradient,
-            [&mut a, &mut b],
-            &Interval::given(scalars, history.times[1] - history.times[0]),
-            &mut self.scratch,
-        );
-        model
-            .action
-            .evaluate_instant(Order::Gradient, &mut a, &[], &mut self.scratch);
-        let mut rows = vec![0.0; model.action.motion.unknowns()];
-        model.action.rows(&mut a, &self.scratch, &mut rows);
-        rows[..n].iter().map(|row| -row).collect()
+        charges.collect()
     }
 
     /// max |g| over the constraints that the coordinates leave open.

@@ -209,3 +209,106 @@ fn angles_go_on_beyond_a_turn() {
     }
     assert!(redundant.joints[60][0] > 4.0 * TAU);
 }
+
+/// A pendulum of one bob with its hinge at the origin, under gravity.
+fn pendulum(coordinates: Coordinates, h: f64) -> Model {
+    let bob = body(
+        "bob",
+        25.0,
+        [900.0, 500.0, 800.0],
+        Vector3::new(0.0, -40.0, 0.0),
+        Matrix3::identity(),
+    );
+    let hinge = joint(
+        "hip",
+        JointKind::Revolute { axis: Vector3::z() },
+        None,
+        0,
+        Vector3::zeros(),
+    );
+    let gravity = Some(Vector3::new(0.0, -9.81e-3, 0.0));
+    let scene = bare(vec![bob], vec![hinge], gravity);
+    Model::new(scene, Some(coordinates), h, &[]).unwrap()
+}
+
+#[test]
+fn what_hangs_still_has_no_momentum_and_no_kinetic_energy() {
+    for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
+        for h in [5.0, 2.5] {
+            let model = pendulum(coordinates, h);
+            let start = Start::at_rest(&model, model.coordinates_at(&[0.0]));
+            let history = motion(&model, &start, h, 20, &[]);
+            let seen = observations(&model, &history);
+            // p⁺ alone is −m g h/2.
+            let weight = 25.0 * 9.81e-3;
+            assert!(weight * h / 2.0 > 0.1);
+            for name in ["linear_momentum", "angular_momentum"] {
+                for p in columns(&seen, name) {
+                    assert!(p.norm() < 1e-9 * weight * h, "{coordinates:?}: {name} {p}");
+                }
+            }
+            let kinetic = column(&seen, "kinetic_energy");
+            assert!(kinetic.iter().all(|e| e.abs() < 1e-15), "{kinetic:?}");
+        }
+    }
+}
+
+#[test]
+fn momenta_and_kinetic_energies_of_a_pendulum_are_those_of_its_instants() {
+    for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
+        let ends = |steps: usize| {
+            let h = 200.0 / steps as f64;
+            let model = pendulum(coordinates, h);
+            let start = Start::at_rest(&model, model.coordinates_at(&[1.0]));
+            let history = motion(&model, &start, h, steps, &[]);
+            let seen = observations(&model, &history);
+            // In the middle, and at the last instant.
+            [steps / 2, steps].map(|k| {
+                let p = columns(&seen, "linear_momentum")[k];
+                let l = columns(&seen, "angular_momentum")[k];
+                [p.x, p.y, l.z, column(&seen, "kinetic_energy")[k]]
+            })
+        };
+        // The exact pendulum by its first integral and a quadrature: I θ̇ = −√(2 m g l I (cos θ − cos θ₀)).
+        let (m, l, g) = (25.0, 40.0, 9.81e-3);
+        let inertia = 800.0 + m * l * l;
+        let (mut angle, mut rate) = (1.0_f64, 0.0_f64);
+        let slope = |angle: f64| -m * g * l * angle.sin() / inertia;
+        let exact: Vec<[f64; 4]> = [100.0, 200.0]
+            .map(|_| {
+                let (count, h) = (20_000, 100.0 / 20_000.0);
+                for _ in 0..count {
+                    // Classical Runge–Kutta.
+                    let k1 = (rate, slope(angle));
+                    let k2 = (rate + 0.5 * h * k1.1, slope(angle + 0.5 * h * k1.0));
+                    let k3 = (rate + 0.5 * h * k2.1, slope(angle + 0.5 * h * k2.0));
+                    let k4 = (rate + h * k3.1, slope(angle + h * k3.0));
+                    angle += h / 6.0 * (k1.0 + 2.0 * k2.0 + 2.0 * k3.0 + k4.0);
+                    rate += h / 6.0 * (k1.1 + 2.0 * k2.1 + 2.0 * k3.1 + k4.1);
+                }
+                let speed = m * l * rate;
+                let along = [angle.cos() * speed, angle.sin() * speed];
+                [
+                    along[0],
+                    along[1],
+                    inertia * rate,
+                    0.5 * inertia * rate * rate,
+                ]
+            })
+            .to_vec();
+        let [coarse, fine] = [40, 80].map(ends);
+        for at in 0..2 {
+            for i in 0..4 {
+                let size = exact[at][i].abs();
+                let [a, b] = [&coarse, &fine].map(|of| (of[at][i] - exact[at][i]).abs());
+                println!("{coordinates:?} {at} {i}: {size} {a:e} {b:e}");
+                assert!(size > 0.01);
+                // Second order: the error falls to a quarter.
+                assert!(
+                    b < 0.3 * a && a < 0.02 * size,
+                    "{at} {i}: {a:e}, {b:e} of {size}"
+                );
+            }
+        }
+    }
+}

@@ -150,10 +150,13 @@ fn over_time(run: &Run<'_>) -> Vec<Value> {
             alone("work [mJ]", of_sources("_mechanical_work")),
         ),
         (
-            "Linear momentum",
+            "Linear momentum, conserved without ground and weight",
             alone("momentum [N ms]", observed(&begins("linear_momentum_"))),
         ),
-        ("Angular momentum", alone("momentum [N mm ms]", momenta)),
+        (
+            "Angular momentum, conserved without ground and weight",
+            alone("momentum [N mm ms]", momenta),
+        ),
         (
             "Constraint violation",
             alone("violation", observed(&violation)),
