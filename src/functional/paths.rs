@@ -6,10 +6,10 @@
 //! ∂W/∂rᵢ = W′ uᵢ,     ∂²W/∂rᵢ∂rⱼ = W″ uᵢ uⱼᵀ + δᵢⱼ W′ Kᵢ,
 //! ```
 //!
-//! and along w, where W‴ = 0, with L_w = Σ uᵢ·wᵢ and the rates u̇ᵢ = Kᵢ wᵢ, K̇ᵢ = −(u̇ᵢ uᵢᵀ + uᵢ u̇ᵢᵀ + (uᵢ·wᵢ) Kᵢ)/|r̄ᵢ|:
+//! and along w, with L_w = Σ uᵢ·wᵢ and the rates u̇ᵢ = Kᵢ wᵢ, K̇ᵢ = −(u̇ᵢ uᵢᵀ + uᵢ u̇ᵢᵀ + (uᵢ·wᵢ) Kᵢ)/|r̄ᵢ|:
 //!
 //! ```text
-//! (∂²W)˙ᵢⱼ = W″ (u̇ᵢ uⱼᵀ + uᵢ u̇ⱼᵀ) + δᵢⱼ (W″ L_w Kᵢ + W′ K̇ᵢ).
+//! (∂²W)˙ᵢⱼ = W‴ L_w uᵢ uⱼᵀ + W″ (u̇ᵢ uⱼᵀ + uᵢ u̇ⱼᵀ) + δᵢⱼ (W″ L_w Kᵢ + W′ K̇ᵢ).
 //! ```
 
 use crate::energy::Cable;
@@ -95,6 +95,8 @@ struct Taut<'a> {
     tension: f64,
     /// W″.
     stiffness: f64,
+    /// W‴.
+    stiffening: f64,
     /// L_w.
     stretch: f64,
     /// The span whose row was asked for last: rows are read one after the other.
@@ -141,7 +143,8 @@ impl Derivatives for Rates<'_> {
     fn block(&self, i: usize, j: usize) -> Matrix {
         let (path, a, b) = (self.0, self.0.row_span(i), self.0.span(j));
         let turned = a.turn * b.direction.transpose() + a.direction * b.turn.transpose();
-        let mut rate = turned * path.stiffness;
+        let along = a.direction * b.direction.transpose();
+        let mut rate = turned * path.stiffness + along * (path.stiffening * path.stretch);
         if i == j {
             rate += a.curvature() * (path.stiffness * path.stretch);
             rate += a.curvature_rate() * path.tension;
@@ -184,7 +187,7 @@ impl Kernel for Paths {
         (): &(),
         to: &mut S,
     ) {
-        let [_, tension, stiffness] = path.energy.of_length(path.length(sample));
+        let [_, tension, stiffness, stiffening] = path.energy.of_length(path.length(sample));
         if tension == 0.0 {
             return;
         }
@@ -194,6 +197,7 @@ impl Kernel for Paths {
             order,
             tension,
             stiffness,
+            stiffening,
             stretch: 0.0,
             row: Cell::new(None),
         };

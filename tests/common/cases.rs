@@ -260,6 +260,14 @@ pub fn cases() -> Vec<Case> {
             c.duration = free;
             c.objective = every_objective();
         }),
+        case(
+            "a tendon that grows taut",
+            with(
+                &|s| s.components.tendons[0].smoothing = 100.0,
+                tied(trunk(2)),
+            ),
+            &|_| {},
+        ),
         case("branched tree", branched(), &|_| {}),
         case("blocks", blocks(), &|c| c.goal = corner_goal()),
         case("blocks, marker at rest, free time", blocks(), &|c| {

@@ -52,6 +52,7 @@ pub fn tied(mut system: System) -> System {
         through,
         stiffness: 0.01,
         rest_length: 80.0,
+        smoothing: 0.0,
     }];
     system
 }

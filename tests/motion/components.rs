@@ -4,6 +4,7 @@ use crate::common::{bare, motion, placed, trunk};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::coordinates::Interval;
 use proboscis::dynamics::{Start, energies, observations};
+use proboscis::energy::Cable;
 use proboscis::energy::LinearSpring;
 use proboscis::functional::{Element, Order};
 use proboscis::model::components::{Other, Spring, Tendon};
@@ -124,6 +125,7 @@ fn a_taut_tendon_between_two_points_is_a_spring() {
         through: vec![spring.from, spring.to],
         stiffness: 0.4,
         rest_length: 25.0,
+        smoothing: 0.0,
     }];
     let lengths = [&of_spring, &of_tendon].map(|system| {
         let model = Model::new(system.clone(), None, 0.5, &[]).unwrap();
@@ -149,6 +151,7 @@ fn a_slack_tendon_pulls_at_nothing() {
         through: vec![spring.from, spring.to],
         stiffness: 0.4,
         rest_length: 31.0,
+        smoothing: 0.0,
     }];
     let model = Model::new(system, None, 0.5, &[]).unwrap();
     let start = Start::at_rest(&model, model.coordinates_at(&[0.0]));
@@ -173,6 +176,7 @@ fn around_an_eye() -> System {
         ],
         stiffness: 0.3,
         rest_length: 40.0,
+        smoothing: 0.0,
     }];
     system
 }
@@ -226,6 +230,7 @@ fn forces_of_a_path_are_those_of_its_length() {
         through: through.clone(),
         stiffness: 0.02,
         rest_length: 100.0,
+        smoothing: 0.0,
     }];
     let model = Model::new(system.clone(), Some(Coordinates::Reduced), 1.0, &[]).unwrap();
     let energy = |z: &[f64]| {
@@ -333,4 +338,35 @@ fn a_component_of_another_crate_works() {
         "{:?}",
         history.z[steps]
     );
+}
+
+#[test]
+fn the_stiffness_of_a_tendon_grows_over_its_width() {
+    let cable = Cable {
+        stiffness: 0.4,
+        length: 50.0,
+        smoothing: 6.0,
+    };
+    let jumping = Cable {
+        smoothing: 0.0,
+        ..cable
+    };
+    // Slack below the width, beyond it the tension of a cable without one.
+    assert_eq!(cable.of_length(47.0), [0.0; 4]);
+    assert!((cable.of_length(53.0)[1] - jumping.of_length(53.0)[1]).abs() < 1e-14);
+    assert_eq!(cable.of_length(60.0)[1..], jumping.of_length(60.0)[1..]);
+    // Each is the slope of the one before, also across both ends of the width: central differences of error d²/6.
+    let d = 1e-3;
+    for i in 0..=80 {
+        let length = 46.0 + 0.1 * f64::from(i);
+        let [below, here, above] = [-d, 0.0, d].map(|d| cable.of_length(length + d));
+        for order in 0..3 {
+            let slope = (above[order] - below[order]) / (2.0 * d);
+            assert!(
+                (slope - here[order + 1]).abs() < 1e-4,
+                "{order} at {length}"
+            );
+        }
+    }
+    assert!(cable.of_length(50.0)[3] > 0.09);
 }

@@ -7,7 +7,8 @@ use crate::model::component::Component;
 use crate::model::terms::Terms;
 use nalgebra::Vector3;
 
-/// An elastic cable that slides without friction through points and takes no compression: tension `k max(L − ℓ, 0)`.
+/// An elastic cable that slides without friction through points and takes no compression: tension `k max(L − ℓ, 0)`, over a width around ℓ
+/// smooth where one is given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tendon {
     /// Unique name.
@@ -18,6 +19,8 @@ pub struct Tendon {
     pub stiffness: f64,
     /// Length ℓ in mm up to which it is slack.
     pub rest_length: f64,
+    /// Width in mm, around the length up to which it is slack, over which its stiffness grows from zero; zero where it jumps.
+    pub smoothing: f64,
 }
 
 pub(super) const ELASTICITY: &str = "tendon elasticity";
@@ -33,6 +36,7 @@ impl Tendon {
         Cable {
             stiffness: self.stiffness,
             length: self.rest_length,
+            smoothing: self.smoothing,
         }
     }
 
@@ -51,7 +55,7 @@ impl Component for Tendon {
     }
 
     fn is_prestressed(&self) -> bool {
-        self.length() > self.rest_length
+        self.length() > self.rest_length - 0.5 * self.smoothing
     }
 
     fn build(&self, terms: &mut Terms<'_>) {

@@ -22,6 +22,9 @@ pub struct TendonSpec {
     /// Length up to which it is slack, SI unit m; the length of the path where not written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest_length: Option<Quantity<Length>>,
+    /// Width around the rest length over which the stiffness grows from zero to k, SI unit m, for optimal control; it jumps where not written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smoothing: Option<Quantity<Length>>,
 }
 
 /// The tendon that is written.
@@ -55,10 +58,22 @@ pub(crate) fn tendon(
         Some(length) => scope.key("rest_length").positive(length)?,
         None => spans().sum(),
     };
+    let smoothing = match &spec.smoothing {
+        Some(width) => {
+            let place = scope.key("smoothing");
+            let value = place.positive(width)?;
+            if value > 2.0 * rest_length {
+                return Err(place.wrong(width.to_string(), "at most twice the rest length"));
+            }
+            value
+        }
+        None => 0.0,
+    };
     Ok(Tendon {
         name: spec.name.clone(),
         through,
         stiffness,
         rest_length,
+        smoothing,
     })
 }
