@@ -18,7 +18,7 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::shown::{Motion, Shown};
 use crate::app::solution_file;
 use crate::app::solve_page::{convergence, describe, goal, rows, targets};
-use crate::app::solve_words::{carried, meaning, redundancy, restarted, unresolved};
+use crate::app::solve_words::{carried, ends, meaning, redundancy, restarted, unresolved};
 use crate::app::summary::{
     Evaluations, MEASURED, PerInterval, Program, Seconds, SoughtValue, Summary,
 };
@@ -36,17 +36,19 @@ use crate::report::file_set::FileSet;
 use crate::report::{Run, write_run};
 use crate::workflow::Iterate;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget, Refined};
+use crate::workflow::afterwards::Afterwards;
 use crate::workflow::cause::Cause;
 use crate::workflow::cure::{Cured, reproduced};
 use crate::workflow::domain;
 use crate::workflow::effects::Plan;
+use crate::workflow::final_values::final_values;
 use crate::workflow::grids::optimise_to;
 use crate::workflow::holding;
 use crate::workflow::infeasible::explain;
 use crate::workflow::motion::{history, solved, trajectory};
 use crate::workflow::optimise::{Optimum, SolveLimits};
 use crate::workflow::resimulate::{Resimulation, under_constant_voltages};
-use crate::workflow::second_start::is_infeasible;
+use crate::workflow::second_start::is_unreached;
 use crate::workflow::tracking::followed;
 use crate::workflow::verified::{ACCURACY, verified};
 use crate::workflow::violations::Violation;
@@ -108,7 +110,7 @@ pub(super) fn control(
     }
     make_folder(&folder)?;
 
-    optimum.hold();
+    optimum.hold(control);
     let Optimum {
         model,
         boundary,
@@ -165,6 +167,8 @@ pub(super) fn control(
         violations: violated.clone(),
         resimulation: resimulation.clone(),
         parameters: kept.parameters.iter().map(SoughtValue::new).collect(),
+        gap: Some(optimum.gap).filter(|gap| is_solved && gap.is_finite()),
+        afterwards: optimum.afterwards.clone(),
     });
     let coarse = tested.and_then(Resimulation::warning);
     summary.notes.extend_from_slice(control.start.notes());
@@ -172,11 +176,16 @@ pub(super) fn control(
     summary.notes.extend(moved_markers(system));
     summary.notes.extend(note.into_iter().chain(coarse));
     summary.notes.extend(not_kept.filter(|_| is_solved));
+    let afterwards = optimum.afterwards.as_ref();
+    summary
+        .notes
+        .extend(afterwards.and_then(Afterwards::warning));
     summary.notes.extend(holding::free_end(control));
+    summary.notes.extend(optimum.wide.clone());
     summary.notes.extend(solution.linear.note());
     summary.notes.extend(carried(&optimum.carried));
     summary.notes.extend(optimum.restarted.map(restarted));
-    if is_infeasible(solution.status) {
+    if is_unreached(solution) {
         let left = allowed.seconds.map(|s| s - began.elapsed().as_secs_f64());
         let left = left.map(|s| s.max(0.0));
         let lines = explain(system, control, &optimum, left);
@@ -293,14 +302,16 @@ fn write_files(
     summary.domain = domain::told(&out_of_domain(model, &history));
     summary.notes.extend(domain::note(&summary.domain, true));
     let motion = trajectory(model, kept);
-    let ends = boundary.rest.each_ref().map(Option::as_deref);
-    let exchange = EnergyExchange::new(&model.system, &motion, ends);
+    let held = boundary.rest.each_ref().map(Option::as_deref);
+    let exchange = EnergyExchange::new(&model.system, &motion, held);
     summary.energies = Exchanged::new(&exchange);
     observed.columns.extend(exchange.columns());
     summary.tracking = followed(optimum, control, &motion);
     summary
         .notes
         .extend(tracking_words::told(&summary.tracking));
+    summary.final_values = final_values(&model.system, control, &motion);
+    summary.notes.extend(ends(&summary.final_values));
     let shown = Shown::of(
         Motion {
             model,

@@ -3,6 +3,10 @@
 use crate::control::Carried;
 use crate::ipopt::Status;
 use crate::model::Model;
+use crate::workflow::final_values::FinalValue;
+
+/// Final values told at most.
+const TOLD: usize = 6;
 
 /// A further reason why a solve failed, where there is one.
 pub(super) fn redundancy(redundant: &[String]) -> String {
@@ -63,4 +67,20 @@ pub(super) fn unresolved(model: &Model, interval: usize, muscle: usize) -> Strin
 /// What is told of an optimum that the first start did not find.
 pub(super) fn restarted(first: Status) -> String {
     format!("found from a second, displaced initial guess; the first ended {first}")
+}
+
+/// Where a motion ends of what final costs ask for; of many the farthest in their own unit.
+pub(super) fn ends(values: &[FinalValue]) -> Vec<String> {
+    let mut order: Vec<&FinalValue> = values.iter().collect();
+    if order.len() > TOLD {
+        order.sort_by(|a, b| b.deviation.total_cmp(&a.deviation));
+    }
+    let mut lines: Vec<String> = order.iter().take(TOLD).map(|one| one.told()).collect();
+    if order.len() > TOLD {
+        let more = order.len() - TOLD;
+        lines.push(format!(
+            "{more} more final values are nearer, see \"final_values\" in summary.json"
+        ));
+    }
+    lines
 }

@@ -23,8 +23,10 @@ use crate::model::FoundParameter;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::workflow::accuracy::Accuracy;
+use crate::workflow::afterwards::Afterwards;
 use crate::workflow::domain::Outside;
 use crate::workflow::effects::Plan;
+use crate::workflow::final_values::FinalValue;
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::violations::Violation;
 use crate::workflow::{EstimatedError, Tracked};
@@ -57,6 +59,9 @@ pub(super) struct Summary {
     /// How closely markers and joints follow what the objective names.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) tracking: Vec<Tracked>,
+    /// Where it ends of what final costs ask for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) final_values: Vec<FinalValue>,
     /// Electrical energy and mechanical work of a motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) energies: Option<Exchanged>,
@@ -109,6 +114,12 @@ pub(super) struct Program {
     /// Parameters that were sought.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) parameters: Vec<SoughtValue>,
+    /// How far the objective may lie above its least value; absent of what is no solution.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) gap: Option<f64>,
+    /// What follows a goal that no voltages are known to hold.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) afterwards: Option<Afterwards>,
 }
 
 /// A parameter that was sought: the value that was found.
@@ -339,6 +350,7 @@ impl Summary {
             shown: None,
             accuracy: None,
             tracking: Vec::new(),
+            final_values: Vec::new(),
             energies: None,
             comparison: None,
             rest: None,

@@ -15,6 +15,7 @@ use crate::interface::state::State;
 use crate::model::system::{Joint, Muscle};
 use crate::model::{Parameter, Quantity, System};
 use crate::nlp::Nlp;
+use crate::workflow::afterwards::Afterwards;
 use crate::workflow::cause::Cause;
 use crate::workflow::cure::{Cured, reproduced};
 use crate::workflow::domain;
@@ -25,7 +26,7 @@ use crate::workflow::motion::{history, trajectory};
 use crate::workflow::optimise::{Counted, Prepared, SolveLimits, prepare};
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::resolve::resolve;
-use crate::workflow::second_start::is_infeasible;
+use crate::workflow::second_start::is_unreached;
 use crate::workflow::tracking::followed;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -195,7 +196,7 @@ impl Control {
         } = reproduced(system, &control, allowed, &mut |_, _| {
             ControlFlow::Continue(())
         })?;
-        found.hold();
+        found.hold(&control);
         let model = &found.model;
         let tested = found.resimulation.as_ref();
         let outside = domain::told(&out_of_domain(model, &history(model, &found.motion)));
@@ -207,7 +208,7 @@ impl Control {
                     .map_or_else(|| found.word().replace('_', " "), Cause::told),
             ),
         };
-        let reasons = match is_infeasible(found.solution.status) {
+        let reasons = match is_unreached(&found.solution) {
             true => explain(system, &control, &found, self.max_seconds),
             false => Vec::new(),
         };
@@ -216,6 +217,8 @@ impl Control {
             tested.and_then(Resimulation::warning),
             holding::warning(&control, model, &found.boundary, tested),
             domain::note(&outside, true),
+            found.afterwards.as_ref().and_then(Afterwards::warning),
+            found.wide.clone(),
             holding::free_end(&control),
             found.solution.linear.note(),
         ];

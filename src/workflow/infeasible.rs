@@ -6,8 +6,10 @@ use crate::control::problem::{BoundaryState, Control, Duration, Objective};
 use crate::control::{BoundaryConditions, Place, Rests};
 use crate::coordinates::Configuration;
 use crate::dynamics::simulate;
+use crate::kinematics::Pose;
 use crate::math::significant;
-use crate::model::{Model, System, joint_unit};
+use crate::model::components::Tendon;
+use crate::model::{Component, Model, System, joint_unit};
 use crate::workflow::iterate::Iterate;
 use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
 use crate::workflow::second_start::is_infeasible;
@@ -20,6 +22,8 @@ const LONGEST: f64 = 20.0;
 const ITERATIONS: usize = 200;
 /// Seconds of that solve: those of the solve before, and no less than this.
 const PATIENCE: f64 = 2.0;
+/// Parts of the rest length of a tendon that are near to its kink.
+const KINK: f64 = 5e-3;
 /// Of the length of the system in the duration: markers that are slower than this rest.
 const SLOW: f64 = 1e-4;
 
@@ -34,7 +38,41 @@ pub(crate) fn explain(
     lines.extend(optimum.active.iter().take(TOLD).map(|active| active.told()));
     let longer = longer(system, control, optimum, seconds);
     lines.extend(changes(control, optimum, longer));
+    lines.extend(kinks(optimum));
     lines
+}
+
+/// Tendons that go taut or slack along the last iterate, and jump there.
+fn kinks(optimum: &Optimum) -> Vec<String> {
+    let system = &optimum.model.system;
+    let lengths = |tendon: &Tendon| {
+        let reference = |body: usize| system.bodies[body].pose();
+        let of = |poses: &Vec<Pose>| {
+            let places = tendon.through.iter();
+            let places: Vec<_> = places.map(|p| p.place(poses, reference)).collect();
+            tendon.observe(&places)[0]
+        };
+        let all = optimum.motion.poses.iter().map(of);
+        all.fold([f64::INFINITY, 0.0], |[low, high], l| {
+            [low.min(l), high.max(l)]
+        })
+    };
+    let tendons = system.components.tendons.iter();
+    let jumping = tendons.filter(|tendon| tendon.smoothing == 0.0);
+    let told = |tendon: &Tendon| {
+        let [low, high] = lengths(tendon);
+        // The solver goes to and fro at the kink without passing it.
+        let near = KINK * tendon.rest_length;
+        let rest = tendon.rest_length;
+        (low - near < rest && rest < high + near).then(|| {
+            format!(
+                "change: \"smoothing\": \"{} mm\" of tendon {}; it goes taut and slack along the motion, and its stiffness jumps there",
+                significant(2.0 * near, 2),
+                tendon.name
+            )
+        })
+    };
+    jumping.filter_map(told).collect()
 }
 
 /// Where the motion under the voltages of the last iterate ends.

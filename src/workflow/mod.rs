@@ -2,7 +2,9 @@
 //!
 //! - `integrate`, `optimise`: a simulation, a control problem; `error`: why there is no result; `phase`: what is being done.
 //! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs.
-//! - `resimulate`: what an optimum is worth, by the `distance` of motions; `cure`: finer grids where it is none; `holding`: its end.
+//! - `resimulate`: what an optimum is worth, by the `distance` of motions; `cure`: finer grids where it is none; `gap`: how far its objective may be from the
+//!   least; `holding`, `afterwards`: its end; `final_values`: what final costs miss.
+//! - `recentre`: a motion with other charts.
 //! - `second_start`, `infeasible`, `active`, `violations`: what is tried before a problem is called infeasible, and why it is.
 //! - `effects`, `reasons`, `stopwatch`: what a model consists of and why, what each term takes; `memory`: what is more than the machine has.
 //! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material.
@@ -11,6 +13,7 @@
 
 pub mod accuracy;
 pub(crate) mod active;
+pub(crate) mod afterwards;
 pub mod at_once;
 pub(crate) mod cause;
 pub(crate) mod confirmed;
@@ -20,6 +23,8 @@ pub(crate) mod domain;
 pub(crate) mod effects;
 mod error;
 pub mod estimate;
+pub(crate) mod final_values;
+pub(crate) mod gap;
 pub(crate) mod grids;
 pub(crate) mod holding;
 pub(crate) mod infeasible;
@@ -31,6 +36,7 @@ pub(crate) mod optimise;
 mod ordering;
 pub(crate) mod phase;
 pub(crate) mod reasons;
+mod recentre;
 pub(crate) mod repeat;
 pub(crate) mod resimulate;
 pub(crate) mod resolve;
@@ -43,11 +49,13 @@ pub(crate) mod verified;
 pub(crate) mod violations;
 
 pub use active::{Active, active};
+pub use afterwards::{Afterwards, Departure};
 pub use cause::Cause;
 pub use confirmed::EstimatedError;
 pub use cure::Cured;
 pub use effects::{EffectCounts, Plan, coupling, effect_counts};
 pub use error::WorkflowError;
+pub use final_values::FinalValue;
 pub use grids::{integrate_to, optimise_to};
 pub use integrate::{Simulated, grid, integrate, integrate_on};
 pub use iterate::Iterate;

@@ -4,23 +4,24 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::control::problem::{Control, Guess};
-use crate::control::{
-    BoundaryConditions, Carried, Costates, InitialGuess, Solution, Transcription, guess,
-};
-use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
+use crate::control::{BoundaryConditions, Carried, Costates, Solution, Transcription, guess};
+use crate::dynamics::reversed_muscle;
 use crate::ipopt::{
     Iteration, Options, Reached, Solver, SolverResult, Start, StartingPoint, Status, interrupt,
 };
 use crate::model::{Model, System};
 use crate::nlp::Nlp;
 use crate::workflow::active::{Active, active};
+use crate::workflow::afterwards::{Afterwards, afterwards};
 use crate::workflow::cause::Cause;
 use crate::workflow::error::WorkflowError;
+use crate::workflow::gap;
 use crate::workflow::iterate::Iterate;
 use crate::workflow::memory;
 use crate::workflow::motion::solved;
 use crate::workflow::ordering::ordering;
 use crate::workflow::phase::phase;
+use crate::workflow::recentre::recentred;
 use crate::workflow::resimulate::{Resimulation, resimulate};
 use crate::workflow::resolve::{interval, resolve, with_found};
 use crate::workflow::second_start::{ITERATIONS, displaced, is_infeasible, one_of_both};
@@ -37,9 +38,9 @@ const RESAMPLED: Start = Start::Primal { mu_init: 1e-2 };
 /// violate them by 1e-6 to 1e-4, those that jump at other instants by 4e-4 to 4e-2.
 const FITS: f64 = 2e-4;
 
-/// A rotation that ends farther from its chart, in rad, is solved again with a chart where it ended; how often at most.
-const FAR: f64 = std::f64::consts::FRAC_PI_3;
+/// How often at most it is solved again with other charts of its rotations, and to a smaller tolerance.
 const CHARTS: usize = 4;
+const TIGHTENED: usize = 3;
 
 /// What a solve may take, in place of what its problem says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -88,6 +89,12 @@ pub struct Optimum {
     pub restarted: Option<Status>,
     /// Bounds and limits that the motion reaches, the most frequent first; none of a solution.
     pub active: Vec<Active>,
+    /// How far the objective may lie above its least value, in its unit.
+    pub gap: f64,
+    /// That this is much beside the objective, where it is.
+    pub(crate) wide: Option<String>,
+    /// What follows a goal that no voltages are known to hold.
+    pub afterwards: Option<Afterwards>,
 }
 
 impl Optimum {
@@ -96,8 +103,11 @@ impl Optimum {
         self.meets_equations() && self.cause().is_none()
     }
 
-    /// Holds the voltages of the goal after its end, where they are known and it is reproduced.
-    pub(crate) fn hold(&mut self) {
+    /// Holds the voltages of the goal after its end, or those of the last interval where none are known, if it is reproduced.
+    pub(crate) fn hold(&mut self, control: &Control) {
+        if self.is_solved() {
+            self.afterwards = afterwards(&self.model, control, &self.motion);
+        }
         let Self {
             model,
             boundary,
@@ -229,8 +239,33 @@ pub fn optimise(
         solver = Solver::new(program, options);
         solution = solve(&mut solver, &point)?;
     }
+    let mut tolerance = options.tolerance;
+    for _ in 0..TIGHTENED {
+        let tighter = gap::tighter(solver.program(), &solution, tolerance);
+        let Some(tighter) = tighter.filter(|_| interrupt::stop().is_none()) else {
+            break;
+        };
+        phase("solving again, to a smaller tolerance");
+        tolerance = tighter;
+        let mu_init = solution.iterations.last().map_or(1e-9, |last| last.mu);
+        solver.set_options(Options {
+            tolerance,
+            max_iterations: options.max_iterations.min(ITERATIONS),
+            max_seconds: allowed.seconds.map(left),
+            start: Start::Resumed { mu_init },
+            ..options.clone()
+        });
+        let again = solve(&mut solver, &solution.to_point())?;
+        let failed = !again.status.is_solved();
+        solution = one_of_both(solution, again);
+        if failed {
+            break;
+        }
+    }
     let mut program = solver.into_program();
     drop(watch);
+    let gap = gap::gap(&program, &solution);
+    let wide = gap::warning(gap, &solution, program.objective_scale());
     let history = program.decode(&solution.x);
     let motion = Solution {
         hold: boundary.rest[1].clone(),
@@ -290,28 +325,9 @@ pub fn optimise(
         tested,
         restarted,
         active,
-    })
-}
-
-/// The motion with charts where its bodies are, where it ends far from those that it has.
-fn recentred(model: &Model, history: &DiscreteTrajectory) -> Option<InitialGuess> {
-    let motion = &model.action.motion;
-    let is_far = |z: &Vec<f64>| motion.angle_from_charts(z) > FAR;
-    history.z.iter().any(is_far).then(|| {
-        let z = history.z.iter().map(|z| {
-            let mut instant = motion.placed(z);
-            motion.recentre(&mut instant);
-            instant.z
-        });
-        InitialGuess {
-            history: DiscreteTrajectory {
-                z: z.collect(),
-                ..history.clone()
-            },
-            h: history.times[1],
-            costates: None,
-            carried: Carried::default(),
-        }
+        gap,
+        wide,
+        afterwards: None,
     })
 }
 

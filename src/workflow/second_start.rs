@@ -12,6 +12,15 @@ pub(crate) fn is_infeasible(status: Status) -> bool {
     matches!(status, Status::Infeasible | Status::RestorationFailed)
 }
 
+/// Iterations after which a limit of them says something of the problem.
+const MANY: usize = 50;
+
+/// Whether a solve ended without a motion that keeps goal and limits, by its verdict or after many iterations, so that it is worth telling why.
+pub(crate) fn is_unreached(solution: &SolverResult) -> bool {
+    let is_long = solution.iterations.len() > MANY;
+    is_infeasible(solution.status) || (solution.status == Status::IterationLimit && is_long)
+}
+
 /// The problem with another guess: the motion under the voltages of the goal, or half of the largest ones; interpolated where it
 /// was simulated.
 pub(crate) fn displaced(

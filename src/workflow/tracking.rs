@@ -55,7 +55,7 @@ pub struct TrackedPath {
     /// What it was to be.
     pub reference: Vec<f64>,
     /// Their difference, of angles without full turns.
-    difference: Vec<f64>,
+    pub(crate) difference: Vec<f64>,
 }
 
 impl TrackedPath {
@@ -146,7 +146,11 @@ fn of_marker(cost: &QuantityCost) -> Option<usize> {
 }
 
 /// A coordinate of a motion beside what it was to be.
-fn path(system: &System, cost: &QuantityCost, motion: &Trajectory) -> Option<TrackedPath> {
+pub(crate) fn path(
+    system: &System,
+    cost: &QuantityCost,
+    motion: &Trajectory,
+) -> Option<TrackedPath> {
     let CostFunction::Square { reference } = &cost.function;
     let (name, axis, value): (String, Option<usize>, Vec<f64>) = match cost.quantity {
         Quantity::MarkerPlace { marker, axis } => {

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::control::{Row, Transcription};
+use crate::model::{Role, Size};
 use crate::nlp::Nlp;
 
 /// A row that does not hold.
@@ -10,10 +11,10 @@ use crate::nlp::Nlp;
 pub struct Violation {
     /// What the row says.
     pub row: String,
-    /// Distance to its bounds in its unit, or where none is named in g, mm and ms; absent where the row has no value.
+    /// Distance to its bounds in its unit; absent where the row has no value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub violation: Option<f64>,
-    /// The unit of a limit or goal.
+    /// The unit; none of a pure number.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub unit: &'static str,
     /// The same as the solver measures it.
@@ -48,7 +49,7 @@ pub fn violations(
                 let (value, unit) = plain(g[row]);
                 ((value - plain(bound).0).abs(), unit)
             }
-            _ => (excess(row) / scale, ""),
+            other => of_equation(program, other, excess(row) / scale),
         };
         Violation {
             row: program.constraint_name(row),
@@ -58,4 +59,20 @@ pub fn violations(
         }
     };
     rows.into_iter().map(describe).collect()
+}
+
+/// The violation of an equation with its unit: the momentum that a balance misses, the value of a constraint of places and directions, or the
+/// charge that is missing at an electrode times the interval.
+fn of_equation(program: &Transcription<'_>, row: Row, violation: f64) -> (f64, &'static str) {
+    let model = program.model();
+    let Some(variable) = row.of(&model.variables) else {
+        return (violation, "");
+    };
+    match (variable.role, variable.size) {
+        (Role::Coordinate, Size::Length) => (violation, "N ms"),
+        (Role::Coordinate, _) => (violation, "N mm ms"),
+        (Role::Multiplier, _) => (violation / model.multiplier_time, ""),
+        (Role::Potential, _) => (violation / variable.unit, "mC ms"),
+        _ => (violation, ""),
+    }
 }

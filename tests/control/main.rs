@@ -5,6 +5,7 @@ mod common;
 
 mod accuracy;
 mod closed_form;
+mod endings;
 mod energies;
 mod feasible;
 mod field_limits;

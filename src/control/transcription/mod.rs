@@ -291,6 +291,11 @@ impl<'m> Transcription<'m> {
         self.intervals
     }
 
+    /// The model whose motion is looked for.
+    pub fn model(&self) -> &'m Model {
+        self.model
+    }
+
     /// Columns and rows.
     pub fn unknowns(&self) -> &Numbering {
         &self.unknowns

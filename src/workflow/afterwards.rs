@@ -1,0 +1,184 @@
+//! What follows a goal that no voltages are known to hold: the motion under the last voltages, held on.
+
+use std::ops::ControlFlow;
+
+use serde::Serialize;
+
+use crate::control::Solution;
+use crate::control::problem::{BoundaryState, Control};
+use crate::dynamics::trajectory::Trajectory;
+use crate::dynamics::{Start, simulate};
+use crate::ipopt::interrupt;
+use crate::math::significant;
+use crate::model::{Model, joint_unit};
+use crate::workflow::distance::Distance;
+use crate::workflow::motion::solved_of;
+
+/// Durations of the motion that are simulated.
+const DURATIONS: usize = 5;
+/// A drift from the goal, as a part of the path length, from which on it is not held.
+const DRIFTS: f64 = 0.05;
+/// Parts of the goal told at most.
+const TOLD: usize = 3;
+
+/// The motion after the goal, under the voltages of the last interval.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Afterwards {
+    /// Time that was simulated in s.
+    pub seconds: f64,
+    /// How far each part of the goal is left, the farthest first.
+    pub goal: Vec<Departure>,
+    /// Greatest drift of the system from the last optimal instant.
+    pub drift: Distance,
+    /// Why the simulation ended early.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
+    /// Whether the system stays at its goal.
+    pub is_held: bool,
+}
+
+/// How far a part of a goal is left.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Departure {
+    /// The marker or the joint.
+    pub name: String,
+    /// Greatest deviation from the goal.
+    pub deviation: f64,
+    /// Unit of the deviation: m or rad.
+    pub unit: &'static str,
+    /// When it is greatest, in s after the end.
+    pub time: f64,
+}
+
+/// Simulates on from the end of a motion to a goal that names places or joint coordinates and no voltages that hold it.
+pub(crate) fn afterwards(
+    model: &Model,
+    control: &Control,
+    optimal: &Solution,
+) -> Option<Afterwards> {
+    let is_named = match &control.goal {
+        BoundaryState::Markers { hold, .. } => hold.is_none(),
+        BoundaryState::JointAngles { .. } => true,
+        _ => false,
+    };
+    let n = optimal.intervals();
+    let end = Start {
+        z: optimal.z.get(n)?.clone(),
+        momentum: optimal.momentum.clone(),
+        rates: None,
+    };
+    let last = optimal.voltages.last()?;
+    if !is_named || end.momentum.len() != model.coordinate_count() {
+        return None;
+    }
+    let scalars = model.scalars(last);
+    let h = optimal.times[n] / n as f64;
+    let constant = |_: f64, _: f64| scalars.clone();
+    let steps = DURATIONS * n;
+    let (history, failure) =
+        simulate(
+            model,
+            &end,
+            h,
+            steps,
+            constant,
+            |_| match interrupt::requested() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            },
+        );
+    let motion = Trajectory::from_history(model, &history);
+    let goal = departures(model, &control.goal, &motion);
+    let motion = solved_of(model, &history, motion, None);
+    let of = |k: usize| Distance::between(model, &motion, k, optimal, n);
+    let drift = (0..motion.times.len()).map(of);
+    let drift = drift.fold(Distance::default(), Distance::max);
+    let path_length = Distance::path_length(model, optimal);
+    Some(Afterwards {
+        seconds: motion.times[motion.intervals()] / 1e3,
+        goal,
+        is_held: failure.is_none() && drift.over(path_length, model) <= DRIFTS,
+        drift,
+        failure: failure.map(|error| error.to_string()),
+    })
+}
+
+/// How far each part of a goal is left along a motion that begins there.
+fn departures(model: &Model, goal: &BoundaryState, motion: &Trajectory) -> Vec<Departure> {
+    let system = &model.system;
+    let farthest = |name: &str, unit: &'static str, far: &dyn Fn(usize) -> f64| {
+        let instants = 0..motion.times.len();
+        let each = instants.map(|k| (far(k), motion.times[k] / 1e3));
+        let (deviation, time) = each.fold((0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a });
+        Departure {
+            name: name.to_owned(),
+            deviation,
+            unit,
+            time,
+        }
+    };
+    let mut list: Vec<Departure> = match goal {
+        BoundaryState::Markers { places, .. } => {
+            let all = places.iter();
+            all.map(|(&m, place)| {
+                let far = |k: usize| place.distance(&motion.marks[k][m]) / 1e3;
+                farthest(&system.markers[m].name, "m", &far)
+            })
+            .collect()
+        }
+        BoundaryState::JointAngles { angles, .. } => {
+            let all = angles.iter();
+            all.map(|(&j, &value)| {
+                let before = system.joints[..j].iter();
+                let column = before.filter(|joint| joint.has_coordinate()).count();
+                let (unit, scale) = match joint_unit(system, j) {
+                    "mm" => ("m", 1e-3),
+                    unit => (unit, 1.0),
+                };
+                let far = |k: usize| (motion.joints[k][column] - value).abs() * scale;
+                farthest(&system.joints[j].name, unit, &far)
+            })
+            .collect()
+        }
+        _ => Vec::new(),
+    };
+    list.sort_by(|a, b| b.deviation.total_cmp(&a.deviation));
+    list
+}
+
+impl Departure {
+    /// In words, lengths in mm and angles in degrees.
+    fn told(&self) -> String {
+        let Self { name, time, .. } = self;
+        let far = match self.unit {
+            "m" => format!("{} mm", significant(1e3 * self.deviation, 3)),
+            _ => format!("{}°", significant(self.deviation.to_degrees(), 3)),
+        };
+        format!(
+            "{name} is up to {far} from its goal ({} s after the end)",
+            significant(*time, 2)
+        )
+    }
+}
+
+impl Afterwards {
+    /// That nothing holds the goal, where it is left.
+    pub(crate) fn warning(&self) -> Option<String> {
+        if self.is_held {
+            return None;
+        }
+        let mut far: Vec<String> = self.goal.iter().take(TOLD).map(Departure::told).collect();
+        far.push(format!("the system moves by {}", self.drift));
+        far.extend(
+            self.failure
+                .iter()
+                .map(|failure| format!("the motion ends early: {failure}")),
+        );
+        Some(format!(
+            "nothing holds the goal: with the last voltages held on for {} s, {}; for an end that stays take \"rest_at_voltages\", or \
+             \"markers\" with \"hold\"",
+            significant(self.seconds, 3),
+            far.join(", ")
+        ))
+    }
+}

@@ -1,0 +1,30 @@
+//! A motion with charts of its rotations where its bodies are.
+
+use crate::control::{Carried, InitialGuess};
+use crate::dynamics::DiscreteTrajectory;
+use crate::model::Model;
+
+/// A rotation that ends farther from its chart, in rad, is solved again with a chart where it ended.
+const FAR: f64 = std::f64::consts::FRAC_PI_3;
+
+/// The motion with charts where its bodies are, where it ends far from those that it has.
+pub(crate) fn recentred(model: &Model, history: &DiscreteTrajectory) -> Option<InitialGuess> {
+    let motion = &model.action.motion;
+    let is_far = |z: &Vec<f64>| motion.angle_from_charts(z) > FAR;
+    history.z.iter().any(is_far).then(|| {
+        let z = history.z.iter().map(|z| {
+            let mut instant = motion.placed(z);
+            motion.recentre(&mut instant);
+            instant.z
+        });
+        InitialGuess {
+            history: DiscreteTrajectory {
+                z: z.collect(),
+                ..history.clone()
+            },
+            h: history.times[1],
+            costates: None,
+            carried: Carried::default(),
+        }
+    })
+}
