@@ -2,6 +2,7 @@
 
 use crate::control::Carried;
 use crate::ipopt::Status;
+use crate::math::significant;
 use crate::model::Model;
 use crate::workflow::final_values::FinalValue;
 
@@ -75,7 +76,7 @@ pub(super) fn ends(values: &[FinalValue]) -> Vec<String> {
     if order.len() > TOLD {
         order.sort_by(|a, b| b.deviation.total_cmp(&a.deviation));
     }
-    let mut lines: Vec<String> = order.iter().take(TOLD).map(|one| one.told()).collect();
+    let mut lines: Vec<String> = order.iter().take(TOLD).map(|one| end(one)).collect();
     if order.len() > TOLD {
         let more = order.len() - TOLD;
         lines.push(format!(
@@ -83,4 +84,19 @@ pub(super) fn ends(values: &[FinalValue]) -> Vec<String> {
         ));
     }
     lines
+}
+
+/// Where one quantity ends: lengths in mm, angles in degrees.
+fn end(value: &FinalValue) -> String {
+    let shown = |number: f64| match value.unit {
+        "m" => format!("{} mm", significant(1e3 * number, 4)),
+        _ => format!("{}°", significant(number.to_degrees(), 4)),
+    };
+    format!(
+        "{} ends at {}, {} from the {} of its final cost",
+        value.name,
+        shown(value.reached),
+        shown(value.deviation),
+        shown(value.asked)
+    )
 }

@@ -19,6 +19,7 @@ use crate::workflow::afterwards::Afterwards;
 use crate::workflow::cause::Cause;
 use crate::workflow::cure::{Cured, reproduced};
 use crate::workflow::domain;
+use crate::workflow::final_values::final_values;
 use crate::workflow::holding;
 use crate::workflow::infeasible::explain;
 use crate::workflow::memory;
@@ -225,6 +226,7 @@ impl Control {
         let trajectory = trajectory(model, &found.motion);
         let ends = found.boundary.rest.each_ref().map(Option::as_deref);
         let tracking = followed(&found, &control, &trajectory);
+        let final_values = final_values(&model.system, &control, &trajectory);
         Ok(Optimum {
             status: found.word(),
             objective: found.solution.objective,
@@ -239,6 +241,8 @@ impl Control {
             is_solved: found.is_solved(),
             parameters: found.motion.parameters.clone(),
             tracking,
+            final_values,
+            afterwards: found.afterwards,
             solution: found.motion,
         })
     }

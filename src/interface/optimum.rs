@@ -3,7 +3,7 @@
 use crate::control::Solution;
 use crate::interface::motion::Motion;
 use crate::model::FoundParameter;
-use crate::workflow::Tracked;
+use crate::workflow::{Afterwards, FinalValue, Tracked};
 
 /// What the solver found: an optimal motion, or its last iterate.
 #[derive(Clone, Debug)]
@@ -21,6 +21,10 @@ pub struct Optimum {
     /// How closely markers and joints follow what [`Control::track`](crate::interface::Control::track) and
     /// [`Control::track_joint`](crate::interface::Control::track_joint) name, marker by marker and joint by joint, in m and rad.
     pub tracking: Vec<Tracked>,
+    /// Where the motion ends of what final costs ask for.
+    pub final_values: Vec<FinalValue>,
+    /// The motion that follows a goal that no voltages are known to hold.
+    pub afterwards: Option<Afterwards>,
     /// Parameters that were sought.
     pub parameters: Vec<FoundParameter>,
     pub(super) is_solved: bool,

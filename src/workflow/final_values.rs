@@ -4,7 +4,6 @@ use serde::Serialize;
 
 use crate::control::problem::{Control, During};
 use crate::dynamics::trajectory::Trajectory;
-use crate::math::significant;
 use crate::model::System;
 use crate::workflow::tracking::path;
 
@@ -47,21 +46,4 @@ pub(crate) fn final_values(
             })
         })
         .collect()
-}
-
-impl FinalValue {
-    /// Where it ends, in words: lengths in mm, angles in degrees.
-    pub(crate) fn told(&self) -> String {
-        let shown = |value: f64| match self.unit {
-            "m" => format!("{} mm", significant(1e3 * value, 4)),
-            _ => format!("{}°", significant(value.to_degrees(), 4)),
-        };
-        format!(
-            "{} ends at {}, {} from the {} of its final cost",
-            self.name,
-            shown(self.reached),
-            shown(self.deviation),
-            shown(self.asked)
-        )
-    }
 }

@@ -267,21 +267,19 @@ pub fn optimise(
     let gap = gap::gap(&program, &solution);
     let wide = gap::warning(gap, &solution, program.objective_scale());
     let history = program.decode(&solution.x);
+    let last = solution.iterations.last();
+    let last = last.filter(|_| !solution.status.is_solved());
     let motion = Solution {
         hold: boundary.rest[1].clone(),
-        barrier: match solution.status.is_solved() {
-            true => None,
-            false => solution.iterations.last().map(|last| last.mu),
-        },
+        barrier: last.map(|last| last.mu),
         ..solved(&model, &history, Some(program.costates(&solution.costates)))
     };
-    let violated = match solution.status.is_solved() {
-        true => Vec::new(),
-        false => violations(&mut program, &solution.x, HOLDS, NAMED),
-    };
-    let active = match solution.status.is_solved() {
-        true => Vec::new(),
-        false => active(&mut program, &solution.x, &model, control),
+    let (violated, active) = match solution.status.is_solved() {
+        true => (Vec::new(), Vec::new()),
+        false => (
+            violations(&mut program, &solution.x, HOLDS, NAMED),
+            active(&mut program, &solution.x, &model, control),
+        ),
     };
     let infeasibility = program.violation(&solution.x);
     let constraints = program.constraints().lower.len();
@@ -295,11 +293,9 @@ pub fn optimise(
             (found, boundary, Some(model))
         }
     };
-    let reversed = match solution.status.is_solved() {
-        true => reversed_muscle(&model, &history),
-        false => None,
-    };
-    let is_motion = solution.status.is_solved() && reversed.is_none();
+    let is_solved = solution.status.is_solved();
+    let reversed = reversed_muscle(&model, &history).filter(|_| is_solved);
+    let is_motion = is_solved && reversed.is_none();
     if is_motion {
         phase("simulating under the optimal voltages");
     }

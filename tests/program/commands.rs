@@ -182,7 +182,8 @@ fn simulations_and_equilibria_answer() {
     energies_are_those_of_the_table(path, "results/pair_constant");
     let scene = "problems/scenes/pair.json";
     for file in ["problems/pair.json", scene] {
-        let arguments = ["equilibrium", file, "--voltages", "muscle2=1.7kV"];
+        let voltages = ["--voltages", "muscle2=1.7kV", "-o", "equilibrium"];
+        let arguments = [&["equilibrium", file][..], &voltages].concat();
         let (status, out, _) = run(path, &arguments);
         assert_eq!(status, 0);
         let reference =
@@ -191,7 +192,14 @@ fn simulations_and_equilibria_answer() {
         assert!(out.contains(&format!("{angle:.9}")), "{out}");
         assert!(out.contains("\nstable equilibrium"), "{out}");
     }
-    let beyond = ["equilibrium", scene, "--voltages", "muscle2=17kV"];
+    let beyond = [
+        "equilibrium",
+        scene,
+        "--voltages",
+        "muscle2=17kV",
+        "-o",
+        "beyond",
+    ];
     let (status, out, err) = run(path, &beyond);
     assert_eq!((status, out.trim()), (1, "no equilibrium"));
     assert!(err.contains("no equilibrium was found"), "{err}");

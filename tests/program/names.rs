@@ -65,27 +65,27 @@ fn an_override_names_an_entry_of_a_list() {
 fn a_sweep_names_an_entry_of_a_list_and_is_told_its_mistakes() {
     let folder = workshop();
     let folder = folder.path();
-    let place = "scene.muscles.muscle1.layer_thickness";
+    let place = "scene.springs.return2.stiffness";
     let sweep = |values: serde_json::Value| {
-        let sweep = json!({ "problem": "problems/pair.json", "set": { "control.intervals": 8 }, "vary": { place: values } });
-        fs::write(folder.join("layers.json"), sweep.to_string()).unwrap();
-        run(folder, &["sweep", "layers.json"])
+        let sweep = json!({ "problem": "problems/tendon_finger.json", "set": { "simulate.duration": "0.1 s" }, "vary": { place: values } });
+        fs::write(folder.join("springs.json"), sweep.to_string()).unwrap();
+        run(folder, &["sweep", "springs.json"])
     };
-    let (status, out, err) = sweep(json!(["50 um", "0.06 mm"]));
+    let (status, out, err) = sweep(json!(["500 N/m", "0.6 N/mm"]));
     assert!(
-        status == 0 && out.contains("2 variants: 2 solved"),
+        status == 0 && out.contains("2 variants: 2 simulated"),
         "{out}{err}"
     );
-    let table = fs::read_to_string(folder.join("results/sweeps/layers/sweep.csv")).unwrap();
+    let table = fs::read_to_string(folder.join("results/sweeps/springs/sweep.csv")).unwrap();
     let lines: Vec<&str> = table.lines().skip(1).collect();
-    assert!(lines[0].contains(&format!("{place} [m]")), "{table}");
+    assert!(lines[0].contains(&format!("{place} [N/m]")), "{table}");
     assert!(
-        lines[1].contains(",5e-5,") && lines[2].contains(",6e-5,"),
+        lines[1].contains(",500.0,") && lines[2].contains(",600.0,"),
         "{table}"
     );
-    let (status, _, err) = sweep(json!(["-50 um"]));
+    let (status, _, err) = sweep(json!(["-500 N/m"]));
     assert!(
-        status == 2 && err.contains("layers.json: vary.scene.muscles.muscle1"),
+        status == 2 && err.contains("springs.json: vary.scene.springs.return2"),
         "{err}"
     );
 }
@@ -94,7 +94,8 @@ fn a_sweep_names_an_entry_of_a_list_and_is_told_its_mistakes() {
 fn no_heading_is_a_formula_of_a_spreadsheet() {
     let folder = workshop();
     let folder = folder.path();
-    let scene = fs::read_to_string(folder.join("problems/scenes/pair.json")).unwrap();
+    let (_, scene, _) = run(folder, &["expand", "problems/scenes/pair.json"]);
+    assert!(scene.contains("\"muscle2\""), "{scene}");
     let name = "=1+1";
     fs::write(
         folder.join("problems/scenes/pair.json"),

@@ -10,6 +10,7 @@ use crate::files::json::scope::Scope;
 use crate::files::problem::solution_document::solution_document;
 use crate::files::problem::spec_voltages::TableSpec;
 use crate::files::problem::state::{driven, voltages};
+use crate::files::units::quantity::Quantity;
 use crate::model::system::System;
 
 /// What is read of a solution.
@@ -32,7 +33,9 @@ pub(crate) fn of_solution(path: &Path, system: &System) -> Result<Voltages, Scen
     let solution: SolutionRecord = document.parse()?;
     let scope = Scope::of(document);
     let instants: Vec<f64> = solution.time.iter().map(|time| 1e3 * time).collect();
-    let rows = rows(&instants, &solution.voltages, system, &scope)?;
+    let histories = solution.voltages.iter();
+    let histories = histories.map(|(name, history)| (name, history.iter().copied()));
+    let rows = rows(&instants, histories, system, &scope)?;
     let hold = match &solution.hold {
         Some(hold) => {
             let sources = system.sources();
@@ -44,7 +47,7 @@ pub(crate) fn of_solution(path: &Path, system: &System) -> Result<Voltages, Scen
         }
         None => None,
     };
-    Ok(sampled(&instants, rows, hold, Some(path.to_owned())))
+    Ok(sampled(instants, rows, hold, Some(path.to_owned())))
 }
 
 /// Voltages of a table, then those that it says are held, or the last ones; 0 for sources that it does not name.
@@ -54,11 +57,9 @@ pub(crate) fn of_table(
     scope: &Scope<'_>,
 ) -> Result<Voltages, SceneError> {
     let instants: Vec<f64> = table.time.iter().map(|time| time.value()).collect();
-    let histories = table.voltages.iter().map(|(name, history)| {
-        let history: Vec<f64> = history.iter().map(|voltage| voltage.value()).collect();
-        (name.clone(), history)
-    });
-    let rows = rows(&instants, &histories.collect(), system, scope)?;
+    let histories = table.voltages.iter();
+    let histories = histories.map(|(name, history)| (name, history.iter().map(Quantity::value)));
+    let rows = rows(&instants, histories, system, scope)?;
     if instants[0] != 0.0 {
         let found = format!("{} s", instants[0] / 1e3);
         return Err(scope.key("time").index(0).wrong(found, "0"));
@@ -67,13 +68,13 @@ pub(crate) fn of_table(
         Some(hold) => Some(voltages(hold, system, &scope.key("hold"))?),
         None => None,
     };
-    Ok(sampled(&instants, rows, hold, None))
+    Ok(sampled(instants, rows, hold, None))
 }
 
-/// A row of voltages for each interval between instants in ms.
-fn rows(
+/// A row of voltages for each interval between instants in ms, and one of zeros for what follows.
+fn rows<'a>(
     instants: &[f64],
-    histories: &BTreeMap<String, Vec<f64>>,
+    histories: impl Iterator<Item = (&'a String, impl ExactSizeIterator<Item = f64>)>,
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<Vec<Vec<f64>>, SceneError> {
@@ -85,7 +86,7 @@ fn rows(
     place.increasing(instants)?;
     let intervals = instants.len() - 1;
     let sources = system.sources();
-    let mut rows = vec![vec![0.0; sources.len()]; intervals];
+    let mut rows = vec![vec![0.0; sources.len()]; intervals + 1];
     for (name, history) in histories {
         let place = scope.key("voltages").key(name);
         let source = driven(name, &sources, &place)?;
@@ -95,15 +96,15 @@ fn rows(
             return Err(place.wrong(found, expected));
         }
         for (row, voltage) in rows.iter_mut().zip(history) {
-            row[source] = *voltage;
+            row[source] = voltage;
         }
     }
     Ok(rows)
 }
 
-/// Rows of voltages, and those afterwards.
+/// Rows of voltages, the last one those afterwards.
 fn sampled(
-    instants: &[f64],
+    mut instants: Vec<f64>,
     mut rows: Vec<Vec<f64>>,
     hold: Option<Vec<f64>>,
     solution: Option<PathBuf>,
@@ -112,10 +113,11 @@ fn sampled(
         Some(_) => Afterwards::Held,
         None => Afterwards::OfLastInterval,
     };
-    let last = rows[rows.len() - 1].clone();
-    rows.push(hold.unwrap_or(last));
+    let end = rows.len() - 1;
+    rows[end] = hold.unwrap_or_else(|| rows[end - 1].clone());
+    instants.remove(0);
     Voltages::Sampled {
-        ends: instants[1..].to_vec(),
+        ends: instants,
         rows,
         afterwards,
         solution,

@@ -36,10 +36,10 @@ pub struct SolutionSpec {
 #[serde(deny_unknown_fields)]
 pub struct TableSpec {
     /// Start and end of the intervals, growing, the first of them 0; SI unit s.
-    pub time: Vec<Quantity<Time>>,
+    pub time: Box<[Quantity<Time>]>,
     /// A voltage for each interval by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not
     /// named.
-    pub voltages: BTreeMap<String, Vec<Quantity<Voltage>>>,
+    pub voltages: BTreeMap<String, Box<[Quantity<Voltage>]>>,
     /// Voltages after the last interval; those of the last interval where not written.
     #[serde(default)]
     pub hold: Option<VoltageMap>,
