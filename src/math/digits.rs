@@ -2,13 +2,15 @@
 
 /// Below this a number is written with an exponent.
 const SMALL: f64 = 1e-4;
+/// And from this on.
+const LARGE: f64 = 1e15;
 
-/// A number with so many digits that count; trailing zeros stay. Very small ones have an exponent.
+/// A number with so many digits that count; trailing zeros stay. Very small and very large ones have an exponent.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
-    if value.abs() < SMALL {
+    if value.abs() < SMALL || value.abs() >= LARGE {
         let decimals = digits.saturating_sub(1);
         return format!("{value:.decimals$e}");
     }
@@ -21,7 +23,7 @@ pub fn significant(value: f64, digits: usize) -> String {
 pub fn shortest(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
     match text.parse::<f64>() {
-        Ok(rounded) if value.abs() >= SMALL => rounded.to_string(),
+        Ok(rounded) if (SMALL..LARGE).contains(&value.abs()) || value == 0.0 => rounded.to_string(),
         _ => text,
     }
 }

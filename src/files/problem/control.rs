@@ -25,6 +25,7 @@ use crate::files::scene::graph::tree_freedoms;
 use crate::files::scene::spec::SceneSpec;
 use crate::files::units::quantity::Voltage;
 use crate::ipopt::{LinearSolver, OptionValue};
+use crate::math::shortest;
 use crate::model::system::{Fidelity, Muscle, System};
 use std::collections::BTreeMap;
 
@@ -184,7 +185,7 @@ pub(crate) fn check_rest_voltages(
         let outside = voltage < lower || voltage > upper;
         if outside && source.takes_voltage && !is_given(s) {
             let place = scope.key("rest_at_voltages").key(&source.name);
-            let found = format!("{voltage} V");
+            let found = format!("{} V", shortest(voltage, 9));
             let expected = format!("a voltage within the bounds {lower} V to {upper} V");
             return Err(place.wrong(found, expected));
         }
