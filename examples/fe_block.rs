@@ -29,8 +29,8 @@ pub(crate) fn main() -> Result<()> {
         "the corner sinks from {:.3} to {lowest:.3} mm and ends at {last:.3} mm",
         heights[0]
     );
-    for warning in motion.warnings() {
-        println!("warning: {warning}");
+    for remark in motion.remarks() {
+        println!("{remark}");
     }
     assert!(lowest < 0.98 * heights[0]);
     Ok(())

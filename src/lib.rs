@@ -116,7 +116,7 @@ pub use model::{
     Component, Constant, DielectricLaw, FoundParameter, Parameter, System, SystemError, Terms, mid,
 };
 pub use nlp::Nlp;
-pub use workflow::{Tracked, TrackingError};
+pub use workflow::{Remark, Severity, Tracked, TrackingError};
 
 /// All that a program needs: `use proboscis::prelude::*;`.
 pub mod prelude {

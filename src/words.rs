@@ -3,15 +3,34 @@
 //! What cannot be written to standard error is dropped, since there is nobody to tell. An answer that cannot be written is an error, unless
 //! whoever reads it has gone, as `head` does.
 
+use anstyle::AnsiColor;
 use std::io::{self, ErrorKind, IsTerminal, Stderr, Write};
 use std::process::ExitCode;
 
 /// Exit status where an answer cannot be written.
 const UNWRITTEN: u8 = 1;
 
-/// Writes a line to standard error.
+/// Labels of messages and their colours on a terminal.
+const LABELS: [(&str, AnsiColor); 3] = [
+    ("error:", AnsiColor::Red),
+    ("warning:", AnsiColor::Yellow),
+    ("note:", AnsiColor::Cyan),
+];
+
+/// Writes a line to standard error, a label at its beginning in colour on a terminal.
 pub(crate) fn tell(words: &str) {
-    writeln!(io::stderr(), "{words}").ok();
+    let labelled = LABELS
+        .iter()
+        .find_map(|(label, colour)| Some((label, colour, words.strip_prefix(label)?)));
+    let mut errors = anstream::stderr();
+    match labelled {
+        Some((label, colour, text)) => {
+            let style = colour.on_default().bold();
+            writeln!(errors, "{style}{label}{style:#}{text}")
+        }
+        None => writeln!(errors, "{words}"),
+    }
+    .ok();
 }
 
 /// Writes the answer of a command that ends with a status, and returns with which one it does.

@@ -298,6 +298,8 @@ class Tendon(Part):
     * `stiffness`: Stiffness k of the whole cable, SI unit N/m.
     * `through`: The points, two or more: the ends, and between them those that it slides through.
     * `rest_length`: Length up to which it is slack, SI unit m; the length of the path where not written.
+    * `smoothing`: Width around the rest length over which the stiffness grows from zero to k, SI unit m, for optimal control; it jumps where not
+      written.
     """
 
     kind, noun = "tendons", "tendon"
@@ -309,6 +311,7 @@ class Tendon(Part):
         stiffness: Quantity,
         through: Sequence[entries.Point],
         rest_length: Quantity | None = None,
+        smoothing: Quantity | None = None,
     ) -> None:
         super().__init__(
             name,
@@ -316,6 +319,7 @@ class Tendon(Part):
                 "stiffness": stiffness,
                 "through": through,
                 "rest_length": rest_length,
+                "smoothing": smoothing,
             },
         )
 

@@ -52,7 +52,8 @@ class Result:
         self.summary = _summary(folder / "summary.json") if is_written else {}
         if told is None:
             is_met = (self.summary.get("accuracy") or {}).get("is_met") is not False
-            told = (self.status in _SOLVED and is_met, self.status, self.summary.get("notes", []))
+            notes = [f"{note['severity']}: {note['text']}" for note in self.summary.get("notes", [])]
+            told = (self.status in _SOLVED and is_met, self.status, notes)
         self.is_solved, self._line, self.notes = told
         self._line = self._line.removesuffix(f", {folder}")
 

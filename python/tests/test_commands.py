@@ -29,7 +29,7 @@ def test_sweeps_are_those_of_the_command(tmp_path: Path) -> None:
     command("sweep", path, "-o", tmp_path / "there", "--quiet")
     swept = pb.sweep(SWEEP, folder=PROBLEMS, output=tmp_path / "here")
     assert swept.is_solved and len(swept["objective"]) == 4 and len(set(swept["objective"])) == 4
-    assert list(swept["scene.materials.silicone.shear_modulus"][:2]) == ["50 kPa", "50 kPa"] or "100 kPa" in swept["scene.materials.silicone.shear_modulus"]
+    assert set(swept["scene.materials.silicone.shear_modulus"]) == {50e3, 100e3}
     there = pb.sweep(path, output=tmp_path / "there")
     for name in swept:
         if name != "seconds":

@@ -188,14 +188,15 @@ pub(super) fn simulation(
         .map(|(path, earlier)| Comparison::new(&model, path, &motion, earlier));
     let compared = summary.comparison.iter().flat_map(Comparison::notes);
     let mut notes: Vec<String> = summary.message.iter().cloned().chain(compared).collect();
-    summary.notes.extend_from_slice(task.start.notes());
-    summary.notes.extend(moved_markers(system));
-    summary.notes.extend(afterwards(task));
-    summary.notes.extend(steps::divided(task));
-    summary.notes.extend(domain::note(&summary.domain, true));
-    summary.notes.extend(steps::told(neglected, &history, task));
-    summary.notes.extend(steps::beyond(error, task));
-    summary.notes.extend(steps::unbalanced(&history));
+    let remarks = &mut summary.notes;
+    remarks.note("start", task.start.notes().iter().cloned());
+    remarks.note("moved_marker", moved_markers(system));
+    remarks.note("voltages_end", afterwards(task));
+    remarks.note("step_divided", steps::divided(task));
+    remarks.warn("outside_domain", domain::note(&summary.domain, true));
+    remarks.warn("coarse_steps", steps::told(neglected, &history, task));
+    remarks.warn("tolerance_exceeded", steps::beyond(error, task));
+    remarks.warn("energy_balance", steps::unbalanced(&history));
     let shown = Shown::of(
         Motion {
             model: &model,
@@ -207,9 +208,9 @@ pub(super) fn simulation(
         true,
         &mut files,
     )?;
-    summary.notes.extend(shown.notes.iter().cloned());
+    summary.notes.note("shown", shown.notes.iter().cloned());
     summary.shown = shown.part;
-    notes.extend(summary.notes.iter().cloned());
+    notes.extend(summary.notes.lines());
     let method = match task.tolerance {
         Some(tolerance) => format!(
             "{}, steps by a tolerance of {tolerance:e} (unequal steps keep momentum maps, not the energy over long times)",

@@ -33,7 +33,11 @@ pub fn inspect(request: &CommandInput) -> Result<CommandOutput, CommandError> {
     Ok(CommandOutput {
         is_solved: true,
         result: found.words,
-        notes: found.notes,
+        notes: found
+            .notes
+            .iter()
+            .map(|note| format!("note: {note}"))
+            .collect(),
     })
 }
 

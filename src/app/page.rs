@@ -25,8 +25,8 @@ pub(super) fn told(title: &str, summary: &Summary, asked: &[(String, String)]) -
         notes: summary
             .message
             .iter()
-            .chain(&summary.notes)
             .cloned()
+            .chain(summary.notes.lines())
             .collect(),
         documents,
         ..Told::default()

@@ -31,6 +31,7 @@ use crate::workflow::WorkflowError;
 use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::phase::phase;
+use crate::workflow::remark::Remarks;
 
 /// Follows the path for `points` equilibria and writes `path.csv`, `path.svg`, the fields, and figure and page of the last
 /// equilibrium before stability is lost, or of the last one.
@@ -85,6 +86,8 @@ pub(super) fn follow(
     files.add("path.svg", plot.svg(&origin).as_bytes())?;
     fields::write(&mut files, &model, &history, &origin)?;
     let outside = domain::told(&out_of_domain(&model, &history));
+    let mut remarks = Remarks::default();
+    remarks.warn("outside_domain", domain::note(&outside, false));
     let notes = path.lost.iter().map(|loss| {
         format!(
             "{} at {:.6} % of the voltages",
@@ -103,16 +106,13 @@ pub(super) fn follow(
             counted(found.points.len(), "equilibrium").replace("equilibriums", "equilibria"),
             folder.display()
         ),
-        notes: notes
-            .chain(early)
-            .chain(domain::note(&outside, false))
-            .collect(),
+        notes: notes.chain(early).chain(remarks.lines()).collect(),
     };
     let word = stopped.map_or("path_followed", Status::word);
     let mut summary = Summary::new(request, word, model.coordinates.name());
     summary.plan = Plan::of(&model, None, MEASURED);
     summary.path = Some(path);
-    summary.notes.extend(domain::note(&outside, false));
+    summary.notes = remarks;
     summary.domain = outside;
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),

@@ -139,10 +139,12 @@ pub(super) fn at(
         setup,
         ..Seconds::default()
     };
-    summary.notes.extend(moved_markers(system));
-    summary.notes.extend(domain::note(&summary.domain, false));
-    let notes = summary.message.iter().chain(&summary.notes);
-    let notes = notes.cloned().collect();
+    summary.notes.note("moved_marker", moved_markers(system));
+    summary
+        .notes
+        .warn("outside_domain", domain::note(&summary.domain, false));
+    let message = summary.message.iter().cloned();
+    let notes = message.chain(summary.notes.lines()).collect();
     let told = match &failure {
         None => CommandOutput {
             is_solved: true,

@@ -36,7 +36,6 @@ use crate::report::file_set::FileSet;
 use crate::report::{Run, write_run};
 use crate::workflow::Iterate;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget, Refined};
-use crate::workflow::afterwards::Afterwards;
 use crate::workflow::cause::Cause;
 use crate::workflow::cure::{Cured, reproduced};
 use crate::workflow::domain;
@@ -44,11 +43,10 @@ use crate::workflow::effects::Plan;
 use crate::workflow::final_values::final_values;
 use crate::workflow::grids::optimise_to;
 use crate::workflow::holding;
-use crate::workflow::infeasible::explain;
 use crate::workflow::motion::{history, solved, trajectory};
 use crate::workflow::optimise::{Optimum, SolveLimits};
-use crate::workflow::resimulate::{Resimulation, under_constant_voltages};
-use crate::workflow::second_start::is_unreached;
+use crate::workflow::resimulate::under_constant_voltages;
+use crate::workflow::solve_remarks::add_remarks;
 use crate::workflow::tracking::followed;
 use crate::workflow::verified::{ACCURACY, verified};
 use crate::workflow::violations::Violation;
@@ -170,27 +168,15 @@ pub(super) fn control(
         gap: Some(optimum.gap).filter(|gap| is_solved && gap.is_finite()),
         afterwards: optimum.afterwards.clone(),
     });
-    let coarse = tested.and_then(Resimulation::warning);
-    summary.notes.extend_from_slice(control.start.notes());
-    summary.notes.extend_from_slice(&boundary.notes);
-    summary.notes.extend(moved_markers(system));
-    summary.notes.extend(note.into_iter().chain(coarse));
-    summary.notes.extend(not_kept.filter(|_| is_solved));
-    let afterwards = optimum.afterwards.as_ref();
-    summary
-        .notes
-        .extend(afterwards.and_then(Afterwards::warning));
-    summary.notes.extend(holding::free_end(control));
-    summary.notes.extend(optimum.wide.clone());
-    summary.notes.extend(solution.linear.note());
-    summary.notes.extend(carried(&optimum.carried));
-    summary.notes.extend(optimum.restarted.map(restarted));
-    if is_unreached(solution) {
-        let left = allowed.seconds.map(|s| s - began.elapsed().as_secs_f64());
-        let left = left.map(|s| s.max(0.0));
-        let lines = explain(system, control, &optimum, left);
-        summary.notes.extend(lines);
-    }
+    let notes = &mut summary.notes;
+    notes.note("start", control.start.notes().iter().cloned());
+    notes.note("goal", boundary.notes.iter().cloned());
+    notes.note("moved_marker", moved_markers(system));
+    let left = allowed.seconds.map(|s| s - began.elapsed().as_secs_f64());
+    let left = left.map(|s| s.max(0.0));
+    add_remarks(notes, (system, control), &optimum, note, left);
+    notes.note("earlier_solution", carried(&optimum.carried));
+    notes.note("second_start", optimum.restarted.map(restarted));
     summary.accuracy = accuracy;
     summary.plan = Plan::of(
         optimum.sought.as_ref().unwrap_or(model),
@@ -300,7 +286,9 @@ fn write_files(
     let written = fields::write(&mut files, model, &history, &origin)?;
     summary.blocks = BlockSizes::of(model).map(|b| b.after(model, &observed, written));
     summary.domain = domain::told(&out_of_domain(model, &history));
-    summary.notes.extend(domain::note(&summary.domain, true));
+    summary
+        .notes
+        .warn("outside_domain", domain::note(&summary.domain, true));
     let motion = trajectory(model, kept);
     let held = boundary.rest.each_ref().map(Option::as_deref);
     let exchange = EnergyExchange::new(&model.system, &motion, held);
@@ -309,9 +297,11 @@ fn write_files(
     summary.tracking = followed(optimum, control, &motion);
     summary
         .notes
-        .extend(tracking_words::told(&summary.tracking));
+        .note("tracking", tracking_words::told(&summary.tracking));
     summary.final_values = final_values(&model.system, control, &motion);
-    summary.notes.extend(ends(&summary.final_values));
+    summary
+        .notes
+        .note("final_value", ends(&summary.final_values));
     let shown = Shown::of(
         Motion {
             model,
@@ -323,7 +313,7 @@ fn write_files(
         false,
         &mut files,
     )?;
-    summary.notes.extend(shown.notes.iter().cloned());
+    summary.notes.note("shown", shown.notes.iter().cloned());
     summary.shown = shown.part;
     let is_solved = summary.message.is_none();
     let compared = is_solved
@@ -371,7 +361,7 @@ fn told(
     };
     let mut notes: Vec<String> = summary.message.iter().cloned().collect();
     notes.extend(violated.iter().map(describe));
-    notes.extend(summary.notes.iter().cloned());
+    notes.extend(summary.notes.lines());
     let parameters = program.iter().flat_map(|program| &program.parameters);
     notes.extend(parameters.map(|found| format!("{}: {}", found.name, found.told())));
     if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {

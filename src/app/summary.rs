@@ -29,7 +29,7 @@ use crate::workflow::effects::Plan;
 use crate::workflow::final_values::FinalValue;
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::violations::Violation;
-use crate::workflow::{EstimatedError, Tracked};
+use crate::workflow::{EstimatedError, Remarks, Tracked};
 
 /// Time in s that goes into measuring each effect for it.
 pub(super) const MEASURED: f64 = 2e-4;
@@ -45,8 +45,8 @@ pub(super) struct Summary {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) message: Option<String>,
     /// What else there is to say of the result.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(super) notes: Vec<String>,
+    #[serde(skip_serializing_if = "Remarks::is_empty")]
+    pub(super) notes: Remarks,
     #[serde(flatten)]
     pub(super) program: Option<Program>,
     #[serde(flatten)]
@@ -344,7 +344,7 @@ impl Summary {
             input: request.input.display().to_string(),
             status: status.to_owned(),
             message: None,
-            notes: Vec::new(),
+            notes: Remarks::default(),
             program: None,
             simulation: None,
             shown: None,

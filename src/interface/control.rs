@@ -15,19 +15,16 @@ use crate::interface::state::State;
 use crate::model::system::{Joint, Muscle};
 use crate::model::{Parameter, Quantity, System};
 use crate::nlp::Nlp;
-use crate::workflow::afterwards::Afterwards;
 use crate::workflow::cause::Cause;
 use crate::workflow::cure::{Cured, reproduced};
 use crate::workflow::domain;
 use crate::workflow::final_values::final_values;
-use crate::workflow::holding;
-use crate::workflow::infeasible::explain;
 use crate::workflow::memory;
 use crate::workflow::motion::{history, trajectory};
 use crate::workflow::optimise::{Counted, Prepared, SolveLimits, prepare};
-use crate::workflow::resimulate::Resimulation;
+use crate::workflow::remark::Remarks;
 use crate::workflow::resolve::resolve;
-use crate::workflow::second_start::is_unreached;
+use crate::workflow::solve_remarks::add_remarks;
 use crate::workflow::tracking::followed;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -199,7 +196,6 @@ impl Control {
         })?;
         found.hold(&control);
         let model = &found.model;
-        let tested = found.resimulation.as_ref();
         let outside = domain::told(&out_of_domain(model, &history(model, &found.motion)));
         let message = match found.is_solved() {
             true => None,
@@ -209,20 +205,10 @@ impl Control {
                     .map_or_else(|| found.word().replace('_', " "), Cause::told),
             ),
         };
-        let reasons = match is_unreached(&found.solution) {
-            true => explain(system, &control, &found, self.max_seconds),
-            false => Vec::new(),
-        };
-        let warnings = [
-            note,
-            tested.and_then(Resimulation::warning),
-            holding::warning(&control, model, &found.boundary, tested),
-            domain::note(&outside, true),
-            found.afterwards.as_ref().and_then(Afterwards::warning),
-            found.wide.clone(),
-            holding::free_end(&control),
-            found.solution.linear.note(),
-        ];
+        let mut remarks = Remarks::default();
+        let of = (system, &control);
+        add_remarks(&mut remarks, of, &found, note, self.max_seconds);
+        remarks.warn("outside_domain", domain::note(&outside, true));
         let trajectory = trajectory(model, &found.motion);
         let ends = found.boundary.rest.each_ref().map(Option::as_deref);
         let tracking = followed(&found, &control, &trajectory);
@@ -236,7 +222,7 @@ impl Control {
                 system: model.system.clone(),
                 exchange: EnergyExchange::new(&model.system, &trajectory, ends),
                 trajectory,
-                warnings: warnings.into_iter().flatten().chain(reasons).collect(),
+                remarks: remarks.0,
             },
             is_solved: found.is_solved(),
             parameters: found.motion.parameters.clone(),

@@ -7,6 +7,7 @@ use crate::interface::input::Input;
 use crate::kinematics::Pose;
 use crate::model::System;
 use crate::model::system::{Body, Joint, Marker, Muscle};
+use crate::workflow::Remark;
 use nalgebra::Vector3;
 
 /// A motion: N + 1 instants and the N intervals between them.
@@ -16,7 +17,7 @@ pub struct Motion {
     pub(super) trajectory: Trajectory,
     pub(super) exchange: EnergyExchange,
     /// What is to be known of it: steps that do not resolve it, muscles outside the domain of their material.
-    pub(super) warnings: Vec<String>,
+    pub(super) remarks: Vec<Remark>,
 }
 
 impl Motion {
@@ -77,9 +78,9 @@ impl Motion {
         sources.find(|one| one.source == muscle.index())
     }
 
-    /// What is to be known of it: steps that do not resolve it, muscles outside the domain of their material.
-    pub fn warnings(&self) -> &[String] {
-        &self.warnings
+    /// Warnings and notes: steps that do not resolve it, muscles outside the domain of their material.
+    pub fn remarks(&self) -> &[Remark] {
+        &self.remarks
     }
 
     /// All of it, as tables and figures read it.

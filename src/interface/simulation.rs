@@ -11,6 +11,7 @@ use crate::interface::state::State;
 use crate::ipopt::interrupt;
 use crate::model::System;
 use crate::workflow::integrate::{Simulated, integrate};
+use crate::workflow::remark::Remarks;
 use crate::workflow::{domain, memory, steps};
 use std::ops::ControlFlow;
 
@@ -147,16 +148,15 @@ fn motion(run: &Simulated, task: &problem::Simulation) -> Motion {
     let order = task.solving.integrator.order();
     let error = local_error_of(&run.model, (&run.history, &trajectory), order);
     let outside = domain::told(&out_of_domain(&run.model, &run.history));
-    let warnings = [
-        steps::told(error, &run.history, task),
-        steps::unbalanced(&run.history),
-        domain::note(&outside, true),
-    ];
+    let mut remarks = Remarks::default();
+    remarks.warn("coarse_steps", steps::told(error, &run.history, task));
+    remarks.warn("energy_balance", steps::unbalanced(&run.history));
+    remarks.warn("outside_domain", domain::note(&outside, true));
     let system = run.model.system.clone();
     Motion {
         exchange: EnergyExchange::new(&system, &trajectory, [task.start.voltages(), None]),
         system,
         trajectory,
-        warnings: warnings.into_iter().flatten().collect(),
+        remarks: remarks.0,
     }
 }

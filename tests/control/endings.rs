@@ -129,7 +129,7 @@ fn final_costs_tell_where_they_end() {
         let line = ended
             .notes
             .iter()
-            .find(|n| n.starts_with(&format!("{name} ends at")));
+            .find(|n| n.starts_with(&format!("note: {name} ends at")));
         assert!(line.unwrap().contains('°'), "{line:?}");
     }
 }

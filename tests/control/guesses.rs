@@ -129,10 +129,17 @@ fn a_duration_that_is_given_stays_and_the_stretched_guess_is_told() {
     let answer = told(&pair, &["control.duration=0.4 s", &from], &second);
     assert!(answer.is_solved, "{answer:?}");
     let line = "the guess lasts 0.2 s; it was stretched in time to 0.4 s";
-    assert!(answer.notes.iter().any(|note| note == line), "{answer:?}");
+    assert!(
+        answer
+            .notes
+            .iter()
+            .any(|note| *note == format!("note: {line}")),
+        "{answer:?}"
+    );
     let summary = read(&second.join("summary.json"));
     assert_eq!(summary["duration"], 0.4);
-    assert!(summary["notes"].as_array().unwrap().contains(&line.into()));
+    let note = serde_json::json!({ "severity": "note", "code": "earlier_solution", "text": line });
+    assert!(summary["notes"].as_array().unwrap().contains(&note));
     assert!(summary["iterations"].as_u64().unwrap() > 3, "{summary}");
     let time = &read(&second.join("solution.json"))["time"];
     assert_eq!(time.as_array().unwrap().last().unwrap(), 0.4);

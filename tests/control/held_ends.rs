@@ -95,7 +95,7 @@ fn an_end_that_cannot_be_kept_is_told_or_refused() {
     let lines = answer
         .notes
         .iter()
-        .filter(|note| note.starts_with("the goal cannot be kept: "));
+        .filter(|note| note.starts_with("warning: the goal cannot be kept: "));
     let lines: Vec<_> = lines.collect();
     assert!(
         lines.len() == 1

@@ -144,10 +144,10 @@ fn a_tip_follows_a_path_of_a_program_as_that_of_a_file() {
     assert!(found.is_solved(), "{}", found.status);
     let objective = of_file.solution.objective;
     assert!(objective > 1e-3 && (found.objective - objective).abs() < 1e-7 * objective);
-    let warned = found.motion.warnings().iter();
+    let warned = found.motion.remarks().iter();
     assert!(
         warned
-            .filter(|line| line.contains("the end is free"))
+            .filter(|remark| remark.code == "free_end" && remark.text.contains("the end is free"))
             .count()
             == 1
     );

@@ -81,7 +81,7 @@ fn a_file_of_a_coarse_mesh_starts_a_finer_one() {
         let words = "the guess is the motion under its voltages";
         notes
             .iter()
-            .any(|note| note.as_str().unwrap().contains(words))
+            .any(|note| note["text"].as_str().unwrap().contains(words))
     };
     let number = |summary: &Value, key: &str| summary[key].as_f64().unwrap();
     let coarse = folder.path().join("coarse/solution.json");

@@ -143,7 +143,7 @@ fn a_grid_that_resolves_no_motion_is_refined() {
     assert!(
         kept_notes
             .iter()
-            .any(|line| line.as_str().unwrap().contains(&note))
+            .any(|line| line["text"].as_str().unwrap().contains(&note))
     );
     let deviation = &summary["resimulation"]["deviation"]["angle"];
     assert!(deviation.as_f64().unwrap() < 1e-6, "{summary}");
@@ -243,7 +243,7 @@ fn what_is_called_solved_is_reproduced_with_finer_steps() {
         let warned = answer
             .notes
             .iter()
-            .any(|note| note.starts_with("the intervals are long"));
+            .any(|note| note.starts_with("warning: the intervals are long"));
         assert_eq!(warned, error > 0.05, "{answer:?}");
     }
     println!("{solved} solved, {refined} of them on finer grids, {refused} refused");

@@ -194,7 +194,7 @@ fn what_cannot_rest_is_not_asked_to_and_moved_markers_are_told() {
         "{out}"
     );
     for (marker, z) in [("upper_tip", "5"), ("lower_tip", "-5")] {
-        let words = format!("marker {marker} is the node at [30 mm, ");
+        let words = format!("note: marker {marker} is the node at [30 mm, ");
         let line = err
             .lines()
             .find(|line| line.starts_with(&words))

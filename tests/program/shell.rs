@@ -1,5 +1,6 @@
 //! The program among others: standard input, a summary on standard output, completions, manual pages, robots to begin with.
 
+use crate::commands::summary;
 use crate::runs::{read, run, run_with_input, workshop};
 use serde_json::Value;
 use std::fs;
@@ -144,5 +145,35 @@ fn robots_to_begin_with_are_solved() {
         );
         // Those to begin with are solved without a warning.
         assert_eq!(err, "", "{robot}");
+    }
+}
+
+#[test]
+fn limits_of_the_command_line_stop_a_solve_with_its_files() {
+    let folder = workshop();
+    let many = [
+        "solve",
+        "problems/elephant_trunk_effort.json",
+        "--set",
+        "control.intervals=400",
+    ];
+    for (limit, value, word) in [
+        ("--max-seconds", "0.05", "time_limit"),
+        ("--max-iterations", "2", "iteration_limit"),
+    ] {
+        let arguments = [&many[..], &[limit, value, "-o", word]].concat();
+        let (status, out, err) = run(folder.path(), &arguments);
+        assert_eq!(status, 1, "{out}{err}");
+        if out.is_empty() {
+            // On a busy machine the time may be over before the first iterate, which leaves nothing to write.
+            assert!(
+                word == "time_limit" && err.contains("before the first result (time limit)"),
+                "{err}"
+            );
+            continue;
+        }
+        assert!(out.starts_with("not solved ("), "{out}");
+        assert_eq!(summary(folder.path(), word)["status"], word);
+        assert!(folder.path().join(word).join("solution.json").is_file());
     }
 }

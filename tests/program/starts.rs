@@ -19,7 +19,7 @@ fn the_best_of_several_starts_is_kept_and_can_be_solved_again_alone() {
     // What is said of the best start is said once.
     let lines: Vec<_> = err.lines().collect();
     assert!(
-        lines.len() == 1 && lines[0].starts_with("the intervals are long"),
+        lines.len() == 1 && lines[0].starts_with("warning: the intervals are long"),
         "{err}"
     );
     assert_eq!(status, 0, "{out}");

@@ -4,6 +4,7 @@ use super::start::{Start, folder_of};
 use crate::app::batch::{RunEnd, Said};
 use crate::app::error::CommandError;
 use crate::ipopt::interrupt;
+use crate::workflow::remark::Remarks;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{self};
@@ -55,7 +56,7 @@ pub(super) struct Summary {
     pub(super) infeasibility: Option<f64>,
     pub(super) seconds: Seconds,
     #[serde(default)]
-    pub(super) notes: Vec<String>,
+    pub(super) notes: Remarks,
 }
 
 #[derive(Deserialize)]
@@ -135,7 +136,7 @@ impl Ended {
             seconds: summary.seconds.total,
             is_solved,
             voltages,
-            notes: summary.notes,
+            notes: summary.notes.lines().collect(),
             ..Self::without_files(start, "", seconds)
         })
     }

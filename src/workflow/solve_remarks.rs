@@ -1,0 +1,36 @@
+//! Remarks on a solve, the same for the command line, Python and Rust.
+
+use crate::control::problem::Control;
+use crate::model::System;
+use crate::workflow::afterwards::Afterwards;
+use crate::workflow::holding;
+use crate::workflow::infeasible::explain;
+use crate::workflow::optimise::Optimum;
+use crate::workflow::remark::Remarks;
+use crate::workflow::resimulate::Resimulation;
+use crate::workflow::second_start::is_unreached;
+
+/// Adds all that is to be known of an optimum, or of the last iterate of a solve that found none: `refined` is why another grid
+/// was taken than that of the problem, and searching for reasons takes no more than `left` seconds.
+pub(crate) fn add_remarks(
+    remarks: &mut Remarks,
+    (system, control): (&System, &Control),
+    optimum: &Optimum,
+    refined: Option<String>,
+    left: Option<f64>,
+) {
+    let tested = optimum.resimulation.as_ref();
+    let (model, boundary) = (&optimum.model, &optimum.boundary);
+    let not_kept = holding::warning(control, model, boundary, tested);
+    let not_kept = not_kept.filter(|_| optimum.is_solved());
+    let left_goal = optimum.afterwards.as_ref().and_then(Afterwards::warning);
+    remarks.note("refined_grid", refined);
+    remarks.warn("coarse_intervals", tested.and_then(Resimulation::warning));
+    remarks.warn("goal_not_held", not_kept.into_iter().chain(left_goal));
+    remarks.warn("optimality_gap", optimum.wide.clone());
+    remarks.note("free_end", holding::free_end(control));
+    remarks.note("linear_solver", optimum.solution.linear.note());
+    if is_unreached(&optimum.solution) {
+        remarks.note("infeasible", explain(system, control, optimum, left));
+    }
+}
