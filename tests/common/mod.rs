@@ -3,6 +3,7 @@
 #![allow(unreachable_pub, reason = "a module of several test binaries")]
 
 pub mod cases;
+pub mod counting;
 pub mod force;
 pub mod programs;
 pub mod random;
