@@ -43,7 +43,7 @@ impl CoordinateMap {
         is_set
     }
 
-    /// Whether the charts of a list of coordinates, multipliers and charts are quaternions of length one; lists of another length belong to
+    /// Returns true if the charts of a list of coordinates, multipliers and charts are quaternions of length one; lists of another length belong to
     /// other coordinates.
     pub fn has_unit_charts(&self, z: &[f64]) -> bool {
         let is_unit = |q: &[f64]| (q.iter().map(|q| q * q).sum::<f64>() - 1.0).abs() < 1e-9;

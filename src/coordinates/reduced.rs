@@ -51,7 +51,7 @@ impl Reduced {
         }
     }
 
-    /// Where entries lie.
+    /// Returns the pattern of the entries.
     pub fn layout(&self) -> &StepPattern {
         &self.layout
     }

@@ -1,4 +1,4 @@
-//! How the updates of a Newton iteration shrink, and what follows from it: whether they converge, whether the tangent serves.
+//! Contraction of a Newton iteration: the decay of its updates, and the verdict on convergence and on the tangent.
 
 use crate::dynamics::solving::Newton;
 
@@ -19,7 +19,7 @@ pub(super) struct Contraction {
     last: Option<f64>,
 }
 
-/// What an update is good for.
+/// Verdict on an update.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Verdict {
     /// It is to be made, and is the last one.
@@ -82,7 +82,7 @@ mod tests {
         found
     }
 
-    /// What is left after n updates of a geometric series is its sum from there on.
+    /// The remainder after n updates of a geometric series is its sum from there on.
     #[test]
     fn it_has_converged_where_the_sum_of_all_later_updates_is_small() {
         for rate in [0.05, 0.3, 0.7, 0.9] {

@@ -123,7 +123,7 @@ pub(super) fn vector_momenta(model: &Model, x: &[Vector], v: &[Vector]) -> Vec<V
     momenta
 }
 
-/// Where bodies and vectors are.
+/// Positions of bodies and vectors.
 pub(super) struct Places<'a> {
     pub(super) poses: &'a [Pose],
     pub(super) x: &'a [Vector],

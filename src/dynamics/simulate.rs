@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 /// The shortest step that a tolerance may ask for, as a part of the duration.
 const LEAST: f64 = 1e-9;
 
-/// Where a motion starts: coordinates z and the momentum of each coordinate.
+/// Start of a motion: coordinates z and the momentum of each coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
     /// Coordinates and multipliers.
@@ -293,7 +293,7 @@ impl DiscreteTrajectory {
         }
     }
 
-    /// Whether its lists have the lengths of a motion of this model.
+    /// Returns true if its lists have the lengths of a motion of this model.
     fn is_of(&self, model: &Model) -> bool {
         let (instants, intervals) = (self.times.len(), self.scalars.len());
         let motion = &model.action.motion;
@@ -327,7 +327,7 @@ impl DiscreteTrajectory {
 pub struct TimeGrid {
     /// Length in ms.
     pub h: f64,
-    /// How many.
+    /// Number of steps.
     pub steps: usize,
 }
 

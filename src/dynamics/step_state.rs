@@ -12,13 +12,13 @@ use std::fmt::{self, Write};
 /// All that the next steps follow from.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepState {
-    /// What it is a state of: the digits of [`StepState::of`].
+    /// Identity of the equations and method: the digits of [`StepState::of`].
     pub of: String,
     /// State of the equations, list by list; none before the first step.
     pub lists: Vec<(String, Vec<f64>)>,
     /// The tangent that is kept, where one is.
     pub tangent: Option<TangentState>,
-    /// What the steps took.
+    /// Report of the steps.
     pub report: StepperReport,
     /// Length in ms that the next step may have, where a tolerance controls it.
     pub wanted: Option<f64>,
@@ -31,9 +31,9 @@ pub struct StepState {
 pub struct TangentState {
     /// Step in ms that it belongs to; none where there are no factors.
     pub step: Option<f64>,
-    /// Whether the symmetric part of the matrix is factorised.
+    /// True if the symmetric part of the matrix is factorised.
     pub is_approximate: bool,
-    /// How it is factorised.
+    /// Method of its factorisation.
     pub method: MethodState,
     /// Entries of the matrix.
     pub matrix: Vec<f64>,

@@ -17,7 +17,7 @@ use std::time::Instant;
 
 /// Limit of Newton iterations in one step.
 const ITERATIONS: usize = 16;
-/// How often a step is halved before it is refused.
+/// Largest number of halvings of a step before it is refused.
 const HALVINGS: u32 = 10;
 /// Limit of iterations with a reused tangent.
 const REUSED: usize = 40;
@@ -29,7 +29,7 @@ pub struct Steps<E> {
     pub(super) updates: Updates,
     /// Step of the tangent that is factorised.
     pub(super) factored: Option<f64>,
-    /// Whether the last attempt began with the tangent of a step before.
+    /// True if the last attempt began with the tangent of a step before.
     pub(super) stale: bool,
     residual: Vec<f64>,
     /// Local error that is allowed per ms; none of steps of given length.
@@ -97,7 +97,7 @@ impl<E: Equations> Steps<E> {
         self.equations.work()
     }
 
-    /// What the steps cost so far.
+    /// Returns the report of the steps so far.
     pub fn report(&self) -> StepperReport {
         self.report
     }
@@ -227,7 +227,7 @@ impl<E: Equations> Steps<E> {
         })
     }
 
-    /// Whether there is time for what comes next in a step.
+    /// Returns an error if it is time to stop.
     fn go_on(&mut self, h: f64) -> Result<(), StepError> {
         match interrupt::stop() {
             Some(status) => Err(self.stopped(h, status)),
@@ -260,7 +260,7 @@ impl<E: Equations> Steps<E> {
         Ok(accepted)
     }
 
-    /// Why a solution is not accepted: a muscle passed through no length, a joint turned too far, an element is crushed, the
+    /// Returns the reason why a solution is not accepted: a muscle passed through zero length, a joint turned too far, an element is crushed, the
     /// energy balance does not close.
     fn refusal(&mut self, step: f64) -> Option<StepError> {
         let time = self.equations.time();

@@ -27,7 +27,7 @@ pub(super) struct Problem {
     _lock: Option<Exclusive>,
 }
 
-/// Where a function of the Ipopt that is called stands.
+/// Returns the address of a function of the Ipopt that is called.
 pub(super) fn address() -> *const c_void {
     FreeIpoptProblem as *const c_void
 }

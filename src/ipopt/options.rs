@@ -1,4 +1,4 @@
-//! What a solve is asked: tolerance, limits, kind of start, and any option of Ipopt by name.
+//! Options of a solve: tolerance, limits, kind of start, and any option of Ipopt by name.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ const PUSH: f64 = 1e-9;
 /// `bound_relax_factor` where nothing else is asked for.
 const RELAXED: f64 = 1e-8;
 
-/// What the starting point is worth.
+/// Quality of the starting point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Start {
     /// A guess: Ipopt moves it well inside the bounds.
@@ -57,11 +57,11 @@ pub enum Start {
 impl Start {
     /// [`Start::Primal`] for a problem that hardly changed.
     ///
-    /// From nodes and voltages of the five reference optima, iterations: 1e-6 takes 5 to 14, 1e-7 2 to 13, 1e-8 2 to 13;
+    /// Iterations from nodes and voltages of the five reference optima: 1e-6 takes 5 to 14, 1e-7 2 to 13, 1e-8 2 to 13;
     /// with noise of 1e-3 on them 1e-8 takes up to 27 where 1e-7 takes 23.
     pub const PRIMAL: Self = Self::Primal { mu_init: 1e-7 };
 
-    /// Whether the multipliers of the starting point are read.
+    /// Returns true if the multipliers of the starting point are read.
     pub(super) fn is_dual(self) -> bool {
         matches!(
             self,
@@ -69,13 +69,13 @@ impl Start {
         )
     }
 
-    /// Whether the barrier parameter is chosen in each iteration.
+    /// Returns true if the barrier parameter is chosen in each iteration.
     fn is_adaptive(self) -> bool {
         matches!(self, Self::PrimalDual | Self::Centred | Self::Simulated)
     }
 }
 
-/// What a solve is asked.
+/// Options of a solve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// Scaled optimality error at which a point counts as solution (`tol`).
@@ -84,7 +84,7 @@ pub struct Options {
     pub max_iterations: usize,
     /// Wall time allowed in seconds, looked at once per iteration.
     pub max_seconds: Option<f64>,
-    /// What the starting point is worth.
+    /// Quality of the starting point.
     pub start: Start,
     /// Who solves the linear systems, unless `extra` names another one.
     pub linear_solver: LinearSolver,
@@ -127,7 +127,7 @@ impl Options {
         }
     }
 
-    /// Whether solves with these options run in several threads at once: those with the linear solver along the horizon.
+    /// Returns true if solves with these options run in several threads in parallel: those with the linear solver along the horizon.
     #[must_use]
     pub fn run_at_once(&self) -> bool {
         self.taken().is_ok_and(|taken| taken.is_along)

@@ -18,7 +18,7 @@ pub struct Reached<'a> {
 /// The iterate before, with its multipliers.
 #[derive(Debug)]
 pub struct Before<'a> {
-    /// What Ipopt told of it.
+    /// Report of Ipopt on it.
     pub report: &'a Iteration,
     /// Its variables.
     pub x: &'a [f64],

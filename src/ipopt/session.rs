@@ -186,7 +186,7 @@ pub(super) fn with_current<T>(work: impl FnOnce(&mut Session) -> T) -> Option<T>
     })
 }
 
-/// Why the solve of this thread left a factorisation off, if it did.
+/// Returns the reason why the solve of this thread stopped a factorisation before its end, if it did.
 pub(super) fn stopped() -> Option<Status> {
     CURRENT.with_borrow(|current| current.as_ref()?.report.stopped)
 }

@@ -14,7 +14,7 @@ use signal_hook::flag;
 /// Exit status of a program ended by a signal: this plus its number.
 const EXIT_STATUS: c_int = 128;
 
-/// What is told when a signal is heard of.
+/// Message at the first signal.
 const WORDS: &str =
     "\nstopping; the results so far will be written; Ctrl-C again ends the program at once";
 
@@ -71,7 +71,7 @@ fn stop_at(signal: c_int) -> io::Result<()> {
     Ok(())
 }
 
-/// Whether a signal has asked for a stop, which is told once.
+/// Returns true if a signal has asked for a stop, and writes the message once.
 pub(super) fn have_asked() -> bool {
     let have = REQUESTED.load(Ordering::Relaxed);
     if have
@@ -83,7 +83,7 @@ pub(super) fn have_asked() -> bool {
     have
 }
 
-/// Which signals the process was started to ignore, where the system tells.
+/// Returns a test for the signals that the process was started to ignore, where the system reports them.
 fn ignored() -> impl Fn(c_int) -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mut lines = status.lines();

@@ -17,7 +17,7 @@ use crate::nlp::{Bounds, Entries, Nlp, Stage};
 /// Least w, for slopes that are finite.
 const LEAST: f64 = 1e-18;
 
-/// Which variables are squares, and between the two.
+/// Variables that are squares, with the conversions between the two.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Squares {
     /// Variable and its u.
@@ -38,14 +38,14 @@ impl Squares {
         }
     }
 
-    /// From x to the unknowns.
+    /// Converts x to the unknowns.
     pub(super) fn square(&self, x: &mut [f64]) {
         for &(i, u) in &self.list {
             x[i] *= x[i] / u;
         }
     }
 
-    /// From the unknowns to x.
+    /// Converts the unknowns to x.
     pub(super) fn root(&self, w: &mut [f64]) {
         for &(i, u) in &self.list {
             w[i] = (u * w[i].max(0.0)).sqrt();

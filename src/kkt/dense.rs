@@ -11,7 +11,7 @@ pub(super) struct Dense<'a> {
     pub(super) values: &'a mut [f64],
     /// Rows.
     pub(super) order: usize,
-    /// From one column to the next, a whole number of groups.
+    /// Distance from one column to the next, a whole number of groups.
     pub(super) stride: usize,
     /// Columns that may be eliminated.
     pub(super) candidates: usize,

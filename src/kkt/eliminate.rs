@@ -22,7 +22,7 @@ pub(super) struct Workspace {
     unscaled: Vec<f64>,
 }
 
-/// What an elimination met.
+/// Counts of an elimination.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Count {
     /// Columns eliminated.

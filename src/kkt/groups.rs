@@ -1,4 +1,4 @@
-//! Which equations may be solved for unknowns before all else.
+//! Groups of equations that may be solved for unknowns before all others.
 //!
 //! * Where a stage has as many equations as variables, and these equations reach no later stage, they determine its states from earlier
 //!   ones and from the rest: inputs, multipliers of further equations, a free duration.

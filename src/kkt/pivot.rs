@@ -15,7 +15,7 @@ const BALANCE: f64 = 0.64;
 /// Least determinant of a pair against the product of its diagonal: below, all digits are lost.
 const CANCELLED: f64 = 1e-13;
 
-/// When a pivot is accepted.
+/// Rules by which a pivot is accepted.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rules {
     /// u: the part of the largest entry beside it that a pivot must reach.
@@ -24,7 +24,7 @@ pub(super) struct Rules {
     pub(super) zero: f64,
 }
 
-/// What is eliminated next.
+/// Pivot that is eliminated next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Pivot {
     /// One column.
@@ -89,7 +89,7 @@ impl Dense<'_> {
         is_pivot.then_some(Pivot::One(c))
     }
 
-    /// Whether a column and its largest entry make a pair: the inverse of the pair times the largest entries beside it.
+    /// Returns true if a column and its largest entry make a pair: the inverse of the pair times the largest entries in its columns.
     #[inline(always)]
     fn is_pair<S: Simd>(
         &self,

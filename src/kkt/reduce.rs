@@ -1,4 +1,4 @@
-//! What blocks add to the reduced system R: each one `Sᵀ W` and its transpose, with W = ½ H S of its own states, H S of earlier ones, and
+//! Contributions of blocks to the reduced system R: each one `Sᵀ W` and its transpose, with W = ½ H S of its own states, H S of earlier ones, and
 //! Kᵀ.
 
 use faer::linalg::matmul::matmul;

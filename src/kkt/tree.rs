@@ -19,7 +19,7 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Node {
     /// The unknowns, then those that they reach, in the order of elimination.
     pub(super) unknowns: Vec<u32>,
-    /// How many of them are eliminated here.
+    /// Number of unknowns that are eliminated here.
     pub(super) columns: usize,
     /// Nodes that this one sums, ascending.
     pub(super) children: Vec<u32>,

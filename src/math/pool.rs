@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use rayon::ThreadPoolBuilder;
 
-/// Whether this thread belongs to a pool, or there is one for all threads.
+/// Returns true if this thread belongs to a pool, or there is one for all threads.
 pub(crate) fn has_pool() -> bool {
     static GLOBAL: LazyLock<bool> =
         LazyLock::new(|| match ThreadPoolBuilder::new().build_global() {

@@ -1,6 +1,6 @@
 //! Constants of components that may be sought, and parameters that they follow.
 
-/// How a relative permittivity enters the energy.
+/// Law by which a relative permittivity enters the energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DielectricLaw {
     /// As in [`first_order`](crate::model::system::ElectricConstants::first_order).
@@ -76,7 +76,7 @@ pub struct Parameter {
     pub lower: f64,
     /// Upper bound.
     pub upper: f64,
-    /// Where the solver starts.
+    /// Value at which the solver starts.
     pub guess: f64,
 }
 
@@ -97,12 +97,12 @@ impl Constant {
         }
     }
 
-    /// Whether it is a length of the geometry of a muscle at rest, on which its mass and stretch depend.
+    /// Returns true if it is a length of the geometry of a muscle at rest, on which its mass and stretch depend.
     pub fn is_shape(self) -> bool {
         matches!(self, Self::Side(..) | Self::End(..))
     }
 
-    /// Whether it has to be positive to have a meaning.
+    /// Returns true if it must be positive to have a meaning.
     pub fn is_positive(self) -> bool {
         !matches!(self, Self::End(..))
     }
@@ -116,7 +116,7 @@ impl Parameter {
         found.unwrap_or(1.0)
     }
 
-    /// Whether it moves an end of a muscle.
+    /// Returns true if it moves an end of a muscle.
     pub fn moves(&self, muscle: usize) -> bool {
         let is_end = |c: Constant| matches!(c, Constant::End(m, ..) if m == muscle);
         self.constants.iter().any(|c| is_end(c.constant))
@@ -132,6 +132,6 @@ pub struct FoundParameter {
     pub value: f64,
     /// Unit of the International System.
     pub unit: SiUnit,
-    /// Whether it lies at a bound, where the solver would have gone on.
+    /// True if it lies at a bound, where the solver would have gone on.
     pub is_at_bound: bool,
 }

@@ -1,4 +1,4 @@
-//! Why a model or a start cannot be had.
+//! Errors of the construction of a model.
 
 use thiserror::Error;
 

@@ -1,5 +1,5 @@
-//! What remains of a system to be solved for: bodies that are welded together are one, what nothing moves is ground, and a
-//! source without voltage drives nothing.
+//! Presolved system: welded bodies are merged, immobile parts belong to the ground, and sources without voltage drive
+//! nothing.
 //!
 //! The muscles, blocks and markers of the condensed system are those of the scene in its order; bodies and joints are fewer.
 
@@ -12,7 +12,7 @@ use crate::model::system::{
 };
 use nalgebra::SymmetricEigen;
 
-/// Where a body of the scene is found.
+/// Location of a body of the scene in the presolved system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BodyLocation {
     /// It is this body of the condensed system.
@@ -35,16 +35,16 @@ pub enum BodyLocation {
 pub struct Presolved {
     /// The system.
     pub system: System,
-    /// Where each body of the scene is found.
+    /// Location of each body of the scene.
     pub bodies: Vec<BodyLocation>,
     /// Joint of the scene of each joint.
     pub joints: Vec<usize>,
-    /// What nothing moves.
+    /// Immobile parts.
     pub immobile: Immobile,
 }
 
 impl Presolved {
-    /// What remains of a system for a question.
+    /// Presolves a system for an analysis.
     pub fn new(system: &System, question: &Analysis) -> Self {
         let mut rest = system.clone();
         set_to_zero(&mut rest, question);

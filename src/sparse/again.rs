@@ -4,7 +4,7 @@ use crate::sparse::Singular;
 use crate::sparse::backend::Backend;
 use crate::sparse::direct::Direct;
 
-/// How a solver factorises the next matrix: what it has learnt from those before.
+/// State of a solver that determines how it factorises the next matrix: what it has learnt from those before.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MethodState {
     /// The method, as a table names it.
@@ -14,7 +14,7 @@ pub struct MethodState {
 }
 
 impl Direct {
-    /// How the next matrix is factorised.
+    /// Returns the state that determines how the next matrix is factorised.
     pub fn state(&self) -> MethodState {
         MethodState {
             method: self.method().to_owned(),

@@ -20,7 +20,7 @@ use crate::sparse::{Factorisation, Precision, Singular, Symmetry};
 const SINGLE: usize = 5_000;
 /// So many further matrices are tried in single precision in a row; then double precision stays.
 const RETRIES: usize = 2;
-/// What is added to entries near 1 to make a singular matrix regular.
+/// Number added to entries near 1 to make a singular matrix regular.
 const NEARBY: f64 = 1e-10;
 /// A residual above this, relative to the largest term of the equations, is refined.
 const POOR: f64 = 1e-13;
@@ -153,7 +153,7 @@ impl Direct {
         self.factorisation.precision()
     }
 
-    /// From now on factors are in double precision; whether they were not before.
+    /// Makes factors in double precision from now on; returns true if they were not before.
     pub fn make_double(&mut self) -> bool {
         let is_single = self.precision() == Precision::Single;
         if let (true, Some(other)) = (is_single, self.factorisation.more_robust()) {

@@ -1,4 +1,4 @@
-//! What a method of factorisation answers.
+//! Interface of the methods of factorisation, and the error of a singular matrix.
 
 use std::fmt::Debug;
 

@@ -24,7 +24,7 @@ use crate::coordinates::configuration::{Moments, TreeState};
 use crate::kinematics::{Carrier, MaterialVector, Pose, VectorTerm};
 use crate::math::{Matrix, Vector, counted};
 
-/// What a link of a tree lets move.
+/// Motion that a link of a tree permits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LinkKind {
     /// Rotation about the axis.
@@ -38,7 +38,7 @@ pub enum LinkKind {
 /// One screw of a joint, or a joint without any, between two frames; links stand in an order in which parents come first.
 #[derive(Clone, Debug)]
 pub struct Link {
-    /// What it lets move.
+    /// Motion that it permits.
     pub kind: LinkKind,
     /// Parent frame; `None` is the ground.
     pub parent: Option<usize>,

@@ -1,5 +1,5 @@
-//! The softest mode of a state of rest: along which direction its potential energy rises least or falls, what moves there,
-//! and what makes it soft.
+//! The softest mode of a state of rest: the direction along which its potential energy rises least or falls, the parts that move,
+//! and the cause of its softness.
 
 use crate::dynamics::rest::mode::{Mode, Softening};
 use crate::dynamics::rest::statics::Statics;
@@ -19,7 +19,7 @@ const LISTED: usize = 3;
 /// Parts of the stiffness below this of the elastic one are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether the stiffness in joint coordinates can be looked at eigenvalue by eigenvalue.
+/// Returns true if the stiffness in joint coordinates is small enough for a full eigenvalue decomposition.
 fn is_small(model: &Model) -> bool {
     let motion = &model.action.motion;
     let joints_alone = motion.tree.is_some() && motion.of_nodes.is_empty();
@@ -146,7 +146,7 @@ fn softening(
         .map(|(softening, _)| softening)
 }
 
-/// What moves along a direction, in words.
+/// Names the parts that move along a direction.
 fn moves(model: &Model, z: &[f64], direction: &[f64]) -> String {
     let motion = &model.action.motion;
     let mut instant = motion.placed(z);

@@ -153,7 +153,7 @@ fn moving(model: &Model, start: &Start) -> (Vec<Vector>, Vec<Vector>) {
     (instant.w, momenta)
 }
 
-/// What terms read of an interval of given length.
+/// Returns the input of terms on an interval of given length.
 pub(super) fn between<'a>(vectors: [&'a [Vector]; 2], scalars: &'a [f64], h: f64) -> Sample<'a> {
     Sample {
         vectors,
@@ -262,7 +262,7 @@ impl Stages<'_> {
         }
     }
 
-    /// How many points the next guess may be made of.
+    /// Returns the largest number of points from which the next guess may be made.
     fn most_points(&self) -> usize {
         self.points.len().max(3)
     }

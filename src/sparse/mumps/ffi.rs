@@ -49,7 +49,7 @@ const ICNTL: usize = 60;
 const CNTL: usize = 15;
 const INFOG: usize = 80;
 
-/// What an instance is asked to do.
+/// Job of an instance, with its number.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Job {
     Analyse = 1,
