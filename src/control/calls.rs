@@ -1,7 +1,7 @@
-//! What a task calls for: the question that it puts to the model.
+//! Analysis that a task requires of the model.
 //!
 //! A source is at zero voltage where neither the task nor the states at its ends name a voltage other than zero; a body or a block is
-//! stirred where a start, a goal or a limit names it.
+//! initially moving where a start, a goal or a limit names it.
 
 use std::collections::BTreeSet;
 

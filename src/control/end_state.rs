@@ -1,4 +1,4 @@
-//! Where another motion ended, as the start of a new one.
+//! The end of another motion, as the start of a new one.
 
 use crate::control::meshes::other_mesh;
 use crate::dynamics::{Start, StepState};
@@ -15,7 +15,7 @@ const SAME_PLACE: f64 = 1e-9;
 pub struct EndState {
     /// The folder of its result.
     pub source: PathBuf,
-    /// What `z` and `momentum` mean.
+    /// Coordinates to which `z` and `momentum` belong.
     pub coordinates: Coordinates,
     /// Coordinates, multipliers and charts.
     pub z: Vec<f64>,
@@ -29,7 +29,7 @@ pub struct EndState {
     pub voltages: Vec<f64>,
     /// State of the method, from which the same method goes on to the bit; no lists where it is not known.
     pub method: StepState,
-    /// What there is to say of that motion.
+    /// Notes on that motion.
     pub notes: Vec<String>,
 }
 

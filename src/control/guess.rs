@@ -1,4 +1,4 @@
-//! Where the solver starts: interpolated between start and goal, simulated, or an earlier solution.
+//! Initial guess of the solver: interpolated between start and goal, simulated, or an earlier solution.
 
 use crate::control::conditions::BoundaryConditions;
 use crate::control::evened::evened;
@@ -24,16 +24,16 @@ pub struct InitialGuess {
     pub h: f64,
     /// Costates and bound multipliers.
     pub costates: Option<Costates>,
-    /// What became of an earlier solution.
+    /// Changes that an earlier solution needed.
     pub carried: Carried,
 }
 
-/// What an earlier solution had to become to be a guess.
+/// Changes that an earlier solution needed to be a guess.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Carried {
     /// Its duration in ms and that of the guess, where they differ: it is stretched in time.
     pub stretched: Option<[f64; 2]>,
-    /// Whether the guess is the motion under its voltages: it does not tell where the nodes of these meshes are.
+    /// True if the guess is the motion under its voltages: it does not give the places of the nodes of these meshes.
     pub simulated: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Whether the nodes that an earlier motion tells of are those of a model.
+//! Comparison of the meshes of an earlier motion with those of a model.
 
 use crate::math::Vector;
 use crate::model::Model;

@@ -1,4 +1,4 @@
-//! What is kept of a solution: enough to start any later run exactly.
+//! Solution of a task as it is stored: enough to start any later run exactly.
 
 use std::collections::BTreeMap;
 

@@ -47,7 +47,7 @@ impl<P> fmt::Debug for Handle<P> {
     }
 }
 
-/// What carries a point: a body or the ground.
+/// Carrier of a point: a body or the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Carrier(pub(super) Option<usize>);
 

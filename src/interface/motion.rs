@@ -1,4 +1,4 @@
-//! What a motion shows.
+//! Motions: times, positions, poses, voltages and energies.
 
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{EnergyExchange, SourceEnergies};
@@ -15,7 +15,7 @@ pub struct Motion {
     pub(super) system: System,
     pub(super) trajectory: Trajectory,
     pub(super) exchange: EnergyExchange,
-    /// What is to be known of it: steps that do not resolve it, muscles outside the domain of their material.
+    /// Warnings: steps that do not resolve it, muscles outside the domain of their material.
     pub(super) warnings: Vec<String>,
 }
 
@@ -77,7 +77,7 @@ impl Motion {
         sources.find(|one| one.source == muscle.index())
     }
 
-    /// What is to be known of it: steps that do not resolve it, muscles outside the domain of their material.
+    /// Returns the warnings: steps that do not resolve it, muscles outside the domain of their material.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }

@@ -36,7 +36,7 @@ pub(super) fn table(sweep: &Sweep, ends: &[Kept]) -> Vec<Vec<String>> {
     [head].into_iter().chain(rows).collect()
 }
 
-/// What varies at one place.
+/// Entry that varies at one place.
 struct Varied {
     heading: String,
     cells: Vec<String>,

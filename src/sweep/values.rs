@@ -20,7 +20,7 @@ pub(super) enum Values {
 #[derive(Debug)]
 pub(super) struct Range {
     ends: [f64; 2],
-    /// What follows the number, with its space; nothing for plain numbers.
+    /// Text after the number, with its space; nothing for plain numbers.
     unit: Option<String>,
     spacing: SpacingSpec,
     count: Option<usize>,

@@ -1,7 +1,7 @@
-//! Errors of discretisation, estimated from what changes when the grid is refined.
+//! Errors of discretisation, estimated from the changes under refinement of the grid.
 //!
 //! With d the difference between a grid and the one with half its step, errors that fall like hᵖ leave `d/(2ᵖ − 1)` on the
-//! finer grid and `d 2ᵖ/(2ᵖ − 1)` on the coarser one. Three grids show p, which is told as it is. The midpoint rule has order
+//! finer grid and `d 2ᵖ/(2ᵖ − 1)` on the coarser one. Three grids show p, which is reported as it is. The midpoint rule has order
 //! two, so that a p above two is chance: in an estimate a difference counts as no less than a quarter of the one before.
 
 use std::collections::BTreeMap;
@@ -24,7 +24,7 @@ const ORDERS: [f64; 2] = [0.5, 2.0];
 /// Differences below this are rounding.
 const ROUNDING: f64 = 1e-13;
 
-/// What of a run is compared with the same on another grid, and with the motion at half the step.
+/// Values of a run that are compared with those on another grid, and with the motion at half the step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrorSample {
     /// The objective; a simulation has none.
@@ -173,7 +173,7 @@ impl Convergence {
         orders
     }
 
-    /// Whether all measures have two differences of which the second is smaller by at least the least order that estimates believe, or is
+    /// Returns true if all measures have two differences of which the second is smaller by at least the least order that estimates believe, or is
     /// rounding.
     pub fn is_confirmed(&self) -> bool {
         let falls = |list: &Vec<Difference>| match list.as_slice() {

@@ -1,4 +1,4 @@
-//! How far an objective may lie above its least value: the gap that the barrier of the bounds leaves.
+//! Duality gap: a bound of the difference between an objective and its least value, which the barrier of the bounds leaves.
 //!
 //! A solver of interior points ends where the products of multipliers z with the distances d from their bounds are as small as the
 //! tolerance asks for, not zero. Their sum Σ z d is the gap to the dual objective, which bounds what is lost where the problem is convex

@@ -1,4 +1,4 @@
-//! What a run is sure to need of the machine's memory, told before it begins to fill it.
+//! Lower bounds of the memory that a run needs, checked before it begins.
 
 use crate::math::memory::{available, readable};
 use crate::model::system::Fidelity;

@@ -1,4 +1,4 @@
-//! What is being done before there is anything to count, told to whoever listens.
+//! Phases of work before there is anything to count, reported to a listener.
 
 use std::cell::RefCell;
 
@@ -9,7 +9,7 @@ thread_local! {
     static LISTENER: RefCell<Option<Listener>> = const { RefCell::new(None) };
 }
 
-/// From now on `listener` is told what this thread does: building the model, finding the start, ….
+/// Makes this thread report its phases to `listener`: building the model, finding the start, ….
 pub fn listen_to_phases(listener: impl Fn(&'static str) + 'static) {
     LISTENER.replace(Some(Box::new(listener)));
 }

@@ -1,4 +1,4 @@
-//! What is told of the steps of a simulation: whether they resolve its motion, and which would.
+//! Warnings about the steps of a simulation that do not resolve its motion, with steps that would.
 
 use crate::control::problem::Simulation;
 use crate::dynamics::{DiscreteTrajectory, LocalError};

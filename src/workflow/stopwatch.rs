@@ -1,4 +1,4 @@
-//! How long one evaluation of each effect takes.
+//! Times of one evaluation of each effect.
 
 use std::hint::black_box;
 use std::time::Instant;

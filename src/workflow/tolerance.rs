@@ -13,7 +13,7 @@ use crate::workflow::confirmed::EstimatedError;
 use crate::workflow::distance::Distance;
 use crate::workflow::motion::solved;
 
-/// How often a motion is begun again with a tighter tolerance.
+/// Largest number of times that a motion is begun again with a tighter tolerance.
 const AGAIN: usize = 4;
 /// A tolerance is tightened to leave this part of the one that was asked for.
 const LEAVES: f64 = 0.6;
@@ -21,7 +21,7 @@ const LEAVES: f64 = 0.6;
 const MOST: f64 = 0.01;
 const UNCONFIRMED: f64 = 0.1;
 
-/// What a motion by a tolerance is made of.
+/// Parts of a motion by a tolerance.
 pub(crate) struct ByTolerance<'a> {
     pub(crate) model: &'a Model,
     pub(crate) solving: Solving,

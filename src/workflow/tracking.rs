@@ -1,4 +1,4 @@
-//! How closely a motion follows what its objective names: deviations of markers and joints, read off the motion itself.
+//! Tracking errors: deviations of markers and joints from the references of the objective, read off the motion itself.
 
 use serde::Serialize;
 
@@ -24,7 +24,7 @@ pub struct Tracked {
     /// Deviations of a simulation under the same voltages with half the step; absent where there was none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub simulated: Option<TrackingError>,
-    /// What it tracked, one for each direction of a marker.
+    /// Paths that it tracked, one for each direction of a marker.
     #[serde(skip)]
     pub paths: Vec<TrackedPath>,
     /// Deviation at each instant, in mm or rad.
@@ -50,9 +50,9 @@ pub struct TrackedPath {
     pub name: String,
     /// Direction of a marker.
     pub axis: Option<usize>,
-    /// What it is.
+    /// Value.
     pub value: Vec<f64>,
-    /// What it was to be.
+    /// Reference.
     pub reference: Vec<f64>,
     /// Their difference, of angles without full turns.
     pub(crate) difference: Vec<f64>,

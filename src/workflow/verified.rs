@@ -105,7 +105,7 @@ pub fn verified(
     })
 }
 
-/// Whether the verification confirms an error of no more than this part of the path length.
+/// Returns true if the verification confirms an error of no more than this part of the path length.
 fn is_confirmed(optimum: &Optimum, accuracy: f64) -> bool {
     let tested = optimum.resimulation.as_ref();
     tested.is_some_and(|tested| {
@@ -114,7 +114,7 @@ fn is_confirmed(optimum: &Optimum, accuracy: f64) -> bool {
     })
 }
 
-/// How many times the intervals the next grid has.
+/// Returns the factor of the intervals of the next grid.
 fn factor(optimum: &Optimum, accuracy: f64) -> f64 {
     let tested = optimum
         .resimulation
