@@ -1,4 +1,4 @@
-//! What may be typed: commands, options and their meaning.
+//! Arguments of the command line: commands, options and their meaning.
 
 use std::path::PathBuf;
 
@@ -306,7 +306,7 @@ impl Input {
 }
 
 impl Problem {
-    /// Whether the summary is asked for in place of words.
+    /// Returns true if the summary is asked for in place of words.
     pub(crate) const fn json(&self) -> bool {
         self.json
     }

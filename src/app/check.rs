@@ -30,10 +30,10 @@ const INTERVALS: usize = 6;
 /// Entries of the Jacobian that are evaluated for the differences; of larger programs a part of the variables is looked at.
 const WORK: f64 = 2e8;
 
-/// What came of a comparison of derivatives with differences.
+/// Result of a comparison of derivatives with differences.
 #[derive(Clone, Debug, Serialize)]
 pub struct Checked {
-    /// Whether all were compared, and none is wrong.
+    /// True if all were compared, and none is wrong.
     pub agrees: bool,
     /// The same in words.
     pub message: String,
@@ -47,7 +47,7 @@ pub struct Checked {
     pub unchecked: Vec<String>,
     /// Entries that are wrong, the worst first, twenty at most.
     pub wrong: Vec<WrongDerivative>,
-    /// What is told of each.
+    /// Notes on each.
     #[serde(skip)]
     notes: Vec<String>,
 }
@@ -68,7 +68,7 @@ pub struct GreatestErrors {
 pub struct WrongDerivative {
     /// `gradient`, `jacobian` or `hessian`.
     pub matrix: &'static str,
-    /// What the row belongs to.
+    /// Name of the row.
     pub row: String,
     /// The variable of the column.
     pub column: String,
@@ -84,7 +84,7 @@ pub struct WrongDerivative {
 
 /// Compares gradient, Jacobian and Hessian with differences; not solved where an entry is wrong.
 ///
-/// What is not a control problem is made one without a goal, so that every equation of its motion is looked at.
+/// Another task is converted to a control problem without a goal, so that every equation of its motion is checked.
 ///
 /// # Errors
 /// The input is wrong.

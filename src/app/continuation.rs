@@ -96,7 +96,7 @@ pub(super) fn begun(
     Ok(history)
 }
 
-/// Where two problems differ first, in words.
+/// Returns the first difference of two problems, in words.
 fn difference(other: &Value, asked: &Value) -> Option<String> {
     for key in ["scene", "simulate"] {
         if let Some(path) = first(&other[key], &asked[key], key) {

@@ -1,4 +1,4 @@
-//! Digits that tell what is the same.
+//! Content hash.
 
 use std::fmt::{self, Write};
 
@@ -26,7 +26,7 @@ fn hexadecimal(bytes: &[u8]) -> String {
     text
 }
 
-/// What is written is hashed piece by piece.
+/// Writer that hashes its input piece by piece.
 struct Hash(Sha256);
 
 impl Write for Hash {

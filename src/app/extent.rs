@@ -1,4 +1,4 @@
-//! How large a robot is, so that a length in the wrong unit shows.
+//! Size of a robot, so that a length in the wrong unit shows.
 
 use nalgebra::Vector3;
 

@@ -335,7 +335,7 @@ fn held(task: &Simulation, reached: f64) -> Option<&[f64]> {
     }
 }
 
-/// What drives a simulation after the end of the solution whose voltages it takes, where it goes on for longer.
+/// Notes the voltages after the end of the solution from which a simulation takes them, where it goes on for longer.
 fn afterwards(task: &Simulation) -> Option<String> {
     let Voltages::Sampled {
         ends,

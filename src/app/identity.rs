@@ -1,4 +1,4 @@
-//! What tells whether two problems are one, and whether a result is that of a problem.
+//! Identity of a problem, and of the run of a result.
 
 use std::fmt;
 use std::fs;

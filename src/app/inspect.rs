@@ -1,4 +1,4 @@
-//! What a problem consists of, before it is solved.
+//! Inspection of a problem before it is solved: its terms, unknowns, equations and nonzeros.
 
 use std::collections::BTreeMap;
 
@@ -37,7 +37,7 @@ pub fn inspect(request: &CommandInput) -> Result<CommandOutput, CommandError> {
     })
 }
 
-/// What a problem consists of.
+/// Terms and sizes of a problem.
 #[derive(Clone, Debug, Serialize)]
 pub struct Inspected {
     /// Name of the scene.
@@ -52,7 +52,7 @@ pub struct Inspected {
     /// All of it in words.
     #[serde(skip)]
     words: String,
-    /// What is told beside it.
+    /// Notes next to it.
     #[serde(skip)]
     notes: Vec<String>,
 }
@@ -142,7 +142,7 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
     }
 }
 
-/// How the tangent of a step is factorised.
+/// Names the factorisation of the tangent of a step.
 fn factorisation(model: &Model) -> &'static str {
     match model.step_symmetry() {
         Symmetry::Symmetric => {
@@ -176,13 +176,13 @@ fn active(plan: &Plan) -> String {
     table::aligned(&rows)
 }
 
-/// Why they are there.
+/// Lists the reasons for the terms.
 fn reasons(plan: &Plan) -> String {
     let effects = plan.effects.iter();
     listed("called for by", effects.map(|e| (&e.name, &e.why)))
 }
 
-/// What is not there.
+/// Lists the absent terms.
 fn missing(plan: &Plan) -> String {
     let absent = plan.absent.iter();
     listed("not there", absent.map(|a| (&a.name, &a.why)))

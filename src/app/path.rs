@@ -153,7 +153,7 @@ pub(super) fn follow(
 struct Stop<'a> {
     rest: &'a Equilibrium,
     fraction: f64,
-    /// How stability is lost here.
+    /// Instability by which stability is lost here.
     lost: Option<Instability>,
 }
 

@@ -1,4 +1,4 @@
-//! Progress on standard error: what is being done before there is anything to count, the iterations of a solve, the steps of a
+//! Progress on standard error: the phase of work before there is anything to count, the iterations of a solve, the steps of a
 //! simulation.
 
 use std::cell::RefCell;
@@ -10,16 +10,16 @@ use crate::app::ticker::Ticker;
 use crate::ipopt::Iteration;
 use crate::workflow::listen_to_phases;
 
-/// Whether progress is shown.
+/// Display of progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProgressDisplay {
-    /// Where standard error is a terminal.
+    /// If standard error is a terminal.
     OnTerminal,
     /// Never.
     Never,
 }
 
-/// Where a run has come to.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug)]
 pub enum Reached<'a> {
     /// A solve on so many intervals accepted an iterate.

@@ -1,4 +1,4 @@
-//! What a problem file asks for, done.
+//! Runs the task of a problem file: control, simulation or equilibrium.
 
 use std::path::Path;
 use std::time::Instant;

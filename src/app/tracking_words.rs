@@ -1,4 +1,4 @@
-//! How closely a motion follows its path, in words.
+//! Messages about the deviations of a motion from its reference.
 
 use crate::math::significant;
 use crate::workflow::tracking::Tracked;

@@ -1,4 +1,4 @@
-//! What a long run has found so far, kept for the case that it is killed.
+//! Latest iterate of a long run, stored in case it is killed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ const MEETS: f64 = 1e-6;
 #[derive(Debug)]
 pub(super) struct Unfinished {
     path: PathBuf,
-    /// When it may be written next.
+    /// Time from which on it may be written next.
     next: Instant,
     /// Violation of the point in the file.
     violation: f64,

@@ -1,7 +1,7 @@
 //! `continuation.npz`: a simulated motion with all from which another run goes on with it to the bit.
 //!
 //! Times are in ms; coordinates, momenta, voltages and potentials are as the program has them (g, mm, ms, N, V). `state/…` is the state of
-//! the method at the end, `tangent/…` the matrix whose factors are used again, `problem.json` what was asked.
+//! the method at the end, `tangent/…` the matrix whose factors are used again, `problem.json` the problem.
 
 use std::io;
 use std::path::Path;
@@ -28,7 +28,7 @@ pub struct Continuation {
     pub problem: String,
 }
 
-/// Why a file is none.
+/// Reason why a file is no continuation.
 #[derive(Debug, thiserror::Error)]
 pub enum ContinuationError {
     /// It is no file of arrays.

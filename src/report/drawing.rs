@@ -22,7 +22,7 @@ pub(super) fn lumped(system: &System) -> impl Iterator<Item = usize> + '_ {
     muscles.filter_map(|(i, m)| (m.fidelity == Fidelity::Lumped).then_some(i))
 }
 
-/// What is drawn between the walls of the bodies.
+/// Part that is drawn between the walls of the bodies.
 enum Inside<'a> {
     Muscle(usize, Prism),
     Skin(&'a Skin, usize),
@@ -40,7 +40,7 @@ impl Inside<'_> {
     }
 }
 
-/// What is drawn, and how.
+/// Parts that are drawn, and their view and colours.
 pub(super) struct Drawing<'a> {
     pub(super) system: &'a System,
     pub(super) trajectory: &'a Trajectory,

@@ -1,4 +1,4 @@
-//! What a run leaves behind: tables, figures and a page.
+//! Results of a run: tables, figures and a page.
 pub mod atomic;
 pub mod axes;
 pub mod body;

@@ -1,6 +1,6 @@
-//! Which instants of a long motion tables, figures and page show.
+//! Selection of the instants of a long motion that tables, figures and page show.
 //!
-//! Every n-th instant is shown, and where the motion is fast more of them, so that nothing is lost to the eye: what joints and markers do
+//! Every n-th instant is shown, and more of them where the motion is fast: the path of a joint or marker
 //! between two of them differs from the straight line by less than 1/500 of the height of a figure.
 
 use crate::dynamics::DiscreteTrajectory;
@@ -81,7 +81,7 @@ impl Sampled {
         }
     }
 
-    /// What was to be followed at these instants.
+    /// Returns the references at these instants.
     pub fn tracked(&self, full: &[Tracked]) -> Vec<Tracked> {
         let path = |path: &TrackedPath| path.at(&self.instants);
         let tracked = |tracked: &Tracked| Tracked {
@@ -164,7 +164,7 @@ impl<'a> Curve<'a> {
         }
     }
 
-    /// Whether it differs visibly from the straight line between two instants.
+    /// Returns true if it differs visibly from the straight line between two instants.
     fn bends(&self, times: &[f64], from: usize, to: usize) -> bool {
         let Self { values, unseen } = self;
         let slope = (values[to] - values[from]) / (times[to] - times[from]);

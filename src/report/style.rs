@@ -75,7 +75,7 @@ impl Colour {
     }
 }
 
-/// How a line is drawn.
+/// Pattern of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dash {
     /// Without gaps: agonists.

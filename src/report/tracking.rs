@@ -1,4 +1,4 @@
-//! What markers and joints follow, beside what they do.
+//! References of markers and joints next to their motion: table and figure.
 
 use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Series};

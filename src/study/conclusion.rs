@@ -1,4 +1,4 @@
-//! What a study says, in a few sentences made of its own results: costs, observed orders, points without an answer.
+//! Conclusion of a study in a few sentences made of its own results: costs, observed orders, points without an answer.
 
 use crate::control::problem::{Task, Voltages};
 use crate::math::significant;
@@ -63,7 +63,7 @@ fn chosen(judged: &[Judged]) -> Vec<&Judged> {
     }
 }
 
-/// Which method reaches the accuracies in the least time.
+/// Names the method that reaches each accuracy in the least time.
 fn cost(study: &Study, results: &Results<'_>, judged: &Judged) -> Option<String> {
     let unit = judged.measure.unit();
     let mut parts = Vec::new();
@@ -91,7 +91,7 @@ fn cost(study: &Study, results: &Results<'_>, judged: &Judged) -> Option<String>
     ))
 }
 
-/// What one accuracy costs by the cheapest method, and by the next.
+/// Describes the cost of one accuracy by the cheapest method, and by the next.
 fn paid(study: &Study, price: &Price, cheapest: usize, unit: Unit) -> String {
     let error = told(unit, price.error);
     let [_, median, upper] = price.costs[cheapest].unwrap_or([f64::NAN; 3]);
@@ -219,7 +219,7 @@ fn known<'a>(judged: &Judged, points: &'a [Done<'_>], m: usize) -> Vec<(&'a str,
     known.collect()
 }
 
-/// Where errors rise although what is refined is finer.
+/// Describes errors that rise under refinement.
 fn risen(judged: &Judged, known: &[(&str, [f64; 2])]) -> Option<String> {
     let rises = |pair: &&[(&str, [f64; 2])]| pair[1].1[1] > (1.0 + RISE) * pair[0].1[1];
     let risen: Vec<_> = known.windows(2).filter(rises).collect();
@@ -317,7 +317,7 @@ fn halved(study: &Study, results: &Results<'_>) -> Option<String> {
     ))
 }
 
-/// How many points there is something to say of, and the first of them with it.
+/// Returns the number of points with something to report, and the first of them with it.
 fn listed(
     study: &Study,
     results: &Results<'_>,

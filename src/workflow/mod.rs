@@ -2,8 +2,8 @@
 //!
 //! - `integrate`, `optimise`: a simulation, a control problem; `error`: errors of tasks; `phase`: the present phase of work.
 //! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs.
-//! - `resimulate`: verification of an optimum, by the `distance` of motions; `cure`: finer grids where it fails; `gap`: a bound of the objective above the
-//!  least; `holding`, `afterwards`: its end; `final_values`: deviations from final costs.
+//! - `resimulate`: verification of an optimum, by the `distance` of motions; `cure`: finer grids where it fails; `gap`: duality gap of its
+//!  objective; `holding`, `afterwards`: its end; `final_values`: deviations from final costs.
 //! - `recentre`: a motion with other charts.
 //! - `second_start`, `infeasible`, `active`, `violations`: attempts before a problem is called infeasible, and the explanation.
 //! - `effects`, `reasons`, `stopwatch`: terms of a model, their reasons and times; `memory`: a refusal of more than the machine has.

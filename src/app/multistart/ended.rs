@@ -1,4 +1,4 @@
-//! How one start ended, and which of them found one optimum.
+//! End of one start, and comparison of the optima of several.
 
 use super::start::{Start, folder_of};
 use crate::app::batch::{RunEnd, Said};
@@ -18,7 +18,7 @@ pub(super) const SAME_VOLTAGE: f64 = 1e-3;
 /// The word of a start for which there was no time.
 const NOT_STARTED: &str = "not_started";
 
-/// How one start ended.
+/// End of one start.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Ended {
     /// Its number, from 1.
@@ -27,7 +27,7 @@ pub(super) struct Ended {
     pub(super) seed: Option<u64>,
     /// The word of its summary; `not_started`, or `failed` where it left none.
     pub(super) status: String,
-    /// Why it left no summary.
+    /// Reason why it left no summary.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) message: Option<String>,
     pub(super) objective: Option<f64>,
@@ -41,12 +41,12 @@ pub(super) struct Ended {
     pub(super) is_solved: bool,
     #[serde(skip)]
     pub(super) voltages: Vec<f64>,
-    /// What else was said of it.
+    /// Further notes on it.
     #[serde(skip)]
     pub(super) notes: Vec<String>,
 }
 
-/// What is read of the summary of a start.
+/// Entries that are read of the summary of a start.
 #[derive(Deserialize)]
 pub(super) struct Summary {
     pub(super) status: String,
@@ -63,7 +63,7 @@ pub(super) struct Seconds {
     pub(super) total: f64,
 }
 
-/// What is read of the solution of a start.
+/// Entries that are read of the solution of a start.
 #[derive(Deserialize)]
 pub(super) struct SolutionRecord {
     pub(super) voltages: BTreeMap<String, Vec<f64>>,
@@ -140,7 +140,7 @@ impl Ended {
         })
     }
 
-    /// Whether two solutions are one optimum.
+    /// Returns true if two solutions are one optimum.
     fn is_same(&self, other: &Self) -> bool {
         let (Some(a), Some(b)) = (self.objective, other.objective) else {
             return false;

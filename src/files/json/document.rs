@@ -1,4 +1,4 @@
-//! A JSON file as text and as values: reading, overrides, and mistakes with their place in it.
+//! A JSON file as text and as values: reading, overrides, and errors with their place in it.
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -17,7 +17,7 @@ use crate::files::json::wording::wording;
 /// A JSON file.
 #[derive(Debug)]
 pub(crate) struct Document {
-    /// Where it was read.
+    /// Path from which it was read.
     pub(crate) path: PathBuf,
     /// Places set on the command line.
     pub(crate) set: Vec<Set>,

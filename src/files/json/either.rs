@@ -17,10 +17,10 @@ pub(crate) trait ScalarOrObject<'de>: Sized {
     /// Type of the object.
     type Object: Deserialize<'de>;
 
-    /// From the scalar.
+    /// Makes the value from the scalar.
     fn scalar(scalar: Self::Scalar) -> Self;
 
-    /// From the object.
+    /// Makes the value from the object.
     fn object(object: Self::Object) -> Self;
 }
 

@@ -1,4 +1,4 @@
-//! What is wrong with a scene or a problem: the place, what was found, what is expected, and the nearest name.
+//! Error in a scene or a problem: the place, the value found, the value expected, and the nearest name.
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use std::borrow::Cow;
@@ -17,9 +17,9 @@ pub(crate) struct Mistake {
     pub(crate) file: String,
     /// Path of the value in the file, empty for the whole.
     pub(crate) path: String,
-    /// What was found.
+    /// Value that was found.
     pub(crate) found: String,
-    /// What is expected instead.
+    /// Value that is expected instead.
     pub(crate) expected: String,
     /// The nearest name.
     pub(crate) nearest: Option<String>,
@@ -92,12 +92,12 @@ impl SceneError {
         &self.0.path
     }
 
-    /// What was found.
+    /// Returns the value that was found.
     pub fn found(&self) -> &str {
         &self.0.found
     }
 
-    /// What is expected instead.
+    /// Returns the value that is expected instead.
     pub fn expected(&self) -> &str {
         &self.0.expected
     }
@@ -175,7 +175,7 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
-/// Whether a character only shows itself: a control character can command a terminal, and marks of direction can make a line
+/// Returns true if a character only shows itself: a control character can command a terminal, and marks of direction can make a line
 /// read as what it does not say.
 pub(crate) fn is_printable(c: char) -> bool {
     !c.is_control() && !matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

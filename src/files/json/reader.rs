@@ -267,7 +267,7 @@ impl<'a> Deserializer<'a> for Key<'a> {
     }
 }
 
-/// What stands under the word of a variant.
+/// Value under the word of a variant.
 struct Content<'r, 'a>(Option<&'r mut Reader<'a>>);
 
 impl<'a> Content<'_, 'a> {

@@ -1,4 +1,4 @@
-//! Messages of serde in the words of this project: what was found, what is expected, which name is near.
+//! Messages of serde in the words of this project: the value found, the value expected, the nearest name.
 
 use crate::files::json::error::nearest;
 use crate::files::json::not_offered::not_offered;
@@ -8,7 +8,7 @@ pub(crate) struct Wording {
     pub(crate) found: String,
     pub(crate) expected: String,
     pub(crate) nearest: Option<String>,
-    /// Whether the key is wrong, not its value.
+    /// True if the key is wrong, not its value.
     pub(crate) at_key: bool,
 }
 
@@ -74,7 +74,7 @@ fn unknown_key(key: &str, expected: &str) -> Wording {
     }
 }
 
-/// What was found, with what is said of it.
+/// Describes the value found, with the message about it.
 fn found(what: String, said: Option<String>) -> String {
     match said {
         Some(said) => format!("{what}, {said}"),

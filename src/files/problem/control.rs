@@ -1,4 +1,4 @@
-//! From a control problem as written to the task.
+//! Conversion of the control entry of a problem file to its task.
 
 use crate::control::Signal;
 use crate::control::problem::{

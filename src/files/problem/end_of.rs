@@ -17,7 +17,7 @@ use crate::math::{Matrix, Vector};
 use crate::model::Coordinates;
 use crate::model::system::System;
 
-/// What a path should be.
+/// Expected value of a path.
 const FOLDER: &str = "the folder of a simulation or of a solved control problem, which holds a solution.json; a state of rest is \"rest_at_voltages\"";
 /// Who writes what is expected.
 const WRITTEN: &str = "a result that simulate or solve wrote";
@@ -26,7 +26,7 @@ const SOLVED: [&str; 4] = ["solved", "acceptable", "feasible_point", "not_held"]
 /// Status of a simulation that came to its end; others go as far as they go.
 const SIMULATED: &str = "simulated";
 
-/// What is read of a solution.
+/// Entries that are read of a solution.
 #[derive(Deserialize)]
 struct Ended {
     configuration: Configuration,
@@ -64,7 +64,7 @@ struct State {
     meshes_mm: BTreeMap<String, Vec<[f64; 3]>>,
 }
 
-/// What is read of a summary.
+/// Entries that are read of a summary.
 #[derive(Deserialize)]
 struct Summary {
     status: String,

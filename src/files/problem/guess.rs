@@ -1,4 +1,4 @@
-//! From a guess as written to the guess.
+//! Conversion of the guess of a problem file to the guess of a task.
 
 use crate::control::Earlier;
 use crate::control::problem::{BoundaryState, Guess, Voltages};

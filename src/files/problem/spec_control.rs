@@ -41,11 +41,11 @@ pub struct ControlSpec {
     /// Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`.
     #[serde(default)]
     pub free: FreeMap,
-    /// What becomes of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is
+    /// Treatment of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is
     /// `reported` (where not written), or refused where holding it is `required`.
     #[serde(default)]
     pub hold: HoldSpec,
-    /// What is minimised.
+    /// Objective that is minimised.
     pub objective: ObjectiveSpec,
     /// Path limits.
     #[serde(default)]
@@ -53,7 +53,7 @@ pub struct ControlSpec {
     /// Coordinates.
     #[serde(default)]
     pub coordinates: Option<CoordinatesSpec>,
-    /// Where the solver starts; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages, otherwise
+    /// Initial guess of the solver; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages, otherwise
     /// `"interpolate"`.
     #[serde(default)]
     pub guess: Option<GuessSpec>,
@@ -62,7 +62,7 @@ pub struct ControlSpec {
     pub solver: SolverSpec,
 }
 
-/// How many intervals there are.
+/// Number of intervals.
 #[derive(Clone, Copy, Debug, JsonSchema)]
 #[serde(untagged)]
 pub enum IntervalsSpec {
@@ -123,7 +123,7 @@ pub struct FreeDurationSpec {
     pub min: Quantity<Time>,
     /// Upper bound, SI unit s.
     pub max: Quantity<Time>,
-    /// Where the solver starts, SI unit s.
+    /// Duration at which the solver starts, SI unit s.
     pub guess: Quantity<Time>,
 }
 
@@ -146,10 +146,10 @@ pub struct ObjectiveSpec {
     /// Weight per J of the mechanical work of the electrical forces of lumped muscles, of all sources or of named ones.
     #[serde(default)]
     pub mechanical_work: EnergySpec,
-    /// What markers and joints follow in time.
+    /// References of markers and joints in time.
     #[serde(default)]
     pub track: Vec<TrackSpec>,
-    /// Where markers and joints are to end.
+    /// Targets of markers and joints at the end.
     #[serde(default, rename = "final")]
     pub at_the_end: Vec<FinalSpec>,
 }

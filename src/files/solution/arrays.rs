@@ -61,7 +61,7 @@ pub(super) fn taken(file: &mut File, name: &str) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// What tells that there is a file of arrays.
+/// Entry that names the file of arrays, if there is one.
 #[derive(Deserialize)]
 struct WithArrays {
     #[serde(default)]

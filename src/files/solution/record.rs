@@ -1,4 +1,4 @@
-//! What is written in a `solution.json`.
+//! Types of `solution.json`.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ pub(super) const METRE: f64 = 1e3;
 pub(super) struct File {
     #[serde(default)]
     pub(super) scene: String,
-    /// Where all that is an array here stands, of a long motion.
+    /// File that holds the arrays of a long motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) arrays: Option<ArraysOf>,
     #[serde(skip_serializing_if = "Vec::is_empty")]

@@ -29,7 +29,7 @@ impl Kind {
     }
 }
 
-/// What a [`Quantity`] measures.
+/// Quantity that a [`Quantity`] measures.
 pub trait PhysicalQuantity {
     /// Name of the measure in the JSON Schema.
     const NAME: &'static str;
@@ -331,7 +331,7 @@ impl<M: PhysicalQuantity> JsonSchema for Quantity<M> {
     }
 }
 
-/// What has this dimension, in words.
+/// Describes a quantity of this dimension in words.
 fn describe(dimension: Dimension) -> String {
     named_kinds()
         .into_iter()

@@ -1,8 +1,8 @@
-//! A quantity as it is written: a number, or a text of a number with a unit.
+//! A quantity as it is written: a number, or a string of a number with a unit.
 
 use crate::files::units::unit::{Unit, scale};
 
-/// What was written: a number in SI units, or a text with a unit. It takes 16 bytes, and lists of many thousands are read.
+/// Written value: a number in SI units, or a string with a unit. It takes 16 bytes, and lists of many thousands are read.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Written {
     Number(f64),

@@ -1,4 +1,4 @@
-//! What moves on a page: bodies and lumped muscles as solids that are moved, elastic blocks as surfaces whose corners move.
+//! Moving parts of a page: bodies and lumped muscles as solids that are moved, elastic blocks as surfaces whose corners move.
 
 use nalgebra::Vector3;
 use serde_json::{Value, json};

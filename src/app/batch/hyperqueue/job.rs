@@ -1,4 +1,4 @@
-//! What is kept of a job until all its ends are collected: its name, and the folder of each of its tasks.
+//! Record of a job until all its ends are collected: its name, and the folder of each of its tasks.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -100,7 +100,7 @@ impl Job {
         open.iter().filter_map(of).collect()
     }
 
-    /// What the server says of the tasks.
+    /// Returns the tasks as the server reports them.
     pub(super) fn tasks(&self) -> Result<Vec<Task>, CommandError> {
         let mut answer = ask(&["task", "list", &self.id])?;
         let tasks = answer.get_mut(&self.id).map(Value::take);
