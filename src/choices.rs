@@ -35,7 +35,7 @@ pub(crate) const fn run_in(processes: bool) -> RunIn {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum View {
-    /// From before, the right and above.
+    /// View from the front, right and above.
     Oblique,
     /// Along the z axis, y upwards.
     Front,

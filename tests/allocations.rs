@@ -25,11 +25,11 @@ use std::{fs, iter, thread, time};
 /// Counts what the test and the threads that it starts ask for, whatever the harness does in its own thread meanwhile.
 struct Counting;
 
-/// Whether the test has begun, so that threads from now on are its own.
+/// True once the test has begun, so that threads from now on are its own.
 static BEGUN: AtomicBool = AtomicBool::new(false);
 
 thread_local! {
-    /// Whether this thread is one of the test, once it has asked for memory.
+    /// True if this thread is one of the test, once it has asked for memory.
     static IS_OURS: Cell<Option<bool>> = const { Cell::new(None) };
 }
 

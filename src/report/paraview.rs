@@ -1,7 +1,7 @@
 //! Instants of hexahedral meshes for ParaView: `.vtu` files and the `.pvd` file that lists them over time.
 //!
-//! An instant is an XML unstructured grid of VTK with all solids in one piece; numbers stand inline as 64-bit
-//! little-endian numbers in base64, packed block by block by zlib, so that each reads back identical. Units are the caller's; results of a run are in SI.
+//! An instant is an XML unstructured grid of VTK with all solids in one piece; numbers stand inline as 64-bit little-endian
+//! numbers in base64, packed block by block by zlib, so that each reads back identical. Units are the caller's; results of a run are in SI.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

@@ -11,7 +11,7 @@ use crate::report::view::View;
 /// Position of the viewer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Viewpoint {
-    /// Before, to the right and above, so that no axis is hidden.
+    /// In front, to the right and above, so that no axis is hidden.
     #[default]
     Oblique,
     /// On the z axis: x to the right, y upwards.
