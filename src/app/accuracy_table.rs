@@ -1,4 +1,4 @@
-//! Errors of discretisation in words: a line for each grid, and how it ended.
+//! Errors of discretisation in words: a line for each grid, and the outcome.
 
 use crate::workflow::accuracy::{Accuracy, GridLevel};
 use crate::workflow::estimate::greatest;

@@ -114,7 +114,7 @@ impl CommandError {
         }
     }
 
-    /// The lines of the file around the mistake, marked, where there is such a place.
+    /// The lines of the file around the error, marked, where there is such a place.
     pub fn excerpt(&self) -> Option<String> {
         match self {
             Self::Scene(mistake) => mistake.excerpt(),

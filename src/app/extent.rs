@@ -5,9 +5,9 @@ use nalgebra::Vector3;
 use crate::model::System;
 use crate::model::system::Shape;
 
-/// Robots larger than this, in mm, are asked about.
+/// Robots larger than this, in mm, get a question about their unit.
 const HUGE: f64 = 5e3;
-/// Robots smaller than this, in mm, are asked about.
+/// Robots smaller than this, in mm, get a question about their unit.
 const TINY: f64 = 0.1;
 
 /// Lower and upper corner in mm of the box around some places; `(+∞, −∞)` for none.

@@ -14,7 +14,7 @@ use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::paraview::{Field, Series, UnstructuredGrid};
 
-/// Instants that are written at most.
+/// Maximum number of instants written.
 const MOST: usize = 200;
 /// Folder of the instants.
 const FOLDER: &str = "fields";

@@ -283,7 +283,7 @@ pub(super) fn simulation(
     })
 }
 
-/// Adds the motion to the files of a result, and from what it goes on where it does.
+/// Adds the motion to the files of a result, with the state from which it can be resumed.
 fn write_motion(
     files: &mut FileSet,
     (model, history, motion): (&Model, &DiscreteTrajectory, &Trajectory),

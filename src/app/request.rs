@@ -24,7 +24,7 @@ pub struct CommandInput {
     pub max_seconds: Option<f64>,
     /// Iterations that the solver may take, in place of those of the file.
     pub max_iterations: Option<usize>,
-    /// Folder of the result from which the run goes on.
+    /// Folder of the result from which the run is resumed.
     pub from: Option<PathBuf>,
     /// Target of the error of discretisation.
     pub wanted: Option<AccuracyTarget>,

@@ -153,7 +153,7 @@ impl Shown {
         }
     }
 
-    /// Another motion that is drawn beside it.
+    /// Another motion that is drawn next to it.
     pub(super) fn beside(&self, other: Trajectory) -> Trajectory {
         match &self.sampled {
             Some(_) => thinned(&other),

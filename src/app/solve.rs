@@ -53,7 +53,7 @@ use crate::workflow::tracking::followed;
 use crate::workflow::verified::{ACCURACY, verified};
 use crate::workflow::violations::Violation;
 
-/// Length of the motion under constant voltages that is drawn beside the optimal one, in durations.
+/// Length of the motion under constant voltages that is drawn next to the optimal one, in durations.
 const COMPARED: usize = 3;
 /// Statuses of a solve that might have gone on.
 const STOPPED: [&str; 3] = ["interrupted", "time_limit", "iteration_limit"];

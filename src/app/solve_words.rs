@@ -6,7 +6,7 @@ use crate::math::significant;
 use crate::model::Model;
 use crate::workflow::final_values::FinalValue;
 
-/// Final values told at most.
+/// Maximum number of final values listed.
 const TOLD: usize = 6;
 
 /// A further reason why a solve failed, where there is one.

@@ -9,7 +9,7 @@ use crate::report::atomic::WriteError;
 
 /// Shortest and longest time between two writings.
 const PERIOD: [Duration; 2] = [Duration::from_secs(2), Duration::from_secs(30)];
-/// No more than one part in so many of the time goes into writing.
+/// Writing takes at most one part in this number of the time.
 const SHARE: u32 = 20;
 /// A point of no greater violation is as good as one that meets equations and limits.
 const MEETS: f64 = 1e-6;

@@ -25,7 +25,7 @@ impl Simulation {
 }
 
 impl AtRest {
-    /// The question of a state of rest. Its stability is asked for too, that of unloaded parts included: nothing is taken to
+    /// The analysis of a state of rest. Its stability is computed too, that of unloaded parts included: nothing is taken to
     /// be still.
     pub fn question(&self, system: &System) -> Analysis {
         Analysis {

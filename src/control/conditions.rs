@@ -41,7 +41,7 @@ pub struct TerminalState {
 }
 
 impl TerminalState {
-    /// Charts of the equilibrium that it is, behind so many unknowns; none where it is no such equilibrium.
+    /// Charts of the equilibrium, behind this number of unknowns; none where the state is no equilibrium.
     pub fn charts(&self, unknowns: usize) -> &[f64] {
         self.rest.as_ref().map_or(&[], |rest| &rest.z[unknowns..])
     }

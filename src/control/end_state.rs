@@ -27,7 +27,7 @@ pub struct EndState {
     pub meshes: BTreeMap<String, Vec<[f64; 3]>>,
     /// Voltages in V by source to which the muscles are charged.
     pub voltages: Vec<f64>,
-    /// State of the method, from which the same method goes on to the bit; no lists where it is not known.
+    /// State of the method, from which the same method resumes to the bit; no lists where it is not known.
     pub method: StepState,
     /// Notes on that motion.
     pub notes: Vec<String>,

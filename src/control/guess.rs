@@ -158,7 +158,7 @@ fn interpolate(
     }
 }
 
-/// Joint coordinates of a state, where they tell all of it.
+/// Joint coordinates of a state, where they determine all of it.
 fn joints_of(model: &Model, z: &[f64]) -> Option<Vec<f64>> {
     let tells_all = Graph::new(&model.system).has_one_coordinate_a_joint(&model.system);
     tells_all.then_some(())?;
@@ -185,7 +185,7 @@ fn between(from: &[Pose], to: &[Pose], part: f64) -> Vec<Pose> {
 }
 
 /// An earlier solution: as it is on the same grid, carried over from another one, stretched in time where its duration is
-/// not allowed; from other coordinates the joints and what the poses tell beside them. Where it does not tell the places of the nodes, the
+/// not allowed; from other coordinates the joints and further data of the poses. Where it lacks the places of the nodes, the
 /// motion under its voltages.
 fn from_solution(
     model: &Model,

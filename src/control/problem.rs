@@ -345,7 +345,7 @@ impl Default for Solver {
 }
 
 impl Simulation {
-    /// Tolerance of steps of no given length, where none is asked for.
+    /// Default tolerance of steps whose length is not given.
     pub const TOLERANCE: f64 = 1e-3;
     /// The first step that a tolerance controls, as a part of the duration.
     pub const FIRST: f64 = 1e-2;

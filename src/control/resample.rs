@@ -39,7 +39,7 @@ impl Grids {
     }
 
     /// Means over new interval k of what the old intervals have. Within an old one the value runs along the flatter of the lines
-    /// to its neighbours, or is constant beside a peak and at the ends: smooth voltages stay smooth, jumps stay jumps, and
+    /// to its neighbours, or is constant next to a peak and at the ends: smooth voltages stay smooth, jumps stay jumps, and
     /// a jump within a new interval keeps its impulse.
     pub(super) fn mean(self, rows: &[Vec<f64>], k: usize) -> Vec<f64> {
         let place = |k: usize| (k * self.from) as f64 / self.to as f64;

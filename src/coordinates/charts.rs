@@ -30,7 +30,7 @@ impl CoordinateMap {
     }
 
     /// Gives a body on a joint with a chart, with turns of zero, a velocity of its centre and an angular velocity by the rates of this joint,
-    /// and tells the motion of all vectors; `false` where the body is on another joint.
+    /// and updates the motion of all vectors; `false` where the body is on another joint.
     pub fn set_in_motion(
         &self,
         body: usize,

@@ -1,4 +1,4 @@
-//! A functional seen through coordinates.
+//! A functional as a function of coordinates.
 
 use crate::coordinates::configuration::Configuration;
 use crate::coordinates::interval::Interval;

@@ -18,7 +18,7 @@ pub struct DiscreteTrajectory {
     pub scalars: Vec<Vec<f64>>,
     /// Times at which energies and momenta are read.
     pub reading: Reading,
-    /// Work in mJ of forces without a potential in each interval, where instants alone do not tell it.
+    /// Work in mJ of forces without a potential in each interval, where instants alone do not determine it.
     pub works: Vec<f64>,
     /// The method that factorised the tangents of the steps.
     pub solver: String,

@@ -73,7 +73,7 @@ pub trait Equations {
     /// Multipliers at the start of the step, where the method knows them there.
     fn multipliers(&self) -> &[f64];
 
-    /// Work in mJ that forces without a potential did over the last step, where its ends alone do not tell.
+    /// Work in mJ that forces without a potential did over the last step, where its ends alone do not determine it.
     fn work(&self) -> Option<f64> {
         None
     }

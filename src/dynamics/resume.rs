@@ -1,4 +1,4 @@
-//! Between a stepper and the state from which it goes on.
+//! Conversion between a stepper and the state from which it is resumed.
 
 use crate::dynamics::equations::Equations;
 use crate::dynamics::solving::Newton;

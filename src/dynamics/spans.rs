@@ -75,7 +75,7 @@ pub fn reversed_muscle(model: &Model, history: &DiscreteTrajectory) -> Option<(u
 }
 
 /// The greatest voltage in V, where forces without a value are laid to numbers and not to an inverted element: there is none, or the square of
-/// the voltage is no number.
+/// the voltage is not finite.
 pub(super) fn overflow(model: &Model, scalars: &[f64]) -> Option<f64> {
     let voltages = scalars.get(model.variables.inputs()).unwrap_or_default();
     let greatest = voltages.iter().fold(0.0_f64, |most, v| most.max(v.abs()));

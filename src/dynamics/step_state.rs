@@ -40,7 +40,7 @@ pub struct TangentState {
 }
 
 impl StepState {
-    /// Digits that tell the equations of a method for a model from others, most likely.
+    /// Returns the hash of the equations of a method for a model.
     pub fn of(model: &Model, solving: Solving) -> String {
         let mut digits = Digits(0xcbf2_9ce4_8422_2325);
         let (coordinates, system) = (model.coordinates, &model.presolved.system);

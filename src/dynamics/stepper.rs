@@ -92,7 +92,7 @@ impl<E: Equations> Steps<E> {
         self.equations.momentum()
     }
 
-    /// Work in mJ that forces without a potential did over the last step, where its ends alone do not tell.
+    /// Work in mJ that forces without a potential did over the last step, where its ends alone do not determine it.
     pub(super) fn work(&self) -> Option<f64> {
         self.equations.work()
     }

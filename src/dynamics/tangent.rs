@@ -222,7 +222,7 @@ impl Tangent {
         self.solver.factor_again(&self.matrix).is_ok()
     }
 
-    /// Number of negative pivots of the last factorisation, where it tells.
+    /// Number of negative pivots of the last factorisation, where it gives it.
     pub(super) fn negative_pivots(&self) -> Option<usize> {
         self.solver.negative_pivots()
     }

@@ -1,4 +1,4 @@
-//! `continuation.npz`: a simulated motion with all from which another run goes on with it to the bit.
+//! `continuation.npz`: a simulated motion with all data from which another run resumes it to the bit.
 //!
 //! Times are in ms; coordinates, momenta, voltages and potentials are as the program has them (g, mm, ms, N, V). `state/…` is the state of
 //! the method at the end, `tangent/…` the matrix whose factors are used again, `problem.json` the problem.
@@ -14,7 +14,7 @@ use crate::sparse::MethodState;
 const PROBLEM: &str = "problem.json";
 /// The text that names the method of factorisation.
 const METHOD: &str = "tangent/method.txt";
-/// The text that tells what it is a state of.
+/// Name of the text that identifies the equations of a state.
 const OF: &str = "state/of.txt";
 /// Begins the names of lists of the state.
 const STATE: &str = "state/";

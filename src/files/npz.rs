@@ -14,7 +14,7 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 /// First bytes of an array: the name of the format and its version.
 const MAGIC: &[u8] = b"\x93NUMPY\x01\x00";
-/// Numbers begin at a multiple of so many bytes.
+/// Numbers begin at a multiple of this number of bytes.
 const ALIGNED: usize = 64;
 /// Ends the names of arrays.
 const ARRAY: &str = ".npy";

@@ -1,4 +1,4 @@
-//! Places of the second derivatives of one element.
+//! Positions of the second derivatives of one element.
 
 use crate::functional::{Couplings, Kernel};
 

@@ -26,7 +26,7 @@ pub struct SpanMove {
     pub at: f64,
 }
 
-/// One element: a formula, its span, and what it reads beside.
+/// One element: a formula, its span, and the further arguments that it reads.
 #[derive(Clone, Debug)]
 pub struct SoughtElement<E, const N: usize> {
     /// The formula.

@@ -50,7 +50,7 @@ pub struct Control {
 }
 
 impl Control {
-    /// Over a given duration in ms in so many intervals, from rest without voltages to the reference configuration.
+    /// Over a given duration in ms in this number of intervals, from rest without voltages to the reference configuration.
     pub fn over(duration: f64, intervals: usize) -> Self {
         Self {
             duration: Duration::Given(duration),
@@ -168,7 +168,7 @@ impl Control {
         Self { guess, ..self }
     }
 
-    /// Stops the solver after so many seconds.
+    /// Stops the solver after this number of seconds.
     pub fn max_seconds(self, seconds: f64) -> Self {
         let max_seconds = Some(seconds);
         Self {

@@ -1,4 +1,4 @@
-//! Parts of a system are named by handles.
+//! Handles: names of the parts of a system.
 
 use crate::model::system::{Body, number_sources};
 use crate::model::{System, SystemError};

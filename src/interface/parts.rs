@@ -333,7 +333,7 @@ impl Solid {
         }
     }
 
-    /// Nodes of a set of the mesh, such as `z_min`; none where there is no such set, which a check of the system tells.
+    /// Nodes of a set of the mesh, such as `z_min`; none where there is no such set, which a check of the system reports.
     fn nodes(&self, set: &str) -> Vec<usize> {
         self.mesh.sets.get(set).cloned().unwrap_or_default()
     }

@@ -18,9 +18,9 @@ use crate::nlp::{Entries, Nlp};
 /// A quantity that is NaN or ±∞ anywhere is refused, and Ipopt then shortens its step. When it is time to stop every value is
 /// refused, and Ipopt soon gives up; without structures it cannot.
 ///
-/// Before Ipopt tells of an iterate it has asked for the derivatives there, because it needs them to tell the dual
+/// Before Ipopt reports an iterate it has asked for the derivatives there, because it needs them for the dual
 /// infeasibility; at points which it merely tries it asks for f and g alone. So the point at which derivatives were
-/// asked last, seen when an iteration is told, is the iterate (in the restoration phase that one's own). This
+/// asked last, seen when an iteration is reported, is the iterate (in the restoration phase that one's own). This
 /// matters for Ipopt before 3.14, which has no call for it.
 pub(super) struct Evaluator<'a> {
     asked: Asked<'a>,

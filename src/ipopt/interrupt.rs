@@ -49,13 +49,13 @@ pub fn request() -> StopRequest {
     REQUEST.with_borrow(StopRequest::clone)
 }
 
-/// A time that passes by being asked for: so many questions until it is over, and how many there were. A test has such a one in place of
-/// the clock, and so its stops are the same ones every time.
+/// A limit that counts calls: it is over after a number of questions, and counts how many there were. Tests use it in place of
+/// the clock, so that they stop at the same question every time.
 #[derive(Clone, Debug)]
 pub struct Questions(Arc<[AtomicU64; 2]>);
 
 impl Questions {
-    /// Time for so many questions.
+    /// Makes a limit of this number of questions.
     #[must_use]
     pub fn allowed(count: u64) -> Self {
         Self(Arc::new([AtomicU64::new(count), AtomicU64::new(0)]))
@@ -67,7 +67,7 @@ impl Questions {
         self.0[1].load(Ordering::SeqCst)
     }
 
-    /// Lets the time be over after so many more questions.
+    /// Ends the time after this number of further questions.
     pub fn end_after(&self, count: u64) {
         self.0[0].store(self.asked().saturating_add(count), Ordering::SeqCst);
     }
@@ -133,7 +133,7 @@ pub struct Watch {
     before: Option<TimeLimit>,
 }
 
-/// Begins to watch: this thread is to stop at Ctrl-C, after so many seconds, or when a watch around this one says so.
+/// Begins to watch: this thread is to stop at Ctrl-C, after this number of seconds, or when a watch around this one stops it.
 pub fn watch(seconds: Option<f64>) -> Watch {
     watch_until(TimeLimit::after(seconds))
 }

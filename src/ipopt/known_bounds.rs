@@ -16,7 +16,7 @@ pub(super) struct KnownBounds {
 }
 
 impl KnownBounds {
-    /// Takes the bounds of a program, and says whether Ipopt has to be told others than before.
+    /// Takes the bounds of a program, and returns true if Ipopt needs others than before.
     pub(super) fn take(&mut self, variables: &Bounds, constraints: &Bounds) -> bool {
         let Bounds { lower, upper } = constraints;
         let is_equation = |low: f64, high: f64| low == high && low.is_finite();

@@ -43,14 +43,14 @@ pub enum Start {
     /// iterations of a few come from voltages that leave zero, where neither effort nor force has a slope, and go where the squares are the unknowns
     /// ([`Nlp::squares`](crate::nlp::Nlp::squares)): at most 8 in place of 46 where a goal moves by up to 5 %.
     PrimalDual,
-    /// Variables and multipliers where another solve of the same problem was stopped, and its barrier parameter: it goes on.
+    /// Variables and multipliers where another solve of the same problem was stopped, and its barrier parameter: the solve is resumed.
     Resumed {
         /// The barrier parameter.
         mu_init: f64,
     },
     /// Variables and multipliers of a solution on another grid or of another duration: bounded variables and the multipliers of
     /// their bounds are moved to the barrier's path at a parameter from their complementarity, which is then chosen in each
-    /// iteration. `results/gallery/warm_starts.md` tells what that saves.
+    /// iteration. `results/gallery/warm_starts.md` shows the savings.
     Centred,
 }
 
@@ -82,7 +82,7 @@ pub struct Options {
     pub tolerance: f64,
     /// Iterations allowed (`max_iter`).
     pub max_iterations: usize,
-    /// Wall time allowed in seconds, looked at once per iteration.
+    /// Wall time allowed in seconds, checked once per iteration.
     pub max_seconds: Option<f64>,
     /// Quality of the starting point.
     pub start: Start,

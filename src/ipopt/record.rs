@@ -4,7 +4,7 @@ use crate::ipopt::solution::{Evaluations, Iteration, Multipliers, Seconds};
 use crate::ipopt::status::Status;
 use crate::nlp::Bounds;
 
-/// Distance from a relaxed bound that is told from zero, of its magnitude and at least of one.
+/// Distance from a relaxed bound that is distinguished from zero, of its magnitude and at least of one.
 const CLOSEST: f64 = 1e-14;
 /// Records of iterations for which room is made beforehand.
 const RESERVED_ITERATIONS: usize = 4096;
@@ -18,7 +18,7 @@ pub(super) struct Record {
     pub(super) iterations: Vec<Iteration>,
     /// Point at which derivatives were evaluated last.
     pub(super) derivatives_at: Vec<f64>,
-    /// The latest iterate told; before the first one, the starting point.
+    /// The latest iterate reported; before the first one, the starting point.
     pub(super) latest: Vec<f64>,
     /// Room for an iterate and the one before, where they are shown as other points than Ipopt has them.
     pub(super) shown: [Vec<f64>; 2],

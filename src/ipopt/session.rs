@@ -1,4 +1,4 @@
-//! The linear systems of the solves of a program: from the questions of Ipopt to [`kkt`](crate::kkt).
+//! The linear systems of the solves of a program: from the calls of Ipopt to [`kkt`](crate::kkt).
 //!
 //! Ipopt holds no pointer to it. A solve works in one thread and in no other, so that its session stands in a variable of the thread; a
 //! solve within a callback has a session of its own.
@@ -122,7 +122,7 @@ impl Session {
 
     /// Factors a matrix; a tolerance greater than before asks for better factors. What takes long stops when it is time to.
     ///
-    /// Ipopt 3.11 asks again and again for a matrix that is no number and is told to be singular: such a one fails.
+    /// Ipopt 3.11 repeats its request for ever if a matrix with NaN is reported as singular: the factorisation of such a matrix fails.
     pub(super) fn factor(&mut self, entries: &[f64], tolerance: f64) -> Option<Inertia> {
         self.report.stopped = self.report.stopped.or_else(interrupt::stop);
         if self.report.stopped.is_some() || !entries.iter().all(|entry| entry.is_finite()) {

@@ -1,6 +1,6 @@
 //! Signals that ask for a stop: Ctrl-C, the end of a session, the end that a system asks for.
 //!
-//! They are taken note of without a thread, since there may be none; whoever asks [`interrupt`](super::interrupt) hears of them.
+//! They are recorded without a thread, since there may be none; callers of [`interrupt`](super::interrupt) see them.
 
 use std::ffi::c_int;
 use std::fs;
@@ -30,7 +30,7 @@ const ASKING: [c_int; 2] = [SIGINT, SIGTERM];
 
 /// Makes signals end the solves of this process with [`Status::Interrupted`](super::Status::Interrupted): Ctrl-C (SIGINT), SIGTERM and SIGHUP, each of
 /// which ends the process when it comes again, with exit status 128 plus its number, and SIGXCPU, which comes when a limit of computing time
-/// is near. `tell` is given the words for who waits. What the process was started to ignore, as by `nohup`, it ignores.
+/// is near. `tell` writes a message for the user. Signals that the process was started to ignore, as by `nohup`, it ignores.
 ///
 /// Only the first call has an effect.
 pub fn install(tell: fn(&str)) {

@@ -54,7 +54,7 @@ pub struct StartingPoint {
     pub costates: Option<Multipliers>,
 }
 
-/// One line of the iteration log, told after the iterate was accepted.
+/// One line of the iteration log, reported after the iterate was accepted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iteration {
     /// Number of the iteration; the starting point is number zero.
@@ -143,7 +143,7 @@ impl AddAssign for Evaluations {
 /// Result of a solve, whatever its status.
 ///
 /// If the status is not [`is_solved`](Status::is_solved), `x` is the point at which Ipopt gave up or the latest iterate it
-/// had told, whichever violates constraints and bounds less; a point where f or g does not exist counts as worst.
+/// had reported, whichever violates constraints and bounds less; a point where f or g does not exist counts as worst.
 /// The two differ if Ipopt gave up on the way to the next iterate, for instance for want of a derivative there.
 /// `costates` are those of Ipopt, but of a solve that was stopped between two iterates: there they are those of the latest iterate, where
 /// the multipliers of bounds are the barrier parameter over the distance.

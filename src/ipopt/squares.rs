@@ -9,7 +9,7 @@
 //!
 //! the bound is one like any other. The elephant trunk at N = 40 takes 19 iterations in place of 29, a goal that moves by 2 % 3 to 7 in place of 5 to 22.
 //!
-//! Whoever hands over a program or hears of its iterates sees x alone.
+//! Programs and observers of iterates see x alone.
 
 use crate::ipopt::solution::Multipliers;
 use crate::nlp::{Bounds, Entries, Nlp, Stage};

@@ -1,4 +1,4 @@
-//! The graph of a symmetric matrix: which unknowns share an entry.
+//! The graph of a symmetric matrix: the pairs of unknowns that share an entry.
 
 use super::progress::Progress;
 use crate::math::Stopped;

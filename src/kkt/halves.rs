@@ -7,7 +7,7 @@ use crate::math::both;
 /// Multiplications below which a second core is not worth being woken: some milliseconds.
 const MUCH: usize = 1 << 23;
 
-/// Does both halves of so many multiplications.
+/// Does both halves of this number of multiplications.
 pub(super) fn halves<A: Send, B: Send>(
     multiplications: usize,
     a: impl FnOnce() -> A + Send,

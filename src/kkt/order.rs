@@ -96,7 +96,7 @@ fn by_stages(graph: &Graph, unknowns: &[Unknown]) -> Elimination {
     Elimination { order, alone }
 }
 
-/// Place in the order: group, stage, then what stands beside it.
+/// Position in the order: group, stage, then position within it.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     group: u64,

@@ -8,7 +8,7 @@ use pulp::Simd;
 use super::dense::Dense;
 use super::lanes::largest;
 
-/// A single pivot at least this part of the largest entry beside it is taken without looking for a pair.
+/// A single pivot at least this part of the largest other entry of its column is taken without looking for a pair.
 const GOOD: f64 = 0.1;
 /// The same with regard to entries of columns that may be pivots: α = (1 + √17) / 8 of Bunch and Kaufman.
 const BALANCE: f64 = 0.64;
@@ -18,7 +18,7 @@ const CANCELLED: f64 = 1e-13;
 /// Rules by which a pivot is accepted.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rules {
-    /// u: the part of the largest entry beside it that a pivot must reach.
+    /// u: the part of the largest other entry of its column that a pivot must reach.
     pub(super) threshold: f64,
     /// Columns without an entry greater than this count as zero.
     pub(super) zero: f64,

@@ -16,7 +16,7 @@ pub struct Plan {
 
 impl Plan {
     /// A plan for symmetric matrices of `order` unknowns with entries at `rows` and `cols`, in either triangle; entries at
-    /// one place are added. `unknowns` tells what each unknown is; without it the order is one of approximate minimum degree.
+    /// one place are added. `unknowns` gives the kind of each unknown; without it the order is one of approximate minimum degree.
     ///
     /// # Panics
     ///

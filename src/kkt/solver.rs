@@ -2,7 +2,7 @@
 //!
 //! * Cheap systems are factored as they are, with the weakest rule for pivots. If many pivots are delayed, or one seems to be zero,
 //!   the matrix is equilibrated and factored again, and these scales are kept for a while. Expensive ones are equilibrated always.
-//! * After each factorisation a system is solved and its backward error looked at. Where that is great, signs of eigenvalues may be
+//! * After each factorisation a system is solved and its backward error computed. Where that is great, signs of eigenvalues may be
 //!   wrong, and the matrix is factored again under a stricter rule.
 //! * Where equations determine unknowns cheaply the system is condensed; one whose equations depend on each other or have a diagonal that they do
 //!   not bear, or that grows along the horizon, is factored as it is.

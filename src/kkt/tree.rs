@@ -1,4 +1,4 @@
-//! The tree of fronts: which unknowns are eliminated together, and which rows they reach.
+//! The tree of fronts: the unknowns that are eliminated together, and the rows that they reach.
 //!
 //! The elimination tree of Liu (1990) is walked from its leaves. Each column gathers the rows of its children; a child joins the node
 //! of its parent where that stores no further zeros, or few of them (amalgamation of Duff and Reid, 1983).

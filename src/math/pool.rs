@@ -1,4 +1,4 @@
-//! The threads that work for this one, or none where no thread can be had.
+//! Thread pool of this thread, or none where no thread can be had.
 
 use std::error::Error;
 use std::sync::LazyLock;

@@ -19,7 +19,7 @@ pub struct SystemError {
 /// Rounding of moments that satisfy the triangle inequality with equality, and of unit vectors.
 const ROUNDING: f64 = 1e-12;
 
-/// Collects nothing: the first mistake is the answer.
+/// Collects nothing: the first error is returned.
 fn require(
     holds: bool,
     part: &str,

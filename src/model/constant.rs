@@ -109,7 +109,7 @@ impl Constant {
 }
 
 impl Parameter {
-    /// A value that tells how large it is: its guess, or the distance of its bounds where that is zero.
+    /// Typical size of its value: its guess, or the distance of its bounds where that is zero.
     pub fn size(&self) -> f64 {
         let sizes = [self.guess.abs(), self.upper - self.lower];
         let found = sizes.into_iter().find(|s| *s > 0.0 && s.is_finite());

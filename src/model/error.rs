@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// A system does not allow what is asked of it.
+/// A system does not permit the analysis.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ModelError {
     /// Reduced coordinates need a tree.

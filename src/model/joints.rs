@@ -55,7 +55,7 @@ pub enum Screw {
 }
 
 impl JointKind {
-    /// Its screws from the parent outwards, and after how many of them a chart stands, where they tell any rotation.
+    /// Returns its screws from the parent outwards, and the number of screws in front of its chart, where they give any rotation.
     pub fn screws(&self) -> (Vec<Screw>, Option<usize>) {
         let axes = [Vector::x(), Vector::y(), Vector::z()];
         match *self {

@@ -194,7 +194,7 @@ impl Model {
         found.expect("a parameter of the analysis")
     }
 
-    /// Typical sizes of the unknowns of a step: 1 rad, the length of the system; infinite where the model does not tell.
+    /// Typical sizes of the unknowns of a step: 1 rad, the length of the system; infinite where the model does not know them.
     pub fn sizes(&self) -> Vec<f64> {
         let length = self.length();
         let size = |variable: &Variable| match variable.size {

@@ -130,7 +130,7 @@ impl Presolved {
         }
     }
 
-    /// Poses of the condensed bodies from those of the bodies of the scene; `reference` where none tells.
+    /// Poses of the condensed bodies from those of the bodies of the scene; `reference` where none is known.
     pub fn condense(&self, poses: &[Pose], reference: &[Pose]) -> Vec<Pose> {
         let mut condensed = reference.to_vec();
         for (place, pose) in self.bodies.iter().zip(poses) {

@@ -63,7 +63,7 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// None yet, behind so many arguments that are components of vectors.
+    /// Makes an empty list, behind this number of arguments that are components of vectors.
     pub fn new(vectors: usize) -> Self {
         Self {
             vectors,

@@ -79,7 +79,7 @@ pub enum Size {
     One,
     /// The length of the system.
     Length,
-    /// The model does not tell.
+    /// Not known by the model.
     Unknown,
 }
 

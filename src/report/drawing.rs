@@ -223,7 +223,7 @@ impl Drawing<'_> {
     }
 }
 
-/// Colour of a marker among so many.
+/// Colour of a marker among a number of them.
 pub(super) fn marker_colour(marker: usize, count: usize) -> Colour {
     match count {
         1 => style::INK,

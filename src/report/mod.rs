@@ -45,7 +45,7 @@ use crate::report::file_set::FileSet;
 /// Name of the page.
 const PAGE: &str = "report.html";
 
-/// Writes tables, figures and page; a page of an earlier run does not stay beside other results.
+/// Writes tables, figures and page; a page of an earlier run does not stay next to other results.
 ///
 /// A figure of what does not exist (voltages of no muscles, energies that were not observed) is not written.
 ///

@@ -23,7 +23,7 @@ const MARGIN: f64 = 22.0;
 const SIDE: f64 = 112.0;
 /// Height of the colour bar with what is above and below it in pt.
 const BAR: f64 = 154.0;
-/// Markers that are named at most.
+/// Maximum number of markers named.
 const NAMED: usize = 12;
 
 /// Settings and further data of a figure of a motion.

@@ -84,7 +84,7 @@ pub struct Told {
     pub answer: String,
     /// Further notes: reasons, warnings.
     pub notes: Vec<String>,
-    /// Rows of the table beside the motion.
+    /// Rows of the table next to the motion.
     pub rows: Vec<(String, String)>,
     /// Titles and plots of what is no function of time.
     pub plots: Vec<(String, LinePlot)>,

@@ -97,7 +97,7 @@ impl Sampled {
     }
 }
 
-/// Another motion, which is drawn beside one: not more of it than of that.
+/// Another motion, which is drawn next to one: not more of it than of that.
 pub fn thinned(full: &Trajectory) -> Trajectory {
     let last = full.times.len() - 1;
     let mut instants: Vec<usize> = (0..=last).step_by((last / FEWEST).max(1)).collect();
@@ -118,7 +118,7 @@ fn multiples(times: &[f64], every: f64) -> Vec<usize> {
         .collect()
 }
 
-/// Every so many-th instant, and those between that are needed to see the motion.
+/// Returns each n-th instant, and those between that are needed to see the motion.
 fn seen(times: &[f64], observations: &Observations) -> Vec<usize> {
     let last = times.len() - 1;
     let stride = (last / FEWEST).max(1);

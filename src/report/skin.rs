@@ -15,7 +15,7 @@ const FINEST: f64 = 2.0;
 const STEP: f64 = 0.03;
 /// Most patches along a side of a face.
 const PATCHES: usize = 12;
-/// Faces that are cut into patches at most.
+/// Maximum number of faces that are cut into patches.
 const FEW: usize = 1000;
 
 /// Colour of a surface.

@@ -1,4 +1,4 @@
-//! A factorisation made again: the factors have the same bits as before.
+//! State of a method of factorisation, from which factors are made again with the same bits.
 
 use crate::sparse::Singular;
 use crate::sparse::backend::Backend;

@@ -87,7 +87,7 @@ impl Direct {
     }
 
     /// A solver of symmetric matrices for an iteration that corrects what [`solve_roughly`](Self::solve_roughly) loses: the
-    /// factors of large ones are in single precision, where those tell the solution at all.
+    /// factors of large ones are in single precision, where those give the solution at all.
     ///
     /// Entries are those of [`with`](Self::with). Unknowns have places in space, from which the order of elimination follows;
     /// where too many have none, factors are in double precision.
@@ -258,7 +258,7 @@ impl Direct {
         }
     }
 
-    /// The number of negative eigenvalues of the last matrix, which the sparse methods for symmetric matrices tell without
+    /// The number of negative eigenvalues of the last matrix, which the sparse methods for symmetric matrices give without
     /// further work.
     pub fn negative_pivots(&self) -> Option<usize> {
         self.factored

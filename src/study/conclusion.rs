@@ -13,15 +13,15 @@ use crate::study::words::{Grouped, list, name, names, seconds, several};
 
 /// Times that differ by less than this factor do not differ clearly.
 const CLEAR: f64 = 1.2;
-/// Measures that tell most, the first one first; where a study has none of them, the costs of all that fall with refinement
-/// are told, and the orders of the first of these.
+/// Most informative measures, the first one first; where a study has none of them, the costs of all that fall with refinement
+/// are reported, and the orders of the first of these.
 const FIRST: [StudyMeasure; 4] = [
     StudyMeasure::Path,
     StudyMeasure::End,
     StudyMeasure::Place,
     StudyMeasure::Objective,
 ];
-/// An order that is further from the one of the method is told so.
+/// An order that is further from the one of the method is reported as such.
 const FAR: f64 = 0.4;
 /// Errors rise where the next one is larger by this part.
 const RISE: f64 = 1e-3;
@@ -51,7 +51,7 @@ pub fn conclusion(study: &Study, results: &Results<'_>, judged: &[Judged]) -> St
         .to_owned()
 }
 
-/// The measures that are told.
+/// Returns the measures that are reported.
 fn chosen(judged: &[Judged]) -> Vec<&Judged> {
     let of = |measure: StudyMeasure| judged.iter().find(|judged| judged.measure == measure);
     match FIRST.into_iter().find_map(of) {

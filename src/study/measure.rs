@@ -110,7 +110,7 @@ impl StudyMeasure {
         }
     }
 
-    /// In what it is told.
+    /// Unit of its error.
     pub fn unit(self) -> Unit {
         match self {
             Self::End | Self::Path | Self::Place | Self::ResimulatedEnd | Self::ResimulatedPath => {

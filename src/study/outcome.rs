@@ -59,7 +59,7 @@ pub struct Observed {
 /// The status of a run that Ctrl-C ended.
 pub const INTERRUPTED: &str = "interrupted";
 
-/// Runs a point once; what is seen of an answer is looked at where `markers` are named, after the clock has stopped.
+/// Runs a point once; where `markers` are named, its answer is observed after the clock has stopped.
 pub fn run(point: &StudyPoint, markers: Option<&[String]>) -> (RunOutcome, Option<Observed>) {
     let began = Instant::now();
     match &point.loaded.task {

@@ -112,7 +112,7 @@ struct Seconds<'a> {
 /// Machine of the runs.
 #[derive(Debug, Serialize)]
 pub(super) struct Machine {
-    /// Name of the processor, where the system tells it.
+    /// Name of the processor, where the system gives it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) processor: Option<String>,
     pub(super) cores: usize,

@@ -50,7 +50,7 @@ fn extra(study: &Study) -> &[StudyPoint] {
     }
 }
 
-/// Runs every point once and looks at its answer; what Ctrl-C leaves out is told as interrupted.
+/// Runs every point once and observes its answer; points that Ctrl-C leaves out are reported as interrupted.
 pub(super) fn look<'a>(study: &'a Study, bar: &ProgressBar) -> Results<'a> {
     let look = |name: &str, point: &'a StudyPoint| {
         bar.set_message(format!("{name}, {}", point.label));
@@ -117,7 +117,7 @@ impl Done<'_> {
         bar.inc(1);
     }
 
-    /// Steps that had to be halved in the run that was looked at.
+    /// Steps that had to be halved in the run that was observed.
     pub fn halved(&self) -> usize {
         self.seen.as_ref().map_or(0, |seen| seen.halved)
     }

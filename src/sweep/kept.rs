@@ -102,7 +102,7 @@ impl Kept {
         is_unfinished(&self.status)
     }
 
-    /// Writes it into the folder of the variant, with what tells whether the files there are still whole.
+    /// Writes it into the folder of the variant, with the hashes of the files there.
     pub(super) fn write(&mut self, folder: &Path) -> Result<(), CommandError> {
         make_folder(folder)?;
         let path = folder.join(OF_VARIANT);

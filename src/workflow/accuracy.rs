@@ -1,4 +1,4 @@
-//! As fine a grid as an accuracy needs: each from the solution on the one before, until the estimated error is small enough.
+//! Refinement of the grid to an accuracy: each grid starts from the solution on the one before, until the estimated error is small enough.
 
 use std::time::Instant;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::estimate::{Convergence, ErrorSample, Measures, greatest};
 
-/// No grid has more than so many times the intervals of the first.
+/// Largest ratio of the intervals of a grid to those of the first.
 const FINEST: usize = 1 << 10;
 /// The finest grid for an estimate, in times the intervals of the first.
 const ESTIMATED: usize = 8;

@@ -26,7 +26,7 @@ pub struct Active {
 /// A value this near to a bound, relative to the range or the bound, has reached it.
 const NEAR: f64 = 1e-3;
 
-/// The bounds that a point reaches, the most frequent first; that a voltage is not negative is not told.
+/// Active bounds, most frequent first. Zero lower bounds of voltages are not listed.
 pub fn active(
     program: &mut Transcription<'_>,
     x: &[f64],
@@ -138,7 +138,7 @@ fn reached(value: f64, low: f64, high: f64) -> [bool; 2] {
     ]
 }
 
-/// Counts by what is told.
+/// Counts by name.
 #[derive(Debug, Default)]
 struct ActiveLimits(BTreeMap<String, Active>);
 

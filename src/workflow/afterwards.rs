@@ -18,7 +18,7 @@ use crate::workflow::motion::solved_of;
 const DURATIONS: usize = 5;
 /// A drift from the goal, as a part of the path length, from which on it is not held.
 const DRIFTS: f64 = 0.05;
-/// Parts of the goal told at most.
+/// Maximum number of parts of the goal listed.
 const TOLD: usize = 3;
 
 /// The motion after the goal, under the voltages of the last interval.

@@ -16,7 +16,7 @@ pub enum Cause {
         /// Distance of the simulation from the optimum after it.
         distance: Distance,
     },
-    /// A simulation with so many steps for an interval ends early.
+    /// A simulation with this number of steps for an interval ends early.
     Ends {
         /// Steps for an interval.
         steps: usize,

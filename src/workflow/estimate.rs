@@ -84,7 +84,7 @@ impl ErrorSample {
         }
     }
 
-    /// Greatest deviations along the path and at the end from a motion on a grid of so many times the intervals.
+    /// Greatest deviations along the path and at the end from a motion on a grid with this multiple of the intervals.
     fn apart(&self, fine: &Self) -> [f64; 2] {
         let times = (fine.path.len() - 1) / (self.path.len() - 1).max(1);
         let places = |k: usize| {
@@ -143,7 +143,7 @@ pub struct Convergence {
 /// A difference between two grids.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Difference {
-    /// As it is; infinite where there is no number.
+    /// As it is; infinite where it is not finite.
     seen: f64,
     /// No less than a quarter of the one before.
     believed: f64,

@@ -14,9 +14,9 @@ use crate::workflow::iterate::Iterate;
 use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
 use crate::workflow::second_start::is_infeasible;
 
-/// Bounds told at most.
+/// Maximum number of bounds listed.
 const TOLD: usize = 6;
-/// The free duration goes up to so many times the given one.
+/// Largest ratio of the free duration to the given one.
 const LONGEST: f64 = 20.0;
 /// Iterations of the solve with a free duration.
 const ITERATIONS: usize = 200;

@@ -91,7 +91,7 @@ pub struct Optimum {
     pub active: Vec<Active>,
     /// Bound of the objective above its least value, in its unit.
     pub gap: f64,
-    /// That this is much beside the objective, where it is.
+    /// Warning that this is large relative to the objective, where it is.
     pub(crate) wide: Option<String>,
     /// Motion after a goal that no known voltages hold.
     pub afterwards: Option<Afterwards>,

@@ -14,7 +14,7 @@ use crate::workflow::motion::solved;
 /// A distance that grows by this factor within one step is no growth of rounding.
 const JUMP: f64 = 1e3;
 
-/// A simulation under optimal voltages, with so many steps for an interval.
+/// A simulation under optimal voltages, with this number of steps for an interval.
 pub(crate) struct Repeat {
     pub(crate) history: DiscreteTrajectory,
     motion: Solution,

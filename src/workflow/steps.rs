@@ -41,7 +41,7 @@ pub fn divided(task: &Simulation) -> Option<String> {
     })
 }
 
-/// A warning where the steps do not resolve the motion well, or are too few to tell.
+/// A warning where the steps do not resolve the motion well, or are too few for an estimate.
 pub(crate) fn told(
     error: Option<LocalError>,
     history: &DiscreteTrajectory,

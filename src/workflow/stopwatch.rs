@@ -9,7 +9,7 @@ use crate::model::Model;
 
 /// Most evaluations of one effect.
 const MOST: u32 = 10_000;
-/// The least of so many means is told.
+/// Number of means, of which the least is reported.
 const ROUNDS: u32 = 3;
 
 /// Time in µs of one evaluation with second derivatives of each effect at the reference configuration, those of the intervals

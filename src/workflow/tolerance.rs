@@ -17,7 +17,7 @@ use crate::workflow::motion::solved;
 const AGAIN: usize = 4;
 /// A tolerance is tightened to leave this part of the one that was asked for.
 const LEAVES: f64 = 0.6;
-/// Factors by which it is tightened at most, and where nothing is confirmed.
+/// Largest factors by which it is tightened, and where nothing is confirmed.
 const MOST: f64 = 0.01;
 const UNCONFIRMED: f64 = 0.1;
 
@@ -37,7 +37,7 @@ pub(crate) type Found = (
 );
 
 impl ByTolerance<'_> {
-    /// The motion that goes on from where it has `begun`, or one in shorter steps whose error is confirmed to be below the tolerance.
+    /// The motion resumed from where it has `begun`, or one in shorter steps whose error is confirmed to be below the tolerance.
     pub(crate) fn run(
         &self,
         begun: DiscreteTrajectory,

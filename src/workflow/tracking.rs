@@ -145,7 +145,7 @@ fn of_marker(cost: &QuantityCost) -> Option<usize> {
     }
 }
 
-/// A coordinate of a motion beside what it was to be.
+/// A coordinate of a motion and its reference.
 pub(crate) fn path(
     system: &System,
     cost: &QuantityCost,

@@ -1,4 +1,4 @@
-//! A control problem on as many intervals as the verification of its optimum needs to confirm an accuracy.
+//! Refinement of a control problem until the verification of its optimum confirms an accuracy.
 //!
 //! The error of a grid falls with the square of its step: from the error e that a verification confirms on N intervals the next grid has
 //! about N √(e/ε), and begins at the optimum before.
@@ -14,7 +14,7 @@ use crate::workflow::error::WorkflowError;
 use crate::workflow::iterate::Iterate;
 use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
 
-/// Deviation of the motion under the optimal voltages that is confirmed where no accuracy is asked for, as a part of the path length.
+/// Deviation of the motion under the optimal voltages that is confirmed where no accuracy is set, as a part of the path length.
 pub const ACCURACY: f64 = 0.01;
 /// The part of the accuracy that the next grid is made for.
 const AIMED: f64 = 0.7;

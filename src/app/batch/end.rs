@@ -54,7 +54,7 @@ pub(crate) enum Said {
     NotStarted,
     /// The question has an answer.
     Solved,
-    /// Its files tell why not; where it left none, these words do.
+    /// Its files give the reason; where it left none, these words do.
     Unsolved(String),
     /// It broke off.
     Failed(String),

@@ -20,7 +20,7 @@ pub(crate) use end::{RunEnd, Said, task_runs_at_once};
 pub use parent::end_with_parent;
 pub(crate) use plan::Batch;
 
-/// Runs all of a batch; `told` hears how each ended, in the thread that calls, and may let no other one begin.
+/// Runs all of a batch; `told` is called at each end, in the thread that calls, and may let no other one begin.
 ///
 /// # Errors
 /// A process cannot be had.

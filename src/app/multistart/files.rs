@@ -31,7 +31,7 @@ pub(super) struct Section<'a> {
     pub(super) each: &'a [Ended],
 }
 
-/// Writes the files of the best start and the table of all, and tells of them.
+/// Writes the files of the best start and the table of all, and returns a message.
 pub(super) fn write(
     request: &CommandInput,
     batch: &Batch<'_>,

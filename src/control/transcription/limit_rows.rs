@@ -36,7 +36,7 @@ pub(super) struct LimitRow {
 }
 
 /// Rows of the bounded quantities over a horizon, with the entries their gradients have. A path limit has no row where start
-/// or goal give all that it reads: there it is looked at before.
+/// or goal give all that it reads: there it is checked before.
 pub(super) fn limit_rows(
     model: &Model,
     list: &[BoundedQuantity],

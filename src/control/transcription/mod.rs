@@ -47,7 +47,7 @@ use placed::Placed;
 use segment::Workspace;
 use units::{KILOVOLT, MILLISECOND};
 
-/// A horizon of at least so many intervals is evaluated in two stretches.
+/// Number of intervals from which on a horizon is evaluated in two stretches.
 const TWO_STRETCHES: usize = 16;
 
 /// An entry of a matrix of the program: where its value is found, and its scale.

@@ -12,7 +12,7 @@
 //!
 //! and R·P″_l is its derivative along l, in which axes and points move with the twists of their parents.
 //!
-//! Three turns about perpendicular axes tell any rotation, but none of them moves a body alone once the second one is a right
+//! Three turns about perpendicular axes give any rotation, but none of them moves a body alone once the second one is a right
 //! angle. Before such turns stands a chart: a rotation that belongs to the configuration as data, a unit quaternion, so that
 //! the turns stay small. [`Tree::recentre`] puts the turns into the chart; nothing moves.
 

@@ -14,7 +14,7 @@ pub struct Equilibrium {
     /// and for elastic blocks.
     pub stiffness: Vec<f64>,
     /// Number of directions in which the potential energy falls, by the inertia of the tangent; `None` where the
-    /// factorisation does not tell.
+    /// factorisation does not give it.
     pub unstable: Option<usize>,
     /// The softest mode; `None` at the points of a path, and where nothing moves.
     pub softest: Option<Mode>,

@@ -8,13 +8,13 @@ use crate::model::system::Fidelity;
 use crate::model::{Coordinates, Freedom, Model, Screw};
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// Up to so many coordinates the stiffness is looked at eigenvalue by eigenvalue.
+/// Number of coordinates up to which the eigenvalues of the stiffness are computed.
 const EIGENVALUES: usize = 100;
 /// Steps of the inverse iteration for larger systems.
 const STEPS: usize = 30;
 /// Parts of the largest motion below this are not named.
 const NAMED: f64 = 0.5;
-/// So many parts are named at most.
+/// Maximum number of parts named.
 const LISTED: usize = 3;
 /// Parts of the stiffness below this of the elastic one are rounding.
 const ROUNDING: f64 = 1e-9;

@@ -336,7 +336,7 @@ impl<'m> Statics<'m> {
     }
 
     /// Number of directions in which the potential energy of the state evaluated and factorised last falls, potentials
-    /// following; `None` where the factorisation does not tell.
+    /// following; `None` where the factorisation does not give them.
     ///
     /// The tangent is −h S with S the saddle of coordinates, multipliers and potentials: each multiplier has one negative
     /// eigenvalue of S, potentials have those of their own block, what remains belongs to the coordinates.

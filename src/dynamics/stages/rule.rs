@@ -44,7 +44,7 @@ pub(super) struct Weights {
 }
 
 impl Rule {
-    /// Points besides the start.
+    /// Number of points in addition to the start.
     pub(super) fn degree(&self) -> usize {
         match self {
             Self::Galerkin(lobatto) => lobatto.points.len() - 1,
@@ -104,7 +104,7 @@ impl Rule {
     }
 }
 
-/// A sample at the end of the step, with the rate `rate` (x¹ − x⁰)/h besides what is carried.
+/// A sample at the end of the step, with the rate `rate` (x¹ − x⁰)/h in addition to what is carried.
 fn at_end(rate: f64, give: [f64; 2]) -> Weights {
     Weights {
         part: 1.0,

@@ -267,7 +267,7 @@ impl Stages<'_> {
         self.points.len().max(3)
     }
 
-    /// Makes room for so many points of the next guess, one or more.
+    /// Makes room for this number of points of the next guess, one or more.
     pub(super) fn resize_trail(&mut self, count: f64) {
         let last = self.trail[self.trail.len() - 1].clone();
         self.trail

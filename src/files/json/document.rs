@@ -118,7 +118,7 @@ impl Document {
         }
     }
 
-    /// The values as a type, or the first mistake.
+    /// The values as a type, or the first error.
     pub(crate) fn parse<T: DeserializeOwned>(&self) -> Result<T, SceneError> {
         self.refuse_unprintable()?;
         let parsed = match &self.completed {
@@ -281,7 +281,7 @@ impl Document {
         ))
     }
 
-    /// JSON readers keep the last of two equal keys without a word; here that is a mistake.
+    /// JSON readers keep the last of two equal keys without a word; here that is an error.
     fn refuse_repeated_keys(&self) -> Result<(), SceneError> {
         let Some((place, key)) = repeated(&self.text) else {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Values that are written as a scalar or as an object, read without losing the place of a mistake.
+//! Values that are written as a scalar or as an object, read without losing the place of an error.
 
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;

@@ -1,6 +1,6 @@
 //! Values of serde from the text of a JSON file, as serde_json reads them from its values, without values in between.
 //!
-//! The text is JSON. Messages are those of [`serde_json::Value`] as a deserializer: they have no line, since a place is told by its path.
+//! The text is JSON. Messages are those of [`serde_json::Value`] as a deserializer: they have no line, since a path identifies the place.
 
 use serde::Deserialize;
 use serde::de::{

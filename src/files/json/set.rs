@@ -187,7 +187,7 @@ fn index_of(text: &str, list: Scanner<'_>, name: &str) -> Option<usize> {
     list.entries().position(|entry| named(entry.value))
 }
 
-/// Most names of a list that are told.
+/// Maximum number of names of a list that are shown.
 const NAMES: usize = 20;
 
 /// Returns the value that was found in place of one that goes on as a step does, and the value expected.

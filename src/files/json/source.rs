@@ -51,7 +51,7 @@ pub(crate) fn of_standard_input() -> Result<Vec<u8>, NoBytes> {
     Ok(read.insert(bytes).clone())
 }
 
-/// Reads all, if that is no more than there is room for; a `size` that is known is looked at first.
+/// Reads all, if there is room for it; a `size` that is known is checked first.
 fn limited(from: impl Read, size: u64) -> Result<Vec<u8>, NoBytes> {
     let free = available();
     let most = free.map_or(LARGEST, |free| (free / OF_BYTE) as u64);
@@ -78,7 +78,7 @@ fn limited(from: impl Read, size: u64) -> Result<Vec<u8>, NoBytes> {
 /// Checks that a text is JSON.
 ///
 /// # Errors
-/// The first mistake in it.
+/// The first error in it.
 pub(crate) fn check_json(text: &str) -> Result<(), serde_json::Error> {
     serde_json::from_str::<Anything>(text).map(|_| ())
 }

@@ -47,8 +47,8 @@ pub(crate) fn wording(key: Option<&str>, message: &str) -> Wording {
     plain(format!("{count}{}", json_word(found)), json_word(expected))
 }
 
-/// A word that is none of those `expected`, which are in backticks, or stand there beside other kinds of value: then the words are told with the
-/// one that is wrong.
+/// Error of a word that is none of those `expected`, which are in backticks, or next to other kinds of value: then the words are shown with the
+/// wrong one.
 fn unknown_word(variant: &str, expected: &str) -> Wording {
     let (variant, words) = variant.split_once(AMONG).unwrap_or((variant, expected));
     let variant = variant.trim_matches('`');

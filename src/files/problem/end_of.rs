@@ -131,7 +131,7 @@ pub(crate) fn end_of(
     })
 }
 
-/// Refuses a result that is no motion, and notes what there is to say of one that is.
+/// Refuses a result that is no motion, and returns notes on one that is.
 fn status(file: &Path, scope: &Scope<'_>) -> Result<Vec<String>, SceneError> {
     let beside = file.with_file_name("summary.json");
     let shown = file.display();

@@ -46,7 +46,7 @@ pub struct EquilibriumSpec {
     /// Coordinates.
     #[serde(default)]
     pub coordinates: Option<CoordinatesSpec>,
-    /// Follow the path of equilibria from zero voltage by arc length for so many points, past limit points such as pull-in.
+    /// Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as pull-in.
     #[serde(default)]
     pub path: Option<usize>,
 }

@@ -166,7 +166,7 @@ pub struct JointSpec {
     /// Rotation about a point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spherical: Option<Nothing>,
-    /// Any motion: the child is as free as without the joint, and its orientation in the first body is told.
+    /// Any motion: the child is as free as without the joint, and its orientation in the first body is written to results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub floating: Option<Nothing>,
     /// No motion.

@@ -47,7 +47,7 @@ pub(super) struct File {
     pub(super) barrier: Option<f64>,
 }
 
-/// A file of arrays beside a solution.
+/// A file of arrays next to a solution.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ArraysOf {
     /// Its name.

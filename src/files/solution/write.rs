@@ -18,7 +18,7 @@ const MOST: usize = 200_000;
 pub struct Written {
     /// Of `solution.json`.
     pub json: String,
-    /// Of the file of arrays beside it, where it has one.
+    /// Bytes of the file of arrays next to it, where it has one.
     pub arrays: Option<Vec<u8>>,
 }
 

@@ -66,7 +66,7 @@ impl fmt::Display for Dimension {
 /// A unit as a multiple of the coherent SI unit: factor × 10^exponent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unit {
-    /// Factor beside the power of ten, 1 for decimal units.
+    /// Factor in addition to the power of ten, 1 for decimal units.
     pub(crate) factor: f64,
     /// Power of ten.
     pub(crate) exponent: i32,

@@ -1,4 +1,4 @@
-//! The tree of fronts: which rows each one eliminates, which later rows it updates, and where its numbers stand.
+//! The tree of fronts: the rows that each one eliminates, the later rows that it updates, and the positions of its numbers.
 
 use std::ops::Range;
 

@@ -124,7 +124,7 @@ impl Job {
     }
 }
 
-/// The folder of the results of a solve, from wherever it is looked at.
+/// The absolute folder of the results of a solve.
 fn whole(command: &CommandInput) -> Result<PathBuf, CommandError> {
     let folder = command.folder();
     path::absolute(&folder).map_err(|cause| {
