@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 
 use sha2::{Digest, Sha256};
 
-/// Hexadecimal digits of a hash of what is written.
+/// Hexadecimal digits of the hash of a formatted text.
 pub(crate) fn digest(written: fmt::Arguments<'_>, digits: usize) -> String {
     let mut hash = Hash(Sha256::new());
     write!(hash, "{written}").expect("a hash takes everything");

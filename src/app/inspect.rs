@@ -24,7 +24,7 @@ use crate::workflow::effects::Plan;
 use crate::workflow::optimise::{Counted, Prepared, prepare};
 use crate::workflow::resolve::resolve;
 
-/// The plan: effects in numbers, what calls for them, and what is not there; with sizes; with a folder also pictures of Jacobian and Hessian.
+/// The plan: model terms in numbers, their reasons, and absent terms; with sizes; with a folder also pictures of Jacobian and Hessian.
 ///
 /// # Errors
 /// The input is wrong, or a picture cannot be written.
@@ -44,7 +44,7 @@ pub struct Inspected {
     pub system: String,
     /// `reduced` or `redundant`.
     pub coordinates: &'static str,
-    /// Effects in numbers, and what is not there.
+    /// Model terms in numbers, and absent terms.
     #[serde(flatten)]
     pub plan: Plan,
     /// Numbers of parts, of unknowns, and of entries of the program of a control problem, by what they count.
@@ -188,7 +188,7 @@ fn missing(plan: &Plan) -> String {
     listed("not there", absent.map(|a| (&a.name, &a.why)))
 }
 
-/// Names under a heading with what is said of them, in two columns.
+/// Lists names under a heading with their texts, in two columns.
 fn listed<'a>(heading: &str, lines: impl Iterator<Item = (&'a String, &'a String)>) -> String {
     let lines: Vec<_> = lines.collect();
     let widths = lines.iter().map(|(name, _)| name.chars().count());

@@ -55,7 +55,7 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// A run of which nothing is known yet but what it does.
+    /// A run of which only the phase is known yet.
     pub(super) fn of_phases(shown: ProgressDisplay) -> Self {
         Self::of_solve(shown)
     }

@@ -52,7 +52,7 @@ pub(crate) enum Found<T> {
 }
 
 impl FileRecords {
-    /// The files that a folder has now, without records; what is still being written is left out.
+    /// The files that a folder has now, without records and unfinished files.
     ///
     /// # Errors
     /// A file cannot be read.

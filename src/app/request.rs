@@ -91,7 +91,7 @@ impl CommandInput {
     }
 }
 
-/// Names of files that say nothing of what is in them.
+/// File names that do not identify a problem.
 const GENERIC: [&str; 2] = ["problem", "scene"];
 
 /// The name of a problem: that of its file, or of its folder.

@@ -233,7 +233,7 @@ impl Rest {
     }
 }
 
-/// One line: what is lost, at which loads, what gives way, and where the last state is.
+/// One line: the kind of loss, its loads, the parts that give way, and the last state.
 pub(super) fn lost(rest: &Rest, loss: StabilityLoss, folder: &Path) -> String {
     let mut text = format!(
         "no equilibrium was found, neither on the path of growing loads nor by descent of the potential energy from it: {} at {:.6} % of the {}",

@@ -98,7 +98,7 @@ pub(super) struct Program {
     pub(super) constraints: usize,
     pub(super) jacobian_nonzeros: usize,
     pub(super) hessian_nonzeros: usize,
-    /// Who solved the linear systems, and what that took.
+    /// Solver of the linear systems, with its counts and times.
     pub(super) linear_solver: LinearSystems,
     /// Number of evaluations of each quantity by the solver.
     pub(super) evaluations: Evaluations,
@@ -114,7 +114,7 @@ pub(super) struct Program {
     /// Parameters that were sought.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) parameters: Vec<SoughtValue>,
-    /// Bound of the objective above its least value; absent of what is no solution.
+    /// Bound of the objective above its least value; absent without a solution.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) gap: Option<f64>,
     /// Motion after a goal that no known voltages hold.
@@ -193,7 +193,7 @@ pub(super) struct Simulation {
     pub(super) steps: usize,
     /// Length of the motion in s.
     pub(super) duration: f64,
-    /// Estimate of what the steps neglect; absent where they are too few.
+    /// Estimate of the local errors of the steps; absent where they are too few.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) local_error: Option<Neglected>,
     /// The method.
@@ -211,7 +211,7 @@ pub(super) struct Simulation {
     pub(super) newton_iterations: usize,
     /// Steps that had to be halved.
     pub(super) halved_steps: usize,
-    /// Who factorised the tangents.
+    /// Method that factorised the tangents.
     pub(super) linear_solver: String,
     /// Factorisations of the tangent.
     pub(super) factorisations: usize,
@@ -282,7 +282,7 @@ impl Simulation {
 pub(super) struct Seconds {
     /// Seconds from reading to the last file but the summary.
     pub(super) total: f64,
-    /// Of these in what is made for people and written: tables, figures, page.
+    /// Seconds of these for output: tables, figures, page.
     pub(super) writing: f64,
     /// Before the solver or the first step.
     pub(super) setup: f64,

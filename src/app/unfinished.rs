@@ -34,7 +34,7 @@ impl Unfinished {
         }
     }
 
-    /// Writes what there is, when it is time and it is as good as what was written: `violation` is that of its equations and
+    /// Writes the iterate, when it is time and it is as good as the one written before: `violation` is that of its equations and
     /// limits.
     pub(super) fn consider(
         &mut self,

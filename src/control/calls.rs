@@ -37,7 +37,7 @@ impl AtRest {
 }
 
 impl Control {
-    /// The question of a horizon of intervals of about `interval` ms, without the quantities that are measured.
+    /// The analysis of a horizon of intervals of about `interval` ms, without the quantities that are measured.
     pub fn question(&self, system: &System, interval: f64) -> Analysis {
         let is_driven = |s: usize| match &self.course {
             Some(course) => course.drive(s),

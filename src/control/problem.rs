@@ -326,7 +326,7 @@ pub struct Solver {
     pub tolerance: f64,
     /// Limit of iterations.
     pub max_iterations: usize,
-    /// Who solves the linear systems, unless the options name another one.
+    /// Solver of the linear systems, unless the options name another one.
     pub linear_solver: LinearSolver,
     /// Options passed to Ipopt by name.
     pub ipopt: BTreeMap<String, OptionValue>,

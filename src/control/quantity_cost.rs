@@ -75,7 +75,7 @@ impl Objective {
 }
 
 impl QuantityCost {
-    /// Unit of what is paid, without the weight.
+    /// Unit of the cost, without the weight.
     fn unit(&self, system: &System) -> String {
         let squared = match self.function {
             CostFunction::Square { .. } => match self.quantity.unit(system) {

@@ -13,7 +13,7 @@ impl CoordinateMap {
     }
 
     /// Moves the charts of a placed instant to where its bodies are: nothing moves, and the coordinates that turn behind a
-    /// chart become zero. Returns whether there are charts.
+    /// chart become zero. Returns true if there are charts.
     pub fn recentre(&self, instant: &mut Configuration) -> bool {
         let Some(tree) = self.tree.as_ref().filter(|tree| tree.charts() > 0) else {
             return false;

@@ -38,7 +38,7 @@ impl Contraction {
         Self { newton, last: None }
     }
 
-    /// Judges an update by its relative size, whether its tangent is of an earlier point, and whether factors are approximate.
+    /// Judges an update by its relative size, the age of its tangent, and the accuracy of the factors.
     pub(super) fn judge(&mut self, size: f64, is_reused: bool, is_approximate: bool) -> Verdict {
         // Newton's updates shrink quadratically, those of a reused tangent by a factor.
         // What a tangent of an earlier step does is not known before its second update.

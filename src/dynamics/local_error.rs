@@ -16,7 +16,7 @@ use crate::model::Model;
 /// The estimate for a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalError {
-    /// Sum of what the steps neglect, of the point where it is greatest, in mm.
+    /// Sum of the local errors, of the point where it is greatest, in mm.
     pub error: f64,
     /// Way of the point that goes farthest, in mm.
     pub path: f64,

@@ -161,7 +161,7 @@ pub fn simulate_within(
     go_on(solving, model, begun, lengths, drive, observer)
 }
 
-/// Goes on with a motion that has begun, up to the number of steps or the duration of the whole: it becomes what it would have become without
+/// Resumes a motion that has begun, up to the number of steps or the duration of the whole: it becomes what it would have become without
 /// a stop, to the bit.
 ///
 /// `drive` and `observer` are as in [`simulate`]. Where the motion is not one of this model by this method it stays as it is, and the error

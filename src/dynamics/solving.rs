@@ -16,7 +16,7 @@ pub enum Integrator {
     },
     /// Implicit Euler, order 1; damps.
     ImplicitEuler,
-    /// The generalised-α method for constrained systems, order 2; damps what is fast.
+    /// The generalised-α method for constrained systems, order 2; damps fast oscillations.
     GeneralisedAlpha {
         /// Factor by which the fastest oscillations shrink in a step, from 0 to 1.
         spectral_radius: f64,
@@ -63,7 +63,7 @@ pub struct Solving {
     pub integrator: Integrator,
     /// Occasions at which the tangent is factorised.
     pub newton: Newton,
-    /// Who factorises it; `None`: whoever is fastest as a rule.
+    /// Method of its factorisation; `None`: the one that is fastest as a rule.
     pub backend: Option<Backend>,
 }
 

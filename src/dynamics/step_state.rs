@@ -64,7 +64,7 @@ impl StepState {
     }
 }
 
-/// The hash FNV-1a of what is written.
+/// The hash FNV-1a of a formatted text.
 struct Digits(u64);
 
 impl Write for Digits {

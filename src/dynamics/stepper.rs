@@ -34,7 +34,7 @@ pub struct Steps<E> {
     residual: Vec<f64>,
     /// Local error that is allowed per ms; none of steps of given length.
     pub(super) allowed: Option<f64>,
-    /// Local error of the last attempt as a part of what is allowed.
+    /// Local error of the last attempt as a part of the allowed one.
     pub(super) used: f64,
     /// Energy balance of the last attempt, where the method has one.
     balance: Option<Balance>,
@@ -157,7 +157,7 @@ impl<E: Equations> Steps<E> {
         Ok(multipliers.unwrap_or_default())
     }
 
-    /// Lets the whole tangent be factorised where an iteration failed; whether it was not before.
+    /// Factorises the whole tangent from now on, where an iteration failed; returns true if it did not before.
     pub(super) fn make_exact_after(&mut self, error: &StepError) -> bool {
         matches!(error, StepError::NoConvergence { .. }) && self.updates.make_exact()
     }

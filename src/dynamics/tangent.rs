@@ -88,7 +88,7 @@ impl EntryList {
         self.tangent_by(solver, false)
     }
 
-    /// Prepares a factorisation for an iteration that corrects what it leaves out: of the symmetric part where the matrix has
+    /// Prepares a factorisation for an iteration that corrects its approximation: of the symmetric part where the matrix has
     /// no symmetry, and in single precision where it is large.
     pub(super) fn corrected_tangent(self, model: &Model, symmetry: Symmetry) -> Tangent {
         let is_approximate = symmetry == Symmetry::Unsymmetric;
@@ -204,7 +204,7 @@ impl Tangent {
         }
     }
 
-    /// Factorises as it was done before; whether that is possible.
+    /// Factorises as it was done before; returns true if that is possible.
     pub(super) fn take(&mut self, from: &TangentState) -> bool {
         if self.is_approximate && !from.is_approximate {
             self.make_exact();

@@ -49,7 +49,7 @@ impl Updates {
         self.tangent.keep(to.step.is_some(), to);
     }
 
-    /// Takes a tangent; whether it is one of these equations.
+    /// Restores a saved tangent. Returns false if it does not fit these equations.
     pub(super) fn take(&mut self, from: &TangentState) -> bool {
         self.tangent.take(from)
     }

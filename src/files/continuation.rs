@@ -10,7 +10,7 @@ use crate::dynamics::{DiscreteTrajectory, StepState, StepperReport, TangentState
 use crate::files::npz::{self, Array, Npz, NpzError, NpzWriter};
 use crate::sparse::MethodState;
 
-/// The text of what was asked.
+/// Name of the text of the problem.
 const PROBLEM: &str = "problem.json";
 /// The text that names the method of factorisation.
 const METHOD: &str = "tangent/method.txt";
@@ -19,12 +19,12 @@ const OF: &str = "state/of.txt";
 /// Begins the names of lists of the state.
 const STATE: &str = "state/";
 
-/// A motion, and what was asked.
+/// A motion, and its problem.
 #[derive(Clone, Debug)]
 pub struct Continuation {
     /// The motion.
     pub history: DiscreteTrajectory,
-    /// The JSON text of what was asked.
+    /// The JSON text of the problem.
     pub problem: String,
 }
 

@@ -8,7 +8,7 @@ use crate::math::{Derivatives, Matrix, Vector};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// One finite element: its geometry, its law, and what it reads.
+/// One finite element: its geometry, its law, and its arguments.
 #[derive(Clone, Debug)]
 pub struct FiniteElement<F: Electrical, const NODES: usize = 8> {
     /// Gradients of the shape functions.

@@ -224,7 +224,7 @@ impl Functional {
         }
     }
 
-    /// The derivatives of the potential energy alone up to the second, on one interval, in place of what `out` held.
+    /// The derivatives of the potential energy alone up to the second, on one interval, in place of the contents of `out`.
     pub fn evaluate_potential(&self, sample: &Sample<'_>, out: &mut Output) {
         out.plain.clear(true);
         let potential = |(term, _): &(&dyn Term, &[u32])| term.kind() == Kind::Potential;
@@ -233,7 +233,7 @@ impl Functional {
         }
     }
 
-    /// The derivatives on one interval, in place of what `out` held.
+    /// The derivatives on one interval, in place of the contents of `out`.
     pub fn evaluate(&self, order: Order, sample: &Sample<'_>, out: &mut Output) {
         out.plain.clear(order >= Order::Hessian);
         if order == Order::Third {

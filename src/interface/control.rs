@@ -361,7 +361,7 @@ impl Control {
     }
 }
 
-/// Refuses costs of what the system does not have, and weights and functions of time that are no numbers.
+/// Refuses costs of parts that the system does not have, and weights and functions of time that are not finite.
 fn check_costs(costs: &[QuantityCost], system: &System) -> Result<()> {
     for cost in costs {
         let exists = match cost.quantity {
@@ -382,7 +382,7 @@ fn check_costs(costs: &[QuantityCost], system: &System) -> Result<()> {
     Ok(())
 }
 
-/// Refuses energies of what is no lumped muscle, and weights that are no positive numbers.
+/// Refuses energies of parts that are no lumped muscles, and weights that are not positive.
 fn check_energies(costs: &[EnergyCost], system: &System) -> Result<()> {
     for cost in costs {
         let is_sound = cost.weight > 0.0 && cost.weight.is_finite();

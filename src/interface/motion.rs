@@ -48,7 +48,7 @@ impl Motion {
         rows.map(|row| row[body.index()]).collect()
     }
 
-    /// Start in ms and voltage in V of each interval; nothing of what takes no voltage.
+    /// Start in ms and voltage in V of each interval; nothing for parts that take no voltage.
     pub fn voltage(&self, input: impl Into<Input>) -> Vec<(f64, f64)> {
         let Some(source) = input.into().source(&self.system) else {
             return Vec::new();

@@ -156,7 +156,7 @@ impl<'a> Evaluator<'a> {
         &self.asked.structures.hessian
     }
 
-    /// Takes note of an accepted iterate and says whether to go on. Where the step to it was left off it is none.
+    /// Records an accepted iterate; breaks if the solve is to stop. An iterate whose step was stopped before its end does not count.
     pub(super) fn iteration(&mut self, iteration: &Iteration) -> ControlFlow<()> {
         if session::stopped().is_some() {
             return ControlFlow::Break(());

@@ -156,7 +156,7 @@ fn watch_until(mut own: TimeLimit) -> Watch {
     Watch { before }
 }
 
-/// Nothing on this thread is to stop until the watch is dropped: for what is left to do after a stop.
+/// Shields this thread from stops until the watch is dropped: for the work that remains after a stop.
 pub fn unwatched() -> Watch {
     Watch {
         before: LIMIT.take(),

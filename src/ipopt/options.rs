@@ -86,7 +86,7 @@ pub struct Options {
     pub max_seconds: Option<f64>,
     /// Quality of the starting point.
     pub start: Start,
-    /// Who solves the linear systems, unless `extra` names another one.
+    /// Solver of the linear systems, unless `extra` names another one.
     pub linear_solver: LinearSolver,
     /// Further options of Ipopt by name; they override all others.
     pub extra: BTreeMap<String, OptionValue>,
@@ -118,7 +118,7 @@ impl Options {
         }
     }
 
-    /// By how much Ipopt relaxes bounds, of their magnitude and at least of one.
+    /// Returns the relaxation of bounds by Ipopt, relative to their magnitude and at least to one.
     pub(super) fn relaxed(&self) -> f64 {
         match self.extra.get("bound_relax_factor") {
             Some(&OptionValue::Number(factor)) => factor,

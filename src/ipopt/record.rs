@@ -12,7 +12,7 @@ const RESERVED_ITERATIONS: usize = 4096;
 /// Record of a solve in addition to the answer of Ipopt.
 #[derive(Debug, Default)]
 pub(super) struct Record {
-    /// By how much bounds are relaxed, of their magnitude and at least of one.
+    /// Relaxation of bounds, relative to their magnitude and at least to one.
     pub(super) relaxed: f64,
     /// One record per iteration.
     pub(super) iterations: Vec<Iteration>,

@@ -53,7 +53,7 @@ impl Session {
         }
     }
 
-    /// Does `solve` with this session as that of the thread, and returns what it found, what the session did, and the session.
+    /// Does `solve` with this session as that of the thread, and returns its result, the report of the session, and the session.
     pub(super) fn during<T>(mut self, solve: impl FnOnce() -> T) -> (T, StagesReport, Self) {
         /// Puts the session of an outer solve back, also where the inner one panics.
         struct Outer(Option<Session>);

@@ -31,7 +31,7 @@ impl Multipliers {
         }
     }
 
-    /// Multiplies all by a factor; what is not finite becomes zero.
+    /// Multiplies all by a factor; numbers that are not finite become zero.
     pub(super) fn scale(&mut self, factor: f64) {
         for values in [&mut self.constraints, &mut self.lower, &mut self.upper] {
             for value in values {
@@ -163,7 +163,7 @@ pub struct SolverResult {
     pub iterations: Vec<Iteration>,
     /// Seconds of each part.
     pub seconds: Seconds,
-    /// Who solved the linear systems.
+    /// Name of the solver of the linear systems.
     pub linear: LinearReport,
     /// Number of evaluations of each quantity.
     pub evaluations: Evaluations,

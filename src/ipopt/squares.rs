@@ -97,7 +97,7 @@ pub(super) struct InSquares<N> {
     jacobian: Vec<(usize, usize)>,
     /// Entries of the Hessian in row or column of a square, with both.
     hessian: Vec<(usize, [usize; 2])>,
-    /// x and its slopes at the point that was asked last; 1 of what is no square.
+    /// x and its slopes at the point evaluated last; 1 for variables that are no squares.
     x: Vec<f64>,
     slopes: Vec<f64>,
 }

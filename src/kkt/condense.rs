@@ -150,7 +150,7 @@ impl Condensation {
         kinds
     }
 
-    /// Gives each entry to a block, and says whether no equation holds a state of a later group.
+    /// Gives each entry to a block, and returns true if no equation holds a state of a later group.
     fn sort(&mut self, kinds: &[Kind], rows: &[u32], cols: &[u32]) -> bool {
         let mut is_triangular = true;
         for (entry, (&row, &col)) in rows.iter().zip(cols).enumerate() {
@@ -320,7 +320,7 @@ impl Condensation {
     }
 }
 
-/// Sorts items by rows, joins those at one place and numbers what is left; `values` notes the number of each entry.
+/// Sorts items by rows, joins those at one place and numbers the remaining ones; `values` notes the number of each entry.
 fn merge(items: &mut Vec<Item>, values: &mut [u32], count: &mut usize) {
     items.sort_unstable_by_key(|item| (item.row, item.column, item.value));
     let mut before = (NONE, NONE);

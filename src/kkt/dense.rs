@@ -34,7 +34,7 @@ impl Dense<'_> {
         self.values[q * self.stride + q + 1..][..self.order - q - 1].fill(0.0);
     }
 
-    /// Eliminates column `q`; updates the columns up to `end`, notes L D, and returns how many eigenvalues are negative.
+    /// Eliminates column `q`; updates the columns up to `end`, notes L D, and returns the number of negative eigenvalues.
     #[inline(always)]
     pub(super) fn eliminate_one<S: Simd>(
         &mut self,

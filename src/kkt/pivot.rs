@@ -35,7 +35,7 @@ pub(super) enum Pivot {
     Zero(usize),
 }
 
-/// Largest entries of a column, without the diagonal, of what is not eliminated.
+/// Largest entries of a column, without the diagonal, among those not eliminated.
 #[derive(Clone, Copy, Debug, Default)]
 struct Beside {
     /// Largest entry in rows of the panel, and where.

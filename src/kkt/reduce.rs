@@ -23,7 +23,7 @@ pub(super) struct Reduce<'a> {
     pub(super) has_diagonal: bool,
 }
 
-/// Memory for what is made of one block after the other.
+/// Memory for the products of one block after the other.
 #[derive(Debug)]
 pub(super) struct Weights {
     /// W by rows.

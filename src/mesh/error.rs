@@ -15,7 +15,7 @@ pub enum MeshError {
         /// Error of the operating system.
         cause: String,
     },
-    /// A line of a file does not say what it should.
+    /// A line of a file is malformed.
     #[error("{file}:{line}: found {found}, expected {expected}")]
     Line {
         /// File as the user named it.

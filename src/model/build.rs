@@ -41,7 +41,7 @@ impl Model {
         Self::answering(system, question)
     }
 
-    /// Builds the model of what a question calls for, and of nothing else.
+    /// Builds the model of the terms that an analysis needs, and of no others.
     ///
     /// # Errors
     /// Reduced coordinates were asked for and do not exist.

@@ -24,7 +24,7 @@ pub trait Component: Debug + Send + Sync {
     /// Makes its terms, with reasons; or says why one is left out.
     fn build(&self, terms: &mut Terms<'_>);
 
-    /// Names and units of what is tabulated of it at every instant: `[("length", "mm")]`.
+    /// Names and units of its tabulated quantities at every instant: `[("length", "mm")]`.
     fn columns(&self) -> Vec<(&'static str, &'static str)> {
         Vec::new()
     }

@@ -34,7 +34,7 @@ pub enum Constant {
     JointDamping(usize),
 }
 
-/// A unit of the International System: its symbol, and how many of it the unit of a constant is.
+/// A unit of the International System: its symbol, and the factor from the unit of a constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SiUnit {
     /// Symbol, empty for a ratio.

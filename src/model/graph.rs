@@ -10,7 +10,7 @@ use crate::model::system::{JointKind, System};
 /// Joints in an order from the ground outwards, those that close loops, and bodies that nothing holds.
 #[derive(Clone, Debug)]
 pub struct Graph {
-    /// (joint, whether it is walked from child to parent).
+    /// (joint, true if it is walked from child to parent).
     tree: Vec<(usize, Direction)>,
     /// Joints that close loops.
     loops: Vec<usize>,

@@ -30,7 +30,7 @@ pub enum BodyLocation {
     Ground,
 }
 
-/// A system without what is not solved for.
+/// A system reduced to the parts that are solved for.
 #[derive(Clone, Debug)]
 pub struct Presolved {
     /// The system.
@@ -122,7 +122,7 @@ impl Presolved {
         self.bodies.iter().zip(reference).map(pose).collect()
     }
 
-    /// Body of the condensed system that carries what is fixed to a body of the scene; `None` is the ground.
+    /// Body of the condensed system that carries a body of the scene; `None` is the ground.
     pub fn carrier(&self, body: Option<usize>) -> Option<usize> {
         match self.bodies[body?] {
             BodyLocation::Ground => None,

@@ -154,7 +154,7 @@ impl Quantity {
         }
     }
 
-    /// After how much its values repeat themselves: a full turn of an angle.
+    /// Returns the period of its values: a full turn of an angle.
     pub fn period(&self, system: &System) -> Option<f64> {
         match *self {
             Self::Joint { joint, .. } => (joint_unit(system, joint) == "rad").then_some(TAU),

@@ -22,7 +22,7 @@ pub(super) struct Solids {
     pub(super) nodes: Vec<NodePlace>,
     /// Block and node of the mesh of each of them.
     pub(super) names: Vec<(usize, usize)>,
-    /// Node and place on a body that multipliers hold together, and what they are called.
+    /// Node and place on a body that multipliers keep together, and their names.
     pub(super) ties: Vec<(MaterialVector, String)>,
 }
 

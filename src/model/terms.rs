@@ -17,7 +17,7 @@ use crate::model::variables::{Role, Variables};
 use std::any::Any;
 use std::fmt;
 
-/// The bodies that carry what is fixed to bodies of the scene.
+/// The bodies of the condensed system that carry those of the scene.
 pub(super) struct Carriers<'a> {
     /// The condensed body of each body of the scene; `None` is the ground.
     pub(super) of: Vec<Option<usize>>,
@@ -87,7 +87,7 @@ impl Member for Path {
     }
 }
 
-/// An element with the number of arguments of its formula, and whether that is a kinetic energy.
+/// An element with the number of arguments of its formula, and true for a kinetic energy.
 struct Of<E, const M: usize, const NV: usize, const NS: usize, const KINETIC: bool>(
     Element<E, NV, NS>,
 );
@@ -300,7 +300,7 @@ impl<'a> Terms<'a> {
         });
     }
 
-    /// The terms in the order of the plan, what they are there for, and what is left out.
+    /// Returns the terms in the order of the plan, their reasons, and the absent terms.
     pub(super) fn finish(mut self) -> (Vec<Box<dyn Term>>, Vec<Present>, Vec<LeftOut>) {
         self.collected
             .sort_by_key(|collected| plan::rank(collected.term));

@@ -5,7 +5,7 @@
 pub enum Scale {
     /// Equal differences, equal distances.
     Linear,
-    /// Equal ratios, equal distances; what is not positive is not drawn.
+    /// Equal ratios, equal distances; values that are not positive are not drawn.
     Log,
 }
 
@@ -16,7 +16,7 @@ pub enum Extent {
     Tight,
     /// A little further on both sides.
     Padded,
-    /// A little below zero to a little beyond the largest, for what is never negative.
+    /// A little below zero to a little beyond the largest, for values that are never negative.
     FromZero,
 }
 

@@ -63,7 +63,7 @@ impl Drawing<'_> {
         canvas.outline(&places, Stroke::solid(style::REFERENCE, 0.6));
     }
 
-    /// Bodies as glass around muscles and joints, what is far first.
+    /// Bodies as glass around muscles and joints, far parts first.
     pub(super) fn instant(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
         let view = &self.view;
         let poses = &self.trajectory.poses[k];

@@ -47,7 +47,7 @@ const PAGE: &str = "report.html";
 
 /// Writes tables, figures and page; a page of an earlier run does not stay next to other results.
 ///
-/// A figure of what does not exist (voltages of no muscles, energies that were not observed) is not written.
+/// A figure without data (voltages of no muscles, energies that were not observed) is not written.
 ///
 /// # Errors
 /// A file cannot be written.

@@ -21,7 +21,7 @@ const MOST: [f64; 2] = [400.0, 440.0];
 const MARGIN: f64 = 22.0;
 /// Least width of the column with colour bar and names in pt.
 const SIDE: f64 = 112.0;
-/// Height of the colour bar with what is above and below it in pt.
+/// Height of the colour bar with the texts above and below it in pt.
 const BAR: f64 = 154.0;
 /// Maximum number of markers named.
 const NAMED: usize = 12;

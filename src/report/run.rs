@@ -86,9 +86,9 @@ pub struct Told {
     pub notes: Vec<String>,
     /// Rows of the table next to the motion.
     pub rows: Vec<(String, String)>,
-    /// Titles and plots of what is no function of time.
+    /// Titles and plots that are not functions of time.
     pub plots: Vec<(String, LinePlot)>,
-    /// Names and texts of what was asked and answered: `summary.json`, problem, scene.
+    /// Names and texts of the input and the answer: `summary.json`, problem, scene.
     pub documents: Vec<(String, String)>,
 }
 

@@ -147,7 +147,7 @@ fn seen(times: &[f64], observations: &Observations) -> Vec<usize> {
     instants
 }
 
-/// A column, and how much of it cannot be seen.
+/// A column, and the part of its range that cannot be seen.
 struct Curve<'a> {
     values: &'a [f64],
     unseen: f64,

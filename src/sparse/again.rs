@@ -22,7 +22,7 @@ impl Direct {
         }
     }
 
-    /// Factorises the next matrix as another solver of this pattern would; whether it can.
+    /// Factorises the next matrix as another solver of this pattern would; returns true if it can.
     pub fn take(&mut self, state: &MethodState) -> bool {
         while self.method() != state.method {
             match self.factorisation.more_robust() {

@@ -229,7 +229,7 @@ impl Direct {
         self.solve_to(rhs, POOR);
     }
 
-    /// Solves without a look at the residual, for an iteration that corrects what is lost.
+    /// Solves without checking the residual, for an iteration that corrects the error.
     ///
     /// # Panics
     /// No matrix has been factorised.
@@ -309,7 +309,7 @@ impl Direct {
 
     /// The unknown that nothing determines in a matrix whose factor failed, perhaps with infinite numbers.
     ///
-    /// A matrix nearby is regular, and its solution differs from the known one along what is not determined.
+    /// A matrix nearby is regular, and its solution differs from the known one along the undetermined unknowns.
     fn undetermined(&mut self, singular: Singular) -> Singular {
         for (slot, value) in self.values.iter_mut().enumerate() {
             *value += NEARBY * (1.0 + slot as f64).sin();

@@ -188,7 +188,7 @@ fn order(points: &[Done<'_>], errors: &[Option<f64>], floor: f64) -> Option<f64>
 }
 
 /// The path length of the markers, as far as any of them gets from its start, or at rest from the reference configuration, in mm; 1
-/// for what is relative.
+/// for relative measures.
 fn scale(results: &Results<'_>, measure: StudyMeasure) -> f64 {
     let seen = || {
         results

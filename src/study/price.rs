@@ -46,7 +46,7 @@ pub fn prices(results: &Results<'_>, judged: &Judged) -> Vec<Price> {
     ACCURACIES.map(of).into()
 }
 
-/// The error that a point surely does not exceed: what is below the uncertainty of the reference may be as large as that.
+/// The error that a point surely does not exceed: an error below the uncertainty of the reference may be as large as that.
 pub fn surely(judged: &Judged, method: usize, point: usize) -> Option<f64> {
     Some(judged.errors[method][point]?.max(judged.floors[method]))
 }

@@ -231,7 +231,7 @@ fn told(
     }
 }
 
-/// The first notes of one kind, and how many more there are.
+/// The first notes of one kind, and the number of further ones.
 fn first(mut notes: Vec<String>) -> Vec<String> {
     if notes.len() > NOTES {
         let more = notes.len() - NOTES;

@@ -100,7 +100,7 @@ pub(super) fn read_sweep(path: &Path) -> Result<Sweep, SceneError> {
     }
 }
 
-/// Places and values of what is written under `vary`.
+/// Places and values of the entries under `vary`.
 fn varied(
     spec: &SweepSpec,
     scope: &Scope<'_>,

@@ -27,7 +27,7 @@ pub(super) struct Range {
 }
 
 impl Values {
-    /// Reads what is written.
+    /// Reads the values of an entry.
     pub(super) fn of(written: &VarySpec, scope: &Scope<'_>) -> Result<Self, SceneError> {
         match written {
             VarySpec::Values(values) if values.is_empty() => {

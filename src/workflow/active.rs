@@ -13,11 +13,11 @@ use crate::nlp::Nlp;
 pub struct Active {
     /// Quantity that reaches it, and its value with unit.
     pub what: String,
-    /// In how many of its rows.
+    /// Number of its rows that are reached.
     pub count: usize,
     /// Number of its rows.
     pub of: usize,
-    /// `interval` or `instant`; nothing of what there is once.
+    /// `interval` or `instant`; nothing for a bound that exists once.
     pub noun: &'static str,
     /// True if it is a bound of voltages.
     pub is_voltage: bool,

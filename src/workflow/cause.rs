@@ -11,7 +11,7 @@ pub enum Cause {
         interval: usize,
         /// Its time in s.
         time: f64,
-        /// The joint that turns farthest in it, and by how much in rad.
+        /// The joint that turns farthest in it, and its angle in rad.
         turns: Option<(String, f64)>,
         /// Distance of the simulation from the optimum after it.
         distance: Distance,

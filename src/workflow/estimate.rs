@@ -13,7 +13,7 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::model::Model;
 use crate::model::system::JointKind;
 
-/// Errors or orders by the name of what is measured.
+/// Errors or orders by the name of the measure.
 pub type Measures = BTreeMap<&'static str, f64>;
 
 /// The measure that a grid has by itself: the motion against the one under the same voltages with half the step.
@@ -133,7 +133,7 @@ impl ErrorSample {
     }
 }
 
-/// Differences from grid to grid, and what they say of the error.
+/// Differences from grid to grid, and the error that they show.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Convergence {
     /// By grid from the second on, those with the grid before; for [`RESPONSE`] from the first on, its own.

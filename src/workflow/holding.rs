@@ -63,7 +63,7 @@ pub(crate) fn warning(
     (!reasons.is_empty()).then(|| format!("the goal cannot be kept: {}", reasons.join("; ")))
 }
 
-/// That nothing is known of what follows the end of a motion, where it is free.
+/// Note that the continuation of a motion with a free end is not known.
 pub(crate) fn free_end(control: &Control) -> Option<String> {
     (control.goal == BoundaryState::Free).then(|| {
         "the end is free: the motion need not come to rest there, and what follows it is not verified".to_owned()

@@ -13,7 +13,7 @@ const OF_ELEMENT: f64 = 1.2e5;
 const OF_DERIVATIVE: f64 = 200.0;
 /// Bytes of an instant in tables and figures.
 const OF_INSTANT: f64 = 1e3;
-/// Bytes of a body at an instant: its pose, in the motion and in what is drawn.
+/// Bytes of a body at an instant: its pose, in the motion and in the drawings.
 const OF_POSE: f64 = 192.0;
 
 /// Refuses a scene whose elements need more than there is.

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 type Listener = Box<dyn Fn(&'static str)>;
 
 thread_local! {
-    /// Who listens to the work of this thread.
+    /// Listener to the phases of this thread.
     static LISTENER: RefCell<Option<Listener>> = const { RefCell::new(None) };
 }
 
@@ -14,7 +14,7 @@ pub fn listen_to_phases(listener: impl Fn(&'static str) + 'static) {
     LISTENER.replace(Some(Box::new(listener)));
 }
 
-/// Tells what is being done from now on.
+/// Reports the phase that begins now.
 pub(crate) fn phase(doing: &'static str) {
     LISTENER.with_borrow(|listener| {
         if let Some(listener) = listener {

@@ -9,7 +9,7 @@ use crate::model::{BodyLocation, Model};
 /// Something that a scene or a problem could call for and does not.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Absent {
-    /// Name of the effect, or of what is no unknown.
+    /// Name of the effect, or of the part that is no unknown.
     pub name: String,
     /// Reason why it is absent.
     pub why: String,

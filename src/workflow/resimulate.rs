@@ -127,7 +127,7 @@ pub(crate) fn resimulate(
 }
 
 impl Resimulation {
-    /// Estimates the error with finer and finer steps until their distances fall; whether no simulation ended early.
+    /// Estimates the error with finer and finer steps until their distances fall; returns true if no simulation ended early.
     fn refine(&mut self, model: &Model, start: &Start, optimal: &Solution, least: f64) -> bool {
         let with = |steps: usize| Repeat::of(model, start, optimal, steps);
         let mut before: Option<(Repeat, f64)> = None;

@@ -4,7 +4,7 @@ use crate::control::BoundaryConditions;
 use crate::control::problem::{Control, Guess, Voltages};
 use crate::ipopt::{SolverResult, Status};
 
-/// Iterations of the second start; what is found from it is found soon.
+/// Iterations of the second start; an optimum is found from it soon or not at all.
 pub(crate) const ITERATIONS: usize = 100;
 
 /// Returns true if a solve ended for want of a motion that keeps goal and limits.

@@ -9,7 +9,7 @@ use crate::model::system::{Joint, System};
 use crate::model::{Quantity, joint_unit};
 use crate::workflow::optimise::Optimum;
 
-/// A marker or a joint, what it was to follow, and how closely it did.
+/// A marker or a joint, its reference, and its deviations.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tracked {
     /// `marker` or `joint`.
@@ -43,7 +43,7 @@ pub struct TrackingError {
     pub time_of_maximum: f64,
 }
 
-/// A coordinate and what it was to be, at each instant, in mm or rad.
+/// A coordinate and its reference, at each instant, in mm or rad.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackedPath {
     /// `tip_x`, `joint1`.

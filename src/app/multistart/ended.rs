@@ -180,7 +180,7 @@ pub(super) fn best(ended: &[Ended]) -> Option<usize> {
     (rank(&ended[best]).0 < 2).then_some(best)
 }
 
-/// Numbers the distinct optima, the best first; how many there are.
+/// Numbers the distinct optima, the best first; returns their number.
 pub(super) fn number_optima(ended: &mut [Ended]) -> usize {
     let mut solved: Vec<usize> = (0..ended.len()).filter(|&i| ended[i].is_solved).collect();
     let objective = |i: usize| ended[i].objective.unwrap_or(f64::INFINITY);

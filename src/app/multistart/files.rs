@@ -120,7 +120,7 @@ pub(super) fn rows(ended: &[Ended]) -> Vec<Vec<String>> {
     [head].into_iter().chain(ended.iter().map(row)).collect()
 }
 
-/// The table as `starts.csv`; cells of what does not exist are empty.
+/// The table as `starts.csv`; cells without a value are empty.
 fn cells(ended: &[Ended]) -> Vec<Vec<String>> {
     let header = [
         "start",

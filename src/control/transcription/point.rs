@@ -8,7 +8,7 @@ use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt;
 
-/// Tells the motion and the costates of a point: what is given with what the variables are.
+/// Decoder of points to motions and costates: given values together with the variables.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     z: Vec<Vec<f64>>,

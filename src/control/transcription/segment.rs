@@ -112,7 +112,7 @@ impl Segment<'_> {
         square
     }
 
-    /// Places an instant as far as the order needs it, and clears what is added to.
+    /// Places an instant as far as the order needs it, and clears the sums.
     fn prepare(&mut self, j: usize) {
         let Shared {
             action,

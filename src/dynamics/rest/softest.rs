@@ -95,7 +95,7 @@ fn inverse_iteration(statics: &mut Statics<'_>) -> Option<Vec<f64>> {
     Some(vector)
 }
 
-/// A direction of length 1 with what it moves.
+/// A direction of length 1 with the parts that it moves.
 fn named(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64], direction: Vec<f64>) -> Mode {
     let largest = direction.iter().zip(statics.scales());
     let (v, s) = largest.fold((0.0_f64, 1.0), |(m, s), (v, scale)| {

@@ -117,7 +117,7 @@ fn at_end(rate: f64, give: [f64; 2]) -> Weights {
     }
 }
 
-/// The generalised-α method: parameters, and what it carries.
+/// The generalised-α method: parameters, and the data that it carries.
 #[derive(Clone, Debug)]
 pub(super) struct Alpha {
     alpha_m: f64,

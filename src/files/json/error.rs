@@ -65,7 +65,7 @@ impl Excerpt {
     }
 }
 
-/// The text with question marks, as many as bytes, in place of what cannot be printed, and spaces for carriage returns; places
+/// The text with question marks, as many as bytes, in place of unprintable characters, and spaces for carriage returns; places
 /// in it stay where they are.
 fn shown(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());

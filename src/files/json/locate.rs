@@ -136,7 +136,7 @@ pub(crate) fn repeated(text: &str) -> Option<(JsonPath, Range<usize>)> {
     found
 }
 
-/// The first string, key or value, of which a character does not belong to what is expected.
+/// The first string, key or value, that has an unexpected character.
 pub(crate) fn wrong_string(text: &str, belongs: impl Fn(char) -> bool) -> Option<WrongString> {
     let mut found = None;
     walk(text, &mut |walk, met| {
@@ -197,7 +197,7 @@ struct Walk<'a> {
     way: Vec<Way>,
 }
 
-/// Says what is met, until it answers `None`, or the text is no JSON.
+/// Calls back with each token, until the callback answers `None`, or the text is no JSON.
 fn walk(text: &str, visit: &mut dyn FnMut(&Walk<'_>, Met) -> Option<()>) {
     let mut walk = Walk {
         scanner: Scanner::of(text),

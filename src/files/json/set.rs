@@ -112,7 +112,7 @@ impl Missing {
     }
 }
 
-/// Finds where a value goes: what is not there yet is made, and a key that has no meaning is found when the file is read.
+/// Finds the destination of a value: a missing way is made, and a key that has no meaning is found when the file is read.
 fn slot(text: &str, place: &JsonPath) -> Slot {
     let mut slot = Slot {
         place: JsonPath::default(),

@@ -19,7 +19,7 @@ use crate::model::system::System;
 
 /// Expected value of a path.
 const FOLDER: &str = "the folder of a simulation or of a solved control problem, which holds a solution.json; a state of rest is \"rest_at_voltages\"";
-/// Who writes what is expected.
+/// Program that writes the expected file.
 const WRITTEN: &str = "a result that simulate or solve wrote";
 /// Status of solves whose solution is a motion of the robot.
 const SOLVED: [&str; 4] = ["solved", "acceptable", "feasible_point", "not_held"];

@@ -23,7 +23,7 @@ pub struct ControlSpec {
     /// Final time, SI unit s, or its bounds and a guess.
     pub duration: DurationSpec,
     /// Number of intervals, 1 or more, or `"auto"`, as where it is not written: as many as the verification of the optimum needs to confirm
-    /// an error of 1 % of the path length, or of what `--accuracy` says.
+    /// an error of 1 % of the path length, or of the part that `--accuracy` gives.
     #[serde(default)]
     pub intervals: Option<IntervalsSpec>,
     /// Initial state.
@@ -164,7 +164,7 @@ pub struct SolverSpec {
     /// Limit of iterations, 500 where not written.
     #[serde(default)]
     pub max_iterations: Option<usize>,
-    /// Who solves the linear systems, `auto` where not written.
+    /// Solver of the linear systems, `auto` where not written.
     #[serde(default)]
     pub linear_solver: Option<ControlSolverSpec>,
     /// Options of Ipopt by name.
@@ -172,7 +172,7 @@ pub struct SolverSpec {
     pub ipopt: BTreeMap<String, OptionSpec>,
 }
 
-/// Who solves the linear systems of a control problem.
+/// Solver of the linear systems of a control problem.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ControlSolverSpec {

@@ -40,7 +40,7 @@ pub struct SimulateSpec {
     /// Occasions at which the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`.
     #[serde(default)]
     pub newton: Option<NewtonSpec>,
-    /// Who factorises it; the one that is fastest as a rule where not written.
+    /// Method of its factorisation; the one that is fastest as a rule where not written.
     #[serde(default)]
     pub linear_solver: Option<LinearSolverSpec>,
 }
@@ -119,7 +119,7 @@ impl From<NewtonSpec> for Newton {
     }
 }
 
-/// Who factorises a tangent.
+/// Method of the factorisation of a tangent.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LinearSolverSpec {

@@ -35,7 +35,7 @@ const OFFERED: &str = "a path such as \"materials.NAME.shear_modulus\" (or visco
 
 type Found = Result<SceneConstant, NoConstant>;
 
-/// The constant at a path; `written` is the scene as it is written, `system` what it means.
+/// The constant at a path; `written` is the scene as it is written, `system` its system.
 pub(crate) fn constant(path: &str, written: &SceneSpec, system: &System) -> Found {
     let unknown = || NoConstant {
         found: "no constant of the scene that can be sought".to_owned(),

@@ -166,7 +166,7 @@ pub struct JointSpec {
     /// Rotation about a point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spherical: Option<Nothing>,
-    /// Any motion: the child is as free as without the joint, and its orientation in the first body is written to results.
+    /// Any motion: the child is as free as without the joint, and results give its orientation in the first body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub floating: Option<Nothing>,
     /// No motion.
@@ -200,7 +200,7 @@ pub struct AxisSpec {
 #[serde(deny_unknown_fields)]
 pub struct Nothing {}
 
-/// Declares what is written of stacked muscles: the keys that all have, and those of their places.
+/// Declares the keys of stacked muscles: those that all have, and those of their places.
 macro_rules! stacked {
     ($(#[$about:meta])* $name:ident { $($first:tt)* } { $($last:tt)* }) => {
         $(#[$about])*

@@ -21,7 +21,7 @@ pub enum Reason {
     /// It cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(io::Error),
-    /// There is no room for what is read from it.
+    /// There is not enough memory for its contents.
     #[error("found {found}, expected {expected}")]
     TooLarge {
         /// Its size.

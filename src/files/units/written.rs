@@ -22,7 +22,7 @@ impl Written {
     }
 }
 
-/// Number and unit of a text; the error says what was found instead.
+/// Number and unit of a text; the error names the value found instead.
 pub(super) fn parts(text: &str) -> Result<(f64, Unit), String> {
     let (number, tail) = split_number(text.trim_start());
     let number: f64 = number

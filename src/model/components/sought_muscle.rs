@@ -119,7 +119,7 @@ impl<'a> SoughtMuscle<'a> {
         }
     }
 
-    /// Adds the energy, where it reads a parameter; says whether it does.
+    /// Adds the energy, where it reads a parameter; returns true if it does.
     pub(super) fn energy(
         &self,
         input: Option<usize>,
@@ -190,7 +190,7 @@ impl<'a> SoughtMuscle<'a> {
         }
     }
 
-    /// Adds the viscous work, where it reads a parameter; says whether it does.
+    /// Adds the viscous work, where it reads a parameter; returns true if it does.
     pub(super) fn viscosity(
         &self,
         viscosity: f64,

@@ -57,7 +57,7 @@ pub fn of_plots(subject: &str, told: &Told, origin: &Origin) -> String {
     page(&format!("{subject}: {}", told.title), origin, &data)
 }
 
-/// A page with its title, where it comes from, and what it shows.
+/// A page with its title, its origin, and its contents.
 fn page(title: &str, origin: &Origin, data: &Value) -> String {
     framed(code::FRAME, title, origin, data, &code::MODULES)
 }

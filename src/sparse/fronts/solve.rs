@@ -19,7 +19,7 @@ pub(super) struct Passage<'a, T> {
     pub(super) panels: &'a [T],
     /// Unknowns of the subtree, in the order of elimination.
     pub(super) x: &'a mut [T],
-    /// Later rows of each front of the subtree: upwards what they are updated by, downwards their solution.
+    /// Later rows of each front of the subtree: upwards their updates, downwards their solution.
     pub(super) passed: &'a mut [T],
 }
 

@@ -108,7 +108,7 @@ impl Job {
         tasks.ok_or_else(|| CommandError::Engine(format!("no tasks of the job {}", self.id)))
     }
 
-    /// The file of what a task wrote to standard error.
+    /// The file of the standard error of a task.
     pub(super) fn told(&self, task: usize) -> PathBuf {
         self.files.join(format!("{task}.txt"))
     }
@@ -118,7 +118,7 @@ impl Job {
         tell(&["job", "cancel", &self.id])
     }
 
-    /// Removes what was kept: all is collected.
+    /// Removes the record: all is collected.
     pub(super) fn forget(self) {
         fs::remove_dir_all(&self.files).ok();
     }
