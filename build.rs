@@ -7,12 +7,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What is told when Ipopt or its header is missing.
+/// Message when Ipopt or its header is missing.
 const INSTALL: &str = "proboscis needs Ipopt with its C header: \
     install coinor-libipopt-dev (Debian, Ubuntu), coin-or-Ipopt-devel (Fedora) or ipopt (Homebrew), \
     and see that `pkg-config --cflags --libs ipopt` answers";
 
-/// What is told when MUMPS or its header is missing.
+/// Message when MUMPS or its header is missing.
 const INSTALL_MUMPS: &str = "proboscis needs the MUMPS that Ipopt uses, with its C header `dmumps_c.h`: \
     install libmumps-seq-dev and libmumps-headers-dev (Debian 12, Ubuntu), libmumps-dev (Debian 13) or MUMPS-devel (Fedora)";
 /// Name of the library where neither Ipopt nor pkg-config tells it.
@@ -24,13 +24,13 @@ const MUMPS_HEADERS: [&str; 3] = [
     "/usr/local/include/mumps",
 ];
 
-/// Where files of JavaScript may stand besides the places of the system.
+/// Environment variable of a folder with files of JavaScript, in addition to those of the system.
 const JAVASCRIPT: &str = "PROBOSCIS_JAVASCRIPT";
 /// The code that pages carry, below the folders of [`JAVASCRIPT_FOLDERS`].
 const CODE: [&str; 2] = ["three/three.min.js", "chart.js/chart.min.js"];
-/// Where Debian installs it.
+/// Folders in which Debian installs it.
 const JAVASCRIPT_FOLDERS: [&str; 2] = ["/usr/share/javascript", "/usr/local/share/javascript"];
-/// What is told when the code of pages is missing.
+/// Message when the code of pages is missing.
 const INSTALL_JAVASCRIPT: &str = "proboscis puts three.js and Chart.js into the pages that it writes: \
     install libjs-three and libjs-chart.js (Debian, Ubuntu), or take three@0.111 and chart.js@3.9 from npm \
     and let PROBOSCIS_JAVASCRIPT name the folder that has them as";
@@ -85,11 +85,11 @@ fn libraries() -> Result<(), String> {
 struct Library {
     name: String,
     path: PathBuf,
-    /// Whether the linker finds it by itself.
+    /// True if the linker finds it by itself.
     is_found: bool,
     /// Files of the libraries that it needs.
     needs: Vec<String>,
-    /// Whether it contains MUMPS.
+    /// True if it contains MUMPS.
     has_mumps: bool,
 }
 
@@ -139,13 +139,13 @@ fn file_stem(file: &str) -> Option<&str> {
     file.split(['-', '.']).next()
 }
 
-/// Whether a file is a library of MPI, of which `libmpiseq` only has the names.
+/// Returns true if a file is a library of MPI, of which `libmpiseq` only has the names.
 fn is_mpi(file: &str) -> bool {
     let name = file_stem(file).unwrap_or_default();
     name == "mpi" || name.starts_with("mpi_") || name.starts_with("mpich")
 }
 
-/// What a shared library needs, and whether it contains MUMPS; none of what cannot be read.
+/// Returns the libraries that a shared library needs, and true if it contains MUMPS; none of a file that cannot be read.
 fn read(bytes: &[u8]) -> Option<(Vec<String>, bool)> {
     let own = |libraries: &[&str]| libraries.iter().map(|&file| file.to_owned()).collect();
     if let Ok(elf) = goblin::elf::Elf::parse(bytes) {
@@ -233,7 +233,7 @@ fn shared(name: &str) -> impl Iterator<Item = String> {
         .into_iter()
 }
 
-/// Where the linker finds a shared library by itself: `cc` then tells its place instead of repeating its name.
+/// Returns the path at which the linker finds a shared library by itself: `cc` then prints its path instead of repeating its name.
 fn linker_finds(name: &str) -> Option<PathBuf> {
     let place = |file: String| {
         let argument = format!("-print-file-name={file}");

@@ -19,14 +19,14 @@ use std::time::Instant;
 /// Calls in a round, and rounds, of the measurement of one element.
 const CALLS: u32 = 2000;
 const ROUNDS: usize = 60;
-/// Where the tables stand in `benches/README.md`.
+/// Marks around the tables in `benches/README.md`.
 const FROM: &str = "<!-- blocks -->";
 const TO: &str = "<!-- end of blocks -->";
 /// Step in ms.
 const STEP: f64 = 0.5;
 /// Voltage in V, over layers of 10 mm.
 const VOLTAGE: f64 = 3e5;
-/// From this size on only the symmetric tangent is measured.
+/// Size from which on only the symmetric tangent is measured.
 const LARGE: usize = 20;
 /// Steps that are averaged.
 const STEPS: usize = 20;

@@ -1,4 +1,4 @@
-//! What each effect adds in unknowns, entries and time per step, what it changes in the answer, and what its absence costs.
+//! Costs of each effect: unknowns, entries and time per step, changes of the answer, and costs of its absence.
 //!
 //! `cargo bench --bench effects` prints the tables; `-- --write` puts them into `results/gallery/effects.md`. All variants of a scene
 //! are timed in turn, so that numbers of one run can be compared with each other.
@@ -566,7 +566,7 @@ fn specialised(system: &System, volts: &[f64]) -> (String, [f64; 2]) {
     (text, [over(1), over(2)])
 }
 
-/// What the tables say: what absence costs, and which effects cost most.
+/// Conclusion of the tables: the cost of absence, and the effects that cost most.
 fn conclusion(mut factors: Vec<(&str, f64)>, [by_hand, again]: [f64; 2]) -> String {
     factors.sort_by(|a, b| b.1.total_cmp(&a.1));
     let close = factors

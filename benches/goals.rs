@@ -79,7 +79,7 @@ const SOLVERS: [Way<'_>; 2] = [
     },
 ];
 
-/// How a solve of a goal ended.
+/// End of a solve of a goal.
 #[derive(Clone, Debug)]
 struct Ended {
     group: &'static str,
@@ -179,7 +179,7 @@ fn in_parallel<T: Sync, A: Send>(items: &[T], answer: impl Fn(&T) -> A + Sync) -
         .collect()
 }
 
-/// How a goal is solved.
+/// Method of the solve of a goal.
 #[derive(Clone, Copy, Debug)]
 struct Way<'a> {
     program: &'a str,
@@ -278,7 +278,7 @@ fn median<'a>(all: impl Iterator<Item = &'a Ended>) -> Option<usize> {
     solved.get(solved.len() / 2).copied()
 }
 
-/// What the tables say: how many goals are solved from the guess of the problem, and how many more from several starts.
+/// Conclusion of the tables: goals that are solved from the guess of the problem, and those that several starts add.
 fn conclusion(once: &[Ended], several: &[Ended], chosen: &[usize]) -> String {
     let each = GROUPS.iter().map(|group| {
         let of_group: Vec<&Ended> = once.iter().filter(|one| one.group == group.name).collect();
@@ -404,7 +404,7 @@ fn report(once: &[Ended], several: &[Ended], chosen: &[usize]) -> String {
     out
 }
 
-/// What two ways take for the same goals, whole processes: the first, and another one with its name.
+/// Times of two methods for the same goals, whole processes: the first, and another one with its name.
 fn beside(ours: &[Ended], name: &str, theirs: &[Ended]) -> String {
     let mut out = format!(
         "| goals | solved, {name} | median of iterations, {name} | seconds, {name} | ratio |\n\

@@ -55,7 +55,7 @@ fn batch(goals: &mut Goals, intervals: &[usize]) -> Vec<Vec<String>> {
     changes.collect()
 }
 
-/// What one solve took of its thread.
+/// Times of one solve in its thread.
 struct Taken {
     solved: Solved,
     /// Seconds by the clock, less those in which the thread waited for a core.

@@ -51,7 +51,7 @@ fn write(tables: &str) {
     std::fs::write(path, text).expect("benches/README.md can be written");
 }
 
-/// What a solve cost: seconds of the whole, microseconds per interval and call of the callbacks.
+/// Cost of a solve: seconds of the whole, microseconds per interval and call of the callbacks.
 #[derive(Clone, Copy, Debug)]
 struct Cost {
     intervals: usize,

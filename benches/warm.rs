@@ -22,7 +22,7 @@ const OTHER: f64 = 1e-6;
 /// A problem in `problems/`, what is changed in it for the earlier solution and for the later one, each in words.
 type Case = (&'static str, Vec<String>, Vec<String>, String);
 
-/// How a solve ended.
+/// End of a solve.
 struct Ended {
     folder: TempDir,
     is_solved: bool,
@@ -145,7 +145,7 @@ fn of_solutions() -> (String, [u64; 2]) {
     (out, sums)
 }
 
-/// How an optimum stands to another one, in a word.
+/// Compares an optimum with another one, in a word.
 fn compared(one: &Ended, other: &Ended) -> &'static str {
     match one.objective / other.objective - 1.0 {
         _ if !one.is_solved => "not solved",

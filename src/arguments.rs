@@ -1,4 +1,4 @@
-//! What may be typed: commands, options and their meaning.
+//! Arguments of the command line: commands, options and their meaning.
 
 use std::path::PathBuf;
 
@@ -20,34 +20,34 @@ use proboscis::workflow::accuracy::AccuracyTarget;
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Show events of solver and simulator on standard error; RUST_LOG chooses them more finely.
+    /// Show events of solver and simulator on standard error; set RUST_LOG for finer filtering.
     #[arg(short, long, global = true)]
     pub(crate) verbose: bool,
 }
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Do what a problem file asks: find optimal voltages, simulate, or find a state of rest.
+    /// Run the task of a problem file: find optimal voltages, simulate, or find a state of rest.
     Solve {
         #[command(flatten)]
         problem: InTime,
-        /// Stop after so many iterations of the solver; of a control problem only.
+        /// Maximum number of iterations of the solver; for control problems only.
         #[arg(long, value_name = "N")]
         max_iterations: Option<usize>,
-        /// Solve from so many starting points, its own guess and random ones, and keep the best.
+        /// Solve from this number of starting points, the guess of the problem and random ones, and keep the best.
         #[arg(long, value_name = "N", conflicts_with_all = ["accuracy", "estimate_error", "from"])]
         starts: Option<usize>,
         /// Seed of the random starting points.
         #[arg(long, value_name = "SEED", default_value_t = 1, requires = "starts")]
         seed: u64,
-        /// Solve from each starting point in a process of its own, in place of threads; with MUMPS it is always so.
+        /// Solve from each starting point in a process of its own instead of a thread; always so with MUMPS.
         #[arg(long, requires = "starts")]
         processes: bool,
-        /// Do nothing where the folder holds this result already, with all its files as they were written.
+        /// Do nothing if the folder holds this result already, with all its files unchanged.
         #[arg(long, conflicts_with_all = ["starts", "from"])]
         once: bool,
     },
-    /// Simulate forward in time, of a problem that asks for it; one that asks for optimal voltages is for solve.
+    /// Run a simulation problem forward in time; control problems are run by solve.
     Simulate(InTime),
     /// Find the static equilibrium of a problem, or of any scene under given voltages.
     Equilibrium {
@@ -57,11 +57,11 @@ pub(crate) enum Command {
         #[arg(long, value_name = "MUSCLE=VOLTAGE", value_delimiter = ',')]
         voltages: Option<Vec<String>>,
     },
-    /// Show what a problem consists of: effects, unknowns, equations, nonzeros.
+    /// Show the model of a problem: terms, unknowns, equations, nonzeros.
     Inspect {
         #[command(flatten)]
         input: Input,
-        /// Folder for pictures of Jacobian and Hessian; none are drawn where it is not given.
+        /// Folder for pictures of Jacobian and Hessian; without it none are drawn.
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
@@ -69,15 +69,15 @@ pub(crate) enum Command {
     Check {
         #[command(flatten)]
         input: Input,
-        /// Stop after so many seconds.
+        /// Time limit in seconds.
         #[arg(long, value_name = "S", value_parser = seconds)]
         max_seconds: Option<f64>,
     },
-    /// Run variants of a problem, to see what accuracy costs in time.
+    /// Run variants of a problem to compare accuracy and computing time.
     Study(Variants),
-    /// Solve many variants of a problem; those that are solved already are not solved again.
+    /// Solve many variants of a problem; variants that are solved already are skipped.
     Sweep(Sweep),
-    /// Show results side by side on one page: curves over each other, a table of what differs.
+    /// Show results side by side on one page: overlaid curves, and a table of differences.
     Report {
         /// Folders of results, two or more.
         #[arg(required = true, num_args = 2.., value_name = "RESULT")]
@@ -93,16 +93,16 @@ pub(crate) enum Command {
     },
     /// Print the JSON Schema of a file.
     Schema {
-        /// Which file.
+        /// Kind of file.
         #[arg(default_value = "problem")]
         file: File,
     },
-    /// Write a scene and a problem to start from, with the schemas that an editor reads, and tell the next command.
+    /// Write a scene and a problem as templates, with schemas for an editor, and print the next command.
     New {
         #[command(subcommand)]
         what: New,
     },
-    /// Print what a shell needs to complete commands and options.
+    /// Print the completion script of a shell.
     Completions {
         /// The shell.
         shell: Shell,
@@ -144,13 +144,13 @@ pub(crate) struct NewFiles {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum File {
-    /// What exists.
+    /// Scene file.
     Scene,
-    /// What is asked.
+    /// Problem file.
     Problem,
-    /// Which variants of it are compared.
+    /// Study file.
     Study,
-    /// Which variants of it are solved.
+    /// Sweep file.
     Sweep,
 }
 
@@ -161,7 +161,7 @@ pub(crate) struct Variants {
     /// Folder for the results [default: results/studies/<name of the study>].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Time each point so many times, in place of what the study says.
+    /// Number of timed runs of each point, in place of that of the study.
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..))]
     runs: Option<u16>,
     /// Show no progress.
@@ -188,13 +188,13 @@ pub(crate) struct Sweep {
     /// Folder for the results [default: results/sweeps/<name of the sweep>].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Solve each n-th variant from the i-th one, as one of n machines; the table has all that are in the folder.
+    /// Solve each n-th variant from the i-th one, as one of n machines; the table lists all variants in the folder.
     #[arg(long, value_name = "i/n", default_value = "1/1")]
     shard: Shard,
-    /// Where variants are solved.
+    /// Engine that solves the variants.
     #[arg(long, value_name = "ENGINE", default_value = "threads")]
     engine: Engine,
-    /// Stop after so many seconds.
+    /// Time limit in seconds.
     #[arg(long, value_name = "S", value_parser = seconds)]
     max_seconds: Option<f64>,
     /// Show no progress.
@@ -232,16 +232,16 @@ pub(crate) struct Problem {
     /// Folder for the results [default: results/<name of the problem>].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Stop after so many seconds.
+    /// Time limit in seconds.
     #[arg(long, value_name = "S", value_parser = seconds)]
     max_seconds: Option<f64>,
-    /// From where figures look at the system.
+    /// Viewpoint of figures.
     #[arg(long, value_name = "VIEW", default_value = "oblique")]
     view: View,
-    /// Write the motion in another format too.
+    /// Also write the motion in this format.
     #[arg(long, value_name = "FORMAT")]
     export: Vec<Export>,
-    /// Print the summary, as in summary.json, in place of words.
+    /// Print the summary, as in summary.json, in place of text.
     #[arg(long)]
     json: bool,
     /// Write no report.html.
@@ -260,10 +260,10 @@ pub(crate) struct InTime {
     /// below this part of the robot's size along the path and at the end.
     #[arg(long, value_name = "ERROR", value_parser = part)]
     accuracy: Option<f64>,
-    /// Estimate the error of discretisation by a second run with twice the intervals; what is written stays the same.
+    /// Estimate the error of discretisation by a second run with twice the intervals; the files written stay the same.
     #[arg(long, conflicts_with = "accuracy")]
     estimate_error: bool,
-    /// Go on from the result in a folder, such as that of a run that was stopped: a simulation to the bit, a solve from its last point.
+    /// Resume from the result in a folder, such as that of a stopped run: a simulation to the bit, a solve from its last point.
     #[arg(long, value_name = "DIR")]
     from: Option<PathBuf>,
 }
@@ -306,7 +306,7 @@ impl Input {
 }
 
 impl Problem {
-    /// Whether the summary is asked for in place of words.
+    /// Returns true if the summary is asked for in place of words.
     pub(crate) const fn json(&self) -> bool {
         self.json
     }

@@ -1,4 +1,4 @@
-//! Words that options of the command line choose from.
+//! Choices of options of the command line.
 
 use clap::ValueEnum;
 use proboscis::app::RunIn;
@@ -25,7 +25,7 @@ impl Engine {
     }
 }
 
-/// Where several solves run.
+/// Returns the engine of several solves.
 pub(crate) const fn run_in(processes: bool) -> RunIn {
     match processes {
         true => RunIn::Processes,
@@ -35,7 +35,7 @@ pub(crate) const fn run_in(processes: bool) -> RunIn {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum View {
-    /// From before, the right and above.
+    /// View from the front, right and above.
     Oblique,
     /// Along the z axis, y upwards.
     Front,

@@ -1,4 +1,4 @@
-//! The command line: what is typed, passed on, and answered with a line and an exit status.
+//! The command line: reads arguments, runs the command, writes its answer, and sets the exit status.
 
 mod arguments;
 mod choices;
@@ -173,7 +173,7 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
     }
 }
 
-/// Runs what writes a folder of results, and tells its words or its summary.
+/// Runs a command that writes a folder of results, and prints its message or its summary.
 fn told(
     json: bool,
     request: &CommandInput,

@@ -1,4 +1,4 @@
-//! Units: what is written in them, in the units inside: g, mm, ms, N, mJ, MPa, V, rad.
+//! Units of the quantities inside: g, mm, ms, N, mJ, MPa, V, rad.
 //!
 //! ```
 //! use proboscis::units::*;

@@ -1,7 +1,7 @@
-//! Words on standard error and answers on standard output: the one place that writes them.
+//! Messages on standard error and answers on standard output: the one place that writes them.
 //!
-//! What cannot be written to standard error is dropped, since there is nobody to tell. An answer that cannot be written is an error, unless
-//! whoever reads it has gone, as `head` does.
+//! Messages that cannot be written to standard error are dropped. An answer that cannot be written is an error, unless
+//! its reader has gone, as `head` does.
 
 use anstyle::AnsiColor;
 use std::io::{self, ErrorKind, IsTerminal, Stderr, Write};

@@ -67,7 +67,7 @@ fn ctrl_c_stops_the_solve_and_the_second_one_the_process() {
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
 }
 
-/// What a killed program leaves running.
+/// Processes that a killed program leaves running.
 #[cfg(target_os = "linux")]
 mod killed {
     use std::fs;

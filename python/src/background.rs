@@ -13,16 +13,16 @@ use pyo3::prelude::*;
 
 use crate::{broke_off, error};
 
-/// How often Python is asked for signals.
+/// Time between checks for signals of Python.
 pub(crate) const PERIOD: Duration = Duration::from_millis(20);
 /// Time that work has to end in good order after Ctrl-C, before it is left to do so behind the back of the caller.
 const GRACE: Duration = Duration::from_millis(100);
 
-/// What is told of work: whether the question has an answer, the answer, notes.
+/// Answer of work: true if the task has an answer, the answer, notes.
 pub(crate) type Told = (bool, String, Vec<String>);
-/// What work ends with.
+/// End of work.
 pub(crate) type Ended = Result<CommandOutput, CommandError>;
-/// What is told of work, if there is anything; the exception that ended it early, if there was one; work that still ends.
+/// Answer of work, if there is one; the exception that ended it early, if there was one; work that still ends.
 pub(crate) type Outcome = (Option<Told>, Option<PyErr>, Option<Ending>);
 
 /// A text as an answer.
@@ -75,7 +75,7 @@ pub(crate) struct Ending {
 
 #[pymethods]
 impl Ending {
-    /// Whether it has ended.
+    /// Returns true if it has ended.
     fn is_over(&self) -> bool {
         let thread = self.thread.lock();
         thread.is_ok_and(|thread| thread.as_ref().is_none_or(JoinHandle::is_finished))

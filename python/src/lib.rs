@@ -23,7 +23,7 @@ fn raised(py: Python<'_>, told: (String, String, String)) -> PyErr {
     made.map_or_else(|failed| failed, PyErr::from_value)
 }
 
-/// What a command says of its input.
+/// Converts an error of a command to an exception.
 fn error(py: Python<'_>, mistake: &CommandError) -> PyErr {
     let told = (
         message(&mistake.to_string()),
@@ -33,7 +33,7 @@ fn error(py: Python<'_>, mistake: &CommandError) -> PyErr {
     raised(py, told)
 }
 
-/// What is wrong with an argument.
+/// Makes an exception for a wrong argument.
 fn mistake(py: Python<'_>, message: String, argument: &str) -> PyErr {
     raised(py, (message, argument.to_owned(), String::new()))
 }
@@ -68,7 +68,7 @@ fn changed(
     })
 }
 
-/// What a problem consists of, as JSON.
+/// Returns the model of a problem, as JSON.
 #[pyfunction]
 fn inspect(py: Python<'_>, input: PathBuf, text: String) -> PyResult<Outcome> {
     let request = run::request(String::new(), input, None);

@@ -19,7 +19,7 @@ type Question = Box<dyn FnOnce(&mut dyn Nlp) + Send>;
 type Array<'py> = Bound<'py, PyArray1<f64>>;
 type Indices<'py> = Bound<'py, PyArray1<u32>>;
 
-/// What does not change of a program.
+/// Constant data of a program.
 struct Sizes {
     start: Vec<f64>,
     bounds: [Bounds; 2],
@@ -59,7 +59,7 @@ impl Program {
     }
 }
 
-/// What another thread tells; Ctrl-C ends the waiting.
+/// Waits for a message of another thread; Ctrl-C ends the waiting.
 fn heard<T: Send>(py: Python<'_>, mut told: Receiver<T>) -> PyResult<T> {
     loop {
         let waiting = &mut told;

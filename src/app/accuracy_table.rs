@@ -1,4 +1,4 @@
-//! Errors of discretisation in words: a line for each grid, and how it ended.
+//! Errors of discretisation in words: a line for each grid, and the outcome.
 
 use crate::workflow::accuracy::{Accuracy, GridLevel};
 use crate::workflow::estimate::greatest;
@@ -62,7 +62,7 @@ impl Accuracy {
         notes
     }
 
-    /// The accuracy of a run that is `done` ("solved", "simulated"), in words, and whether that is what was asked for.
+    /// The accuracy of a run that is `done` ("solved", "simulated"), in words, and true if that is what was asked for.
     pub(super) fn outcome(&self, done: &str) -> (String, bool) {
         let error = greatest(&self.estimate);
         let of = |(name, error): (&str, f64)| format!("{error:.1e} ({name})");

@@ -1,4 +1,4 @@
-//! Elastic blocks in numbers: how large they are, and the charges of their electrodes at the end.
+//! Elastic blocks in numbers: their sizes, and the charges of their electrodes at the end.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -25,15 +25,15 @@ use crate::workflow::resolve::resolve;
 const NOISE: f64 = 1e-2;
 /// Seed of noise, factor and costates.
 const SEED: u64 = 7;
-/// Intervals looked at where the problem has no grid of its own; all intervals are alike.
+/// Intervals checked where the problem has no grid of its own; all intervals are alike.
 const INTERVALS: usize = 6;
-/// Entries of the Jacobian that are evaluated for the differences; of larger programs a part of the variables is looked at.
+/// Maximum number of entries of the Jacobian that are evaluated for the differences; of larger programs a part of the variables is checked.
 const WORK: f64 = 2e8;
 
-/// What came of a comparison of derivatives with differences.
+/// Result of a comparison of derivatives with differences.
 #[derive(Clone, Debug, Serialize)]
 pub struct Checked {
-    /// Whether all were compared, and none is wrong.
+    /// True if all were compared, and none is wrong.
     pub agrees: bool,
     /// The same in words.
     pub message: String,
@@ -43,11 +43,11 @@ pub struct Checked {
     pub checked: usize,
     /// Variables of the program.
     pub variables: usize,
-    /// Variables beside which a value does not exist.
+    /// Variables near which a value does not exist.
     pub unchecked: Vec<String>,
     /// Entries that are wrong, the worst first, twenty at most.
     pub wrong: Vec<WrongDerivative>,
-    /// What is told of each.
+    /// Notes on each.
     #[serde(skip)]
     notes: Vec<String>,
 }
@@ -68,7 +68,7 @@ pub struct GreatestErrors {
 pub struct WrongDerivative {
     /// `gradient`, `jacobian` or `hessian`.
     pub matrix: &'static str,
-    /// What the row belongs to.
+    /// Name of the row.
     pub row: String,
     /// The variable of the column.
     pub column: String,
@@ -84,7 +84,7 @@ pub struct WrongDerivative {
 
 /// Compares gradient, Jacobian and Hessian with differences; not solved where an entry is wrong.
 ///
-/// What is not a control problem is made one without a goal, so that every equation of its motion is looked at.
+/// Another task is converted to a control problem without a goal, so that every equation of its motion is checked.
 ///
 /// # Errors
 /// The input is wrong.
@@ -202,7 +202,7 @@ fn sizes(program: &Transcription<'_>, model: &Model) -> Vec<f64> {
     program.unknowns().columns.iter().map(of).collect()
 }
 
-/// The variables that are looked at: all, or so many by chance that their differences take some minutes.
+/// The variables that are checked: all, or a random part of them whose differences take some minutes.
 fn columns(program: &Transcription<'_>, noise: &mut Noise) -> Vec<usize> {
     let count = program.unknowns().columns.len();
     let entries = program.jacobian_structure().rows.len();

@@ -1,4 +1,4 @@
-//! A simulation under the voltages of an earlier solution, compared with that solution: how far another model was right.
+//! A simulation under the voltages of an earlier solution, compared with that solution: the accuracy of another model.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::kinematics::Pose;
 use crate::model::Model;
 use crate::model::system::Marker;
 
-/// How far the markers of two motions are from each other, in m.
+/// Distance of the markers of two motions, in m.
 #[derive(Debug, Serialize)]
 pub(super) struct Comparison {
     /// The solution.

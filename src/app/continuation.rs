@@ -19,12 +19,12 @@ use crate::workflow::integrate::grid;
 /// A simulation that has ended, and one that has not.
 pub(super) const ENDED: &str = "continuation.npz";
 pub(super) const UNFINISHED: &str = "unfinished.npz";
-/// Digits that tell a problem with the files that it names.
+/// Digits of the hash of a problem with the files that it names.
 const DIGITS: usize = 32;
 /// Steps that differ by no more than this part are equal.
 const SAME_STEP: f64 = 1e-9;
 
-/// The mistake that nothing goes on from what stands there.
+/// Error: the run cannot be resumed from this folder.
 fn wrong(reason: String) -> CommandError {
     CommandError::Option {
         option: "--from",
@@ -32,7 +32,7 @@ fn wrong(reason: String) -> CommandError {
     }
 }
 
-/// The JSON text of what a simulation is asked, without its end: a motion goes on where this is the same.
+/// The JSON text of a simulation without its end: a motion can be resumed where this is the same.
 pub(super) fn asked(loaded: &Loaded, task: &Simulation) -> String {
     let mut task = task.clone();
     task.duration = 0.0;
@@ -96,7 +96,7 @@ pub(super) fn begun(
     Ok(history)
 }
 
-/// Where two problems differ first, in words.
+/// Returns the first difference of two problems, in words.
 fn difference(other: &Value, asked: &Value) -> Option<String> {
     for key in ["scene", "simulate"] {
         if let Some(path) = first(&other[key], &asked[key], key) {
@@ -144,7 +144,7 @@ pub(super) fn solution(folder: &Path) -> Result<PathBuf, CommandError> {
     found.ok_or_else(|| wrong(format!("{folder} holds no solution.json to go on from")))
 }
 
-/// The command that goes on with a run that was stopped.
+/// The command that resumes a run that was stopped.
 pub(super) fn command(request: &CommandInput, task: &Task) -> Option<String> {
     let command = match task {
         Task::Control(_) => "solve",

@@ -1,10 +1,10 @@
-//! Digits that tell what is the same.
+//! Content hash.
 
 use std::fmt::{self, Write};
 
 use sha2::{Digest, Sha256};
 
-/// Hexadecimal digits of a hash of what is written.
+/// Hexadecimal digits of the hash of a formatted text.
 pub(crate) fn digest(written: fmt::Arguments<'_>, digits: usize) -> String {
     let mut hash = Hash(Sha256::new());
     write!(hash, "{written}").expect("a hash takes everything");
@@ -26,7 +26,7 @@ fn hexadecimal(bytes: &[u8]) -> String {
     text
 }
 
-/// What is written is hashed piece by piece.
+/// Writer that hashes its input piece by piece.
 struct Hash(Sha256);
 
 impl Write for Hash {

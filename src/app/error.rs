@@ -1,4 +1,4 @@
-//! Why a command gives no answer: the input is wrong, or a file cannot be written.
+//! Errors of commands: the input is wrong, or a file cannot be written.
 
 use std::error::Error as StdError;
 use std::io;
@@ -20,14 +20,14 @@ pub enum CommandError {
     /// An earlier solution cannot be used.
     #[error(transparent)]
     Earlier(Box<dyn StdError + Send + Sync>),
-    /// What a problem asks for does not exist.
+    /// The problem asks for something that does not exist.
     #[error("{}: {place}: {reason}", file.display())]
     Problem {
         /// The problem file as typed.
         file: PathBuf,
         /// Path in it.
         place: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// The input is right, but a start or goal at rest was not found.
@@ -37,7 +37,7 @@ pub enum CommandError {
         file: PathBuf,
         /// Path in it.
         place: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// A value typed on the command line is wrong.
@@ -45,7 +45,7 @@ pub enum CommandError {
     Option {
         /// The option.
         option: &'static str,
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// One of several starts finds the input wrong.
@@ -53,7 +53,7 @@ pub enum CommandError {
     Start {
         /// Its number.
         start: usize,
-        /// What it said.
+        /// Its message.
         message: String,
     },
     /// Ctrl-C was pressed, or the time allowed is over, before there was anything to write.
@@ -80,10 +80,10 @@ pub enum CommandError {
     Unreadable {
         /// The file.
         file: PathBuf,
-        /// What the operating system said.
+        /// Error of the operating system.
         cause: io::Error,
     },
-    /// What hands solves to other machines stopped to answer.
+    /// The program that hands solves to other machines stopped answering.
     #[error("HyperQueue: {0}; the same command goes on")]
     Engine(String),
     /// A file could not be written.
@@ -114,7 +114,7 @@ impl CommandError {
         }
     }
 
-    /// The lines of the file around the mistake, marked, where there is such a place.
+    /// The lines of the file around the error, marked, where there is such a place.
     pub fn excerpt(&self) -> Option<String> {
         match self {
             Self::Scene(mistake) => mistake.excerpt(),
@@ -122,7 +122,7 @@ impl CommandError {
         }
     }
 
-    /// What a workflow says of the problem in a file.
+    /// Makes the error of a command from that of a workflow on the problem in a file.
     pub(crate) fn of(file: &Path) -> impl Fn(WorkflowError) -> Self {
         let file = file.to_owned();
         move |error| match error {

@@ -1,13 +1,13 @@
-//! How large a robot is, so that a length in the wrong unit shows.
+//! Size of a robot, so that a length in the wrong unit shows.
 
 use nalgebra::Vector3;
 
 use crate::model::System;
 use crate::model::system::Shape;
 
-/// Robots larger than this, in mm, are asked about.
+/// Robots larger than this, in mm, get a question about their unit.
 const HUGE: f64 = 5e3;
-/// Robots smaller than this, in mm, are asked about.
+/// Robots smaller than this, in mm, get a question about their unit.
 const TINY: f64 = 0.1;
 
 /// Lower and upper corner in mm of the box around some places; `(+∞, −∞)` for none.

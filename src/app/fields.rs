@@ -1,8 +1,8 @@
 //! Fields of elastic blocks for ParaView: `fields/0000.vtu`, `fields/0001.vtu`, … and `trajectory.pvd`, in SI.
 //!
 //! Potentials belong to intervals: instant k shows those of the interval that ends there, the first instant those of the
-//! first interval. So do velocities, the mean ones of that interval, and with them the viscous part of the stress. What
-//! else an element shows is taken at the places of the instant, as a mean over its reference volume.
+//! first interval. So do velocities, the mean ones of that interval, and with them the viscous part of the stress. All
+//! other fields of an element are taken at the places of the instant, as a mean over its reference volume.
 
 use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
@@ -14,7 +14,7 @@ use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::paraview::{Field, Series, UnstructuredGrid};
 
-/// Instants that are written at most.
+/// Maximum number of instants written.
 const MOST: usize = 200;
 /// Folder of the instants.
 const FOLDER: &str = "fields";
@@ -132,7 +132,7 @@ impl<'m> SolidStates<'m> {
     }
 }
 
-/// What is shown of a block at an instant.
+/// Block at an instant, as shown.
 struct Block<'m> {
     hexahedra: &'m [[usize; 8]],
     points: Vec<Vector>,

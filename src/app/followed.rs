@@ -1,17 +1,17 @@
-//! What `summary.json` says of a path of equilibria.
+//! A path of equilibria in `summary.json`.
 
 use serde::Serialize;
 
 use crate::dynamics::{Continuation, Instability};
 
-/// What `summary.json` says of a path.
+/// A path in `summary.json`.
 #[derive(Debug, Serialize)]
 pub(super) struct Followed {
     /// Number of equilibria.
     points: usize,
     /// Largest fraction of the voltages on the path: of these equilibria and of those where stability is lost between them.
     largest_fraction: f64,
-    /// Where stability is lost.
+    /// Points at which stability is lost.
     pub(super) lost: Vec<StabilityLossRecord>,
 }
 

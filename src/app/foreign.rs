@@ -1,4 +1,4 @@
-//! Results of another problem in the folder of those that are to be written.
+//! Detection of results of another problem in the folder to which results are to be written.
 
 use std::fs;
 use std::path::{Component, Path, PathBuf};
@@ -8,7 +8,7 @@ use serde::Deserialize;
 use crate::app::error::CommandError;
 use crate::app::request::CommandInput;
 
-/// What a summary says of where its results are from.
+/// Entries of a summary that name the source of its results.
 #[derive(Deserialize)]
 struct Summary {
     input: PathBuf,
@@ -38,7 +38,7 @@ pub(super) fn refuse_foreign(request: &CommandInput) -> Result<(), CommandError>
     Ok(())
 }
 
-/// Whether two paths as typed, the first one maybe elsewhere, name one file.
+/// Returns true if two paths as typed, the first one maybe elsewhere, name one file.
 fn is_same(before: &Path, now: &Path) -> bool {
     if before == now {
         return true;

@@ -284,7 +284,7 @@ pub(super) fn simulation(
     })
 }
 
-/// Adds the motion to the files of a result, and from what it goes on where it does.
+/// Adds the motion to the files of a result, with the state from which it can be resumed.
 fn write_motion(
     files: &mut FileSet,
     (model, history, motion): (&Model, &DiscreteTrajectory, &Trajectory),
@@ -336,7 +336,7 @@ fn held(task: &Simulation, reached: f64) -> Option<&[f64]> {
     }
 }
 
-/// What drives a simulation after the end of the solution whose voltages it takes, where it goes on for longer.
+/// Notes the voltages after the end of the solution from which a simulation takes them, where it goes on for longer.
 fn afterwards(task: &Simulation) -> Option<String> {
     let Voltages::Sampled {
         ends,

@@ -1,4 +1,4 @@
-//! What tells whether two problems are one, and whether a result is that of a problem.
+//! Identity of a problem, and of the run of a result.
 
 use std::fmt;
 use std::fs;
@@ -19,7 +19,7 @@ const DIGITS: usize = 16;
 pub(crate) struct Identity(String);
 
 impl Identity {
-    /// Of a problem, with what is to be written of its motion.
+    /// Identity of a problem, with the output of its motion.
     pub(crate) fn of_problem(loaded: &Loaded) -> Self {
         // All numbers are written so that they read back identical.
         let Loaded {

@@ -1,4 +1,4 @@
-//! What a problem consists of, before it is solved.
+//! Inspection of a problem before it is solved: its terms, unknowns, equations and nonzeros.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ use crate::workflow::effects::Plan;
 use crate::workflow::optimise::{Counted, Prepared, prepare};
 use crate::workflow::resolve::resolve;
 
-/// The plan: effects in numbers, what calls for them, and what is not there; with sizes; with a folder also pictures of Jacobian and Hessian.
+/// The plan: model terms in numbers, their reasons, and absent terms; with sizes; with a folder also pictures of Jacobian and Hessian.
 ///
 /// # Errors
 /// The input is wrong, or a picture cannot be written.
@@ -41,14 +41,14 @@ pub fn inspect(request: &CommandInput) -> Result<CommandOutput, CommandError> {
     })
 }
 
-/// What a problem consists of.
+/// Terms and sizes of a problem.
 #[derive(Clone, Debug, Serialize)]
 pub struct Inspected {
     /// Name of the scene.
     pub system: String,
     /// `reduced` or `redundant`.
     pub coordinates: &'static str,
-    /// Effects in numbers, and what is not there.
+    /// Model terms in numbers, and absent terms.
     #[serde(flatten)]
     pub plan: Plan,
     /// Numbers of parts, of unknowns, and of entries of the program of a control problem, by what they count.
@@ -56,7 +56,7 @@ pub struct Inspected {
     /// All of it in words.
     #[serde(skip)]
     words: String,
-    /// What is told beside it.
+    /// Notes next to it.
     #[serde(skip)]
     notes: Vec<String>,
 }
@@ -146,7 +146,7 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
     }
 }
 
-/// How the tangent of a step is factorised.
+/// Names the factorisation of the tangent of a step.
 fn factorisation(model: &Model) -> &'static str {
     match model.step_symmetry() {
         Symmetry::Symmetric => {
@@ -180,19 +180,19 @@ fn active(plan: &Plan) -> String {
     table::aligned(&rows)
 }
 
-/// Why they are there.
+/// Lists the reasons for the terms.
 fn reasons(plan: &Plan) -> String {
     let effects = plan.effects.iter();
     listed("called for by", effects.map(|e| (&e.name, &e.why)))
 }
 
-/// What is not there.
+/// Lists the absent terms.
 fn missing(plan: &Plan) -> String {
     let absent = plan.absent.iter();
     listed("not there", absent.map(|a| (&a.name, &a.why)))
 }
 
-/// Names under a heading with what is said of them, in two columns.
+/// Lists names under a heading with their texts, in two columns.
 fn listed<'a>(heading: &str, lines: impl Iterator<Item = (&'a String, &'a String)>) -> String {
     let lines: Vec<_> = lines.collect();
     let widths = lines.iter().map(|(name, _)| name.chars().count());

@@ -1,4 +1,4 @@
-//! What `summary.json` says about the linear systems of a solve.
+//! The linear systems of a solve in `summary.json`.
 
 use serde::Serialize;
 
@@ -13,7 +13,7 @@ pub(super) struct LinearSystems {
     stages: Option<Stages>,
 }
 
-/// What the linear solver along the horizon did.
+/// Counts and times of the linear solver along the horizon.
 #[derive(Debug, Serialize)]
 struct Stages {
     factorisations: usize,

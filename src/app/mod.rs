@@ -1,16 +1,16 @@
-//! What the commands do: files in, files and words out.
+//! Commands: files in, files and messages out.
 //!
-//! - `solve`, `forward`, `rest`: the three tasks; `task` chooses what a file asks for; `path`, `followed`: paths of equilibria.
-//! - `batch`: several solves at once, in threads or processes; `multistart`: a control problem from several guesses.
-//! - `inspect`, `sparsity`, `check`, `templates`: the other commands; `program`: what is asked from other languages in place of files.
+//! - `solve`, `forward`, `rest`: the three tasks; `task` chooses the one of a file; `path`, `followed`: paths of equilibria.
+//! - `batch`: several solves in parallel, in threads or processes; `multistart`: a control problem from several guesses.
+//! - `inspect`, `sparsity`, `check`, `templates`: the other commands; `program`: entry points for other languages in place of files.
 //! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
-//! - `continuation`: runs that go on from the result of another; `digest`, `identity`: what tells that two are the same.
-//! - `once`, `record`: a result that is made once, and what tells that its files are whole.
-//! - `shown`: which part of a motion tables, figures and page show.
+//! - `continuation`: runs that go on from the result of another; `digest`, `identity`: content hash, and identity of problems.
+//! - `once`, `record`: a result that is made once, and the hashes of its files.
+//! - `shown`: part of a motion that tables, figures and page show.
 //! - `side_by_side`: several results on one page.
-//! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`, `moved_markers`: what is told of a result.
-//! - `other_task`: what is said where a problem asks for another command; `no_equilibrium`: what is written where nothing rests.
-//! - `page`, `solve_page`: what the page tells; `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `foreign`, `progress`, `ticker`, `request`, `error`: what commands share.
+//! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`, `moved_markers`: texts about a result.
+//! - `other_task`: messages where a problem asks for another command; `no_equilibrium`: the summary where there is no state of rest.
+//! - `page`, `solve_page`: texts of the page; `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `foreign`, `progress`, `ticker`, `request`, `error`: common parts of commands.
 
 mod accuracy_table;
 mod batch;

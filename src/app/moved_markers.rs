@@ -1,4 +1,4 @@
-//! How far markers of elastic blocks stand from where they are written.
+//! Distances of markers of elastic blocks from the places where they are written.
 
 use crate::math::shortest;
 use crate::model::System;

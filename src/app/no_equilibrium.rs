@@ -1,4 +1,4 @@
-//! What is written of a run that finds no state of rest to begin with, to end with, or at all: its summary alone.
+//! Result of a run that finds no state of rest to begin with, to end with, or at all: its summary alone.
 
 use crate::app::error::CommandError;
 use crate::app::folder::make_folder;

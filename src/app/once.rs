@@ -53,7 +53,7 @@ pub fn run_once(request: &CommandInput) -> Result<CommandOutput, CommandError> {
     Ok(told)
 }
 
-/// What a folder holds of the result of a run.
+/// Returns the result of a run that a folder holds.
 fn found(folder: &Path, identity: &Identity) -> Found<Record> {
     let Ok(text) = fs::read_to_string(folder.join(OF_RUN)) else {
         return Found::Nothing;

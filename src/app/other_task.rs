@@ -1,4 +1,4 @@
-//! The command that does what a problem asks, named where another one was typed.
+//! Message that names the command for the task of a problem, where another one was typed.
 
 use crate::app::error::CommandError;
 use crate::app::request::CommandInput;

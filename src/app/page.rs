@@ -1,4 +1,4 @@
-//! What every page tells: how it ended, what else there is to say, what was asked.
+//! Common texts of all pages: status, notes, and the problem.
 
 use crate::app::summary::Summary;
 use crate::files::{Loaded, compact, lay_out};
@@ -14,7 +14,7 @@ pub(super) fn asked(loaded: &Loaded) -> Vec<(String, String)> {
     documents
 }
 
-/// What a summary says, before rows and plots; `asked` are the texts of problem and scene.
+/// Texts of a summary, before rows and plots; `asked` are the texts of problem and scene.
 pub(super) fn told(title: &str, summary: &Summary, asked: &[(String, String)]) -> Told {
     let mut documents = vec![("Summary".to_owned(), summary.text())];
     documents.extend_from_slice(asked);

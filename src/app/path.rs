@@ -153,7 +153,7 @@ pub(super) fn follow(
 struct Stop<'a> {
     rest: &'a Equilibrium,
     fraction: f64,
-    /// How stability is lost here.
+    /// Instability by which stability is lost here.
     lost: Option<Instability>,
 }
 
@@ -202,7 +202,7 @@ fn single_instant(history: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory 
     }
 }
 
-/// Fraction, voltages, markers, stretches, charges, energies and stability of each equilibrium, and whether stability is lost
+/// Fraction, voltages, markers, stretches, charges, energies and stability of each equilibrium, and a mark if stability is lost
 /// there.
 fn observed(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory) -> Observations {
     let mut columns = Vec::new();

@@ -1,4 +1,4 @@
-//! A problem in memory: whether it is one, and its nonlinear program for a solver of one's own.
+//! A problem in memory: its validation, and its nonlinear program for a solver of one's own.
 
 use std::path::{Path, PathBuf};
 

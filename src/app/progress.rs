@@ -1,4 +1,4 @@
-//! Progress on standard error: what is being done before there is anything to count, the iterations of a solve, the steps of a
+//! Progress on standard error: the phase of work before there is anything to count, the iterations of a solve, the steps of a
 //! simulation.
 
 use std::cell::RefCell;
@@ -10,21 +10,21 @@ use crate::app::ticker::Ticker;
 use crate::ipopt::Iteration;
 use crate::workflow::listen_to_phases;
 
-/// Whether progress is shown.
+/// Display of progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProgressDisplay {
-    /// Where standard error is a terminal.
+    /// If standard error is a terminal.
     OnTerminal,
     /// Never.
     Never,
 }
 
-/// Where a run has come to.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug)]
 pub enum Reached<'a> {
-    /// A solve on so many intervals accepted an iterate.
+    /// A solve on this number of intervals accepted an iterate.
     Iteration(usize, &'a Iteration),
-    /// A simulation has done so many steps, up to this time in ms.
+    /// A simulation has done this number of steps, up to this time in ms.
     Step(usize, f64),
 }
 
@@ -45,7 +45,7 @@ fn show_phases() {
     });
 }
 
-/// A line that changes while a run goes on.
+/// A line that changes during a run.
 #[derive(Debug)]
 pub(crate) struct Progress {
     bar: ProgressBar,
@@ -55,7 +55,7 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// A run of which nothing is known yet but what it does.
+    /// A run of which only the phase is known yet.
     pub(super) fn of_phases(shown: ProgressDisplay) -> Self {
         Self::of_solve(shown)
     }
@@ -101,7 +101,7 @@ impl Progress {
         }
     }
 
-    /// An iterate on so many intervals was accepted.
+    /// Reports an accepted iterate on a number of intervals.
     pub(super) fn iteration(&self, intervals: usize, at: &Iteration) {
         self.bar.set_message(format!(
             "{intervals} intervals  iteration {}  objective {:.6e}  infeasibility {:.1e}  optimality {:.1e}{}",
@@ -127,7 +127,7 @@ impl Progress {
             .set_message(format!("({solved} solved{best}{left})"));
     }
 
-    /// Step `step` of so many is done.
+    /// Reports that step `step` is done.
     pub(super) fn step(&self, steps: usize, step: usize) {
         // The number of steps that a tolerance controls is not known.
         let known = if steps == usize::MAX { step } else { steps };

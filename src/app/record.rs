@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::digest::digest_of;
 
-/// What can be otherwise the next time.
+/// Statuses that may be otherwise the next time.
 const UNFINISHED: [&str; 5] = [
     "not_started",
     "interrupted",
@@ -18,7 +18,7 @@ const UNFINISHED: [&str; 5] = [
     "out_of_memory",
 ];
 
-/// Whether another attempt may end with another status.
+/// Returns true if another attempt may end with another status.
 pub(crate) fn is_unfinished(status: &str) -> bool {
     UNFINISHED.contains(&status)
 }
@@ -40,7 +40,7 @@ struct FileRecord {
 #[serde(transparent)]
 pub(crate) struct FileRecords(BTreeMap<String, FileRecord>);
 
-/// What a folder holds of a result.
+/// State of a result in a folder.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Found<T> {
     /// All of it as it was written.
@@ -52,7 +52,7 @@ pub(crate) enum Found<T> {
 }
 
 impl FileRecords {
-    /// The files that a folder has now, without records; what is still being written is left out.
+    /// The files that a folder has now, without records and unfinished files.
     ///
     /// # Errors
     /// A file cannot be read.

@@ -1,4 +1,4 @@
-//! What is typed and what is told: a command with its options, and its answer.
+//! Input and output of a command: its options, and its answer.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -24,30 +24,30 @@ pub struct CommandInput {
     pub max_seconds: Option<f64>,
     /// Iterations that the solver may take, in place of those of the file.
     pub max_iterations: Option<usize>,
-    /// Folder of the result from which the run goes on.
+    /// Folder of the result from which the run is resumed.
     pub from: Option<PathBuf>,
-    /// What is asked about the error of discretisation.
+    /// Target of the error of discretisation.
     pub wanted: Option<AccuracyTarget>,
-    /// How figures look, and what is written besides.
+    /// Viewpoint of figures, and further formats.
     pub figures: Figures,
-    /// Whether progress is shown.
+    /// Display of progress.
     pub progress: ProgressDisplay,
-    /// Whether `report.html` is written.
+    /// Writing of `report.html`.
     pub page: PageWanted,
 }
 
-/// Whether a page is written.
+/// Writing of a page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PageWanted {
-    /// With the other files.
+    /// It is written with the other files.
     #[default]
     Written,
-    /// Nobody wants it.
+    /// It is not written.
     LeftOut,
 }
 
 impl PageWanted {
-    /// What the page says, where it is written.
+    /// Returns the texts of the page, where it is written.
     pub(super) fn of(self, told: &Told) -> Option<&Told> {
         (self == Self::Written).then_some(told)
     }
@@ -56,11 +56,11 @@ impl PageWanted {
 /// The answer of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandOutput {
-    /// Whether the question has an answer: exit status 0, otherwise 1.
+    /// True if the task has an answer: exit status 0, otherwise 1.
     pub is_solved: bool,
-    /// What goes to standard output.
+    /// Text on standard output.
     pub result: String,
-    /// What else there is to say, on standard error.
+    /// Further notes, on standard error.
     pub notes: Vec<String>,
 }
 
@@ -76,7 +76,7 @@ impl CommandInput {
         })
     }
 
-    /// Where results come from; Ipopt is named where it has a part.
+    /// Returns the origin of results; Ipopt is named where it has a part.
     pub fn origin(&self, with_ipopt: bool) -> Origin {
         Origin {
             command: self.command.clone(),
@@ -91,7 +91,7 @@ impl CommandInput {
     }
 }
 
-/// Names of files that say nothing of what is in them.
+/// File names that do not identify a problem.
 const GENERIC: [&str; 2] = ["problem", "scene"];
 
 /// The name of a problem: that of its file, or of its folder.

@@ -1,8 +1,8 @@
-//! What is observed at rest.
+//! Observations at rest.
 
 use crate::dynamics::trajectory::Observations;
 
-/// What is observed of a state of rest: neither time nor rates nor what follows from them.
+/// Reduces observations to those of a state of rest: neither time nor rates nor what follows from them.
 pub(super) fn at_rest(mut observed: Observations) -> Observations {
     let moves = |name: &str| {
         let of_motion = ["linear_momentum", "angular_momentum", "kinetic_energy"];

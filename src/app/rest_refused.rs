@@ -1,11 +1,11 @@
-//! Why nothing is found at rest.
+//! Error or result of a search for an equilibrium that finds none.
 
 use crate::app::error::CommandError;
 use crate::app::no_equilibrium;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::dynamics::EquilibriumError;
 
-/// Why there is no equilibrium at all: a floating block is wrong input, anything else a result of which the summary alone is written.
+/// Handles a missing equilibrium: a floating block is wrong input, anything else a result of which the summary alone is written.
 pub(super) fn refused(
     request: &CommandInput,
     error: &EquilibriumError,

@@ -1,4 +1,4 @@
-//! A static equilibrium in words and in `summary.json`: joint coordinates, marker places, stiffness, and how it was found.
+//! A static equilibrium in words and in `summary.json`: joint coordinates, marker places, stiffness, and the route to it.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,7 +19,7 @@ use crate::workflow::motion::solved;
 pub(super) struct Rest {
     /// Voltage of each muscle and electrode in V.
     voltages: BTreeMap<String, f64>,
-    /// What part of the voltages asked for these are, where they were not reached.
+    /// Fraction of the voltages asked for that these are, where they were not reached.
     #[serde(skip_serializing_if = "Option::is_none")]
     fraction: Option<f64>,
     /// Largest electric field of an element of a block in its reference configuration in V/m.
@@ -34,16 +34,16 @@ pub(super) struct Rest {
     /// Eigenvalues of the stiffness in joint coordinates, N m/rad for angles, N/m for displacements; where there are both, those
     /// in rad and mm, in N mm.
     stiffness: Vec<f64>,
-    /// What the softest mode moves, and what makes it soft.
+    /// Motion of the softest mode, and the cause of its softness.
     #[serde(skip_serializing_if = "Option::is_none")]
     softest_mode: Option<Softest>,
-    /// Whether the equilibrium is stable, by them or by the inertia of the tangent; nothing where that is not known.
+    /// True if the equilibrium is stable, by them or by the inertia of the tangent; nothing where that is not known.
     is_stable: Option<bool>,
     /// Number of directions in which the potential energy falls, by the inertia of the tangent.
     unstable_directions: Option<usize>,
     /// `growing_loads`, `path_continued` or `energy_minimum`.
     route: &'static str,
-    /// Where the path of growing loads loses its stable equilibrium, if this one does not lie on it.
+    /// State at which the path of growing loads loses its stable equilibrium, if this one does not lie on it.
     #[serde(skip_serializing_if = "Option::is_none")]
     lost: Option<Lost>,
     /// Newton iterations.
@@ -56,7 +56,7 @@ pub(super) struct Rest {
 /// The softest mode.
 #[derive(Debug, Serialize)]
 struct Softest {
-    /// What moves most.
+    /// Parts that move most.
     moves: String,
     /// `voltages`, `weight` or `elastic_forces`; absent where nothing takes from the elastic stiffness.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -90,7 +90,7 @@ fn kind(loss: StabilityLoss) -> &'static str {
     loss.kind.map_or("a limit point", Instability::words)
 }
 
-/// What there is to tell of an equilibrium; of the last one where growing loads lose it.
+/// Describes an equilibrium; the last one where growing loads lose it.
 pub(super) fn describe(
     model: &Model,
     state: &DiscreteTrajectory,
@@ -233,7 +233,7 @@ impl Rest {
     }
 }
 
-/// One line: what is lost, at which loads, what gives way, and where the last state is.
+/// One line: the kind of loss, its loads, the parts that give way, and the last state.
 pub(super) fn lost(rest: &Rest, loss: StabilityLoss, folder: &Path) -> String {
     let mut text = format!(
         "no equilibrium was found, neither on the path of growing loads nor by descent of the potential energy from it: {} at {:.6} % of the {}",

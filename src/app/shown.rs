@@ -1,4 +1,4 @@
-//! What is shown of a motion, and what a reader is told of it.
+//! Displayed part of a motion, and the notes on it.
 
 use std::collections::HashSet;
 use std::io;
@@ -31,21 +31,21 @@ pub(super) struct Shown {
     /// Columns of the table.
     pub(super) tabulated: Observations,
     pub(super) skins: Skins,
-    /// Where not all instants are shown.
+    /// Size of the displayed part, where not all instants are shown.
     pub(super) part: Option<ShownPart>,
-    /// What there is to say of it.
+    /// Notes on it.
     pub(super) notes: Vec<String>,
     sampled: Option<Sampled>,
 }
 
-/// How much of a motion is shown.
+/// Size of the displayed part of a motion.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct ShownPart {
     instants: usize,
     of: usize,
 }
 
-/// What there is of a motion.
+/// A motion with its observations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion<'a> {
     pub(super) model: &'a Model,
@@ -55,8 +55,8 @@ pub(super) struct Motion<'a> {
 }
 
 impl Shown {
-    /// What is shown of a motion: all that is asked for, or where nothing is asked all of it, and of a long simulation so many instants that
-    /// nothing is lost to the eye; its complete tables are then a file of the result.
+    /// Returns the displayed part of a motion: all that is asked for, or where nothing is asked all of it, and of a long simulation fewer instants,
+    /// between which the motion is straight to the eye; its complete tables are then a file of the result.
     ///
     /// # Errors
     /// That file cannot be written.
@@ -145,7 +145,7 @@ impl Shown {
         }
     }
 
-    /// What was to be followed, as it is shown.
+    /// Returns the references at the instants that are shown.
     pub(super) fn tracked(&self, full: &[Tracked]) -> Vec<Tracked> {
         match &self.sampled {
             Some(sampled) => sampled.tracked(full),
@@ -153,7 +153,7 @@ impl Shown {
         }
     }
 
-    /// Another motion that is drawn beside it.
+    /// Another motion that is drawn next to it.
     pub(super) fn beside(&self, other: Trajectory) -> Trajectory {
         match &self.sampled {
             Some(_) => thinned(&other),

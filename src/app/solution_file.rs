@@ -1,4 +1,4 @@
-//! `solution.json`, of a long motion with `solution.npz` beside it.
+//! `solution.json`, of a long motion with `solution.npz` next to it.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! A control problem from file to folder: solved, re-simulated, and all that is told of it.
+//! A control problem from file to folder: solved, re-simulated, and reported.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -51,9 +51,9 @@ use crate::workflow::tracking::followed;
 use crate::workflow::verified::{ACCURACY, verified};
 use crate::workflow::violations::Violation;
 
-/// Length of the motion under constant voltages that is drawn beside the optimal one, in durations.
+/// Length of the motion under constant voltages that is drawn next to the optimal one, in durations.
 const COMPARED: usize = 3;
-/// How a solve ends that might have gone on.
+/// Statuses of a solve that might have gone on.
 const STOPPED: [&str; 3] = ["interrupted", "time_limit", "iteration_limit"];
 /// Solves a control problem and writes its folder, solved or not.
 pub(super) fn control(
@@ -216,7 +216,7 @@ struct Found {
     /// Iterations on the grids up to its own.
     iterations: usize,
     accuracy: Option<Accuracy>,
-    /// Why another grid was taken than that of the problem.
+    /// Note on the reason for another grid than that of the problem.
     note: Option<String>,
 }
 

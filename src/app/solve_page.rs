@@ -1,4 +1,4 @@
-//! What the page tells of a control problem: rows of its table, the way of the solver, the goal.
+//! Texts of the page of a control problem: rows of its table, the convergence of the solver, the goal.
 
 use crate::app::exchanged::Exchanged;
 use crate::app::summary::{Program, Summary};

@@ -1,4 +1,4 @@
-//! Words for how a solve went.
+//! Messages about the end of a solve.
 
 use crate::control::Carried;
 use crate::ipopt::Status;
@@ -6,7 +6,7 @@ use crate::math::significant;
 use crate::model::Model;
 use crate::workflow::final_values::FinalValue;
 
-/// Final values told at most.
+/// Maximum number of final values listed.
 const TOLD: usize = 6;
 
 /// A further reason why a solve failed, where there is one.
@@ -21,7 +21,7 @@ pub(super) fn redundancy(redundant: &[String]) -> String {
     }
 }
 
-/// What a status means for the problem.
+/// Returns the meaning of a status for the problem.
 pub(super) fn meaning(status: Status) -> &'static str {
     match status {
         Status::Infeasible | Status::RestorationFailed => {
@@ -40,7 +40,7 @@ pub(super) fn meaning(status: Status) -> &'static str {
     }
 }
 
-/// What became of an earlier solution as a guess.
+/// Describes the changes of an earlier solution that serves as a guess.
 pub(super) fn carried(carried: &Carried) -> Vec<String> {
     let stretched = carried.stretched.map(|[from, to]| {
         format!(
@@ -56,7 +56,7 @@ pub(super) fn carried(carried: &Carried) -> Vec<String> {
     stretched.into_iter().chain(simulated).collect()
 }
 
-/// Why an optimum of the discrete equations is none of the system.
+/// Explains why the discrete optimum is not a solution of the continuous problem.
 pub(super) fn unresolved(model: &Model, interval: usize, muscle: usize) -> String {
     format!(
         "muscle \"{}\" turns by a right angle or more in interval {interval}: its ends meet on the way, or the intervals are \
@@ -65,12 +65,12 @@ pub(super) fn unresolved(model: &Model, interval: usize, muscle: usize) -> Strin
     )
 }
 
-/// What is told of an optimum that the first start did not find.
+/// Describes an optimum that the first start did not find.
 pub(super) fn restarted(first: Status) -> String {
     format!("found from a second, displaced initial guess; the first ended {first}")
 }
 
-/// Where a motion ends of what final costs ask for; of many the farthest in their own unit.
+/// Lists the final values of a motion for which final costs ask; of many the farthest in their own unit.
 pub(super) fn ends(values: &[FinalValue]) -> Vec<String> {
     let mut order: Vec<&FinalValue> = values.iter().collect();
     if order.len() > TOLD {
@@ -86,7 +86,7 @@ pub(super) fn ends(values: &[FinalValue]) -> Vec<String> {
     lines
 }
 
-/// Where one quantity ends: lengths in mm, angles in degrees.
+/// Describes one final value: lengths in mm, angles in degrees.
 fn end(value: &FinalValue) -> String {
     let shown = |number: f64| match value.unit {
         "m" => format!("{} mm", significant(1e3 * number, 4)),

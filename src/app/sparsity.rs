@@ -1,4 +1,4 @@
-//! A picture of a sparse matrix: where its entries stand.
+//! A picture of a sparse matrix: the positions of its entries.
 
 use crate::nlp::Entries;
 use crate::report::canvas::{self, Align, Stroke};
@@ -12,7 +12,7 @@ const MARGIN: f64 = 26.0;
 /// Cells along the longer side at most: more entries than that share cells.
 const CELLS: usize = 420;
 
-/// What a matrix is called and how large it is.
+/// Name and size of a matrix.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MatrixSize<'a> {
     pub(super) name: &'a str,

@@ -1,4 +1,4 @@
-//! `summary.json`: what was asked, how it ended, how large it was and how long it took.
+//! `summary.json`: the problem, its status, its size and its times.
 
 use std::fs;
 use std::time::Instant;
@@ -41,25 +41,25 @@ pub(super) struct Summary {
     pub(super) input: String,
     /// A word: `solved`, `simulated`, `infeasible`, `interrupted`, …
     pub(super) status: String,
-    /// Why it ended early, in words.
+    /// Reason why it ended early, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) message: Option<String>,
-    /// What else there is to say of the result.
+    /// Warnings and notes on the result.
     #[serde(skip_serializing_if = "Remarks::is_empty")]
     pub(super) notes: Remarks,
     #[serde(flatten)]
     pub(super) program: Option<Program>,
     #[serde(flatten)]
     pub(super) simulation: Option<Simulation>,
-    /// How many instants tables, figures and page show, where not all.
+    /// Number of instants that tables, figures and page show, where not all.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) shown: Option<ShownPart>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) accuracy: Option<Accuracy>,
-    /// How closely markers and joints follow what the objective names.
+    /// Deviations of markers and joints from the references of the objective.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) tracking: Vec<Tracked>,
-    /// Where it ends of what final costs ask for.
+    /// Values at its end for which final costs ask.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) final_values: Vec<FinalValue>,
     /// Electrical energy and mechanical work of a motion.
@@ -71,7 +71,7 @@ pub(super) struct Summary {
     pub(super) rest: Option<Rest>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) path: Option<Followed>,
-    /// What leaves the domain of the first-order dielectric.
+    /// Muscles and blocks that leave the domain of the first-order dielectric.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) domain: Vec<Outside>,
     #[serde(flatten)]
@@ -98,9 +98,9 @@ pub(super) struct Program {
     pub(super) constraints: usize,
     pub(super) jacobian_nonzeros: usize,
     pub(super) hessian_nonzeros: usize,
-    /// Who solved the linear systems, and what that took.
+    /// Solver of the linear systems, with its counts and times.
     pub(super) linear_solver: LinearSystems,
-    /// How often the solver asked for what.
+    /// Number of evaluations of each quantity by the solver.
     pub(super) evaluations: Evaluations,
     /// Mean time of one evaluation per interval.
     pub(super) interval_microseconds: PerInterval,
@@ -114,10 +114,10 @@ pub(super) struct Program {
     /// Parameters that were sought.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) parameters: Vec<SoughtValue>,
-    /// How far the objective may lie above its least value; absent of what is no solution.
+    /// Bound of the objective above its least value; absent without a solution.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) gap: Option<f64>,
-    /// What follows a goal that no voltages are known to hold.
+    /// Motion after a goal that no known voltages hold.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) afterwards: Option<Afterwards>,
 }
@@ -131,7 +131,7 @@ pub(super) struct SoughtValue {
     pub(super) value: f64,
     /// Of the International System, empty for a ratio.
     pub(super) unit: &'static str,
-    /// Whether it lies at a bound.
+    /// True if it lies at a bound.
     pub(super) at_bound: bool,
 }
 
@@ -186,14 +186,14 @@ pub(super) struct PerInterval {
     pub(super) hessian: Option<f64>,
 }
 
-/// What a simulation did.
+/// Report of a simulation.
 #[derive(Debug, Serialize)]
 pub(super) struct Simulation {
     /// Steps recorded.
     pub(super) steps: usize,
     /// Length of the motion in s.
     pub(super) duration: f64,
-    /// Estimate of what the steps neglect; absent where they are too few.
+    /// Estimate of the local errors of the steps; absent where they are too few.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) local_error: Option<Neglected>,
     /// The method.
@@ -204,14 +204,14 @@ pub(super) struct Simulation {
     /// Estimated error of the motion in the unit of the tolerance; absent of equal steps.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) estimated_error: Option<f64>,
-    /// Whether steps of two other lengths confirm the estimate.
+    /// True if steps of two other lengths confirm the estimate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) is_confirmed: Option<bool>,
     /// Newton iterations.
     pub(super) newton_iterations: usize,
     /// Steps that had to be halved.
     pub(super) halved_steps: usize,
-    /// Who factorised the tangents.
+    /// Method that factorised the tangents.
     pub(super) linear_solver: String,
     /// Factorisations of the tangent.
     pub(super) factorisations: usize,
@@ -234,7 +234,7 @@ pub(super) struct Neglected {
     pub(super) relative: f64,
     /// Order of the method.
     pub(super) order: usize,
-    /// Whether differences of the motion fall with their order; otherwise the estimate is no more than a warning.
+    /// True if differences of the motion fall with their order; otherwise the estimate is no more than a warning.
     pub(super) is_resolved: bool,
 }
 
@@ -280,9 +280,9 @@ impl Simulation {
 /// Wall time in s.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(super) struct Seconds {
-    /// From reading to the last file but the summary.
+    /// Seconds from reading to the last file but the summary.
     pub(super) total: f64,
-    /// Of these in what is made for people and written: tables, figures, page.
+    /// Seconds of these for output: tables, figures, page.
     pub(super) writing: f64,
     /// Before the solver or the first step.
     pub(super) setup: f64,

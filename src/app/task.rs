@@ -1,4 +1,4 @@
-//! What a problem file asks for, done.
+//! Runs the task of a problem file: control, simulation or equilibrium.
 
 use std::path::Path;
 use std::time::Instant;
@@ -22,7 +22,7 @@ use crate::workflow::accuracy::AccuracyTarget;
 use crate::workflow::memory;
 use crate::workflow::phase::phase;
 
-/// Reads a problem and does what it asks: optimal control, simulation or equilibrium.
+/// Runs the task of a problem: optimal control, simulation or equilibrium.
 ///
 /// # Errors
 /// The input is wrong, and nothing was written; or the results cannot be written.
@@ -83,7 +83,7 @@ fn run_checked(
     no_equilibrium::kept(request, answer)
 }
 
-/// Reads a problem and whether the machine has room for it.
+/// Reads a problem and checks that the machine has room for it.
 pub(super) fn read(
     input: &Path,
     text: Option<&str>,

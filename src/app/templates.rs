@@ -1,4 +1,4 @@
-//! Files to begin with: robots, the scene without shorthand, the schemas.
+//! Templates: robots, the scene without shorthand, the schemas.
 
 use std::path::{Path, PathBuf};
 
@@ -63,7 +63,7 @@ impl Template {
     }
 }
 
-/// Writes scene and problem of a robot into a folder, beside the schemas from which editors complete them, and tells what comes next; files that
+/// Writes scene and problem of a robot into a folder, with the schemas from which editors complete them, and names the next command; files that
 /// exist are left alone.
 ///
 /// # Errors

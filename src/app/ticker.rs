@@ -1,4 +1,4 @@
-//! The time on a line of progress, which goes on while nothing else is told.
+//! The time on a line of progress, updated while there is no other news.
 
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread;
@@ -12,12 +12,12 @@ const PERIOD: Duration = Duration::from_millis(120);
 /// A thread that draws a line again and again, until it is dropped.
 #[derive(Debug)]
 pub(super) struct Ticker {
-    /// Nothing is ever sent: the thread hears that it is gone.
+    /// Nothing is ever sent: the thread notices that it is gone.
     _alive: Sender<()>,
 }
 
 impl Ticker {
-    /// Draws a line; none where no thread can be had, and then it is drawn when there is something to tell.
+    /// Draws a line; none where no thread can be had, and then it is drawn at the next message.
     pub(super) fn of(bar: &ProgressBar) -> Option<Self> {
         let (alive, gone) = mpsc::channel();
         let bar = bar.downgrade();

@@ -1,4 +1,4 @@
-//! How closely a motion follows its path, in words.
+//! Messages about the deviations of a motion from its reference.
 
 use crate::math::significant;
 use crate::workflow::tracking::Tracked;
@@ -23,7 +23,7 @@ pub(super) fn row(of: &Tracked) -> (String, String) {
     (key, words(of))
 }
 
-/// Lines that tell how closely a motion follows; of many joints the worst.
+/// Lines about the tracking errors of a motion; of many joints the worst.
 pub(super) fn told(tracked: &[Tracked]) -> Vec<String> {
     let joints = tracked.iter().filter(|one| one.kind == "joint");
     let count = joints.clone().count();

@@ -1,4 +1,4 @@
-//! What a long run has found so far, kept for the case that it is killed.
+//! Latest iterate of a long run, stored in case it is killed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use crate::report::atomic::WriteError;
 
 /// Shortest and longest time between two writings.
 const PERIOD: [Duration; 2] = [Duration::from_secs(2), Duration::from_secs(30)];
-/// No more than one part in so many of the time goes into writing.
+/// Writing takes at most one part in this number of the time.
 const SHARE: u32 = 20;
 /// A point of no greater violation is as good as one that meets equations and limits.
 const MEETS: f64 = 1e-6;
@@ -18,7 +18,7 @@ const MEETS: f64 = 1e-6;
 #[derive(Debug)]
 pub(super) struct Unfinished {
     path: PathBuf,
-    /// When it may be written next.
+    /// Time from which on it may be written next.
     next: Instant,
     /// Violation of the point in the file.
     violation: f64,
@@ -34,7 +34,7 @@ impl Unfinished {
         }
     }
 
-    /// Writes what there is, when it is time and it is as good as what was written: `violation` is that of its equations and
+    /// Writes the iterate, when it is time and it is as good as the one written before: `violation` is that of its equations and
     /// limits.
     pub(super) fn consider(
         &mut self,

@@ -1,4 +1,4 @@
-//! Words that several commands use.
+//! Messages that several commands use.
 
 use crate::control::problem::Task;
 

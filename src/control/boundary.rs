@@ -1,4 +1,4 @@
-//! Start and goal: which coordinates they give, which equations they add, and the voltages at rest.
+//! Start and goal: the coordinates that they give, the equations that they add, and the voltages at rest.
 
 use crate::control::conditions::{BoundaryConditions, Rests, TerminalState};
 use crate::control::ends;
@@ -174,7 +174,7 @@ impl BoundaryConditions {
     }
 }
 
-/// Whether a goal gives all coordinates of a tree, each the only one of its joint.
+/// Returns true if a goal gives all coordinates of a tree, each the only one of its joint.
 fn all_joints_given(system: &System, goal: &BoundaryState) -> bool {
     let BoundaryState::JointAngles { angles, .. } = goal else {
         return false;

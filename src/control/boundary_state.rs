@@ -20,7 +20,7 @@ pub enum BoundaryState {
         /// of the first body of a free part and of those on a spherical or floating joint. Others follow from their joints.
         velocities: BTreeMap<usize, [Vector3<f64>; 2]>,
     },
-    /// Where another motion ended, moving on; only at a start.
+    /// The end of another motion, moving on; only at a start.
     EndOf(Box<EndState>),
     /// Positions of markers in mm by marker index and orientations of bodies by body index, at rest; only as a goal.
     Markers {
@@ -28,7 +28,7 @@ pub enum BoundaryState {
         places: BTreeMap<usize, Place>,
         /// The orientations.
         orientations: BTreeMap<usize, Orientation>,
-        /// What comes to rest there.
+        /// Part of the system that comes to rest there.
         rest: Rest,
         /// Voltages that are held afterwards (V, one per source), where they are known.
         hold: Option<Vec<f64>>,
@@ -37,7 +37,7 @@ pub enum BoundaryState {
     Free,
 }
 
-/// What comes to rest at a goal.
+/// Part of the system that comes to rest at a goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rest {
     /// Every coordinate.
@@ -49,7 +49,7 @@ pub enum Rest {
     Attainable,
 }
 
-/// What becomes of a goal that its voltages do not keep.
+/// Treatment of a goal that its voltages do not keep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hold {
     /// It is reported.
@@ -81,7 +81,7 @@ impl BoundaryState {
         (std::mem::replace(rest, what) == Rest::Attainable).then_some(goal)
     }
 
-    /// What there is to say of it.
+    /// Returns notes on the state.
     pub fn notes(&self) -> &[String] {
         match self {
             Self::EndOf(end) => &end.notes,

@@ -1,7 +1,7 @@
-//! What a task calls for: the question that it puts to the model.
+//! Analysis that a task requires of the model.
 //!
 //! A source is at zero voltage where neither the task nor the states at its ends name a voltage other than zero; a body or a block is
-//! stirred where a start, a goal or a limit names it.
+//! initially moving where a start, a goal or a limit names it.
 
 use std::collections::BTreeSet;
 
@@ -25,7 +25,7 @@ impl Simulation {
 }
 
 impl AtRest {
-    /// The question of a state of rest. Its stability is asked for too, that of unloaded parts included: nothing is taken to
+    /// The analysis of a state of rest. Its stability is computed too, that of unloaded parts included: nothing is taken to
     /// be still.
     pub fn question(&self, system: &System) -> Analysis {
         Analysis {
@@ -37,7 +37,7 @@ impl AtRest {
 }
 
 impl Control {
-    /// The question of a horizon of intervals of about `interval` ms, without the quantities that are measured.
+    /// The analysis of a horizon of intervals of about `interval` ms, without the quantities that are measured.
     pub fn question(&self, system: &System, interval: f64) -> Analysis {
         let is_driven = |s: usize| match &self.course {
             Some(course) => course.drive(s),

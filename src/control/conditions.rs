@@ -1,4 +1,4 @@
-//! What a motion begins and ends with.
+//! Boundary conditions of a motion: its start and its terminal state.
 
 use crate::control::limits::Limits;
 use crate::dynamics::{Equilibrium, Start};
@@ -6,19 +6,19 @@ use crate::dynamics::{Equilibrium, Start};
 /// A control problem's model with its start and goal.
 #[derive(Debug)]
 pub struct BoundaryConditions {
-    /// Where the motion starts.
+    /// Start of the motion.
     pub start: Start,
-    /// Where it ends.
+    /// End of the motion.
     pub goal: TerminalState,
     /// Voltages at rest before the start and after the goal (V, one per muscle), where known.
     pub rest: [Option<Vec<f64>>; 2],
     /// Limits and goal equations.
     pub limits: Limits,
-    /// What there is to say of them.
+    /// Notes on both.
     pub notes: Vec<String>,
 }
 
-/// What comes to rest at the end.
+/// Part of the system that comes to rest at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rests {
     /// Every coordinate.
@@ -34,14 +34,14 @@ pub enum Rests {
 pub struct TerminalState {
     /// Given coordinates; `None` where the optimisation decides.
     pub coordinates: Vec<Option<f64>>,
-    /// What rests.
+    /// Part of the system that rests.
     pub rests: Rests,
     /// The equilibrium that it is, where it is one under voltages that are named.
     pub rest: Option<Equilibrium>,
 }
 
 impl TerminalState {
-    /// Charts of the equilibrium that it is, behind so many unknowns; none where it is no such equilibrium.
+    /// Charts of the equilibrium, behind this number of unknowns; none where the state is no equilibrium.
     pub fn charts(&self, unknowns: usize) -> &[f64] {
         self.rest.as_ref().map_or(&[], |rest| &rest.z[unknowns..])
     }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use crate::control::Solution;
 use crate::model::Model;
 
-/// Where an earlier solution comes from.
+/// Source of an earlier solution.
 pub trait EarlierSolution: Debug + Send + Sync {
     /// The solution, for this model.
     ///

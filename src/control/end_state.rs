@@ -1,4 +1,4 @@
-//! Where another motion ended, as the start of a new one.
+//! The end of another motion, as the start of a new one.
 
 use crate::control::meshes::other_mesh;
 use crate::dynamics::{Start, StepState};
@@ -15,7 +15,7 @@ const SAME_PLACE: f64 = 1e-9;
 pub struct EndState {
     /// The folder of its result.
     pub source: PathBuf,
-    /// What `z` and `momentum` mean.
+    /// Coordinates to which `z` and `momentum` belong.
     pub coordinates: Coordinates,
     /// Coordinates, multipliers and charts.
     pub z: Vec<f64>,
@@ -27,9 +27,9 @@ pub struct EndState {
     pub meshes: BTreeMap<String, Vec<[f64; 3]>>,
     /// Voltages in V by source to which the muscles are charged.
     pub voltages: Vec<f64>,
-    /// State of the method, from which the same method goes on to the bit; no lists where it is not known.
+    /// State of the method, from which the same method resumes to the bit; no lists where it is not known.
     pub method: StepState,
-    /// What there is to say of that motion.
+    /// Notes on that motion.
     pub notes: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Limits at start and goal: what is known of both before the solve keeps them, or is refused by name.
+//! Limits at start and goal: values known before the solve keep them, or are refused by name.
 
 use std::collections::BTreeMap;
 
@@ -62,11 +62,11 @@ pub(super) fn check(
     Ok(())
 }
 
-/// What is known of a start or goal.
+/// Known values of a start or goal.
 struct End<'a> {
     model: &'a Model,
     instant: Configuration,
-    /// Which coordinates are known.
+    /// For each coordinate, true if it is known.
     known: Vec<bool>,
     /// Voltages and potentials, where they are known.
     scalars: Vec<Option<f64>>,
@@ -115,7 +115,7 @@ impl<'a> End<'a> {
         }
     }
 
-    /// What a joint limit says of it.
+    /// Returns the message of a joint limit that it breaks.
     fn joint(&self, limit: &PathConstraint) -> Option<String> {
         let PathConstraint::JointAngle { joint, min, max } = *limit else {
             return None;

@@ -1,4 +1,4 @@
-//! Costs of energies: what the sources of lumped muscles give, and what their electrical forces work.
+//! Costs of energies: the energy from the sources of lumped muscles, and the work of their electrical forces.
 
 use crate::model::System;
 use crate::model::components::capacitance;
@@ -8,7 +8,7 @@ use crate::model::components::capacitance;
 pub struct EnergyCost {
     /// Index of the source, which is that of its lumped muscle.
     pub source: usize,
-    /// Which energy, summed over the motion.
+    /// Energy, summed over the motion.
     pub energy: SourceEnergy,
     /// Weight per J, positive.
     pub weight: f64,
@@ -17,14 +17,14 @@ pub struct EnergyCost {
 /// An energy that a source and its muscle exchange with a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SourceEnergy {
-    /// From the source to the muscle; what flows back is negative.
+    /// Energy from the source to the muscle; energy that flows back is negative.
     Electrical,
     /// Work of the electrical forces.
     Mechanical,
 }
 
 impl EnergyCost {
-    /// Whether the source is that of a lumped muscle with electric constants.
+    /// Returns true if the source is that of a lumped muscle with electric constants.
     pub fn exists(&self, system: &System) -> bool {
         let muscle = system.muscles.get(self.source);
         muscle.and_then(capacitance).is_some()

@@ -1,4 +1,4 @@
-//! Why a control problem has no start, no goal or no solution to look for.
+//! Errors of control problems that are not well posed.
 
 use crate::dynamics::EquilibriumError;
 use crate::ipopt::Status;
@@ -16,7 +16,7 @@ pub enum BoundaryError {
     NoEquilibrium {
         /// `start` or `goal`.
         place: &'static str,
-        /// Why.
+        /// Reason.
         source: EquilibriumError,
     },
     /// A given configuration is not at rest under its voltages.
@@ -44,7 +44,7 @@ pub enum BoundaryError {
     OtherEnd {
         /// `start`.
         place: &'static str,
-        /// What differs.
+        /// Difference.
         reason: String,
     },
     /// The ends of a muscle meet in a given configuration.
@@ -60,10 +60,10 @@ pub enum BoundaryError {
     Parameter {
         /// Its name.
         name: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
-    /// What is known of the start or the goal breaks a limit.
+    /// Known values of the start or the goal break a limit.
     #[error("{place}: {reason}")]
     Limit {
         /// `start` or `goal`, or `limits` that contradict each other.
@@ -74,7 +74,7 @@ pub enum BoundaryError {
     /// Start and goal cannot be moved in a program that stands.
     #[error("start and goal need another program: {reason}")]
     OtherProgram {
-        /// What is other.
+        /// Difference.
         reason: String,
     },
     /// Ctrl-C was pressed, or the time allowed is over, before the problem was built.
@@ -101,15 +101,15 @@ pub enum BoundaryError {
         voltages: usize,
         /// Number of intervals.
         intervals: usize,
-        /// Whether nodes of elements are among the coordinates.
+        /// True if nodes of elements are among the coordinates.
         has_elements: bool,
     },
 }
 
-/// Goals told at most.
+/// Largest number of goals listed.
 const TOLD: usize = 6;
 
-/// How many equations each part of the goal has.
+/// Lists the parts of the goal with their numbers of equations.
 fn asked(rest: usize, given: usize, goals: &[(String, usize)]) -> String {
     let mut parts = Vec::new();
     if rest > 0 {
@@ -126,7 +126,7 @@ fn asked(rest: usize, given: usize, goals: &[(String, usize)]) -> String {
     parts.join(", ")
 }
 
-/// What makes them fewer.
+/// Returns the changes that make them fewer.
 fn cures(has_elements: bool, rest: usize) -> &'static str {
     match has_elements && rest > 0 {
         true => {

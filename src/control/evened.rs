@@ -1,4 +1,4 @@
-//! A motion in unequal steps, brought to equal ones: what a transcription starts from.
+//! Resampling of a motion in unequal steps to a uniform grid, from which a transcription starts.
 
 use std::borrow::Cow;
 

@@ -64,7 +64,7 @@ pub(super) struct Product {
 }
 
 impl Orientation {
-    /// Whether its directions are unit vectors and its angle is finite.
+    /// Returns true if its directions are unit vectors and its angle is finite.
     pub fn is_sound(&self) -> bool {
         let is_unit = |v: &Vector| (v.norm() - 1.0).abs() < 1e-9;
         match self {

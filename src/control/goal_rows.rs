@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// Configurations at which a gradient has to vanish.
 const TRIALS: u64 = 3;
-/// How far they are from the start, in rad and lengths of the system.
+/// Distance of these from the start, in rad and lengths of the system.
 const NEAR: f64 = 0.3;
 /// A gradient of this size is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -99,7 +99,7 @@ pub(super) fn leave_out_constant(
     Ok(())
 }
 
-/// Whether coordinates change a quantity of the instants somewhere.
+/// Returns true if coordinates change a quantity of the instants somewhere.
 fn changes(model: &Model, measure: usize, start: &[f64]) -> bool {
     let motion = &model.action.motion;
     let measure = Site::Instants.measure(model, measure);

@@ -1,4 +1,4 @@
-//! Where the solver starts: interpolated between start and goal, simulated, or an earlier solution.
+//! Initial guess of the solver: interpolated between start and goal, simulated, or an earlier solution.
 
 use crate::control::conditions::BoundaryConditions;
 use crate::control::evened::evened;
@@ -24,16 +24,16 @@ pub struct InitialGuess {
     pub h: f64,
     /// Costates and bound multipliers.
     pub costates: Option<Costates>,
-    /// What became of an earlier solution.
+    /// Changes that an earlier solution needed.
     pub carried: Carried,
 }
 
-/// What an earlier solution had to become to be a guess.
+/// Changes that an earlier solution needed to be a guess.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Carried {
     /// Its duration in ms and that of the guess, where they differ: it is stretched in time.
     pub stretched: Option<[f64; 2]>,
-    /// Whether the guess is the motion under its voltages: it does not tell where the nodes of these meshes are.
+    /// True if the guess is the motion under its voltages: it does not give the places of the nodes of these meshes.
     pub simulated: bool,
 }
 
@@ -158,7 +158,7 @@ fn interpolate(
     }
 }
 
-/// Joint coordinates of a state, where they tell all of it.
+/// Joint coordinates of a state, where they determine all of it.
 fn joints_of(model: &Model, z: &[f64]) -> Option<Vec<f64>> {
     let tells_all = Graph::new(&model.system).has_one_coordinate_a_joint(&model.system);
     tells_all.then_some(())?;
@@ -185,7 +185,7 @@ fn between(from: &[Pose], to: &[Pose], part: f64) -> Vec<Pose> {
 }
 
 /// An earlier solution: as it is on the same grid, carried over from another one, stretched in time where its duration is
-/// not allowed; from other coordinates the joints and what the poses tell beside them. Where it does not tell the places of the nodes, the
+/// not allowed; from other coordinates the joints and further data of the poses. Where it lacks the places of the nodes, the
 /// motion under its voltages.
 fn from_solution(
     model: &Model,

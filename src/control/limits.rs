@@ -8,7 +8,7 @@ use crate::model::{FieldPlace, Quantity, Region, System};
 /// A quantity with bounds at some instants or intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoundedQuantity {
-    /// What is measured.
+    /// Quantity that is bounded.
     pub quantity: Quantity,
     /// Lower bound.
     pub lower: f64,
@@ -20,7 +20,7 @@ pub struct BoundedQuantity {
     pub name: String,
 }
 
-/// Where a quantity is bounded.
+/// Instants or intervals at which a quantity is bounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// At every instant, or in every interval.
@@ -40,7 +40,7 @@ pub struct Limits {
 const ROUNDING: f64 = 1e-8;
 /// Σ ξ¹⁶ ≥ 3 holds only outside the box.
 const OUTSIDE_BOX: f64 = 3.0;
-/// When fields are bounded: where the voltages of an interval act, and at the instants, where those of both neighbours do.
+/// Times at which fields are bounded: where the voltages of an interval act, and at the instants, where those of both neighbours do.
 const TIMES: [Stencil; 3] = [Stencil::Here, Stencil::Mid, Stencil::Next];
 
 impl Limits {
@@ -186,7 +186,7 @@ impl Limits {
         });
     }
 
-    /// What is measured, in order.
+    /// Returns the quantities, in order.
     pub fn quantities(&self) -> Vec<Quantity> {
         self.list.iter().map(|b| b.quantity).collect()
     }

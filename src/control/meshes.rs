@@ -1,4 +1,4 @@
-//! Whether the nodes that an earlier motion tells of are those of a model.
+//! Comparison of the meshes of an earlier motion with those of a model.
 
 use crate::math::Vector;
 use crate::model::Model;
@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 /// Places that differ by no more than this part of the size of a mesh are one: a file has other units.
 const SAME_PLACE: f64 = 1e-9;
 
-/// The first solid of a model with other nodes than those that are told of it: reference places in mm by the name of a solid.
+/// The first solid of a model whose nodes differ from the given ones: reference places in mm by the name of a solid.
 pub(super) fn other_mesh<'m>(
     model: &'m Model,
     told: &BTreeMap<String, Vec<[f64; 3]>>,

@@ -1,4 +1,4 @@
-//! Which columns and rows a horizon has: the one place that drops what is given.
+//! Numbering of the columns and rows of a horizon: the one place that drops given values.
 //!
 //! Interleaved step by step: the variables of instant k, then those of interval k; sought parameters and the interval length last. A variable has a column
 //! unless start, goal or problem give its value, and a row if its role has an equation; the constraints of an instant are rows
@@ -20,12 +20,12 @@ pub enum Column {
     Interval {
         /// Interval.
         k: usize,
-        /// Which scalar.
+        /// Scalar.
         s: usize,
     },
     /// Sought parameter, scalar `s` of every interval.
     Parameter {
-        /// Which scalar.
+        /// Scalar.
         s: usize,
     },
     /// The interval length.
@@ -33,7 +33,7 @@ pub enum Column {
 }
 
 impl Column {
-    /// What it is.
+    /// Returns its variable.
     pub fn of(self, variables: &Variables) -> &Variable {
         match self {
             Self::Instant { i, .. } => &variables.of(Time::Instant)[i],
@@ -57,7 +57,7 @@ pub enum Row {
     Interval {
         /// Interval.
         k: usize,
-        /// Which scalar.
+        /// Scalar.
         s: usize,
     },
     /// Limit or goal `limit` at instant or interval `k`.

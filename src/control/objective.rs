@@ -53,12 +53,12 @@ impl Cost {
         &mut self.ends
     }
 
-    /// Whether neighbouring intervals couple.
+    /// Returns true if neighbouring intervals couple.
     pub fn couples_intervals(&self) -> bool {
         self.weights.rate != 0.0 && self.intervals > 1
     }
 
-    /// Whether voltages enter by their squares alone.
+    /// Returns true if voltages enter by their squares alone.
     pub fn is_of_squares(&self) -> bool {
         self.weights.rate == 0.0
     }

@@ -1,4 +1,4 @@
-//! What is asked of a system: simulate it, find its equilibrium, or steer it. Units g, mm, ms, N, V.
+//! Tasks of a problem: simulation, equilibrium, control. Units g, mm, ms, N, V.
 
 pub use crate::control::boundary_state::{BoundaryState, Hold, Rest};
 pub use crate::control::energy_cost::{EnergyCost, SourceEnergy};
@@ -31,7 +31,7 @@ pub struct AtRest {
     pub voltages: Vec<f64>,
     /// `None`: reduced where the joints form a tree.
     pub coordinates: Option<Coordinates>,
-    /// How many equilibria of the path from zero voltage are followed by arc length, past limit points; `None`: only the
+    /// Number of equilibria of the path from zero voltage that are followed by arc length, past limit points; `None`: only the
     /// equilibrium under the voltages is sought.
     pub path: Option<usize>,
 }
@@ -47,7 +47,7 @@ pub enum Voltages {
         ends: Vec<f64>,
         /// Rows of voltages, one more than ends.
         rows: Vec<Vec<f64>>,
-        /// What the last row is.
+        /// Role of the last row.
         afterwards: Afterwards,
         /// The solution they were read from; none of a table in the problem.
         solution: Option<PathBuf>,
@@ -86,7 +86,7 @@ impl Voltages {
         }
     }
 
-    /// Whether the voltage of a source is ever other than zero.
+    /// Returns true if the voltage of a source is ever other than zero.
     pub fn drive(&self, source: usize) -> bool {
         match self {
             Self::Constant(row) => row[source] != 0.0,
@@ -120,13 +120,13 @@ pub struct Simulation {
     /// Sum of the local errors that the control of the steps allows over the duration, of angles in rad, of lengths relative to
     /// the system's; `None`: equal steps.
     pub tolerance: Option<f64>,
-    /// Where it starts.
+    /// Start of the motion.
     pub start: BoundaryState,
-    /// What drives it.
+    /// Voltages over time.
     pub voltages: Voltages,
     /// `None`: reduced where the joints form a tree.
     pub coordinates: Option<Coordinates>,
-    /// How the equations of a step are solved.
+    /// Solution of the equations of a step.
     pub solving: Solving,
 }
 
@@ -141,13 +141,13 @@ pub enum Duration {
         min: f64,
         /// Upper bound.
         max: f64,
-        /// Where the solver starts.
+        /// Value at which the solver starts.
         guess: f64,
     },
 }
 
 impl Duration {
-    /// Where the solver starts.
+    /// Returns the value at which the solver starts.
     pub fn first(self) -> f64 {
         match self {
             Self::Given(duration) => duration,
@@ -171,7 +171,7 @@ pub struct Control {
     pub duration: Duration,
     /// Number of intervals N ≥ 1.
     pub intervals: usize,
-    /// Whether this number is that of a first grid, refined until the verification of the optimum confirms an accuracy.
+    /// True if this number is that of a first grid, refined until the verification of the optimum confirms an accuracy.
     pub is_refined: bool,
     /// Initial state.
     pub start: BoundaryState,
@@ -185,15 +185,15 @@ pub struct Control {
     pub course: Option<Voltages>,
     /// Constants of the system that are sought.
     pub parameters: Vec<Parameter>,
-    /// What becomes of a goal that cannot be kept.
+    /// Treatment of a goal that cannot be kept.
     pub hold: Hold,
-    /// What is minimised.
+    /// Objective that is minimised.
     pub objective: Objective,
     /// Path limits.
     pub limits: Vec<PathConstraint>,
     /// `None`: reduced where the joints form a tree.
     pub coordinates: Option<Coordinates>,
-    /// Where the solver starts.
+    /// Initial guess of the solver.
     pub guess: Guess,
     /// Options of the solver.
     pub solver: Solver,
@@ -213,7 +213,7 @@ impl Control {
         }
     }
 
-    /// Whether the voltage of a source is given.
+    /// Returns true if the voltage of a source is given.
     pub fn is_given(&self, source: usize) -> bool {
         self.course.is_some() || self.given.contains_key(&source)
     }
@@ -294,7 +294,7 @@ pub enum PathConstraint {
         marker: usize,
         /// Region.
         region: Region,
-        /// Whether inside or outside.
+        /// Inside or outside.
         side: Side,
     },
 }
@@ -308,7 +308,7 @@ pub enum Side {
     Outside,
 }
 
-/// Where the solver starts.
+/// Initial guess of the solver.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Guess {
     /// Smooth interpolation 3s² − 2s³ between start and goal; rest voltages of the goal plus 100 V.
@@ -326,7 +326,7 @@ pub struct Solver {
     pub tolerance: f64,
     /// Limit of iterations.
     pub max_iterations: usize,
-    /// Who solves the linear systems, unless the options name another one.
+    /// Solver of the linear systems, unless the options name another one.
     pub linear_solver: LinearSolver,
     /// Options passed to Ipopt by name.
     pub ipopt: BTreeMap<String, OptionValue>,
@@ -345,7 +345,7 @@ impl Default for Solver {
 }
 
 impl Simulation {
-    /// Tolerance of steps of no given length, where none is asked for.
+    /// Default tolerance of steps whose length is not given.
     pub const TOLERANCE: f64 = 1e-3;
     /// The first step that a tolerance controls, as a part of the duration.
     pub const FIRST: f64 = 1e-2;

@@ -1,10 +1,10 @@
-//! Costs of quantities: what a motion pays for what it does, beside its voltages.
+//! The objective: voltage effort plus costs of markers, joints and energies.
 
 use crate::control::energy_cost::EnergyCost;
 use crate::control::signal::Signal;
 use crate::model::{Quantity, System};
 
-/// What is minimised: a sum of costs with the voltages V in kV, the interval length h in s and N intervals (docs/theory.md, 10.2). The default
+/// Objective: a sum of costs with the voltages V in kV, the interval length h in s and N intervals (docs/theory.md, 10.2). The default
 /// is no cost at all, and a weight of zero leaves no trace.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Objective {
@@ -28,23 +28,23 @@ pub struct QuantityCost {
     pub quantity: Quantity,
     /// Weight of the cost, positive.
     pub weight: f64,
-    /// What is made of the quantity.
+    /// Function of the quantity.
     pub function: CostFunction,
-    /// When it is paid for.
+    /// Times at which it counts.
     pub during: During,
 }
 
-/// What a cost makes of a quantity m.
+/// Function of a quantity m in a cost.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CostFunction {
     /// (m − r(t))², in mm², or rad² with the difference of angles nearest to zero.
     Square {
-        /// What the quantity follows, r(t) in its unit.
+        /// Reference of the quantity, r(t) in its unit.
         reference: Signal,
     },
 }
 
-/// When a cost is paid.
+/// Times at which a cost counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum During {
     /// All the time: the integral over the time in s by the trapezoidal rule.
@@ -75,7 +75,7 @@ impl Objective {
 }
 
 impl QuantityCost {
-    /// Unit of what is paid, without the weight.
+    /// Unit of the cost, without the weight.
     fn unit(&self, system: &System) -> String {
         let squared = match self.function {
             CostFunction::Square { .. } => match self.quantity.unit(system) {
@@ -89,7 +89,7 @@ impl QuantityCost {
         }
     }
 
-    /// Whether its second derivative by the quantity is other than zero.
+    /// Returns true if its second derivative by the quantity is other than zero.
     pub fn is_curved(&self) -> bool {
         match self.function {
             CostFunction::Square { .. } => true,

@@ -1,7 +1,7 @@
 //! A solution carried to another number of intervals: coordinates and costates along smooth curves, voltages by their means.
 //!
-//! What belongs to an instant or interval by itself is carried by value: coordinates, voltages, potentials, costates of
-//! momentum balances and of Gauss's laws. What is summed over a step goes with its length: impulses of constraints, costates
+//! Data of an instant or interval are carried by value: coordinates, voltages, potentials, costates of
+//! momentum balances and of Gauss's laws. Sums over a step go with its length: impulses of constraints, costates
 //! of path limits and of bounds. A finer grid has more and smaller ones.
 
 use crate::control::conditions::BoundaryConditions;
@@ -28,7 +28,7 @@ pub(super) struct Grids {
 type Weights = Vec<(usize, f64)>;
 
 impl Grids {
-    /// From a number of intervals to another, and to so many times the duration.
+    /// Makes the map from a number of intervals to another, with the duration multiplied by `stretch`.
     pub(super) fn new(from: usize, to: usize, stretch: f64) -> Self {
         Self { from, to, stretch }
     }
@@ -39,7 +39,7 @@ impl Grids {
     }
 
     /// Means over new interval k of what the old intervals have. Within an old one the value runs along the flatter of the lines
-    /// to its neighbours, or is constant beside a peak and at the ends: smooth voltages stay smooth, jumps stay jumps, and
+    /// to its neighbours, or is constant next to a peak and at the ends: smooth voltages stay smooth, jumps stay jumps, and
     /// a jump within a new interval keeps its impulse.
     pub(super) fn mean(self, rows: &[Vec<f64>], k: usize) -> Vec<f64> {
         let place = |k: usize| (k * self.from) as f64 / self.to as f64;

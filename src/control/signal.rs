@@ -1,4 +1,4 @@
-//! Functions of time: voltages, and what quantities are to follow.
+//! Functions of time: voltages, and references of quantities.
 
 use std::f64::consts::TAU;
 
@@ -121,12 +121,12 @@ impl Signal {
         [value, rate, 0.0]
     }
 
-    /// Whether it is written as one value for all the time.
+    /// Returns true if it is written as one value for all the time.
     pub fn is_constant(&self) -> bool {
         matches!(self, Self::Constant(_))
     }
 
-    /// Whether it is zero all the time.
+    /// Returns true if it is zero all the time.
     pub fn is_zero(&self) -> bool {
         match self {
             Self::Constant(value) => *value == 0.0,
@@ -138,7 +138,7 @@ impl Signal {
         }
     }
 
-    /// Whether all its numbers are finite, its times grow, and it has a value.
+    /// Returns true if all its numbers are finite, its times grow, and it has a value.
     pub fn is_sound(&self) -> bool {
         match self {
             Self::Constant(value) => value.is_finite(),

@@ -1,4 +1,4 @@
-//! What is kept of a solution: enough to start any later run exactly.
+//! Solution of a task as it is stored: enough to start any later run exactly.
 
 use std::collections::BTreeMap;
 
@@ -18,9 +18,9 @@ pub struct Solution {
     pub poses: Vec<Vec<Pose>>,
     /// Coordinates and multipliers by instant.
     pub z: Vec<Vec<f64>>,
-    /// Momentum of each coordinate at the end, where it is told.
+    /// Momentum of each coordinate at the end, where it is known.
     pub momentum: Vec<f64>,
-    /// Reference places in mm of the nodes of each solid and each muscle of finite elements, by its name, where they are told.
+    /// Reference places in mm of the nodes of each solid and each muscle of finite elements, by its name, where they are known.
     pub meshes: BTreeMap<String, Vec<[f64; 3]>>,
     /// Time h₀ in ms that scales the multipliers in `z`.
     pub multiplier_time: f64,

@@ -10,7 +10,7 @@ use crate::model::{
 
 /// A state of rest that moves by less, relative to the size of its coordinates, does not depend on a parameter.
 const SAME: f64 = 1e-9;
-/// Where a bound is infinite, states of rest are compared at these multiples of the guess.
+/// Multiples of the guess at which states of rest are compared where a bound is infinite.
 const PROBES: [f64; 2] = [0.5, 2.0];
 
 /// The system with parameters at their guesses.
@@ -29,7 +29,7 @@ pub(super) fn at_guess(system: &System, control: &Control) -> Result<System, Bou
     Ok(with_parameters(system, parameters, &guesses))
 }
 
-/// Whether a quantity is a function of a parameter.
+/// Returns true if a quantity is a function of a parameter.
 fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
     match *quantity {
         Quantity::SquaredStretch { muscle } => parameter.moves(muscle),

@@ -13,7 +13,7 @@ impl CoordinateMap {
     }
 
     /// Moves the charts of a placed instant to where its bodies are: nothing moves, and the coordinates that turn behind a
-    /// chart become zero. Returns whether there are charts.
+    /// chart become zero. Returns true if there are charts.
     pub fn recentre(&self, instant: &mut Configuration) -> bool {
         let Some(tree) = self.tree.as_ref().filter(|tree| tree.charts() > 0) else {
             return false;
@@ -30,7 +30,7 @@ impl CoordinateMap {
     }
 
     /// Gives a body on a joint with a chart, with turns of zero, a velocity of its centre and an angular velocity by the rates of this joint,
-    /// and tells the motion of all vectors; `false` where the body is on another joint.
+    /// and updates the motion of all vectors; `false` where the body is on another joint.
     pub fn set_in_motion(
         &self,
         body: usize,
@@ -43,7 +43,7 @@ impl CoordinateMap {
         is_set
     }
 
-    /// Whether the charts of a list of coordinates, multipliers and charts are quaternions of length one; lists of another length belong to
+    /// Returns true if the charts of a list of coordinates, multipliers and charts are quaternions of length one; lists of another length belong to
     /// other coordinates.
     pub fn has_unit_charts(&self, z: &[f64]) -> bool {
         let is_unit = |q: &[f64]| (q.iter().map(|q| q * q).sum::<f64>() - 1.0).abs() < 1e-9;

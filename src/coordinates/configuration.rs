@@ -1,4 +1,4 @@
-//! All that is known of one instant: coordinates, vectors, tangent, and both along a direction.
+//! Configuration of one instant: coordinates, vectors, tangent, and both along a direction.
 
 use crate::kinematics::Pose;
 use crate::math::Vector;

@@ -1,9 +1,9 @@
-//! What an interval is asked with.
+//! Input of an evaluation on one interval: scalars, length, and the blocks asked for.
 
 use crate::coordinates::configuration::Configuration;
 use crate::functional::{BlockMask, Horizon, Outer, Sample};
 
-/// What an interval is asked with, besides its two instants.
+/// Input of an evaluation on one interval, in addition to its two instants.
 #[derive(Clone, Copy, Debug)]
 pub struct Interval<'a> {
     /// Scalars, such as voltages and potentials.
@@ -12,9 +12,9 @@ pub struct Interval<'a> {
     pub along: &'a [f64],
     /// Length in ms.
     pub h: f64,
-    /// Whether the length is an argument.
+    /// Interval length as a given number or an argument.
     pub horizon: Horizon,
-    /// Which blocks are asked for.
+    /// Blocks that are asked for.
     pub sides: BlockMask,
     /// Functions of the measures of the site.
     pub outer: &'a [Outer],
@@ -33,7 +33,7 @@ impl<'a> Interval<'a> {
         }
     }
 
-    /// What terms read of it.
+    /// Returns the input of terms on this interval.
     pub fn sample(&self, [a, b]: [&'a Configuration; 2]) -> Sample<'a> {
         Sample {
             vectors: [&a.x, &b.x],

@@ -1,11 +1,11 @@
-//! How vectors follow from the coordinates of an instant: on a kinematic tree, or linearly from directors and nodes.
+//! Map from the coordinates of an instant to vectors: on a kinematic tree, or linear in directors and nodes.
 
 use crate::coordinates::configuration::Configuration;
 use crate::coordinates::tree::{TangentColumns, Tree};
 use crate::kinematics::{Carrier, MaterialVector, Pose};
 use crate::math::{Matrix, Vector};
 
-/// How one vector depends on the coordinates.
+/// Dependence of one vector on the coordinates.
 #[derive(Clone, Debug)]
 pub enum Dependence {
     /// A constant plus Σ c u e over the parts.
@@ -35,7 +35,7 @@ pub struct LinearPart {
 pub struct NodePlace {
     /// Reference place in mm, kept in the directions without a coordinate.
     pub reference: Vector,
-    /// Whether x, y, z are coordinates.
+    /// Directions (x, y, z) in which it has a coordinate.
     pub free: [bool; 3],
 }
 

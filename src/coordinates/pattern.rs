@@ -1,4 +1,4 @@
-//! Where the entries of a step-periodic block-tridiagonal matrix lie.
+//! Pattern of the entries of a step-periodic block-tridiagonal matrix.
 //!
 //! With z_k the coordinates and multipliers of instant k and s_k the scalars of interval k, second derivatives of a sum
 //! over a horizon exist only at (z_k, z_k), (z_{k+1}, z_k), (z_k, z_{k+1}), (z_k, s_k), (z_{k+1}, s_k), (s_k, s_k), and

@@ -1,4 +1,4 @@
-//! A functional seen through coordinates.
+//! A functional as a function of coordinates.
 
 use crate::coordinates::configuration::Configuration;
 use crate::coordinates::interval::Interval;
@@ -51,7 +51,7 @@ impl Reduced {
         }
     }
 
-    /// Where entries lie.
+    /// Returns the pattern of the entries.
     pub fn layout(&self) -> &StepPattern {
         &self.layout
     }

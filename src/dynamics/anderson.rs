@@ -6,7 +6,7 @@
 use nalgebra::{DMatrix, DVector};
 use std::collections::VecDeque;
 
-/// How many earlier steps are combined.
+/// Number of earlier steps that are combined.
 const DEPTH: usize = 4;
 
 /// Steps and updates of the last iterations.

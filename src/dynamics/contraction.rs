@@ -1,4 +1,4 @@
-//! How the updates of a Newton iteration shrink, and what follows from it: whether they converge, whether the tangent serves.
+//! Contraction of a Newton iteration: the decay of its updates, and the verdict on convergence and on the tangent.
 
 use crate::dynamics::solving::Newton;
 
@@ -19,7 +19,7 @@ pub(super) struct Contraction {
     last: Option<f64>,
 }
 
-/// What an update is good for.
+/// Verdict on an update.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Verdict {
     /// It is to be made, and is the last one.
@@ -38,7 +38,7 @@ impl Contraction {
         Self { newton, last: None }
     }
 
-    /// Judges an update by its relative size, whether its tangent is of an earlier point, and whether factors are approximate.
+    /// Judges an update by its relative size, the age of its tangent, and the accuracy of the factors.
     pub(super) fn judge(&mut self, size: f64, is_reused: bool, is_approximate: bool) -> Verdict {
         // Newton's updates shrink quadratically, those of a reused tangent by a factor.
         // What a tangent of an earlier step does is not known before its second update.
@@ -82,7 +82,7 @@ mod tests {
         found
     }
 
-    /// What is left after n updates of a geometric series is its sum from there on.
+    /// The remainder after n updates of a geometric series is its sum from there on.
     #[test]
     fn it_has_converged_where_the_sum_of_all_later_updates_is_small() {
         for rate in [0.05, 0.3, 0.7, 0.9] {

@@ -16,7 +16,7 @@ pub(super) struct Controlled {
     pub(super) multipliers: Vec<f64>,
 }
 
-/// Factor of a step whose local error, of third order, is `used` of what is allowed per time, with some room.
+/// Factor of a step whose local error, of third order, is `used` of the allowed error per time, with some room.
 fn factor(used: f64) -> f64 {
     (0.9 / used.sqrt()).max(0.1)
 }

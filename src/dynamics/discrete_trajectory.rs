@@ -16,19 +16,19 @@ pub struct DiscreteTrajectory {
     pub rates: Option<Vec<f64>>,
     /// Voltages of each interval in V and potentials in their unit, by scalar of the interval.
     pub scalars: Vec<Vec<f64>>,
-    /// Where energies and momenta are read.
+    /// Times at which energies and momenta are read.
     pub reading: Reading,
-    /// Work in mJ of forces without a potential in each interval, where instants alone do not tell it.
+    /// Work in mJ of forces without a potential in each interval, where instants alone do not determine it.
     pub works: Vec<f64>,
     /// The method that factorised the tangents of the steps.
     pub solver: String,
-    /// What it cost.
+    /// Report of the steps.
     pub report: StepperReport,
-    /// From what it goes on.
+    /// State from which the motion can be resumed.
     pub end: StepState,
 }
 
-/// Where a method means its energies and momenta.
+/// Times to which the energies and momenta of a method belong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reading {
     /// At the midpoints of intervals, where the midpoint rule sees energies.

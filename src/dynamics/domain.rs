@@ -1,4 +1,4 @@
-//! The domain of the first-order dielectric: up to which stretch its charge and stiffness keep their signs.
+//! The domain of the first-order dielectric: the stretch up to which its charge and stiffness keep their signs.
 //!
 //! Along a principal direction with stretch Λ the permittivity is ε_eff = −2c₁ − 2c₂ Λ² + ε J/Λ². Where c₂ > 0 it falls with
 //! the stretch, and vanishes at
@@ -22,7 +22,7 @@ pub struct OutOfDomain {
     pub name: String,
     /// Largest stretch.
     pub stretch: f64,
-    /// Where the domain ends, at the volume of that place.
+    /// End of the domain, at the volume of that place.
     pub limit: f64,
     /// Instant of the largest stretch in ms.
     pub time: f64,
@@ -45,7 +45,7 @@ pub fn largest_stretch(electric: &ElectricConstants, J: f64) -> Option<f64> {
     Some(square.sqrt())
 }
 
-/// What leaves the domain at the instants of a motion, in the order of muscles and blocks. The voltages of an instant are
+/// Returns the parts that leave the domain at the instants of a motion, in the order of muscles and blocks. The voltages of an instant are
 /// those of the interval that ends there.
 pub fn out_of_domain(model: &Model, history: &DiscreteTrajectory) -> Vec<OutOfDomain> {
     let muscles = model.system.muscles.iter().enumerate();

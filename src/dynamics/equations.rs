@@ -49,7 +49,7 @@ pub trait Equations {
     /// Hands over all numbers from which the next steps follow, list by list, always in the same order; what `visit` writes is then the state.
     fn visit_state(&mut self, visit: &mut dyn FnMut(&'static str, &mut [f64]));
 
-    /// Follows up what was written to the state.
+    /// Updates the equations after a change of the state.
     fn take_state(&mut self);
 
     /// Makes the end of the step the state, unless the momentum does not exist there.
@@ -73,7 +73,7 @@ pub trait Equations {
     /// Multipliers at the start of the step, where the method knows them there.
     fn multipliers(&self) -> &[f64];
 
-    /// Work in mJ that forces without a potential did over the last step, where its ends alone do not tell.
+    /// Work in mJ that forces without a potential did over the last step, where its ends alone do not determine it.
     fn work(&self) -> Option<f64> {
         None
     }

@@ -1,4 +1,4 @@
-//! Why a step or an equilibrium was not found.
+//! Errors of steps and of equilibria.
 
 use crate::dynamics::rest::{Equilibrium, Instability, Load};
 use crate::dynamics::spans::NOTHING;
@@ -50,7 +50,7 @@ pub enum StepError {
     /// The motion that was to go on is one of another model or method.
     #[error("the motion that ends at t = {time} ms was made by other equations or another method")]
     Foreign {
-        /// Where it ends in ms.
+        /// Time of its end in ms.
         time: f64,
     },
     /// Ctrl-C was pressed, or the time allowed is over.
@@ -74,7 +74,7 @@ pub enum StepError {
         step: f64,
         /// The joint coordinate or the body.
         what: String,
-        /// How far in rad.
+        /// Angle in rad.
         angle: f64,
     },
     /// The energy balance of the step does not close, although it was halved.
@@ -102,7 +102,7 @@ pub enum StepError {
         step: f64,
         /// Local error, of angles in rad or of lengths relative to the system's.
         error: f64,
-        /// What the tolerance allows.
+        /// Local error that the tolerance allows.
         allowed: f64,
     },
     /// The tangent is singular.
@@ -136,7 +136,7 @@ pub enum EquilibriumError {
     LimitPoint {
         /// Largest fraction of the load for which there was an equilibrium.
         fraction: f64,
-        /// How it is lost, where that was found.
+        /// Instability by which it is lost, where that was found.
         kind: Option<Instability>,
         /// The load that grew.
         load: Load,
@@ -178,7 +178,7 @@ pub enum EquilibriumError {
     },
 }
 
-/// Which constraints are redundant, or else what may be the matter.
+/// Names the redundant constraints, or else the likely cause.
 fn redundancy(redundant: &[String], otherwise: &str) -> String {
     match redundant {
         [] => format!("; {otherwise}"),
@@ -200,7 +200,7 @@ fn short(residuals: &[f64]) -> String {
     list.join(", ")
 }
 
-/// What a short muscle or residuals that are not finite mean.
+/// Explains a short muscle or residuals that are not finite.
 fn hint(residuals: &[f64], muscle: Option<&(String, f64)>, overflow: Option<&f64>) -> String {
     let is_finite = residuals.iter().all(|r| r.is_finite());
     if let (Some(voltage), false) = (overflow, is_finite) {
@@ -229,7 +229,7 @@ fn grown(load: Load) -> &'static str {
     }
 }
 
-/// What moves where an equilibrium is lost.
+/// Describes the motion by which an equilibrium is lost.
 fn moved(last: &Equilibrium) -> String {
     match &last.softest {
         Some(mode) if !mode.moves.is_empty() => format!("; softest motion: {}", mode.moves),

@@ -8,23 +8,23 @@
 //! ```
 //!
 //! The last row of a motion whose voltages afterwards are known includes the switch to them. Both belong to the instants at the ends of an interval. The potentials within finite elements are known in the middle of intervals
-//! only, so nothing is told of sources that drive finite elements.
+//! only, so sources that drive finite elements are not listed.
 
 use crate::dynamics::trajectory::{Column, Trajectory};
 use crate::energy::Capacitance;
 use crate::model::System;
 use crate::model::components::capacitance;
 
-/// What all sources exchange with a motion.
+/// Energies that all sources exchange with a motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EnergyExchange {
     /// The sources of lumped muscles whose voltage is ever other than zero.
     pub sources: Vec<SourceEnergies>,
-    /// Whether these are all sources whose voltage is ever other than zero.
+    /// True if these are all sources whose voltage is ever other than zero.
     pub is_complete: bool,
 }
 
-/// What one source exchanges with a motion, from the start to each instant.
+/// Energies that one source exchanges with a motion, from the start to each instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceEnergies {
     /// Index of the source, which is that of its muscle.

@@ -1,4 +1,4 @@
-//! From momenta to rates: the mass matrix of an instant, bordered by its constraints.
+//! Rates from momenta: the mass matrix of an instant, bordered by its constraints.
 //!
 //! Rates v of momenta p that a step left without the reactions at its end solve
 //!

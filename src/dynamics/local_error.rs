@@ -1,4 +1,4 @@
-//! What the steps of a motion neglect, estimated from the motion itself.
+//! Local errors of the steps of a motion, estimated from the motion itself.
 //!
 //! A method of order p neglects in a step of h the term c hᵖ⁺¹ x⁽ᵖ⁺¹⁾ of the motion x of a point; for p = 2s the constant is
 //! that of the diagonal Padé approximation of the exponential, c = (s!)²/((2s)! (2s + 1)!), 1/12 for the midpoint rule, and 1/2
@@ -16,13 +16,13 @@ use crate::model::Model;
 /// The estimate for a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalError {
-    /// Sum of what the steps neglect, of the point where it is greatest, in mm.
+    /// Sum of the local errors, of the point where it is greatest, in mm.
     pub error: f64,
     /// Way of the point that goes farthest, in mm.
     pub path: f64,
     /// Order of the method.
     pub order: usize,
-    /// Whether differences of the motion fall with their order, so that the estimate means something.
+    /// True if differences of the motion fall with their order, so that the estimate is meaningful.
     pub is_resolved: bool,
     /// Mean step in ms.
     pub step: f64,
@@ -130,7 +130,7 @@ fn weights(times: &[f64], h: f64) -> Vec<f64> {
     (0..times.len()).map(factors).collect()
 }
 
-/// How many switches of voltages there are up to each instant.
+/// Returns the number of switches of voltages up to each instant.
 fn switches(model: &Model, history: &DiscreteTrajectory) -> Vec<usize> {
     let voltages = |k: usize| model.variables.split(&history.scalars[k])[0];
     let mut count = 0;

@@ -36,7 +36,7 @@ pub struct Midpoint<'m> {
     /// Rates of the coordinates over the last step, and how they changed, for the first guess.
     rates: Vec<f64>,
     changes: Vec<f64>,
-    /// Energy in mJ beside which rounding is seen.
+    /// Energy in mJ relative to which rounding is seen.
     typical_energy: f64,
     /// Sizes of the coordinates.
     sizes: Vec<f64>,

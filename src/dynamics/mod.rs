@@ -3,7 +3,7 @@
 //! - `stepper`: Newton on the equations of one step; `midpoint`: those of the midpoint rule; `stages`: those of every other
 //!   method.
 //! - `updates`, `anderson`, `contraction`: updates of an iteration, with kept factors, and how they shrink.
-//! - `step_state`, `resume`: from what a motion goes on.
+//! - `step_state`, `resume`: the state from which a motion is resumed.
 //! - `domain`: where the first-order dielectric ends.
 //! - `resolution`, `spans`: which steps are refused; `local_error`: what those neglect that are not.
 //! - `simulate`, `history`, `observe`, `at_instant`, `interval_energies`, `kinetic`: step after step, recorded and observed.

@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Eigenvalues of the mass matrix below this fraction of the largest belong to coordinates without inertia.
 const MASSLESS: f64 = 1e-13;
-/// Up to so many coordinates the mass matrix is decomposed.
+/// Number of coordinates up to which the mass matrix is decomposed.
 pub(super) const DECOMPOSED: usize = 500;
 /// The residual of rates that are iterated for, relative to the momenta.
 const LEFT: f64 = 1e-13;
@@ -123,7 +123,7 @@ pub(super) fn vector_momenta(model: &Model, x: &[Vector], v: &[Vector]) -> Vec<V
     momenta
 }
 
-/// Where bodies and vectors are.
+/// Positions of bodies and vectors.
 pub(super) struct Places<'a> {
     pub(super) poses: &'a [Pose],
     pub(super) x: &'a [Vector],

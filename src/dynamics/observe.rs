@@ -1,9 +1,9 @@
-//! What is observed along a motion: stretches, charges, energies, momenta and constraints, one row per instant.
+//! Observations along a motion: stretches, charges, energies, momenta and constraints, one row per instant.
 //!
 //! Every row holds what is so at its instant. The midpoint rule sees charges and energies in the middle of intervals: between
 //! two of them they are interpolated linearly (where voltages switch, that is the mean of both sides). Row 0 is read at q₀ with
 //! the rates of its momenta, the last row at q_N under the last voltages with the rates of p_N; all of it is of second order.
-//! Where a method means energies at instants ([`Reading::Instants`]), every row is read like row 0.
+//! For a method whose energies are those at instants ([`Reading::Instants`]), every row is read like row 0.
 //!
 //! The momenta are those at the instant: between the ends the mean of the momentum maps of p⁻ = −D₁L_d − f⁻ of the interval that
 //! begins there and of p⁺ = D₂L_d + f⁺ of the one that ends there, of second order. Where no joint holds the system to the ground both
@@ -31,7 +31,7 @@ pub fn observations(model: &Model, history: &DiscreteTrajectory) -> Observations
     observations
 }
 
-/// What is observed besides time, joint coordinates and markers; pieces of a long motion at once.
+/// Returns the observations in addition to time, joint coordinates and markers; pieces of a long motion in parallel.
 pub fn observed(model: &Model, history: &DiscreteTrajectory) -> Vec<Column> {
     let count = history.z.len();
     let piece = match history.reading {
@@ -119,7 +119,7 @@ fn means(times: &[f64], columns: &mut [Column], before: &[Momenta], last: &Last)
 /// Linear and angular momentum by axis.
 type Momenta = [f64; 6];
 
-/// What is observed at one instant.
+/// Observations at one instant.
 struct Row {
     /// By column; what belongs to intervals as the one that ends here sees it, of the dissipated energy its work.
     values: Vec<f64>,
@@ -143,7 +143,7 @@ struct Observer<'m> {
     here: Configuration,
     scratch: Scratch,
     at_instant: AtInstant<'m>,
-    /// What forces on joint coordinates do to the whole system.
+    /// Effects of forces on joint coordinates on the whole system.
     pulls: Vec<[Vector; 2]>,
 }
 
@@ -261,7 +261,7 @@ impl<'m> Observer<'m> {
         columns
     }
 
-    /// What is observed at instant k.
+    /// Returns the observations at instant k.
     fn row(&mut self, history: &DiscreteTrajectory, k: usize) -> Row {
         let model = self.model;
         let none = vec![0.0; model.action.intervals.scalars];

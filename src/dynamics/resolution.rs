@@ -1,4 +1,4 @@
-//! Whether a step resolves the motion: how far it turns joints and bodies, and whether its energy balance closes.
+//! Resolution of a motion by a step: the turns of joints and bodies, and the balance of energy.
 //!
 //! The midpoint rule reads forces at the middle of a step. What a joint or body does beyond that is seen at the ends alone:
 //! a free turn by θ is found from sin θ = h ω, which has other roots beyond a right angle, and a joint angle is the same
@@ -81,7 +81,7 @@ impl Balance {
         self.exchanged
     }
 
-    /// Why a step of `step` ms is not accepted: an element is crushed at its end, or the balance does not close. Forces that
+    /// Returns the reason why a step of `step` ms is not accepted: an element is crushed at its end, or the balance does not close. Forces that
     /// do not exist are not judged.
     pub(super) fn refusal(&self, model: &Model, time: f64, step: f64) -> Option<StepError> {
         let &Self {

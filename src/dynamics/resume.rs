@@ -1,4 +1,4 @@
-//! Between a stepper and the state from which it goes on.
+//! Conversion between a stepper and the state from which it is resumed.
 
 use crate::dynamics::equations::Equations;
 use crate::dynamics::solving::Newton;
@@ -30,7 +30,7 @@ impl<E: Equations> Steps<E> {
         to.report = self.report;
     }
 
-    /// Goes on from a state; whether it is one of these equations. A state before the first step is that already.
+    /// Restores a saved state. Returns false if it does not fit these equations. A state before the first step is restored already.
     pub(super) fn take(&mut self, from: &StepState) -> bool {
         if from.lists.is_empty() {
             return true;

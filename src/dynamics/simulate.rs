@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 /// The shortest step that a tolerance may ask for, as a part of the duration.
 const LEAST: f64 = 1e-9;
 
-/// Where a motion starts: coordinates z and the momentum of each coordinate.
+/// Start of a motion: coordinates z and the momentum of each coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
     /// Coordinates and multipliers.
@@ -161,7 +161,7 @@ pub fn simulate_within(
     go_on(solving, model, begun, lengths, drive, observer)
 }
 
-/// Goes on with a motion that has begun, up to the number of steps or the duration of the whole: it becomes what it would have become without
+/// Resumes a motion that has begun, up to the number of steps or the duration of the whole: it becomes what it would have become without
 /// a stop, to the bit.
 ///
 /// `drive` and `observer` are as in [`simulate`]. Where the motion is not one of this model by this method it stays as it is, and the error
@@ -293,7 +293,7 @@ impl DiscreteTrajectory {
         }
     }
 
-    /// Whether its lists have the lengths of a motion of this model.
+    /// Returns true if its lists have the lengths of a motion of this model.
     fn is_of(&self, model: &Model) -> bool {
         let (instants, intervals) = (self.times.len(), self.scalars.len());
         let motion = &model.action.motion;
@@ -327,7 +327,7 @@ impl DiscreteTrajectory {
 pub struct TimeGrid {
     /// Length in ms.
     pub h: f64,
-    /// How many.
+    /// Number of steps.
     pub steps: usize,
 }
 

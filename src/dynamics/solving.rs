@@ -1,4 +1,4 @@
-//! How a motion is integrated: by which method, and how the equations of a step are solved.
+//! Settings of the integration of a motion: the method, and the solution of the equations of a step.
 
 use crate::model::system::{Fidelity, System};
 use crate::sparse::Backend;
@@ -16,7 +16,7 @@ pub enum Integrator {
     },
     /// Implicit Euler, order 1; damps.
     ImplicitEuler,
-    /// The generalised-α method for constrained systems, order 2; damps what is fast.
+    /// The generalised-α method for constrained systems, order 2; damps fast oscillations.
     GeneralisedAlpha {
         /// Factor by which the fastest oscillations shrink in a step, from 0 to 1.
         spectral_radius: f64,
@@ -46,7 +46,7 @@ impl Integrator {
     }
 }
 
-/// When the tangent of a step is factorised.
+/// Occasions at which the tangent of a step is factorised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Newton {
     /// In every iteration: few iterations, each with a factorisation.
@@ -61,14 +61,14 @@ pub enum Newton {
 pub struct Solving {
     /// The method.
     pub integrator: Integrator,
-    /// When the tangent is factorised.
+    /// Occasions at which the tangent is factorised.
     pub newton: Newton,
-    /// Who factorises it; `None`: whoever is fastest as a rule.
+    /// Method of its factorisation; `None`: the one that is fastest as a rule.
     pub backend: Option<Backend>,
 }
 
 impl Newton {
-    /// What suits a system: the factorisation of finite elements is worth keeping, that of a few joint coordinates is not
+    /// Returns the setting that suits a system: the factorisation of finite elements is worth keeping, that of a few joint coordinates is not
     /// (benches/README.md).
     pub fn of(system: &System) -> Self {
         let mut muscles = system.muscles.iter();

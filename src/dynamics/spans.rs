@@ -1,4 +1,4 @@
-//! Where energy has no value: lumped muscles of no length, elements inverted. Steps must neither jump over such
+//! Singular configurations: lumped muscles of zero length, inverted elements. Steps must neither jump over such
 //! places nor end there.
 //!
 //! Forces are those at the middle of a step, which says nothing of its end: a span that turns by a right angle or more within
@@ -53,7 +53,7 @@ pub fn muscle_without_length(model: &Model, coordinates: &[f64]) -> Option<usize
     (stretch < NOTHING).then_some(muscle)
 }
 
-/// Whether an elastic block has no energy at a placed instant: an element is inverted.
+/// Returns true if an elastic block has no energy at a placed instant: an element is inverted.
 pub(super) fn is_inverted(model: &Model, at: &Configuration, scalars: &[f64]) -> bool {
     if model.solids.is_empty() {
         return false;
@@ -75,7 +75,7 @@ pub fn reversed_muscle(model: &Model, history: &DiscreteTrajectory) -> Option<(u
 }
 
 /// The greatest voltage in V, where forces without a value are laid to numbers and not to an inverted element: there is none, or the square of
-/// the voltage is no number.
+/// the voltage is not finite.
 pub(super) fn overflow(model: &Model, scalars: &[f64]) -> Option<f64> {
     let voltages = scalars.get(model.variables.inputs()).unwrap_or_default();
     let greatest = voltages.iter().fold(0.0_f64, |most, v| most.max(v.abs()));

@@ -1,6 +1,6 @@
-//! What the steps of a simulation cost.
+//! Report of the steps of a simulation: their counts and times.
 
-/// What the steps cost.
+/// Counts and times of the steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepperReport {
     /// Steps taken, halved ones included.

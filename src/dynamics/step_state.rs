@@ -12,13 +12,13 @@ use std::fmt::{self, Write};
 /// All that the next steps follow from.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepState {
-    /// What it is a state of: the digits of [`StepState::of`].
+    /// Identity of the equations and method: the digits of [`StepState::of`].
     pub of: String,
     /// State of the equations, list by list; none before the first step.
     pub lists: Vec<(String, Vec<f64>)>,
     /// The tangent that is kept, where one is.
     pub tangent: Option<TangentState>,
-    /// What the steps took.
+    /// Report of the steps.
     pub report: StepperReport,
     /// Length in ms that the next step may have, where a tolerance controls it.
     pub wanted: Option<f64>,
@@ -31,16 +31,16 @@ pub struct StepState {
 pub struct TangentState {
     /// Step in ms that it belongs to; none where there are no factors.
     pub step: Option<f64>,
-    /// Whether the symmetric part of the matrix is factorised.
+    /// True if the symmetric part of the matrix is factorised.
     pub is_approximate: bool,
-    /// How it is factorised.
+    /// Method of its factorisation.
     pub method: MethodState,
     /// Entries of the matrix.
     pub matrix: Vec<f64>,
 }
 
 impl StepState {
-    /// Digits that tell the equations of a method for a model from others, most likely.
+    /// Returns the hash of the equations of a method for a model.
     pub fn of(model: &Model, solving: Solving) -> String {
         let mut digits = Digits(0xcbf2_9ce4_8422_2325);
         let (coordinates, system) = (model.coordinates, &model.presolved.system);
@@ -64,7 +64,7 @@ impl StepState {
     }
 }
 
-/// The hash FNV-1a of what is written.
+/// The hash FNV-1a of a formatted text.
 struct Digits(u64);
 
 impl Write for Digits {

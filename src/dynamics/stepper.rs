@@ -17,7 +17,7 @@ use std::time::Instant;
 
 /// Limit of Newton iterations in one step.
 const ITERATIONS: usize = 16;
-/// How often a step is halved before it is refused.
+/// Largest number of halvings of a step before it is refused.
 const HALVINGS: u32 = 10;
 /// Limit of iterations with a reused tangent.
 const REUSED: usize = 40;
@@ -29,12 +29,12 @@ pub struct Steps<E> {
     pub(super) updates: Updates,
     /// Step of the tangent that is factorised.
     pub(super) factored: Option<f64>,
-    /// Whether the last attempt began with the tangent of a step before.
+    /// True if the last attempt began with the tangent of a step before.
     pub(super) stale: bool,
     residual: Vec<f64>,
     /// Local error that is allowed per ms; none of steps of given length.
     pub(super) allowed: Option<f64>,
-    /// Local error of the last attempt as a part of what is allowed.
+    /// Local error of the last attempt as a part of the allowed one.
     pub(super) used: f64,
     /// Energy balance of the last attempt, where the method has one.
     balance: Option<Balance>,
@@ -92,12 +92,12 @@ impl<E: Equations> Steps<E> {
         self.equations.momentum()
     }
 
-    /// Work in mJ that forces without a potential did over the last step, where its ends alone do not tell.
+    /// Work in mJ that forces without a potential did over the last step, where its ends alone do not determine it.
     pub(super) fn work(&self) -> Option<f64> {
         self.equations.work()
     }
 
-    /// What the steps cost so far.
+    /// Returns the report of the steps so far.
     pub fn report(&self) -> StepperReport {
         self.report
     }
@@ -157,7 +157,7 @@ impl<E: Equations> Steps<E> {
         Ok(multipliers.unwrap_or_default())
     }
 
-    /// Lets the whole tangent be factorised where an iteration failed; whether it was not before.
+    /// Factorises the whole tangent from now on, where an iteration failed; returns true if it did not before.
     pub(super) fn make_exact_after(&mut self, error: &StepError) -> bool {
         matches!(error, StepError::NoConvergence { .. }) && self.updates.make_exact()
     }
@@ -227,7 +227,7 @@ impl<E: Equations> Steps<E> {
         })
     }
 
-    /// Whether there is time for what comes next in a step.
+    /// Returns an error if it is time to stop.
     fn go_on(&mut self, h: f64) -> Result<(), StepError> {
         match interrupt::stop() {
             Some(status) => Err(self.stopped(h, status)),
@@ -260,7 +260,7 @@ impl<E: Equations> Steps<E> {
         Ok(accepted)
     }
 
-    /// Why a solution is not accepted: a muscle passed through no length, a joint turned too far, an element is crushed, the
+    /// Returns the reason why a solution is not accepted: a muscle passed through zero length, a joint turned too far, an element is crushed, the
     /// energy balance does not close.
     fn refusal(&mut self, step: f64) -> Option<StepError> {
         let time = self.equations.time();

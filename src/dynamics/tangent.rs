@@ -1,4 +1,4 @@
-//! The square system of one Newton iteration: which derivatives of the action it holds, and its factorisation.
+//! The square system of one Newton iteration: the derivatives of the action that it holds, and its factorisation.
 //!
 //! Unknowns are those of a step (see [`Variables`](crate::model::Variables)).
 
@@ -16,7 +16,7 @@ pub(super) struct Tangent {
     entries: Vec<(u32, u32)>,
     matrix: Vec<f64>,
     solver: Direct,
-    /// Whether the symmetric part ½(A + Aᵀ) is factorised in place of the matrix A.
+    /// True if the symmetric part ½(A + Aᵀ) is factorised in place of the matrix A.
     is_approximate: bool,
 }
 
@@ -88,7 +88,7 @@ impl EntryList {
         self.tangent_by(solver, false)
     }
 
-    /// Prepares a factorisation for an iteration that corrects what it leaves out: of the symmetric part where the matrix has
+    /// Prepares a factorisation for an iteration that corrects its approximation: of the symmetric part where the matrix has
     /// no symmetry, and in single precision where it is large.
     pub(super) fn corrected_tangent(self, model: &Model, symmetry: Symmetry) -> Tangent {
         let is_approximate = symmetry == Symmetry::Unsymmetric;
@@ -159,7 +159,7 @@ impl Tangent {
         self.solver.factor_unless(&self.matrix, is_over)
     }
 
-    /// Whether the factors are those of the symmetric part of a matrix without symmetry, or in single precision.
+    /// Returns true if the factors are those of the symmetric part of a matrix without symmetry, or in single precision.
     pub(super) fn is_approximate(&self) -> bool {
         self.is_approximate || self.solver.precision() == Precision::Single
     }
@@ -179,12 +179,12 @@ impl Tangent {
         Some(rest)
     }
 
-    /// From now on factorises in double precision; whether it did not before.
+    /// Factorises in double precision from now on; returns true if it did not before.
     pub(super) fn make_double(&mut self) -> bool {
         self.solver.make_double()
     }
 
-    /// From now on factorises the whole matrix, in double precision; whether it did not before.
+    /// Factorises the whole matrix, in double precision, from now on; returns true if it did not before.
     pub(super) fn make_exact(&mut self) -> bool {
         if !std::mem::take(&mut self.is_approximate) {
             return false;
@@ -204,7 +204,7 @@ impl Tangent {
         }
     }
 
-    /// Factorises as it was done before; whether that is possible.
+    /// Factorises as it was done before; returns true if that is possible.
     pub(super) fn take(&mut self, from: &TangentState) -> bool {
         if self.is_approximate && !from.is_approximate {
             self.make_exact();
@@ -222,7 +222,7 @@ impl Tangent {
         self.solver.factor_again(&self.matrix).is_ok()
     }
 
-    /// Number of negative pivots of the last factorisation, where it tells.
+    /// Number of negative pivots of the last factorisation, where it gives it.
     pub(super) fn negative_pivots(&self) -> Option<usize> {
         self.solver.negative_pivots()
     }

@@ -1,4 +1,4 @@
-//! What a motion leaves behind: instants, joint coordinates, poses, places of markers, voltages and observed columns.
+//! Trajectory of a motion: instants, joint coordinates, poses, places of markers, voltages and observed columns.
 
 use nalgebra::Vector3;
 
@@ -7,7 +7,7 @@ use crate::kinematics::Pose;
 use crate::model::system::{Attachment, Joint, JointKind, System};
 use crate::model::{Model, Time};
 
-/// What changes over time: N + 1 instants and the N intervals between them.
+/// Values over time: N + 1 instants and the N intervals between them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trajectory {
     /// Instants in ms, N + 1 of them; at least one.
@@ -89,7 +89,7 @@ impl Trajectory {
         system.joints.iter().filter_map(coordinate).collect()
     }
 
-    /// What a motion shows by itself: time, joint coordinates and marker positions.
+    /// Returns the observations that need no model: time, joint coordinates and marker positions.
     pub fn observe(&self, system: &System) -> Observations {
         let mut columns = vec![Column {
             name: "time".to_owned(),

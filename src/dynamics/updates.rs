@@ -1,4 +1,4 @@
-//! Updates of a Newton iteration: the factors of its tangent, kept or made anew, and what they leave out.
+//! Updates of a Newton iteration: the factors of its tangent, kept or made anew, and the parts that they leave out.
 
 use crate::dynamics::anderson::Anderson;
 use crate::dynamics::solving::Newton;
@@ -31,7 +31,7 @@ impl Updates {
         }
     }
 
-    /// When the tangent is factorised.
+    /// Returns the occasions at which the tangent is factorised.
     pub(super) fn newton(&self) -> Newton {
         self.newton
     }
@@ -49,7 +49,7 @@ impl Updates {
         self.tangent.keep(to.step.is_some(), to);
     }
 
-    /// Takes a tangent; whether it is one of these equations.
+    /// Restores a saved tangent. Returns false if it does not fit these equations.
     pub(super) fn take(&mut self, from: &TangentState) -> bool {
         self.tangent.take(from)
     }
@@ -72,17 +72,17 @@ impl Updates {
         }
     }
 
-    /// Whether the factors leave out a part of the tangent, or its last digits.
+    /// Returns true if the factors leave out a part of the tangent, or its last digits.
     pub(super) fn are_approximate(&self) -> bool {
         self.tangent.is_approximate()
     }
 
-    /// From now on factors are in double precision; whether they were not before.
+    /// Makes factors in double precision from now on; returns true if they were not before.
     pub(super) fn make_double(&mut self) -> bool {
         self.tangent.make_double()
     }
 
-    /// From now on the whole tangent is factorised, in double precision; whether it was not before.
+    /// Factorises the whole tangent, in double precision, from now on; returns true if it did not before.
     pub(super) fn make_exact(&mut self) -> bool {
         self.tangent.make_exact()
     }
@@ -96,7 +96,7 @@ impl Updates {
         self.size(residual)
     }
 
-    /// Whether the factors leave out so much of an update of this size that the iteration would be slow.
+    /// Returns true if the factors leave out so much of an update of this size that the iteration would be slow.
     pub(super) fn leave_out_much(&mut self, update: &[f64], size: f64) -> bool {
         let left_out = self.tangent.left_out(update);
         left_out.is_some_and(|rest| self.size(&rest) > LEFT_OUT * size)

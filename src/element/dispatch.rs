@@ -4,7 +4,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 /// Work that is compiled for each vector unit.
 pub(super) trait Task {
-    /// What it returns.
+    /// Type of its result.
     type Output;
 
     /// Does it with eight numbers in `K` registers.

@@ -26,7 +26,7 @@ pub struct Elastomer<F> {
     pub shear_modulus: f64,
     /// First Lamé constant λ in MPa.
     pub lame_lambda: f64,
-    /// Where λ/2 ln²J is evaluated.
+    /// Points at which λ/2 ln²J is evaluated.
     pub volume: Volume,
     /// The electric part: [`Passive`] or [`Dielectric`](crate::element::Dielectric).
     pub field: F,

@@ -1,4 +1,4 @@
-//! What is shown of a hexahedron: means over its reference volume of deformation, fields and stress.
+//! Fields of a hexahedron for display: means over its reference volume of deformation, fields and stress.
 
 use super::elastomer::Elastomer;
 use super::geometry::ElementGeometry;

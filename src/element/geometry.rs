@@ -36,7 +36,7 @@ const fn slope(i: usize, g: usize, m: usize) -> f64 {
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error("a hexahedron has the Jacobian determinant {determinant} at its Gauss point {point}")]
 pub struct Inverted {
-    /// Which Gauss point; it lies towards the node of the same number.
+    /// Number of the Gauss point; it lies towards the node of the same number.
     pub point: usize,
     /// det ∂X/∂ξ there in mm³.
     pub determinant: f64,

@@ -1,9 +1,9 @@
-//! What a material law is made of: where volume counts, and its electric part.
+//! Parts of a material law: the evaluation of its volumetric energy, and its electric part.
 
 use crate::math::Vector;
 use std::fmt::Debug;
 
-/// Where the volumetric energy λ/2 ln²J of a hexahedron is evaluated.
+/// Points at which the volumetric energy λ/2 ln²J of a hexahedron is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Volume {
     /// At each Gauss point: the plain trilinear hexahedron. Stiff in volume as ν → ½.
@@ -52,7 +52,7 @@ pub trait Field: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
         local: &Self::Local<NODES>,
     ) -> Option<&ElectricDerivatives<NODES>>;
 
-    /// Where the derivatives by potentials are written.
+    /// Returns the storage into which the derivatives by potentials are written.
     fn electric<const NODES: usize>(
         local: &mut Self::Local<NODES>,
     ) -> Option<&mut ElectricDerivatives<NODES>>;

@@ -30,7 +30,7 @@ impl<F: Field, const NODES: usize> Default for Local<F, NODES> {
     }
 }
 
-/// Where the variations of an energy are written, as numbers `U`; what a reader does not ask for is dropped.
+/// Receiver of the variations of an energy, as numbers `U`; it drops those that a reader does not ask for.
 pub(super) trait Output<U> {
     fn energy(&mut self, value: U);
     fn force(&mut self, _i: usize, _value: [U; 3]) {}

@@ -19,7 +19,7 @@ pub struct AlongSpan {
 }
 
 impl AlongSpan {
-    /// From k with its first two derivatives by γ.
+    /// Makes the blocks from k with its first two derivatives by γ.
     #[inline(always)]
     pub(super) fn new(p: &SVector<f64, 9>, k: impl Fn(f64) -> [f64; 3]) -> Self {
         let part = |i: usize| Vector::new(p[i], p[i + 1], p[i + 2]);
@@ -34,7 +34,7 @@ impl AlongSpan {
         }
     }
 
-    /// Whether two of the arguments meet in second derivatives: δr and ṙ do not meet themselves.
+    /// Returns true if two of the arguments have mixed second derivatives: δr and ṙ do not couple with themselves.
     pub(super) fn couples(i: usize, j: usize) -> bool {
         i != j || i == 1
     }

@@ -40,25 +40,25 @@ pub trait Energy<const M: usize>: Send + Sync {
     /// Polynomial degree: derivatives above it vanish and are never emitted.
     const DEGREE: usize = usize::MAX;
 
-    /// How many leading vectors are virtual displacements: 0 for a potential; otherwise the scalar is a virtual work
+    /// Number of leading vectors that are virtual displacements: 0 for a potential; otherwise the scalar is a virtual work
     /// δx·f, linear in them, whose scalar arguments are sought parameters.
     const VIRTUAL: usize = 0;
 
-    /// How many arguments read each of its n vectors: argument i reads vector i mod n.
+    /// Number of arguments that read each of its n vectors: argument i reads vector i mod n.
     const READINGS: usize = 1;
 
-    /// Whether second derivatives between two vectors are multiples of the identity.
+    /// True if second derivatives between two vectors are multiples of the identity.
     const ISOTROPIC: bool = false;
 
-    /// Whether it is a sum of functions of the vectors alone, each times a constant or the square of one scalar.
+    /// True if it is a sum of functions of the vectors alone, each times a constant or the square of one scalar.
     const OF_SQUARES: bool = false;
 
-    /// Whether the vector arguments `i` and `j` meet in second derivatives.
+    /// Returns true if the vector arguments `i` and `j` have mixed second derivatives.
     fn couples(_i: usize, _j: usize) -> bool {
         true
     }
 
-    /// How its derivatives up to an order are kept: as a [`Jet`], or in fewer numbers.
+    /// Storage of its derivatives up to an order: a [`Jet`], or fewer numbers.
     type Local<const ORDER: usize>: Local;
 
     /// Its derivatives at `p` up to `ORDER`, with rates along `w` when that is 3.
@@ -71,7 +71,7 @@ pub trait Energy<const M: usize>: Send + Sync {
 
 /// A scalar of `M` arguments some of which are sought constants: span vectors first, three arguments each, then scalars.
 pub trait SoughtEnergy<const M: usize>: Send + Sync {
-    /// How many leading vectors are virtual displacements, as in [`Energy`].
+    /// Number of leading vectors that are virtual displacements, as in [`Energy`].
     const VIRTUAL: usize = 0;
 
     /// The jet at `p`, with rates along `w` when `ORDER` is 3.

@@ -29,7 +29,7 @@ struct Along {
 }
 
 impl OfSquare {
-    /// From u and e: value and three derivatives by I each.
+    /// Makes the blocks from u and e: value and three derivatives by I each.
     #[inline(always)]
     pub(super) fn new<const M: usize>(
         (p, w): (&SVector<f64, M>, &SVector<f64, M>),

@@ -37,7 +37,7 @@ impl<'a> Changes<'a> {
         Ok(())
     }
 
-    /// A mistake of an override, told at its place in that file; any other stays where it is.
+    /// Moves an error of an override to its place in that file; any other stays where it is.
     pub(crate) fn at_fault(&self, error: SceneError, file: &Path) -> SceneError {
         let Some(typed) = error.overridden() else {
             return error;

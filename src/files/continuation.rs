@@ -1,7 +1,7 @@
-//! `continuation.npz`: a simulated motion with all from which another run goes on with it to the bit.
+//! `continuation.npz`: a simulated motion with all data from which another run resumes it to the bit.
 //!
 //! Times are in ms; coordinates, momenta, voltages and potentials are as the program has them (g, mm, ms, N, V). `state/…` is the state of
-//! the method at the end, `tangent/…` the matrix whose factors are used again, `problem.json` what was asked.
+//! the method at the end, `tangent/…` the matrix whose factors are used again, `problem.json` the problem.
 
 use std::io;
 use std::path::Path;
@@ -10,25 +10,25 @@ use crate::dynamics::{DiscreteTrajectory, StepState, StepperReport, TangentState
 use crate::files::npz::{self, Array, Npz, NpzError, NpzWriter};
 use crate::sparse::MethodState;
 
-/// The text of what was asked.
+/// Name of the text of the problem.
 const PROBLEM: &str = "problem.json";
 /// The text that names the method of factorisation.
 const METHOD: &str = "tangent/method.txt";
-/// The text that tells what it is a state of.
+/// Name of the text that identifies the equations of a state.
 const OF: &str = "state/of.txt";
 /// Begins the names of lists of the state.
 const STATE: &str = "state/";
 
-/// A motion, and what was asked.
+/// A motion, and its problem.
 #[derive(Clone, Debug)]
 pub struct Continuation {
     /// The motion.
     pub history: DiscreteTrajectory,
-    /// The JSON text of what was asked.
+    /// The JSON text of the problem.
     pub problem: String,
 }
 
-/// Why a file is none.
+/// Reason why a file is no continuation.
 #[derive(Debug, thiserror::Error)]
 pub enum ContinuationError {
     /// It is no file of arrays.

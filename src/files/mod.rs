@@ -1,8 +1,8 @@
-//! Scene and problem files: what is written, read with units, checked, and turned into what it means.
+//! Scene and problem files: their types as written, reading with units, checks, and conversion to systems and tasks.
 //!
 //! - [`units`]: numbers with units; [`json`]: text, places in it, mistakes, overrides.
-//! - [`scene`], [`problem`]: what is written in the two files, and what it becomes: [`System`] and [`Task`].
-//! - [`study`], [`sweep`]: what is written in a study of variants of a problem, or a sweep of them; `changes`: their overrides.
+//! - [`scene`], [`problem`]: types of the two files, and their conversion to [`System`] and [`Task`].
+//! - [`study`], [`sweep`]: types of a study of variants of a problem, or a sweep of them; `changes`: their overrides.
 //! - [`solution`]: motions that later runs start from; [`npz`]: arrays of long ones; [`continuation`]: motions that go on.
 //! - `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
 
@@ -51,11 +51,11 @@ use crate::model::system::System;
 /// A problem with its scene, read and checked.
 #[derive(Clone, Debug)]
 pub struct Loaded {
-    /// What exists.
+    /// System of the scene.
     pub system: System,
-    /// What is asked.
+    /// Task of the problem.
     pub task: Task,
-    /// What is shown of a motion.
+    /// Part of a motion that is shown.
     pub output: Output,
     /// File of the scene; `None` where the problem holds the scene itself.
     pub scene_path: Option<PathBuf>,

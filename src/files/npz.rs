@@ -12,9 +12,9 @@ use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
-/// What an array begins with: the name of the format and its version.
+/// First bytes of an array: the name of the format and its version.
 const MAGIC: &[u8] = b"\x93NUMPY\x01\x00";
-/// Numbers begin at a multiple of so many bytes.
+/// Numbers begin at a multiple of this number of bytes.
 const ALIGNED: usize = 64;
 /// Ends the names of arrays.
 const ARRAY: &str = ".npy";
@@ -28,7 +28,7 @@ pub struct Array {
     pub values: Vec<f64>,
 }
 
-/// Why a file is none.
+/// Reason why a file is no archive of arrays.
 #[derive(Debug, thiserror::Error)]
 pub enum NpzError {
     /// It cannot be read.
@@ -45,7 +45,7 @@ pub enum NpzError {
     NoText(String),
 }
 
-/// What is in a file.
+/// Contents of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Npz {
     /// By their names.

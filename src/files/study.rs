@@ -18,7 +18,7 @@ pub struct StudySpec {
     pub(crate) schema: Option<String>,
     /// Title of the page.
     pub title: String,
-    /// What is compared and why, for the page.
+    /// Subject of the comparison and its reason, for the page.
     #[serde(default)]
     pub about: Option<String>,
     /// Path of the problem file, relative to this file.
@@ -28,7 +28,7 @@ pub struct StudySpec {
     pub set: ChangesSpec,
     /// The methods that are compared, a curve each.
     pub methods: Vec<MethodSpec>,
-    /// What is refined from point to point; a method may refine something else.
+    /// Entry that is refined from point to point; a method may refine something else.
     #[serde(default)]
     pub refine: Option<RefineSpec>,
     /// Whose limit errors are measured against; each method has its own where not written.
@@ -37,10 +37,10 @@ pub struct StudySpec {
     /// The markers whose places are compared; all of them where not written.
     #[serde(default)]
     pub markers: Option<Vec<String>>,
-    /// What is measured; all that there is of the kind of problem where not written.
+    /// Quantities that are measured; all that there are of the kind of problem where not written.
     #[serde(default)]
     pub measures: Option<Vec<MeasureSpec>>,
-    /// How often each point is timed, 5 times or more; 5 where not written.
+    /// Number of timed runs of each point, 5 or more; 5 where not written.
     #[serde(default)]
     pub runs: Option<usize>,
 }
@@ -57,16 +57,16 @@ pub struct MethodSpec {
     /// Overrides of its points, after those of all points.
     #[serde(default)]
     pub set: ChangesSpec,
-    /// What it refines, in place of what the study refines.
+    /// Entry that it refines, in place of that of the study.
     #[serde(default)]
     pub refine: Option<RefineSpec>,
 }
 
-/// What is refined: one value of each override per point, the coarsest first.
+/// Refinement: one value of each override per point, the coarsest first.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RefineSpec {
-    /// What it is called: `intervals`, `step`, `elements across`.
+    /// Name of the refinement: `intervals`, `step`, `elements across`.
     pub name: String,
     /// Lists of values by their place, as long as each other, after all other overrides.
     pub set: BTreeMap<String, Vec<Value>>,
@@ -87,7 +87,7 @@ pub struct ReferenceSpec {
     pub refine: Option<RefineSpec>,
 }
 
-/// What is measured of a point.
+/// Quantity that is measured at a point.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, Serialize, JsonSchema,
 )]

@@ -23,10 +23,10 @@ pub struct SweepSpec {
     /// Overrides of all variants.
     #[serde(default)]
     pub set: ChangesSpec,
-    /// What varies, by its place in the problem, or in its scene after `scene.`.
+    /// Entries that vary, by their places in the problem, or in its scene after `scene.`.
     #[serde(default)]
     pub vary: BTreeMap<String, VarySpec>,
-    /// How the values are combined; as a grid where not written.
+    /// Combination of the values; as a grid where not written.
     #[serde(default)]
     pub combine: CombineSpec,
     /// Path of a CSV file with a variant per line, in place of `vary`: its headers are places, its cells values.
@@ -52,15 +52,15 @@ pub struct RangeSpec {
     pub from: Value,
     /// The last value, in the same unit.
     pub to: Value,
-    /// How many values, both ends included; 2 or more. Not for values at random.
+    /// Number of values, both ends included; 2 or more. Not for values at random.
     #[serde(default)]
     pub count: Option<usize>,
-    /// How they are spaced; evenly where not written.
+    /// Spacing of the values; even where not written.
     #[serde(default)]
     pub spacing: SpacingSpec,
 }
 
-/// How values are spaced.
+/// Spacing of values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SpacingSpec {
@@ -71,7 +71,7 @@ pub enum SpacingSpec {
     Logarithmic,
 }
 
-/// How the values of several entries are combined.
+/// Combination of the values of several entries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CombineSpec {
@@ -88,7 +88,7 @@ pub enum CombineSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RandomSpec {
-    /// How many.
+    /// Number of variants.
     pub count: usize,
     /// Equal seeds give equal variants; 1 where not written.
     #[serde(default = "one")]

@@ -1,4 +1,4 @@
-//! What is read from the command line besides overrides: the scene of any file, and voltages by source.
+//! Arguments of the command line other than overrides: the scene of any file, and voltages by source.
 
 use std::path::Path;
 

@@ -4,7 +4,7 @@ use crate::math::has_pool;
 use rayon::prelude::*;
 use std::sync::Mutex;
 
-/// From so many elements on, they are evaluated on all cores.
+/// Number of elements from which on they are evaluated on all cores.
 const PARALLEL: usize = 256;
 /// Elements whose derivatives are kept at once.
 const STRETCH: usize = 512;

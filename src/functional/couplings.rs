@@ -1,4 +1,4 @@
-//! Which vectors and scalars meet in second derivatives, and the blocks they meet in.
+//! Couplings: pairs of vectors and scalars with mixed second derivatives, and the blocks of these.
 
 use crate::math::{Matrix, Vector};
 use nalgebra::SMatrix;
@@ -82,7 +82,7 @@ pub struct Blocks {
     pub scalars: Vec<f64>,
 }
 
-/// Which instants of an interval a reader asks for.
+/// Instants of an interval for which a reader asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BlockMask {
     /// Blocks (k, k), (k, k+1), (k+1, k), (k+1, k+1).

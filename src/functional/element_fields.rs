@@ -11,9 +11,9 @@ pub struct ElementField<const NODES: usize = 8> {
     pub point: FieldPoint<NODES>,
     /// Vectors of the nodes.
     pub nodes: [usize; NODES],
-    /// Where the potentials of the nodes come from.
+    /// Sources of the potentials of the nodes.
     pub terminals: [ScalarArg; NODES],
-    /// When the nodes are read.
+    /// Time at which the nodes are read.
     pub at: Stencil,
 }
 

@@ -8,7 +8,7 @@ use crate::math::{Derivatives, Matrix, Vector};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// One finite element: its geometry, its law, and what it reads.
+/// One finite element: its geometry, its law, and its arguments.
 #[derive(Clone, Debug)]
 pub struct FiniteElement<F: Electrical, const NODES: usize = 8> {
     /// Gradients of the shape functions.
@@ -17,11 +17,11 @@ pub struct FiniteElement<F: Electrical, const NODES: usize = 8> {
     pub law: Elastomer<F>,
     /// Vectors of the nodes.
     pub nodes: [usize; NODES],
-    /// Where the potentials of the nodes come from; nothing for a passive element.
+    /// Sources of the potentials of the nodes; nothing for a passive element.
     pub terminals: F::Terminals<NODES>,
 }
 
-/// How the potentials of an element follow from the scalars of an interval.
+/// Map from the scalars of an interval to the potentials of an element.
 pub trait Electrical: Field {
     /// One argument a node, or nothing.
     type Terminals<const NODES: usize>: Clone + fmt::Debug + Send + Sync;

@@ -7,7 +7,7 @@ use nalgebra::SVector;
 use std::fmt;
 use std::marker::PhantomData;
 
-/// One element: a formula and what it reads.
+/// One element: a formula and its arguments.
 #[derive(Clone, Debug)]
 pub struct Element<E, const NV: usize, const NS: usize> {
     /// The formula.

@@ -19,7 +19,7 @@ pub struct Group<K: Kernel> {
     prepared: Batches<K::Storage>,
 }
 
-/// Where a group lives in time.
+/// Place of a group in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Site {
     Intervals,
@@ -110,7 +110,7 @@ struct Action<'a, K: Kernel> {
     scale: f64,
     order: Order,
     sample: &'a Sample<'a>,
-    /// Whether derivatives by the length of the interval are asked for.
+    /// True if derivatives by the length of the interval are asked for.
     is_free: bool,
     out: &'a mut Output,
 }
@@ -277,7 +277,7 @@ struct All<'a, K: Kernel> {
     order: Order,
     sample: &'a Sample<'a>,
     slots: &'a [u32],
-    /// Whether derivatives by the length of the interval are asked for.
+    /// True if derivatives by the length of the interval are asked for.
     is_free: bool,
     out: &'a mut Output,
 }

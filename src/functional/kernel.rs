@@ -1,4 +1,4 @@
-//! Elements of one kind: what one reads, and how its derivatives are made.
+//! Kernel: the arguments of elements of one kind, and the evaluation of their derivatives.
 
 use crate::functional::{Order, Sample, VectorArg};
 use crate::math::{Derivatives, Vector};
@@ -13,7 +13,7 @@ pub trait Scatter {
     fn along<D: Derivatives, W: Derivatives>(&mut self, plain: &D, along: &W);
 }
 
-/// What elements of one kind are: which arguments an element has, and the derivatives of its scalar E by them.
+/// Elements of one kind: the arguments of an element, and the derivatives of its scalar E by them.
 ///
 /// E is an energy in mJ, a virtual work δx·f in mJ of forces without a potential, or the value of a quantity. An element has `n`
 /// vectors of the list. Argument `i` reads vector `i mod n`, so that node forces of an element that reads places and velocities
@@ -23,32 +23,32 @@ pub trait Kernel: Debug + Send + Sync + 'static {
     /// One element.
     type Element: Send + Sync;
 
-    /// What [`prepare`](Self::prepare) keeps of one element; `()` where nothing is worth it.
+    /// Storage in which [`prepare`](Self::prepare) keeps data of one element; `()` where nothing is worth it.
     type Storage: Debug + Default + Send;
 
     /// Polynomial degree of E: derivatives above it vanish and are never asked for.
     const DEGREE: usize = usize::MAX;
 
-    /// How many leading arguments are virtual displacements: 0 for an energy; otherwise E is linear in them, and its scalars
+    /// Number of leading arguments that are virtual displacements: 0 for an energy; otherwise E is linear in them, and its scalars
     /// have no equations: they are parameters.
     const VIRTUAL: usize = 0;
 
-    /// How many arguments there are for each vector of an element.
+    /// Number of arguments for each vector of an element.
     const READINGS: usize = 1;
 
-    /// Whether second derivatives between two vectors are multiples of the identity.
+    /// True if second derivatives between two vectors are multiples of the identity.
     const ISOTROPIC: bool = false;
 
-    /// Whether E is a sum of functions of the vectors alone, each times a constant or the square of one scalar.
+    /// True if E is a sum of functions of the vectors alone, each times a constant or the square of one scalar.
     const OF_SQUARES: bool = false;
 
-    /// Whether h E over an interval depends on its length h where places are kept: not where E is of degree one in rates.
+    /// True if h E over an interval depends on its length h where places are kept: not where E is of degree one in rates.
     const BY_DURATION: bool = true;
 
     /// Names of the two parts of its energy in reports, where it has parts.
     const PARTS: Option<[&'static str; 2]> = None;
 
-    /// Whether the arguments `i` and `j` meet in second derivatives.
+    /// Returns true if the arguments `i` and `j` have mixed second derivatives.
     fn couples(_i: usize, _j: usize) -> bool {
         true
     }
@@ -59,7 +59,7 @@ pub trait Kernel: Debug + Send + Sync + 'static {
     /// Number of its scalars.
     fn scalars(element: &Self::Element) -> usize;
 
-    /// What argument `i` reads, of n times [`READINGS`](Self::READINGS).
+    /// Returns the vector that argument `i` reads, of n times [`READINGS`](Self::READINGS).
     fn vector(element: &Self::Element, i: usize) -> VectorArg;
 
     /// Scalar of the site that argument `s` depends on, and the factor of it; `None` for a constant.

@@ -1,4 +1,4 @@
-//! Functions of a quantity: what a constraint or a cost makes of it.
+//! Functions of a quantity: the residual of a constraint, or a cost.
 
 /// Derivatives of a function c of a quantity m by its value: `∇²c(m) = c′ ∇²m + c″ ∇m ∇mᵀ`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,7 +18,7 @@ impl Outer {
         }
     }
 
-    /// Whether nothing depends on the quantity.
+    /// Returns true if nothing depends on the quantity.
     pub fn is_zero(self) -> bool {
         self.slope == 0.0 && self.curvature == 0.0
     }

@@ -1,4 +1,4 @@
-//! Which scalar of an interval an argument reads.
+//! Argument that reads a scalar of an interval.
 
 /// A constant plus a factor times a scalar of the interval: the potential of a node.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -8,7 +8,7 @@ use std::ops::Range;
 /// All arguments.
 pub(super) const ALL: Range<usize> = 0..usize::MAX;
 
-/// What one element reads, and where its derivatives lie.
+/// One element with its arguments, and the positions of its derivatives.
 pub(super) struct Places<'a, K: Kernel> {
     element: &'a K::Element,
     slots: Slots<'a>,

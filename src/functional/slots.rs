@@ -1,4 +1,4 @@
-//! Places of the second derivatives of one element.
+//! Positions of the second derivatives of one element.
 
 use crate::functional::{Couplings, Kernel};
 
@@ -57,7 +57,7 @@ impl<'a> Slots<'a> {
     }
 }
 
-/// Registers the couplings of an element; `has_scalars` says whether its scalars couple with each other.
+/// Registers the couplings of an element; `has_scalars` is true if its scalars couple with each other.
 pub(super) fn couple<K: Kernel>(
     element: &K::Element,
     has_scalars: bool,

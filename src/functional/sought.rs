@@ -26,7 +26,7 @@ pub struct SpanMove {
     pub at: f64,
 }
 
-/// One element: a formula, its span, and what it reads beside.
+/// One element: a formula, its span, and the further arguments that it reads.
 #[derive(Clone, Debug)]
 pub struct SoughtElement<E, const N: usize> {
     /// The formula.
@@ -92,7 +92,7 @@ impl<const M: usize, const R: usize, const N: usize> OfSpan<'_, M, R, N> {
         vector.fixed_rows::<3>(3 * reading).into()
     }
 
-    /// Whether scalar `s` is the factor of vector `a`.
+    /// Returns true if scalar `s` is the factor of vector `a`.
     fn is_factor(&self, a: usize, s: usize) -> bool {
         a > 0 && self.moves[a - 1].scalar == s
     }
@@ -191,7 +191,7 @@ impl<E, const M: usize, const R: usize, const N: usize> SoughtFormulas<E, M, R, 
 where
     E: SoughtEnergy<M>,
 {
-    /// How the span is read: at the midpoint; as a virtual displacement, at the midpoint and as a rate.
+    /// Returns the stencil of the span: at the midpoint; as a virtual displacement, at the midpoint and as a rate.
     fn stencil(reading: usize) -> Stencil {
         match reading {
             2 => Stencil::Rate,

@@ -1,8 +1,8 @@
-//! Where in time an argument is read: the midpoint rule, and nothing else.
+//! Stencil of an argument in time: the midpoint rule, and nothing else.
 
 use crate::math::Vector;
 
-/// How an argument samples a vector over one interval `[t_k, t_{k+1}]`.
+/// Reading of a vector over one interval `[t_k, t_{k+1}]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stencil {
     /// x_k.
@@ -30,7 +30,7 @@ impl Stencil {
         }
     }
 
-    /// Whether it reads the instant k + side.
+    /// Returns true if it reads the instant k + side.
     #[inline(always)]
     pub fn reads(self, side: usize) -> bool {
         match self {
@@ -41,12 +41,12 @@ impl Stencil {
     }
 }
 
-/// Which vector an argument reads, and where in time.
+/// Vector that an argument reads, with its stencil in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VectorArg {
     /// Index of the vector.
     pub vector: usize,
-    /// Where in time.
+    /// Stencil in time.
     pub stencil: Stencil,
 }
 

@@ -4,7 +4,7 @@ use crate::functional::{BlockMask, Couplings, Outer, Part};
 use crate::math::Vector;
 use std::fmt::Debug;
 
-/// How far derivatives are asked for.
+/// Highest order of the derivatives that are asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Order {
     /// Forces: first derivatives.
@@ -15,7 +15,7 @@ pub enum Order {
     Third,
 }
 
-/// What a term reads on one interval.
+/// Input of a term on one interval.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<'a> {
     /// Vectors at t_k and t_{k+1}.
@@ -28,9 +28,9 @@ pub struct Sample<'a> {
     pub scalars_along: &'a [f64],
     /// Interval length in ms.
     pub h: f64,
-    /// Whether the interval length is itself an argument.
+    /// Interval length as a given number or an argument.
     pub horizon: Horizon,
-    /// Which blocks are asked for.
+    /// Blocks that are asked for.
     pub sides: BlockMask,
     /// Functions of the measures of the site that join the contraction at order `Third`.
     pub outer: &'a [Outer],
@@ -52,7 +52,7 @@ impl<'a> Sample<'a> {
     }
 }
 
-/// What the interval length is.
+/// Role of the interval length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Horizon {
     /// A given number.
@@ -61,7 +61,7 @@ pub enum Horizon {
     Free,
 }
 
-/// Where a term adds its derivatives.
+/// Sums to which a term adds its derivatives.
 #[derive(Clone, Debug)]
 pub struct Output {
     /// The derivatives.
@@ -70,7 +70,7 @@ pub struct Output {
     pub contracted: Part,
 }
 
-/// What a term is in the energy balance.
+/// Role of a term in the energy balance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Kinetic energy.
@@ -88,16 +88,16 @@ pub trait Term: Debug + Send + Sync {
     /// Name for reports.
     fn name(&self) -> &str;
 
-    /// How many elements there are.
+    /// Returns the number of elements.
     fn elements(&self) -> usize;
 
     /// Registers the couplings of the elements, and lists the slots that they got in the order in which they are read.
     fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>);
 
-    /// What the term is in the energy balance.
+    /// Returns the role of the term in the energy balance.
     fn kind(&self) -> Kind;
 
-    /// Whether it is the potential of constant forces, such as weights: of degree one in places, and of nothing else.
+    /// Returns true if it is the potential of constant forces, such as weights: of degree one in places, and of nothing else.
     fn is_dead_load(&self) -> bool {
         false
     }
@@ -141,7 +141,7 @@ pub trait Measure: Debug + Send + Sync {
     /// Scalars that enter otherwise than by their squares, to the first power.
     fn not_by_squares(&self) -> Vec<usize>;
 
-    /// Whether it reads the instant k + side.
+    /// Returns true if it reads the instant k + side.
     fn reads(&self, side: usize) -> bool;
 
     /// Its value.
@@ -161,7 +161,7 @@ pub struct Functional {
     pub terms: Vec<Box<dyn Term>>,
     /// The quantities.
     pub measures: Vec<Box<dyn Measure>>,
-    /// What couples in them.
+    /// Couplings of vectors and scalars in them.
     pub couplings: Couplings,
     /// Slots of the couplings of each term.
     effect_slots: Vec<Vec<u32>>,
@@ -224,7 +224,7 @@ impl Functional {
         }
     }
 
-    /// The derivatives of the potential energy alone up to the second, on one interval, in place of what `out` held.
+    /// The derivatives of the potential energy alone up to the second, on one interval, in place of the contents of `out`.
     pub fn evaluate_potential(&self, sample: &Sample<'_>, out: &mut Output) {
         out.plain.clear(true);
         let potential = |(term, _): &(&dyn Term, &[u32])| term.kind() == Kind::Potential;
@@ -233,7 +233,7 @@ impl Functional {
         }
     }
 
-    /// The derivatives on one interval, in place of what `out` held.
+    /// The derivatives on one interval, in place of the contents of `out`.
     pub fn evaluate(&self, order: Order, sample: &Sample<'_>, out: &mut Output) {
         out.plain.clear(order >= Order::Hessian);
         if order == Order::Third {

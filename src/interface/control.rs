@@ -47,7 +47,7 @@ pub struct Control {
 }
 
 impl Control {
-    /// Over a given duration in ms in so many intervals, from rest without voltages to the reference configuration.
+    /// Over a given duration in ms in this number of intervals, from rest without voltages to the reference configuration.
     pub fn over(duration: f64, intervals: usize) -> Self {
         Self {
             duration: Duration::Given(duration),
@@ -165,7 +165,7 @@ impl Control {
         Self { guess, ..self }
     }
 
-    /// Stops the solver after so many seconds.
+    /// Stops the solver after this number of seconds.
     pub fn max_seconds(self, seconds: f64) -> Self {
         let max_seconds = Some(seconds);
         Self {
@@ -347,7 +347,7 @@ impl Control {
     }
 }
 
-/// Refuses costs of what the system does not have, and weights and functions of time that are no numbers.
+/// Refuses costs of parts that the system does not have, and weights and functions of time that are not finite.
 fn check_costs(costs: &[QuantityCost], system: &System) -> Result<()> {
     for cost in costs {
         let exists = match cost.quantity {
@@ -368,7 +368,7 @@ fn check_costs(costs: &[QuantityCost], system: &System) -> Result<()> {
     Ok(())
 }
 
-/// Refuses energies of what is no lumped muscle, and weights that are no positive numbers.
+/// Refuses energies of parts that are no lumped muscles, and weights that are not positive.
 fn check_energies(costs: &[EnergyCost], system: &System) -> Result<()> {
     for cost in costs {
         let is_sound = cost.weight > 0.0 && cost.weight.is_finite();

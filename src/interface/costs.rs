@@ -1,4 +1,4 @@
-//! What a control problem minimises beside its voltages: energies of sources, squared deviations of markers and joints.
+//! Costs of a control problem in addition to its voltages: energies of sources, squared deviations of markers and joints.
 
 use crate::control::Signal;
 use crate::control::problem::{CostFunction, During, EnergyCost, QuantityCost, SourceEnergy};

@@ -1,4 +1,4 @@
-//! Why there is no result.
+//! Errors of the interface for Rust.
 
 use crate::dynamics::StepError;
 use crate::interface::input::Input;
@@ -7,29 +7,29 @@ use crate::model::{System, SystemError};
 use crate::workflow::WorkflowError;
 use thiserror::Error;
 
-/// Why there is no result.
+/// Reason why there is no result.
 #[derive(Debug, Error)]
 pub enum Error {
     /// The system makes no sense.
     #[error(transparent)]
     System(#[from] SystemError),
-    /// What is asked of it makes no sense.
+    /// A value of the problem makes no sense.
     #[error("{what}: {found}, expected {expected}")]
     Problem {
-        /// What is asked.
+        /// Entry of the problem.
         what: &'static str,
-        /// What was found.
+        /// Value that was found.
         found: String,
-        /// What was expected.
+        /// Value that was expected.
         expected: &'static str,
     },
-    /// What is asked of it does not exist, or the run was interrupted before there was a result.
+    /// The problem asks for something that does not exist, or the run was interrupted before there was a result.
     #[error(transparent)]
     Workflow(#[from] WorkflowError),
     /// A step of a simulation failed; the motion so far is kept.
     #[error("{source}")]
     Step {
-        /// Why.
+        /// Reason.
         source: StepError,
         /// The motion up to there.
         motion: Box<Motion>,

@@ -1,4 +1,4 @@
-//! Parts of a system are named by handles.
+//! Handles: names of the parts of a system.
 
 use crate::model::system::{Body, number_sources};
 use crate::model::{System, SystemError};
@@ -47,7 +47,7 @@ impl<P> fmt::Debug for Handle<P> {
     }
 }
 
-/// What carries a point: a body or the ground.
+/// Carrier of a point: a body or the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Carrier(pub(super) Option<usize>);
 

@@ -1,10 +1,10 @@
-//! What takes a voltage.
+//! Inputs: the parts of a system that take a voltage.
 
 use crate::interface::handle::Handle;
 use crate::model::System;
 use crate::model::system::{Muscle, Potential, Solid};
 
-/// What takes a voltage: a muscle, or a driven electrode of a solid by its name.
+/// Part that takes a voltage: a muscle, or a driven electrode of a solid by its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Input {
     /// A muscle.

@@ -1,7 +1,7 @@
 //! The library as a program uses it: systems built part by part, simulated and steered in memory.
 //!
 //! - `handle`, `parts`, `material`: systems and their parts, with defaults; checked when they are used.
-//! - `input`, `state`, `sought`, `simulation`, `control`: what is asked of a system.
+//! - `input`, `state`, `sought`, `simulation`, `control`: the tasks of a system.
 //! - `motion`, `optimum`, `error`: what comes back.
 
 mod control;

@@ -1,4 +1,4 @@
-//! What a motion shows.
+//! Motions: times, positions, poses, voltages and energies.
 
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{EnergyExchange, SourceEnergies};
@@ -16,7 +16,7 @@ pub struct Motion {
     pub(super) system: System,
     pub(super) trajectory: Trajectory,
     pub(super) exchange: EnergyExchange,
-    /// What is to be known of it: steps that do not resolve it, muscles outside the domain of their material.
+    /// Warnings and notes: steps that do not resolve it, muscles outside the domain of their material.
     pub(super) remarks: Vec<Remark>,
 }
 
@@ -49,7 +49,7 @@ impl Motion {
         rows.map(|row| row[body.index()]).collect()
     }
 
-    /// Start in ms and voltage in V of each interval; nothing of what takes no voltage.
+    /// Start in ms and voltage in V of each interval; nothing for parts that take no voltage.
     pub fn voltage(&self, input: impl Into<Input>) -> Vec<(f64, f64)> {
         let Some(source) = input.into().source(&self.system) else {
             return Vec::new();
@@ -78,7 +78,7 @@ impl Motion {
         sources.find(|one| one.source == muscle.index())
     }
 
-    /// Warnings and notes: steps that do not resolve it, muscles outside the domain of their material.
+    /// Returns the warnings and notes: steps that do not resolve it, muscles outside the domain of their material.
     pub fn remarks(&self) -> &[Remark] {
         &self.remarks
     }

@@ -5,23 +5,23 @@ use crate::interface::motion::Motion;
 use crate::model::FoundParameter;
 use crate::workflow::{Afterwards, FinalValue, Tracked};
 
-/// What the solver found: an optimal motion, or its last iterate.
+/// Result of the solver: an optimal motion, or its last iterate.
 #[derive(Clone, Debug)]
 pub struct Optimum {
-    /// How it ended, in a word: `solved`, `not_reproduced`, `infeasible`, ….
+    /// Status at its end, in a word: `solved`, `not_reproduced`, `infeasible`, ….
     pub status: &'static str,
     /// Value of the objective.
     pub objective: f64,
     /// Iterations over all grids.
     pub iterations: usize,
-    /// Why it is no optimum, where it is none.
+    /// Reason why it is no optimum, where it is none.
     pub message: Option<String>,
     /// The motion with its voltages.
     pub motion: Motion,
-    /// How closely markers and joints follow what [`Control::track`](crate::interface::Control::track) and
+    /// Deviations of markers and joints from the references that [`Control::track`](crate::interface::Control::track) and
     /// [`Control::track_joint`](crate::interface::Control::track_joint) name, marker by marker and joint by joint, in m and rad.
     pub tracking: Vec<Tracked>,
-    /// Where the motion ends of what final costs ask for.
+    /// Values at the end of the motion for which final costs ask.
     pub final_values: Vec<FinalValue>,
     /// The motion that follows a goal that no voltages are known to hold.
     pub afterwards: Option<Afterwards>,
@@ -33,7 +33,7 @@ pub struct Optimum {
 }
 
 impl Optimum {
-    /// Whether it meets the optimality conditions and a simulation under its voltages reproduces it.
+    /// Returns true if it meets the optimality conditions and a simulation under its voltages reproduces it.
     pub fn is_solved(&self) -> bool {
         self.is_solved
     }

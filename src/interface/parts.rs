@@ -156,13 +156,13 @@ impl Muscle {
         }
     }
 
-    /// Where it starts: a body or the ground, and a place in mm.
+    /// Sets its start: a body or the ground, and a place in mm.
     pub fn from(self, carrier: impl Into<Carrier>, at: Vector3<f64>) -> Self {
         let from = attachment(carrier, at);
         Self { from, ..self }
     }
 
-    /// Where it ends.
+    /// Sets its end.
     pub fn to(self, carrier: impl Into<Carrier>, at: Vector3<f64>) -> Self {
         let to = attachment(carrier, at);
         Self { to, ..self }
@@ -333,7 +333,7 @@ impl Solid {
         }
     }
 
-    /// Nodes of a set of the mesh, such as `z_min`; none where there is no such set, which a check of the system tells.
+    /// Nodes of a set of the mesh, such as `z_min`; none where there is no such set, which a check of the system reports.
     fn nodes(&self, set: &str) -> Vec<usize> {
         self.mesh.sets.get(set).cloned().unwrap_or_default()
     }

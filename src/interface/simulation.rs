@@ -142,7 +142,7 @@ impl Simulation {
     }
 }
 
-/// What is shown of a run.
+/// Returns the motion of a run.
 fn motion(run: &Simulated, task: &problem::Simulation) -> Motion {
     let trajectory = Trajectory::from_history(&run.model, &run.history);
     let order = task.solving.integrator.order();

@@ -27,7 +27,7 @@ const FLAT: f64 = 1e-8;
 const LEAST: f64 = 1e-14;
 
 /// Moves the bounded variables and the multipliers of their bounds to the barrier's path; multipliers are of the scaled objective.
-/// Where a derivative does not exist nothing is moved.
+/// Moves nothing where a derivative does not exist.
 pub(super) fn centre(
     nlp: &mut dyn Nlp,
     structures: &Structures,

@@ -1,4 +1,4 @@
-//! Why Ipopt could not be called.
+//! Errors that prevent a call of Ipopt.
 
 use thiserror::Error;
 
@@ -6,7 +6,7 @@ use crate::ipopt::no_stages::NoStages;
 use crate::ipopt::option_value::OptionValue;
 use crate::sparse::mumps;
 
-/// Why Ipopt could not be called.
+/// Reason why Ipopt could not be called.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum IpoptError {
     /// Ipopt does not know the option, or the value is of another kind or out of range.

@@ -18,9 +18,9 @@ use crate::nlp::{Entries, Nlp};
 /// A quantity that is NaN or ±∞ anywhere is refused, and Ipopt then shortens its step. When it is time to stop every value is
 /// refused, and Ipopt soon gives up; without structures it cannot.
 ///
-/// Before Ipopt tells of an iterate it has asked for the derivatives there, because it needs them to tell the dual
+/// Before Ipopt reports an iterate it has asked for the derivatives there, because it needs them for the dual
 /// infeasibility; at points which it merely tries it asks for f and g alone. So the point at which derivatives were
-/// asked last, seen when an iteration is told, is the iterate (in the restoration phase that one's own). This
+/// asked last, seen when an iteration is reported, is the iterate (in the restoration phase that one's own). This
 /// matters for Ipopt before 3.14, which has no call for it.
 pub(super) struct Evaluator<'a> {
     asked: Asked<'a>,
@@ -31,14 +31,14 @@ pub(super) struct Evaluator<'a> {
     record: &'a mut Record,
 }
 
-/// What Ipopt asks about, and who hears of it.
+/// Program that Ipopt evaluates, and the observer of its iterates.
 pub(super) struct Asked<'a> {
     pub(super) nlp: &'a mut dyn Nlp,
     pub(super) observer: &'a mut dyn FnMut(&Iteration, &Reached<'_>) -> ControlFlow<()>,
     pub(super) structures: &'a Structures,
-    /// What is subtracted from g.
+    /// Right-hand sides that are subtracted from g.
     pub(super) right: &'a [f64],
-    /// Which unknowns are squares of what the observer sees.
+    /// Unknowns that are squares of what the observer sees.
     pub(super) squares: &'a Squares,
 }
 
@@ -156,7 +156,7 @@ impl<'a> Evaluator<'a> {
         &self.asked.structures.hessian
     }
 
-    /// Takes note of an accepted iterate and says whether to go on. Where the step to it was left off it is none.
+    /// Records an accepted iterate; breaks if the solve is to stop. An iterate whose step was stopped before its end does not count.
     pub(super) fn iteration(&mut self, iteration: &Iteration) -> ControlFlow<()> {
         if session::stopped().is_some() {
             return ControlFlow::Break(());
@@ -203,14 +203,14 @@ impl<'a> Evaluator<'a> {
         seconds.solver = (seconds.total - outside).max(0.0);
     }
 
-    /// Whether it is time to stop, which is then remembered.
+    /// Returns true if it is time to stop, and remembers that.
     fn is_stopped(&mut self) -> bool {
         self.record.stopped = self.record.stopped.or_else(interrupt::stop);
         self.record.stopped.is_some()
     }
 
-    /// Whether all `values` are there and finite; if not finite, that is counted. What was evaluated while it became time to
-    /// stop may be there in part.
+    /// Returns true if all `values` are there and finite; counts those that are not finite. An evaluation during which it became time to
+    /// stop may have left some of them unset.
     fn accepts(&mut self, values: &[f64]) -> bool {
         if self.is_stopped() {
             return false;
@@ -221,7 +221,7 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-/// What `evaluate` returns, with its duration added to `seconds`.
+/// Returns the result of `evaluate`, and adds its duration to `seconds`.
 fn timed<T>(seconds: &mut f64, evaluate: impl FnOnce() -> T) -> T {
     let began = Instant::now();
     let value = evaluate();

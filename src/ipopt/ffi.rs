@@ -27,7 +27,7 @@ pub(super) struct Problem {
     _lock: Option<Exclusive>,
 }
 
-/// Where a function of the Ipopt that is called stands.
+/// Returns the address of a function of the Ipopt that is called.
 pub(super) fn address() -> *const c_void {
     FreeIpoptProblem as *const c_void
 }
@@ -85,7 +85,7 @@ impl Problem {
         Some(problem)
     }
 
-    /// Sets an option and says whether Ipopt takes it.
+    /// Sets an option and returns true if Ipopt takes it.
     pub(super) fn set(&mut self, name: &str, value: &OptionValue) -> bool {
         let Ok(name) = CString::new(name) else {
             return false;
@@ -165,7 +165,7 @@ impl Drop for Problem {
     }
 }
 
-/// Runs `evaluate` and answers Ipopt whether it succeeded.
+/// Runs `evaluate` and returns its success to Ipopt.
 ///
 /// A panic must not pass through C++: it is kept for the end, and every further question is answered by "failed".
 ///

@@ -92,7 +92,7 @@ type SetMa57 = unsafe extern "C" fn(Analyse, Factor, Solve, Enlarge, Initialise)
 
 type LinearSolvers = unsafe extern "C" fn(c_int) -> c_uint;
 
-/// What takes the functions: of 3.13 and before, and of 3.14, as `c++filt` shows.
+/// Symbols that take the functions: of 3.13 and before, and of 3.14, as `c++filt` shows.
 const SETTERS: [&CStr; 2] = [
     c"LSL_setMA57",
     c"_ZN5Ipopt20Ma57TSolverInterface12SetFunctionsEPFvPiS1_PKiS3_S1_S1_S1_S1_S1_PdEPFvS1_S1_S4_S4_S1_S1_S1_S1_S1_S1_S1_S4_S1_S4_EPFvS1_S1_S4_S1_S1_S1_S1_S4_S1_S4_S1_S1_S1_S1_EPFvS1_S1_S1_S4_S1_S4_S1_S1_S1_S1_S1_S1_EPFvS4_S1_E",
@@ -129,7 +129,7 @@ pub(super) fn install() -> Result<(), NoStages> {
     })
 }
 
-/// What Ipopt calls in the place of MA57, in the order of its setter; for tests.
+/// Returns the functions that Ipopt calls in the place of MA57, in the order of its setter; for tests.
 #[doc(hidden)]
 #[must_use]
 pub fn functions_of_ma57() -> [*const c_void; 3] {

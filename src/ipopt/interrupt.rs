@@ -1,6 +1,6 @@
-//! When to stop: at Ctrl-C, when somebody else asks for it, or when the time that was given is over.
+//! Requests to stop: Ctrl-C, a request of another thread, or a time limit.
 //!
-//! What takes long asks [`stop`] between its parts: Newton iterations, factorisations, intervals, the questions of Ipopt. It is
+//! Long work calls [`stop`] between its parts: Newton iterations, factorisations, intervals, the evaluations of Ipopt. A request is
 //! answered while a [`Watch`] lasts, so that what is known can be written afterwards.
 
 use std::cell::RefCell;
@@ -17,7 +17,7 @@ thread_local! {
     static REQUEST: RefCell<StopRequest> = RefCell::default();
 }
 
-/// Whether a signal asked for a stop since [`install`], or this thread was asked to stop.
+/// Returns true if a signal asked for a stop since [`install`], or this thread was asked to stop.
 #[must_use]
 pub fn requested() -> bool {
     have_asked() || REQUEST.with_borrow(StopRequest::is_made)
@@ -38,7 +38,7 @@ impl StopRequest {
     }
 }
 
-/// What this thread does from now on stops at this request.
+/// Makes all later work of this thread stop at this request.
 pub fn listen(request: &StopRequest) {
     REQUEST.set(request.clone());
 }
@@ -49,30 +49,30 @@ pub fn request() -> StopRequest {
     REQUEST.with_borrow(StopRequest::clone)
 }
 
-/// A time that passes by being asked for: so many questions until it is over, and how many there were. A test has such a one in place of
-/// the clock, and so its stops are the same ones every time.
+/// A limit that counts calls: it is over after a number of questions, and counts how many there were. Tests use it in place of
+/// the clock, so that they stop at the same question every time.
 #[derive(Clone, Debug)]
 pub struct Questions(Arc<[AtomicU64; 2]>);
 
 impl Questions {
-    /// Time for so many questions.
+    /// Makes a limit of this number of questions.
     #[must_use]
     pub fn allowed(count: u64) -> Self {
         Self(Arc::new([AtomicU64::new(count), AtomicU64::new(0)]))
     }
 
-    /// How many there were.
+    /// Returns the number of questions so far.
     #[must_use]
     pub fn asked(&self) -> u64 {
         self.0[1].load(Ordering::SeqCst)
     }
 
-    /// Lets the time be over after so many more questions.
+    /// Ends the time after this number of further questions.
     pub fn end_after(&self, count: u64) {
         self.0[0].store(self.asked().saturating_add(count), Ordering::SeqCst);
     }
 
-    /// Whether the time is over at this question.
+    /// Counts a question; returns true if the time is over.
     fn ask(&self) -> bool {
         let [allowed, asked] = &*self.0;
         let before = asked.fetch_add(1, Ordering::SeqCst);
@@ -102,7 +102,7 @@ impl TimeLimit {
         }
     }
 
-    /// Why to stop now, if so: [`Status::Interrupted`] or [`Status::TimeLimit`].
+    /// Returns the reason to stop now, if there is one: [`Status::Interrupted`] or [`Status::TimeLimit`].
     #[must_use]
     pub fn reached(&self) -> Option<Status> {
         if have_asked() || self.request.is_made() {
@@ -120,7 +120,7 @@ pub fn limit() -> Option<TimeLimit> {
     LIMIT.with_borrow(Clone::clone)
 }
 
-/// Why this thread is to stop now, if so; never without a [`Watch`].
+/// Returns the reason for which this thread is to stop now, if there is one; never without a [`Watch`].
 #[must_use]
 pub fn stop() -> Option<Status> {
     LIMIT.with_borrow(|limit| limit.as_ref()?.reached())
@@ -133,7 +133,7 @@ pub struct Watch {
     before: Option<TimeLimit>,
 }
 
-/// Begins to watch: this thread is to stop at Ctrl-C, after so many seconds, or when a watch around this one says so.
+/// Begins to watch: this thread is to stop at Ctrl-C, after this number of seconds, or when a watch around this one stops it.
 pub fn watch(seconds: Option<f64>) -> Watch {
     watch_until(TimeLimit::after(seconds))
 }
@@ -156,7 +156,7 @@ fn watch_until(mut own: TimeLimit) -> Watch {
     Watch { before }
 }
 
-/// Nothing on this thread is to stop until the watch is dropped: for what is left to do after a stop.
+/// Shields this thread from stops until the watch is dropped: for the work that remains after a stop.
 pub fn unwatched() -> Watch {
     Watch {
         before: LIMIT.take(),

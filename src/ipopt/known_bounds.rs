@@ -1,6 +1,6 @@
-//! The bounds that Ipopt is told.
+//! The bounds that Ipopt knows.
 //!
-//! An equation g = b is told as g − b = 0, so that b may move while Ipopt keeps what it knows. Ipopt subtracts b itself where it is told,
+//! An equation g = b is passed to it as g − b = 0, so that b may move while Ipopt keeps what it knows. Given b, Ipopt would subtract it itself,
 //! with the same bits.
 
 use crate::nlp::Bounds;
@@ -16,7 +16,7 @@ pub(super) struct KnownBounds {
 }
 
 impl KnownBounds {
-    /// Takes the bounds of a program, and says whether Ipopt has to be told others than before.
+    /// Takes the bounds of a program, and returns true if Ipopt needs others than before.
     pub(super) fn take(&mut self, variables: &Bounds, constraints: &Bounds) -> bool {
         let Bounds { lower, upper } = constraints;
         let is_equation = |low: f64, high: f64| low == high && low.is_finite();
@@ -43,7 +43,7 @@ impl KnownBounds {
         !are_known
     }
 
-    /// Whether there are as many equations as variables that are free.
+    /// Returns true if there are as many equations as free variables.
     pub(super) fn is_square(&self) -> bool {
         let equal = |bounds: &Bounds| {
             let pairs = bounds.lower.iter().zip(&bounds.upper);

@@ -1,28 +1,28 @@
-//! What the linear systems of a solve took.
+//! Report of the linear systems of a solve: the solver, its counts and its times.
 
 use crate::ipopt::no_stages::NoStages;
 use crate::ipopt::status::Status;
 use crate::kkt::Statistics;
 
-/// What the linear systems of a solve took.
+/// Report of the linear systems of a solve.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinearReport {
-    /// Who solved them: `stages`, or a name that Ipopt knows.
+    /// Name of the linear solver: `stages`, or a name that Ipopt knows.
     pub solver: String,
-    /// Why it was not `stages`, which nothing spoke against but this Ipopt.
+    /// Reason why this Ipopt did not take `stages`, where nothing else was asked for.
     pub why_not: Option<NoStages>,
-    /// What that did; known of `stages` alone.
+    /// Counts and times of `stages`; nothing for other solvers.
     pub stages: Option<StagesReport>,
 }
 
-/// What the linear solver along the horizon did in a solve.
+/// Counts and times of the linear solver along the horizon in a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StagesReport {
     /// Patterns analysed: 1, or 0 where the pattern was that of the solve before.
     pub analyses: usize,
     /// Factorisations, solutions and their errors.
     pub statistics: Statistics,
-    /// Why the last factorisation was left off in its midst, if it was.
+    /// Reason why the last factorisation was stopped before its end, if it was.
     pub stopped: Option<Status>,
     /// Seconds in analyses.
     pub analysis: f64,
@@ -40,7 +40,7 @@ pub struct StagesReport {
 const FELT: f64 = 10.0;
 
 impl LinearReport {
-    /// What made the linear systems take longer than they might.
+    /// Returns a note on the reason why the linear systems took longer than they might, if they did.
     #[must_use]
     pub fn note(&self) -> Option<String> {
         let instead = self
@@ -49,7 +49,7 @@ impl LinearReport {
         instead.or_else(|| self.whole_systems())
     }
 
-    /// Why factorisations took long, where most of their time went into systems that were not condensed although others were.
+    /// Returns the reason why factorisations took long, where most of their time went into systems that were not condensed although others were.
     fn whole_systems(&self) -> Option<String> {
         let report = self.stages?;
         let statistics = report.statistics;

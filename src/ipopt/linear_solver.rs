@@ -1,12 +1,12 @@
-//! Who solves the linear systems of Ipopt.
+//! Choice of the solver of the linear systems of Ipopt.
 
 use crate::ipopt::hook;
 use crate::ipopt::no_stages::NoStages;
 
-/// How Ipopt calls MUMPS.
+/// Name of MUMPS in Ipopt.
 pub(super) const MUMPS: &str = "mumps";
 
-/// Who solves the linear systems of Ipopt.
+/// Solver of the linear systems of Ipopt.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LinearSolver {
     /// [`LinearSolver::Stages`] where Ipopt takes it, else [`LinearSolver::Mumps`].
@@ -21,16 +21,16 @@ pub enum LinearSolver {
 /// The linear solver that a solve takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Taken<'o> {
-    /// How Ipopt calls it.
+    /// Name of the solver in Ipopt.
     pub(super) name: &'o str,
-    /// Whether it is the one along the horizon.
+    /// True if it is the one along the horizon.
     pub(super) is_along: bool,
-    /// Why it is not, where nothing else was asked for.
+    /// Reason why it is another one, where nothing else was asked for.
     pub(super) why_not: Option<NoStages>,
 }
 
 impl LinearSolver {
-    /// What is taken: an error if this Ipopt does not take it.
+    /// Returns the solver that is taken: an error if this Ipopt does not take it.
     pub(super) fn taken(self) -> Result<Taken<'static>, NoStages> {
         let stages = Taken {
             name: "ma57",
@@ -49,7 +49,7 @@ impl LinearSolver {
         }
     }
 
-    /// Whether this Ipopt takes [`LinearSolver::Stages`].
+    /// Returns true if this Ipopt takes [`LinearSolver::Stages`].
     #[must_use]
     pub fn has_stages() -> bool {
         hook::install().is_ok()

@@ -1,7 +1,7 @@
 //! Functions of the Ipopt that is called, found by their names.
 //!
 //! A process may hold another Ipopt too, as Python does with packages that bring their own: names are looked up in the library that the linked
-//! functions stand in, and among all libraries only where that one cannot be told, as in a program that contains Ipopt.
+//! functions stand in, and among all libraries only where that one cannot be identified, as in a program that contains Ipopt.
 
 #![expect(unsafe_code, reason = "C interface of the loader")]
 

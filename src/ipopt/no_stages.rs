@@ -5,7 +5,7 @@ use thiserror::Error;
 /// Version of the Ipopt that the program was built with.
 pub const VERSION: &str = env!("PROBOSCIS_IPOPT");
 
-/// Why this Ipopt does not take the linear solver along the horizon.
+/// Reason why this Ipopt does not take the linear solver along the horizon.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum NoStages {
     /// Nothing can be in the place of MA57.

@@ -1,4 +1,4 @@
-//! What a solve is asked: tolerance, limits, kind of start, and any option of Ipopt by name.
+//! Options of a solve: tolerance, limits, kind of start, and any option of Ipopt by name.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ const PUSH: f64 = 1e-9;
 /// `bound_relax_factor` where nothing else is asked for.
 const RELAXED: f64 = 1e-8;
 
-/// What the starting point is worth.
+/// Quality of the starting point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Start {
     /// A guess: Ipopt moves it well inside the bounds.
@@ -43,25 +43,25 @@ pub enum Start {
     /// iterations of a few come from voltages that leave zero, where neither effort nor force has a slope, and go where the squares are the unknowns
     /// ([`Nlp::squares`](crate::nlp::Nlp::squares)): at most 8 in place of 46 where a goal moves by up to 5 %.
     PrimalDual,
-    /// Variables and multipliers where another solve of the same problem was stopped, and its barrier parameter: it goes on.
+    /// Variables and multipliers where another solve of the same problem was stopped, and its barrier parameter: the solve is resumed.
     Resumed {
         /// The barrier parameter.
         mu_init: f64,
     },
     /// Variables and multipliers of a solution on another grid or of another duration: bounded variables and the multipliers of
     /// their bounds are moved to the barrier's path at a parameter from their complementarity, which is then chosen in each
-    /// iteration. `results/gallery/warm_starts.md` tells what that saves.
+    /// iteration. `results/gallery/warm_starts.md` shows the savings.
     Centred,
 }
 
 impl Start {
     /// [`Start::Primal`] for a problem that hardly changed.
     ///
-    /// From nodes and voltages of the five reference optima, iterations: 1e-6 takes 5 to 14, 1e-7 2 to 13, 1e-8 2 to 13;
+    /// Iterations from nodes and voltages of the five reference optima: 1e-6 takes 5 to 14, 1e-7 2 to 13, 1e-8 2 to 13;
     /// with noise of 1e-3 on them 1e-8 takes up to 27 where 1e-7 takes 23.
     pub const PRIMAL: Self = Self::Primal { mu_init: 1e-7 };
 
-    /// Whether the multipliers of the starting point are read.
+    /// Returns true if the multipliers of the starting point are read.
     pub(super) fn is_dual(self) -> bool {
         matches!(
             self,
@@ -69,24 +69,24 @@ impl Start {
         )
     }
 
-    /// Whether the barrier parameter is chosen in each iteration.
+    /// Returns true if the barrier parameter is chosen in each iteration.
     fn is_adaptive(self) -> bool {
         matches!(self, Self::PrimalDual | Self::Centred | Self::Simulated)
     }
 }
 
-/// What a solve is asked.
+/// Options of a solve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// Scaled optimality error at which a point counts as solution (`tol`).
     pub tolerance: f64,
     /// Iterations allowed (`max_iter`).
     pub max_iterations: usize,
-    /// Wall time allowed in seconds, looked at once per iteration.
+    /// Wall time allowed in seconds, checked once per iteration.
     pub max_seconds: Option<f64>,
-    /// What the starting point is worth.
+    /// Quality of the starting point.
     pub start: Start,
-    /// Who solves the linear systems, unless `extra` names another one.
+    /// Solver of the linear systems, unless `extra` names another one.
     pub linear_solver: LinearSolver,
     /// Further options of Ipopt by name; they override all others.
     pub extra: BTreeMap<String, OptionValue>,
@@ -118,7 +118,7 @@ impl Options {
         }
     }
 
-    /// By how much Ipopt relaxes bounds, of their magnitude and at least of one.
+    /// Returns the relaxation of bounds by Ipopt, relative to their magnitude and at least to one.
     pub(super) fn relaxed(&self) -> f64 {
         match self.extra.get("bound_relax_factor") {
             Some(&OptionValue::Number(factor)) => factor,
@@ -127,7 +127,7 @@ impl Options {
         }
     }
 
-    /// Whether solves with these options run in several threads at once: those with the linear solver along the horizon.
+    /// Returns true if solves with these options run in several threads in parallel: those with the linear solver along the horizon.
     #[must_use]
     pub fn run_at_once(&self) -> bool {
         self.taken().is_ok_and(|taken| taken.is_along)

@@ -1,4 +1,4 @@
-//! An iterate as an observer sees it, and what is known of the one before.
+//! An iterate as an observer sees it, and the data of the one before.
 
 use crate::ipopt::record::Record;
 use crate::ipopt::solution::{Iteration, Multipliers};
@@ -10,7 +10,7 @@ use crate::nlp::Bounds;
 pub struct Reached<'a> {
     /// Its variables.
     pub x: &'a [f64],
-    /// The iterate before, where its multipliers are known: Ipopt tells those of an iterate on the way to the next one, and none in the
+    /// The iterate before, where its multipliers are known: Ipopt gives those of an iterate on the way to the next one, and none in the
     /// restoration phase.
     pub before: Option<Before<'a>>,
 }
@@ -18,7 +18,7 @@ pub struct Reached<'a> {
 /// The iterate before, with its multipliers.
 #[derive(Debug)]
 pub struct Before<'a> {
-    /// What Ipopt told of it.
+    /// Report of Ipopt on it.
     pub report: &'a Iteration,
     /// Its variables.
     pub x: &'a [f64],

@@ -1,36 +1,36 @@
-//! What a solve leaves besides the answer of Ipopt: its iterations, the latest iterate with its multipliers, times and counts.
+//! Record of a solve in addition to the answer of Ipopt: its iterations, the latest iterate with its multipliers, times and counts.
 
 use crate::ipopt::solution::{Evaluations, Iteration, Multipliers, Seconds};
 use crate::ipopt::status::Status;
 use crate::nlp::Bounds;
 
-/// Distance from a relaxed bound that is told from zero, of its magnitude and at least of one.
+/// Distance from a relaxed bound that is distinguished from zero, of its magnitude and at least of one.
 const CLOSEST: f64 = 1e-14;
 /// Records of iterations for which room is made beforehand.
 const RESERVED_ITERATIONS: usize = 4096;
 
-/// What is left of a solve besides the answer of Ipopt.
+/// Record of a solve in addition to the answer of Ipopt.
 #[derive(Debug, Default)]
 pub(super) struct Record {
-    /// By how much bounds are relaxed, of their magnitude and at least of one.
+    /// Relaxation of bounds, relative to their magnitude and at least to one.
     pub(super) relaxed: f64,
     /// One record per iteration.
     pub(super) iterations: Vec<Iteration>,
-    /// Where derivatives were asked last.
+    /// Point at which derivatives were evaluated last.
     pub(super) derivatives_at: Vec<f64>,
-    /// The latest iterate told; before the first one, the starting point.
+    /// The latest iterate reported; before the first one, the starting point.
     pub(super) latest: Vec<f64>,
     /// Room for an iterate and the one before, where they are shown as other points than Ipopt has them.
     pub(super) shown: [Vec<f64>; 2],
     /// Multipliers of the constraints there, as the Hessian was asked with; empty until it was.
     pub(super) costates: Vec<f64>,
-    /// Why the solve was stopped from outside, if it was.
+    /// Reason why the solve was stopped from outside, if it was.
     pub(super) stopped: Option<Status>,
-    /// Where the time went; `total` and `solver` are filled in at the end.
+    /// Seconds of each part; `total` and `solver` are filled in at the end.
     pub(super) seconds: Seconds,
-    /// How often each quantity was asked for.
+    /// Number of evaluations of each quantity.
     pub(super) evaluations: Evaluations,
-    /// How many of them met NaN or ±∞.
+    /// Number of evaluations that met NaN or ±∞.
     pub(super) failed: usize,
 }
 

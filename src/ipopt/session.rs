@@ -1,4 +1,4 @@
-//! The linear systems of the solves of a program: from the questions of Ipopt to [`kkt`](crate::kkt).
+//! The linear systems of the solves of a program: from the calls of Ipopt to [`kkt`](crate::kkt).
 //!
 //! Ipopt holds no pointer to it. A solve works in one thread and in no other, so that its session stands in a variable of the thread; a
 //! solve within a callback has a session of its own.
@@ -53,7 +53,7 @@ impl Session {
         }
     }
 
-    /// Does `solve` with this session as that of the thread, and returns what it found, what the session did, and the session.
+    /// Does `solve` with this session as that of the thread, and returns its result, the report of the session, and the session.
     pub(super) fn during<T>(mut self, solve: impl FnOnce() -> T) -> (T, StagesReport, Self) {
         /// Puts the session of an outer solve back, also where the inner one panics.
         struct Outer(Option<Session>);
@@ -122,7 +122,7 @@ impl Session {
 
     /// Factors a matrix; a tolerance greater than before asks for better factors. What takes long stops when it is time to.
     ///
-    /// Ipopt 3.11 asks again and again for a matrix that is no number and is told to be singular: such a one fails.
+    /// Ipopt 3.11 repeats its request for ever if a matrix with NaN is reported as singular: the factorisation of such a matrix fails.
     pub(super) fn factor(&mut self, entries: &[f64], tolerance: f64) -> Option<Inertia> {
         self.report.stopped = self.report.stopped.or_else(interrupt::stop);
         if self.report.stopped.is_some() || !entries.iter().all(|entry| entry.is_finite()) {
@@ -186,7 +186,7 @@ pub(super) fn with_current<T>(work: impl FnOnce(&mut Session) -> T) -> Option<T>
     })
 }
 
-/// Why the solve of this thread left a factorisation off, if it did.
+/// Returns the reason why the solve of this thread stopped a factorisation before its end, if it did.
 pub(super) fn stopped() -> Option<Status> {
     CURRENT.with_borrow(|current| current.as_ref()?.report.stopped)
 }

@@ -1,6 +1,6 @@
 //! Signals that ask for a stop: Ctrl-C, the end of a session, the end that a system asks for.
 //!
-//! They are taken note of without a thread, since there may be none; whoever asks [`interrupt`](super::interrupt) hears of them.
+//! They are recorded without a thread, since there may be none; callers of [`interrupt`](super::interrupt) see them.
 
 use std::ffi::c_int;
 use std::fs;
@@ -14,7 +14,7 @@ use signal_hook::flag;
 /// Exit status of a program ended by a signal: this plus its number.
 const EXIT_STATUS: c_int = 128;
 
-/// What is told when a signal is heard of.
+/// Message at the first signal.
 const WORDS: &str =
     "\nstopping; the results so far will be written; Ctrl-C again ends the program at once";
 
@@ -30,7 +30,7 @@ const ASKING: [c_int; 2] = [SIGINT, SIGTERM];
 
 /// Makes signals end the solves of this process with [`Status::Interrupted`](super::Status::Interrupted): Ctrl-C (SIGINT), SIGTERM and SIGHUP, each of
 /// which ends the process when it comes again, with exit status 128 plus its number, and SIGXCPU, which comes when a limit of computing time
-/// is near. `tell` is given the words for who waits. What the process was started to ignore, as by `nohup`, it ignores.
+/// is near. `tell` writes a message for the user. Signals that the process was started to ignore, as by `nohup`, it ignores.
 ///
 /// Only the first call has an effect.
 pub fn install(tell: fn(&str)) {
@@ -71,7 +71,7 @@ fn stop_at(signal: c_int) -> io::Result<()> {
     Ok(())
 }
 
-/// Whether a signal has asked for a stop, which is told once.
+/// Returns true if a signal has asked for a stop, and writes the message once.
 pub(super) fn have_asked() -> bool {
     let have = REQUESTED.load(Ordering::Relaxed);
     if have
@@ -83,7 +83,7 @@ pub(super) fn have_asked() -> bool {
     have
 }
 
-/// Which signals the process was started to ignore, where the system tells.
+/// Returns a test for the signals that the process was started to ignore, where the system reports them.
 fn ignored() -> impl Fn(c_int) -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mut lines = status.lines();

@@ -1,4 +1,4 @@
-//! Where a solve starts, what it passes through and what it returns.
+//! Starting point, iterations and result of a solve.
 
 use std::ops::AddAssign;
 
@@ -31,7 +31,7 @@ impl Multipliers {
         }
     }
 
-    /// Multiplies all by a factor; what is not finite becomes zero.
+    /// Multiplies all by a factor; numbers that are not finite become zero.
     pub(super) fn scale(&mut self, factor: f64) {
         for values in [&mut self.constraints, &mut self.lower, &mut self.upper] {
             for value in values {
@@ -54,7 +54,7 @@ pub struct StartingPoint {
     pub costates: Option<Multipliers>,
 }
 
-/// One line of the iteration log, told after the iterate was accepted.
+/// One line of the iteration log, reported after the iterate was accepted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iteration {
     /// Number of the iteration; the starting point is number zero.
@@ -69,7 +69,7 @@ pub struct Iteration {
     pub mu: f64,
     /// Greatest entry of the step in the variables.
     pub step_norm: f64,
-    /// What was added to the diagonal of the Hessian to make the step a descent direction.
+    /// Number that was added to the diagonal of the Hessian to make the step a descent direction.
     pub regularization: f64,
     /// Fraction of the step taken in the bound multipliers.
     pub alpha_dual: f64,
@@ -84,7 +84,7 @@ pub struct Iteration {
 /// Wall time in seconds, and where it went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seconds {
-    /// From the first to the last instruction of Ipopt; waiting for another solve to end is not part of it.
+    /// Seconds from the first to the last instruction of Ipopt; waiting for another solve to end is not part of them.
     pub total: f64,
     /// Inside Ipopt and its linear solver: `total` less all of the following.
     pub solver: f64,
@@ -115,7 +115,7 @@ impl AddAssign for Seconds {
     }
 }
 
-/// How often Ipopt asked for each quantity.
+/// Number of evaluations of each quantity by Ipopt.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Evaluations {
     /// Times f was evaluated.
@@ -140,16 +140,16 @@ impl AddAssign for Evaluations {
     }
 }
 
-/// What a solve returns, whatever its status.
+/// Result of a solve, whatever its status.
 ///
 /// If the status is not [`is_solved`](Status::is_solved), `x` is the point at which Ipopt gave up or the latest iterate it
-/// had told, whichever violates constraints and bounds less; a point where f or g does not exist counts as worst.
+/// had reported, whichever violates constraints and bounds less; a point where f or g does not exist counts as worst.
 /// The two differ if Ipopt gave up on the way to the next iterate, for instance for want of a derivative there.
 /// `costates` are those of Ipopt, but of a solve that was stopped between two iterates: there they are those of the latest iterate, where
 /// the multipliers of bounds are the barrier parameter over the distance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverResult {
-    /// How the solve ended.
+    /// Status at the end of the solve.
     pub status: Status,
     /// The variables.
     pub x: Vec<f64>,
@@ -161,13 +161,13 @@ pub struct SolverResult {
     pub costates: Multipliers,
     /// One record per iteration.
     pub iterations: Vec<Iteration>,
-    /// Where the time went.
+    /// Seconds of each part.
     pub seconds: Seconds,
-    /// Who solved the linear systems.
+    /// Name of the solver of the linear systems.
     pub linear: LinearReport,
-    /// How often each quantity was asked for.
+    /// Number of evaluations of each quantity.
     pub evaluations: Evaluations,
-    /// How many of these met NaN or ±∞, so that the solver stepped back.
+    /// Number of evaluations that met NaN or ±∞, so that the solver stepped back.
     pub failed_evaluations: usize,
 }
 

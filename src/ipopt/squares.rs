@@ -9,7 +9,7 @@
 //!
 //! the bound is one like any other. The elephant trunk at N = 40 takes 19 iterations in place of 29, a goal that moves by 2 % 3 to 7 in place of 5 to 22.
 //!
-//! Whoever hands over a program or hears of its iterates sees x alone.
+//! Programs and observers of iterates see x alone.
 
 use crate::ipopt::solution::Multipliers;
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
@@ -17,7 +17,7 @@ use crate::nlp::{Bounds, Entries, Nlp, Stage};
 /// Least w, for slopes that are finite.
 const LEAST: f64 = 1e-18;
 
-/// Which variables are squares, and between the two.
+/// Variables that are squares, with the conversions between the two.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Squares {
     /// Variable and its u.
@@ -38,14 +38,14 @@ impl Squares {
         }
     }
 
-    /// From x to the unknowns.
+    /// Converts x to the unknowns.
     pub(super) fn square(&self, x: &mut [f64]) {
         for &(i, u) in &self.list {
             x[i] *= x[i] / u;
         }
     }
 
-    /// From the unknowns to x.
+    /// Converts the unknowns to x.
     pub(super) fn root(&self, w: &mut [f64]) {
         for &(i, u) in &self.list {
             w[i] = (u * w[i].max(0.0)).sqrt();
@@ -97,7 +97,7 @@ pub(super) struct InSquares<N> {
     jacobian: Vec<(usize, usize)>,
     /// Entries of the Hessian in row or column of a square, with both.
     hessian: Vec<(usize, [usize; 2])>,
-    /// x and its slopes at the point that was asked last; 1 of what is no square.
+    /// x and its slopes at the point evaluated last; 1 for variables that are no squares.
     x: Vec<f64>,
     slopes: Vec<f64>,
 }

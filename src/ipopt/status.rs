@@ -1,8 +1,8 @@
-//! How a solve ended.
+//! Status of a solve at its end.
 
 use std::fmt;
 
-/// How a solve ended.
+/// Status of a solve at its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Status {
     /// A point satisfies the optimality conditions to the tolerance asked for.

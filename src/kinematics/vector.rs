@@ -33,7 +33,7 @@ impl Pose {
     }
 }
 
-/// What carries a part of a vector.
+/// Carrier of a part of a vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carrier {
     /// The ground: the part is constant.
@@ -154,7 +154,7 @@ impl MaterialVector {
         }
     }
 
-    /// Whether it follows from the poses of the bodies alone.
+    /// Returns true if it follows from the poses of the bodies alone.
     pub fn is_of_bodies(&self) -> bool {
         self.terms
             .iter()

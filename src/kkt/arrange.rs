@@ -10,7 +10,7 @@ use crate::math::Stopped;
 
 const NONE: u32 = u32::MAX;
 
-/// Which equations of a group hold which of its unknowns.
+/// Incidence of the equations of a group and its unknowns.
 struct Arrangement<'a> {
     graph: &'a Graph,
     group: &'a Group,

@@ -1,4 +1,4 @@
-//! One group of equations with the unknowns that they determine, its states: where its entries stand, and what its states respond to.
+//! A square diagonal block (equations × states): its sparsity and its couplings to other unknowns.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ pub(super) struct Item {
     pub(super) value: u32,
     pub(super) row: u32,
     pub(super) column: u32,
-    /// Where the response of the column begins among the columns of the block.
+    /// Offset of the response of the column among the columns of the block.
     pub(super) place: u32,
 }
 
@@ -22,7 +22,7 @@ pub(super) struct Block {
     pub(super) equations: Range<usize>,
     /// Reduced unknowns to which its states respond: by way of earlier groups, directly, and the states that are left over.
     pub(super) reach: Vec<u32>,
-    /// How many of them by way of earlier groups.
+    /// Number of those that come by way of earlier groups.
     pub(super) inherited: usize,
     /// Reduced unknowns of the columns of H S + Kᵀ.
     pub(super) weighted: Vec<u32>,

@@ -1,4 +1,4 @@
-//! How much care a matrix is factored with.
+//! Strategy of pivoting of a factorisation, from weak to strict.
 
 use super::pivot::Rules;
 
@@ -7,7 +7,7 @@ const THRESHOLDS: [f64; 5] = [0.1, 1e-8, 1e-4, 1e-2, 0.1];
 /// Largest entry of a column that counts as zero: of a matrix as it is, and of an equilibrated one.
 const ZEROS: [f64; 2] = [1e-20, 1e-14];
 
-/// A matrix condensed, as it is, or equilibrated and under stricter and stricter rules for pivots.
+/// Strategy of a factorisation: condensed, of the matrix as it is, or equilibrated and under stricter and stricter rules for pivots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Care {
     Condensed,
@@ -19,7 +19,7 @@ pub(super) enum Care {
 }
 
 impl Care {
-    /// What follows where this was not enough.
+    /// Returns the next stricter strategy.
     pub(super) const fn stricter(self) -> Self {
         match self {
             Self::Condensed | Self::Plain => Self::Scaled,
@@ -28,7 +28,7 @@ impl Care {
         }
     }
 
-    /// Which pivots are accepted.
+    /// Returns the rules by which pivots are accepted.
     pub(super) fn rules(self) -> Rules {
         Rules {
             threshold: THRESHOLDS[self as usize],

@@ -1,4 +1,4 @@
-//! What is eliminated before all else: groups of equations with the unknowns that they determine.
+//! Static condensation, symbolic part: groups of equations are eliminated first, with the unknowns that they determine.
 //!
 //! With states s, their equations (or whatever stands in their place) y and the rest w a system is
 //!
@@ -44,7 +44,7 @@ pub(super) struct Condensation {
     pub(super) zeros: Vec<u32>,
     /// Value to which each entry is added, those of a block and kind side by side and row by row; 0 belongs to no place.
     pub(super) values: Vec<u32>,
-    /// How many values there are.
+    /// Number of values.
     pub(super) count: usize,
     /// Entries that must be zero where the diagonal of equations is not.
     pub(super) exclusive: Vec<u32>,
@@ -55,7 +55,7 @@ pub(super) struct Condensation {
     pub(super) twice: Vec<u32>,
 }
 
-/// What an unknown is, with the number of its block, and its number among its kind.
+/// Kind of an unknown, with the number of its block, and its number among its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     State(usize, u32),
@@ -64,7 +64,7 @@ enum Kind {
 }
 
 impl Condensation {
-    /// What may be condensed of a pattern that takes so many multiplications along the horizon, if that is worth it.
+    /// Condenses a pattern that takes this number of multiplications along the horizon, if that is worth it.
     pub(super) fn new(
         graph: &Graph,
         unknowns: &[Unknown],
@@ -150,7 +150,7 @@ impl Condensation {
         kinds
     }
 
-    /// Gives each entry to a block, and says whether no equation holds a state of a later group.
+    /// Gives each entry to a block, and returns true if no equation holds a state of a later group.
     fn sort(&mut self, kinds: &[Kind], rows: &[u32], cols: &[u32]) -> bool {
         let mut is_triangular = true;
         for (entry, (&row, &col)) in rows.iter().zip(cols).enumerate() {
@@ -320,7 +320,7 @@ impl Condensation {
     }
 }
 
-/// Sorts items by rows, joins those at one place and numbers what is left; `values` notes the number of each entry.
+/// Sorts items by rows, joins those at one place and numbers the remaining ones; `values` notes the number of each entry.
 fn merge(items: &mut Vec<Item>, values: &mut [u32], count: &mut usize) {
     items.sort_unstable_by_key(|item| (item.row, item.column, item.value));
     let mut before = (NONE, NONE);

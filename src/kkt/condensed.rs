@@ -30,7 +30,7 @@ use crate::math::Stopped;
 /// Greatest response of a state against the greatest direct one. Beyond, what is left of R are errors of rounding;
 /// free motions of a thousand stages stay below.
 const GROWTH: f64 = 1e6;
-/// How pivots of R are chosen.
+/// Rules by which pivots of R are chosen.
 const RULES: Rules = Rules {
     threshold: 0.1,
     zero: 1e-20,
@@ -41,7 +41,7 @@ const RULES: Rules = Rules {
 pub(super) struct Condensed {
     pub(super) parts: Condensation,
     pub(super) blocks: Vec<BlockLu>,
-    /// How many blocks are the first half of the work, and memory of each half.
+    /// Number of blocks in the first half of the work, and memory of each half.
     middle: usize,
     rooms: [Room; 2],
     weights: [Weights; 2],
@@ -55,7 +55,7 @@ pub(super) struct Condensed {
     /// Sums of the entries at each place; the first one is of none.
     pub(super) values: Vec<f64>,
     entries: Vec<f64>,
-    /// Whether equations of the last matrix had a diagonal.
+    /// True if equations of the last matrix had a diagonal.
     pub(super) has_diagonal: bool,
     pub(super) factors: Factors,
     pub(super) work: Vec<f64>,
@@ -153,7 +153,7 @@ impl Condensed {
         }))
     }
 
-    /// Whether the equations of all blocks are independent.
+    /// Factors all blocks; returns true if their equations are independent.
     fn factor_blocks(&mut self, progress: &mut Progress<'_>) -> Result<bool, Stopped> {
         progress.add(0)?;
         let (parts, values) = (&self.parts.blocks, &self.values);
@@ -249,7 +249,7 @@ impl Condensed {
         }
     }
 
-    /// Whether responses by way of earlier blocks are out of proportion to direct ones, or no numbers.
+    /// Returns true if responses by way of earlier blocks are out of proportion to direct ones, or not finite.
     fn is_growing(&self) -> bool {
         let (mut direct, mut greatest): (f64, f64) = (0.0, 0.0);
         for block in self.parts.blocks.iter().filter(|b| !b.reach.is_empty()) {

@@ -11,7 +11,7 @@ pub(super) struct Dense<'a> {
     pub(super) values: &'a mut [f64],
     /// Rows.
     pub(super) order: usize,
-    /// From one column to the next, a whole number of groups.
+    /// Distance from one column to the next, a whole number of groups.
     pub(super) stride: usize,
     /// Columns that may be eliminated.
     pub(super) candidates: usize,
@@ -34,7 +34,7 @@ impl Dense<'_> {
         self.values[q * self.stride + q + 1..][..self.order - q - 1].fill(0.0);
     }
 
-    /// Eliminates column `q`; updates the columns up to `end`, notes L D, and returns how many eigenvalues are negative.
+    /// Eliminates column `q`; updates the columns up to `end`, notes L D, and returns the number of negative eigenvalues.
     #[inline(always)]
     pub(super) fn eliminate_one<S: Simd>(
         &mut self,

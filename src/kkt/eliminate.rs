@@ -22,7 +22,7 @@ pub(super) struct Workspace {
     unscaled: Vec<f64>,
 }
 
-/// What an elimination met.
+/// Counts of an elimination.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Count {
     /// Columns eliminated.
@@ -33,7 +33,7 @@ pub(super) struct Count {
     pub(super) zero: usize,
 }
 
-/// Eliminates what it can; at a root, all.
+/// Eliminates as many columns as possible; at a root, all.
 pub(super) struct Eliminate<'a, 'b, 'c> {
     pub(super) front: Dense<'a>,
     pub(super) rules: Rules,
@@ -145,7 +145,7 @@ mod tests {
     struct Eliminated {
         count: Count,
         unknowns: Vec<u32>,
-        /// L and what is left, by columns.
+        /// L and the remainder, by columns.
         values: DMatrix<f64>,
         pivots: Vec<[f64; 2]>,
     }
@@ -187,7 +187,7 @@ mod tests {
         }
     }
 
-    /// L, D of what was eliminated and what is left, multiplied out.
+    /// L, D of the eliminated columns and the remainder, multiplied out.
     fn product(found: &Eliminated) -> DMatrix<f64> {
         let (n, k) = (found.values.nrows(), found.count.eliminated);
         let mut l = DMatrix::identity(n, n);

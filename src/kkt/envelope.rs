@@ -1,4 +1,4 @@
-//! Where the factors of a block may be other than zero, whatever unknowns are exchanged.
+//! Envelope of the factors of a block: entries that may be nonzero, whatever unknowns are exchanged.
 //!
 //! Equations are eliminated one after the other, and unknowns stand in the order in which they first appear. An exchange for the pivot of an
 //! equation is then one with an unknown that has appeared before, or appears in it; what it brings reaches no further than the last equation

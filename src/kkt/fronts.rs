@@ -13,7 +13,7 @@ use crate::math::Stopped;
 pub(super) struct Front {
     /// Its unknowns among all: those eliminated here, then those that they reach.
     pub(super) unknowns: Range<usize>,
-    /// How many are eliminated here.
+    /// Number of columns that are eliminated here.
     pub(super) columns: usize,
     /// Fronts that this one sums, a range of all children.
     pub(super) children: Range<usize>,
@@ -21,7 +21,7 @@ pub(super) struct Front {
     pub(super) entries: Range<usize>,
     /// Places of the rows below in the front of the parent, a range of all places.
     pub(super) places: Range<usize>,
-    /// Whether no front sums this one.
+    /// True if no front sums this one.
     pub(super) is_root: bool,
 }
 

@@ -1,4 +1,4 @@
-//! The graph of a symmetric matrix: which unknowns share an entry.
+//! The graph of a symmetric matrix: the pairs of unknowns that share an entry.
 
 use super::progress::Progress;
 use crate::math::Stopped;
@@ -87,7 +87,7 @@ impl Graph {
         &self.neighbours[self.starts[i] as usize..self.starts[i + 1] as usize]
     }
 
-    /// Where the neighbours of each unknown begin, with the end of the last, and all of them.
+    /// Returns the offsets of the neighbours of each unknown, with the end of the last, and all neighbours.
     pub(super) fn lists(&self) -> (&[u32], &[u32]) {
         (&self.starts, &self.neighbours)
     }

@@ -1,4 +1,4 @@
-//! Which equations may be solved for unknowns before all else.
+//! Groups of equations that may be solved for unknowns before all others.
 //!
 //! * Where a stage has as many equations as variables, and these equations reach no later stage, they determine its states from earlier
 //!   ones and from the rest: inputs, multipliers of further equations, a free duration.
@@ -83,7 +83,7 @@ pub(super) fn constraints(graph: &Graph, unknowns: &[Unknown]) -> Vec<Group> {
     groups
 }
 
-/// The stages of the variables beside an unknown.
+/// The stages of the variables that share an entry with an unknown.
 fn stages_of<'a>(
     graph: &'a Graph,
     unknowns: &'a [Unknown],
@@ -93,7 +93,7 @@ fn stages_of<'a>(
     others.filter_map(|&j| unknowns[j as usize].stage())
 }
 
-/// The stage of all unknowns beside an equation, if they are variables of one stage and no multipliers.
+/// The stage of all unknowns that share an entry with an equation, if they are variables of one stage and no multipliers.
 fn only_stage(graph: &Graph, unknowns: &[Unknown], i: usize) -> Option<u32> {
     let stage = stages_of(graph, unknowns, i).next()?;
     let mut others = graph.neighbours(i).iter();

@@ -1,13 +1,13 @@
-//! Work in two halves, at once on two cores where it is much.
+//! Work in two halves, on two threads where it is long.
 //!
-//! What belongs to which half depends on the system alone, so that factors are the same for any number of threads.
+//! The halves depend on the system alone, so that factors are the same for any number of threads.
 
 use crate::math::both;
 
 /// Multiplications below which a second core is not worth being woken: some milliseconds.
 const MUCH: usize = 1 << 23;
 
-/// Does both halves of so many multiplications.
+/// Does both halves of this number of multiplications.
 pub(super) fn halves<A: Send, B: Send>(
     multiplications: usize,
     a: impl FnOnce() -> A + Send,
@@ -16,7 +16,7 @@ pub(super) fn halves<A: Send, B: Send>(
     both(multiplications >= MUCH, a, b)
 }
 
-/// How many items make the first half, of items with these costs.
+/// Returns the number of items of the first half, of items with these costs.
 pub(super) fn middle(costs: impl Iterator<Item = f64> + Clone) -> usize {
     let half = 0.5 * costs.clone().sum::<f64>();
     let sums = costs.scan(0.0, |sum, cost| {

@@ -1,6 +1,6 @@
 //! Signs of the eigenvalues of a symmetric matrix.
 
-/// How many eigenvalues are negative, and how many are zero to rounding.
+/// Numbers of negative eigenvalues, and of those that are zero to rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Inertia {
     /// Negative eigenvalues.

@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 
-/// Columns of fronts are padded to whole groups of so many rows.
+/// Columns of fronts are padded to whole groups of this number of rows.
 pub(super) const GROUP: usize = 8;
 
 /// The least multiple of [`GROUP`] that is no less than `length`.

@@ -1,4 +1,4 @@
-//! The numeric part of a factorisation: front by front, with what is left of each on a stack (Duff and Reid, 1983).
+//! The numeric part of a factorisation: front by front, with the remainder of each on a stack (Duff and Reid, 1983).
 
 use pulp::Arch;
 
@@ -38,11 +38,11 @@ pub(super) struct Factors {
 /// Columns eliminated in one front.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Block {
-    /// Where its unknowns begin.
+    /// Offset of its unknowns.
     pub(super) unknowns: usize,
-    /// Where its columns begin.
+    /// Offset of its columns.
     pub(super) columns: usize,
-    /// Where its pivots begin.
+    /// Offset of its pivots.
     pub(super) pivots: usize,
     /// Rows of the front.
     pub(super) order: usize,
@@ -50,7 +50,7 @@ pub(super) struct Block {
     pub(super) eliminated: usize,
     /// Columns left to the parent, the rows behind.
     pub(super) delayed: usize,
-    /// Where the remainder begins on the stack.
+    /// Offset of the remainder on the stack.
     remainder: usize,
 }
 
@@ -60,7 +60,7 @@ impl Block {
     }
 }
 
-/// What a factorisation met.
+/// Outcome of a factorisation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Outcome {
     pub(super) inertia: Inertia,

@@ -19,7 +19,7 @@ const LEAF: usize = 12;
 /// Stages over which a leaf may reach.
 const REACH: u32 = 2;
 
-/// What an unknown of a system is, as far as the order of elimination asks.
+/// Kind of an unknown of a system, as far as it determines the order of elimination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {
     /// A variable of a stage.
@@ -51,7 +51,7 @@ impl Unknown {
 pub(super) struct Elimination {
     /// Unknown that is eliminated k-th.
     pub(super) order: Vec<u32>,
-    /// Whether an unknown is eliminated by itself, not together with others.
+    /// For each unknown, true if it is eliminated by itself, not together with others.
     pub(super) alone: Vec<bool>,
 }
 
@@ -96,7 +96,7 @@ fn by_stages(graph: &Graph, unknowns: &[Unknown]) -> Elimination {
     Elimination { order, alone }
 }
 
-/// Place in the order: group, stage, then what stands beside it.
+/// Position in the order: group, stage, then position within it.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     group: u64,

@@ -8,23 +8,23 @@ use pulp::Simd;
 use super::dense::Dense;
 use super::lanes::largest;
 
-/// A single pivot at least this part of the largest entry beside it is taken without looking for a pair.
+/// A single pivot at least this part of the largest other entry of its column is taken without looking for a pair.
 const GOOD: f64 = 0.1;
 /// The same with regard to entries of columns that may be pivots: α = (1 + √17) / 8 of Bunch and Kaufman.
 const BALANCE: f64 = 0.64;
 /// Least determinant of a pair against the product of its diagonal: below, all digits are lost.
 const CANCELLED: f64 = 1e-13;
 
-/// When a pivot is accepted.
+/// Rules by which a pivot is accepted.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rules {
-    /// u: the part of the largest entry beside it that a pivot must reach.
+    /// u: the part of the largest other entry of its column that a pivot must reach.
     pub(super) threshold: f64,
     /// Columns without an entry greater than this count as zero.
     pub(super) zero: f64,
 }
 
-/// What is eliminated next.
+/// Pivot that is eliminated next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Pivot {
     /// One column.
@@ -35,7 +35,7 @@ pub(super) enum Pivot {
     Zero(usize),
 }
 
-/// Largest entries of a column, without the diagonal, of what is not eliminated.
+/// Largest entries of a column, without the diagonal, among those not eliminated.
 #[derive(Clone, Copy, Debug, Default)]
 struct Beside {
     /// Largest entry in rows of the panel, and where.
@@ -89,7 +89,7 @@ impl Dense<'_> {
         is_pivot.then_some(Pivot::One(c))
     }
 
-    /// Whether a column and its largest entry make a pair: the inverse of the pair times the largest entries beside it.
+    /// Returns true if a column and its largest entry make a pair: the inverse of the pair times the largest entries in its columns.
     #[inline(always)]
     fn is_pair<S: Simd>(
         &self,

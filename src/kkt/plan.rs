@@ -1,4 +1,4 @@
-//! What is done once for all matrices of one pattern.
+//! Symbolic factorisation: the work done once for all matrices of one pattern.
 
 use super::condense::Condensation;
 use super::fronts::Fronts;
@@ -10,13 +10,13 @@ use crate::math::{IsOver, Stopped};
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub(super) fronts: Fronts,
-    /// What is eliminated before all else, where that is worth it.
+    /// Groups that are eliminated first, where that is worth it.
     pub(super) condensation: Option<Condensation>,
 }
 
 impl Plan {
     /// A plan for symmetric matrices of `order` unknowns with entries at `rows` and `cols`, in either triangle; entries at
-    /// one place are added. `unknowns` tells what each unknown is; without it the order is one of approximate minimum degree.
+    /// one place are added. `unknowns` gives the kind of each unknown; without it the order is one of approximate minimum degree.
     ///
     /// # Panics
     ///
@@ -27,11 +27,11 @@ impl Plan {
         planned.expect("nothing stops it")
     }
 
-    /// The same, unless it is told to stop, as it asks after some milliseconds again and again.
+    /// The same, unless it is stopped; it calls `is_over` every few milliseconds.
     ///
     /// # Errors
     ///
-    /// Where `is_over` said so.
+    /// If `is_over` returned true.
     ///
     /// # Panics
     ///

@@ -1,11 +1,11 @@
-//! Analyses and factorisations that may be told to stop in their midst.
+//! Progress of analyses and factorisations that may be stopped before their end.
 
 use crate::math::{IsOver, Stopped};
 
-/// Multiplications between two questions, or numbers looked at: some milliseconds at most, and more than a small system takes.
+/// Multiplications between two questions, or numbers read: some milliseconds at most, and more than a small system takes.
 const BETWEEN: usize = 1 << 22;
 
-/// Asks whether to stop: at the beginning, then after so much work that a question costs nothing against it.
+/// Asks for a stop: at the beginning, then after so much work that a question costs nothing against it.
 pub(super) struct Progress<'a> {
     is_over: IsOver<'a>,
     /// Multiplications since the last question.
@@ -20,7 +20,7 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// Says how many multiplications come next, or numbers to be looked at.
+    /// Announces the number of multiplications that come next, or of numbers to be read.
     pub(super) fn add(&mut self, multiplications: usize) -> Result<(), Stopped> {
         if self.since >= BETWEEN {
             self.since = 0;
@@ -32,7 +32,7 @@ impl<'a> Progress<'a> {
         Ok(())
     }
 
-    /// That of each half of what comes next, which are done at once.
+    /// Progress of each half of the next work, which are done in parallel.
     pub(super) fn halves(&self) -> [Self; 2] {
         let Self { is_over, since } = *self;
         [0, 1].map(|_| Self { is_over, since })

@@ -1,4 +1,4 @@
-//! What blocks add to the reduced system R: each one `Sᵀ W` and its transpose, with W = ½ H S of its own states, H S of earlier ones, and
+//! Contributions of blocks to the reduced system R: each one `Sᵀ W` and its transpose, with W = ½ H S of its own states, H S of earlier ones, and
 //! Kᵀ.
 
 use faer::linalg::matmul::matmul;
@@ -23,7 +23,7 @@ pub(super) struct Reduce<'a> {
     pub(super) has_diagonal: bool,
 }
 
-/// Memory for what is made of one block after the other.
+/// Memory for the products of one block after the other.
 #[derive(Debug)]
 pub(super) struct Weights {
     /// W by rows.

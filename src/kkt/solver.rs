@@ -1,8 +1,8 @@
-//! When to scale, how strictly to pivot, and whether the factors are good.
+//! Solver of KKT systems: it decides when to scale and how strictly to pivot, and checks the factors.
 //!
 //! * Cheap systems are factored as they are, with the weakest rule for pivots. If many pivots are delayed, or one seems to be zero,
 //!   the matrix is equilibrated and factored again, and these scales are kept for a while. Expensive ones are equilibrated always.
-//! * After each factorisation a system is solved and its backward error looked at. Where that is great, signs of eigenvalues may be
+//! * After each factorisation a system is solved and its backward error computed. Where that is great, signs of eigenvalues may be
 //!   wrong, and the matrix is factored again under a stricter rule.
 //! * Where equations determine unknowns cheaply the system is condensed; one whose equations depend on each other or have a diagonal that they do
 //!   not bear, or that grows along the horizon, is factored as it is.
@@ -31,7 +31,7 @@ const LONG: f64 = 1e10;
 /// Backward error that calls for a stricter rule.
 const ERROR: f64 = 1e-3;
 
-/// What a solver has done.
+/// Counts of the work of a solver.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Statistics {
     /// Matrices that were given.
@@ -50,10 +50,10 @@ pub struct Statistics {
     pub backward_error: f64,
 }
 
-/// Why a factorisation is repeated.
+/// Reason why a factorisation is repeated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Doubt {
-    /// What is not condensed: equations with a diagonal, dependent ones, growth along the horizon.
+    /// The system cannot be condensed: equations with a diagonal, dependent ones, growth along the horizon.
     Structure,
     /// Many delays or a great backward error.
     Growth,
@@ -77,7 +77,7 @@ pub struct Solver {
     /// Factorisations that this while lasts.
     kept: usize,
     is_factored: bool,
-    /// Whether it was told how long a factorisation takes, should that be long.
+    /// True if a message has said how long a factorisation takes, should that be long.
     is_told: bool,
     entries: Vec<f64>,
     scaled: Vec<f64>,
@@ -117,7 +117,7 @@ impl Solver {
         &self.plan
     }
 
-    /// What was done so far.
+    /// Returns the counts of the work so far.
     #[must_use]
     pub const fn statistics(&self) -> &Statistics {
         &self.statistics
@@ -148,11 +148,11 @@ impl Solver {
         factored.expect("nothing stops it")
     }
 
-    /// The same, unless it is told to stop, as it asks at the beginning and after about a millisecond again and again.
+    /// The same, unless it is stopped; it calls `is_over` at the beginning and then about every millisecond.
     ///
     /// # Errors
     ///
-    /// Where `is_over` said so; the matrix is not factored then.
+    /// If `is_over` returned true; the matrix is not factored then.
     ///
     /// # Panics
     ///
@@ -225,7 +225,7 @@ impl Solver {
         Ok(outcome.and_then(|outcome| self.judge(outcome)))
     }
 
-    /// What was found, unless a stricter care may be better.
+    /// Returns the outcome, unless a stricter strategy may be better.
     fn judge(&mut self, outcome: Outcome) -> Result<Outcome, Doubt> {
         if outcome.inertia.zero > 0 {
             // The solution of a singular system tells nothing.
@@ -291,7 +291,7 @@ impl Solver {
         factors.factor(fronts, &self.scaled, rules, most_delays, progress)
     }
 
-    /// Whether the matrix at hand is factored as a whole although others of its pattern are condensed.
+    /// Returns true if this matrix is factored as a whole although others of its pattern are condensed.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.condensed.is_some() && self.care != Care::Condensed

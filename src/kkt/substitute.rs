@@ -17,7 +17,7 @@ impl Condensed {
     }
 }
 
-/// From the right-hand side to that of the reduced system.
+/// Forward pass: from the right-hand side to that of the reduced system.
 struct Forward<'a>(&'a mut Condensed, &'a [f64]);
 
 impl WithSimd for Forward<'_> {
@@ -37,7 +37,7 @@ impl WithSimd for Forward<'_> {
     }
 }
 
-/// From the reduced unknowns to all.
+/// Backward pass: from the reduced unknowns to all.
 struct Backward<'a>(&'a mut Condensed, &'a mut [f64]);
 
 impl WithSimd for Backward<'_> {
@@ -113,7 +113,7 @@ impl Condensed {
         }
     }
 
-    /// Where equations have a diagonal E they determine `s − A_D⁻¹ E y`: corrects states for multipliers that follow from the gradient at hand,
+    /// Corrects states where equations have a diagonal E and determine `s − A_D⁻¹ E y`: for multipliers that follow from the gradient at hand,
     /// and that were others before.
     #[inline(always)]
     fn correct<S: Simd>(&mut self, unit: S) {

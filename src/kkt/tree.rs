@@ -1,4 +1,4 @@
-//! The tree of fronts: which unknowns are eliminated together, and which rows they reach.
+//! The tree of fronts: the unknowns that are eliminated together, and the rows that they reach.
 //!
 //! The elimination tree of Liu (1990) is walked from its leaves. Each column gathers the rows of its children; a child joins the node
 //! of its parent where that stores no further zeros, or few of them (amalgamation of Duff and Reid, 1983).
@@ -19,7 +19,7 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Node {
     /// The unknowns, then those that they reach, in the order of elimination.
     pub(super) unknowns: Vec<u32>,
-    /// How many of them are eliminated here.
+    /// Number of unknowns that are eliminated here.
     pub(super) columns: usize,
     /// Nodes that this one sums, ascending.
     pub(super) children: Vec<u32>,

@@ -1,4 +1,4 @@
-//! How exact factors are: a system that is solved with them, and what its solution leaves.
+//! Accuracy check of factors: the backward error of a system that is solved with them.
 
 /// A system with the right-hand side b = (1, −1, 1, …).
 #[derive(Clone, Debug, Default)]

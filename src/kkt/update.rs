@@ -79,7 +79,7 @@ fn tiles<S: Simd, const K: usize>(
     }
 }
 
-/// Where a tile is.
+/// Position of a tile.
 #[derive(Clone, Copy)]
 struct Place {
     /// First column of the slice.
@@ -88,7 +88,7 @@ struct Place {
     count: usize,
     /// First row.
     row: usize,
-    /// From one column to the next.
+    /// Distance from one column to the next.
     stride: usize,
 }
 

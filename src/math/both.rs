@@ -1,4 +1,4 @@
-//! Two pieces of work at once.
+//! Join of two pieces of work in parallel.
 
 use std::cell::OnceCell;
 use std::sync::LazyLock;

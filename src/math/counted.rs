@@ -1,4 +1,4 @@
-//! Counts in half of the memory.
+//! Compact counts in half of the memory.
 
 /// A number of which large meshes have tens of millions.
 ///

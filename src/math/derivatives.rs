@@ -31,7 +31,7 @@ pub trait Derivatives {
     }
 }
 
-/// A scalar of vectors and scalars at a point, with what it becomes along a direction.
+/// A scalar of vectors and scalars at a point, with its derivatives along a direction.
 pub trait Local {
     /// Its value.
     fn value(&self) -> f64;

@@ -1,11 +1,11 @@
-//! Numbers as people read them.
+//! Numbers formatted for readers.
 
 /// Below this a number is written with an exponent.
 const SMALL: f64 = 1e-4;
 /// And from this on.
 const LARGE: f64 = 1e15;
 
-/// A number with so many digits that count; trailing zeros stay. Very small and very large ones have an exponent.
+/// Formats a number with this number of significant digits; trailing zeros stay. Very small and very large ones have an exponent.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();

@@ -1,4 +1,4 @@
-//! Bytes of memory that the machine leaves to this process.
+//! Memory available to this process, in bytes.
 
 use std::fs;
 
@@ -16,7 +16,7 @@ pub(crate) fn available() -> Option<f64> {
     [machine, group].into_iter().flatten().reduce(f64::min)
 }
 
-/// What `/proc/meminfo` says is available, in bytes.
+/// Returns the available memory that `/proc/meminfo` states, in bytes.
 fn of_machine(text: &str) -> Option<f64> {
     let line = text
         .lines()

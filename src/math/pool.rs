@@ -1,11 +1,11 @@
-//! The threads that work for this one, or none where no thread can be had.
+//! Thread pool of this thread, or none where no thread can be had.
 
 use std::error::Error;
 use std::sync::LazyLock;
 
 use rayon::ThreadPoolBuilder;
 
-/// Whether this thread belongs to a pool, or there is one for all threads.
+/// Returns true if this thread belongs to a pool, or there is one for all threads.
 pub(crate) fn has_pool() -> bool {
     static GLOBAL: LazyLock<bool> =
         LazyLock::new(|| match ThreadPoolBuilder::new().build_global() {

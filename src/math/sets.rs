@@ -1,4 +1,4 @@
-//! Disjoint sets of numbers: what hangs together.
+//! Disjoint sets of numbers: the connected components of a graph.
 
 /// A partition of 0, …, n − 1 into sets that are joined; each is named by its smallest number.
 ///

@@ -1,9 +1,9 @@
-//! Long work that may be told to stop in its midst.
+//! Error of long work that was stopped before its end, and the callback that requests the stop.
 
 /// The matrix is not factorised, because it was time to stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("stopped within a factorisation")]
 pub struct Stopped;
 
-/// Whether it is time to stop; asked on any thread.
+/// Callback that returns true when work is to stop; called on any thread.
 pub type IsOver<'a> = &'a (dyn Fn() -> bool + Sync);

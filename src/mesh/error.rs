@@ -1,4 +1,4 @@
-//! What is wrong with a mesh or its file: the place, what was found, what is expected.
+//! Errors of a mesh or its file: the place, the value found, the value expected.
 
 use nalgebra::Vector3;
 use std::fmt;
@@ -12,19 +12,19 @@ pub enum MeshError {
     Unreadable {
         /// File as the user named it.
         file: String,
-        /// What the operating system said.
+        /// Error of the operating system.
         cause: String,
     },
-    /// A line of a file does not say what it should.
+    /// A line of a file is malformed.
     #[error("{file}:{line}: found {found}, expected {expected}")]
     Line {
         /// File as the user named it.
         file: String,
         /// Number of the line, counted from one.
         line: usize,
-        /// What was found.
+        /// Value that was found.
         found: String,
-        /// What is expected instead.
+        /// Value that is expected instead.
         expected: String,
     },
     /// Layers of a box do not fill it.
@@ -32,9 +32,9 @@ pub enum MeshError {
     Layers {
         /// Direction of the layers: x, y or z.
         axis: char,
-        /// What was found.
+        /// Value that was found.
         found: String,
-        /// What is expected instead.
+        /// Value that is expected instead.
         expected: String,
     },
     /// An element cannot be integrated.
@@ -47,27 +47,27 @@ pub enum MeshError {
         element: ElementName,
         /// Places in mm of those nodes that exist, in the order of the element.
         nodes: Vec<Vector3<f64>>,
-        /// What was found.
+        /// Value that was found.
         found: String,
-        /// What is expected instead.
+        /// Value that is expected instead.
         expected: String,
     },
     /// The mesh as a whole is not usable.
     #[error("mesh: found {found}, expected {expected}")]
     Whole {
-        /// What was found.
+        /// Value that was found.
         found: String,
-        /// What is expected instead.
+        /// Value that is expected instead.
         expected: String,
     },
 }
 
-/// Which element is meant.
+/// Identification of an element.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ElementName {
     /// Index into [`hexahedra`](super::Mesh::hexahedra).
     Index(usize),
-    /// Where it stands in a file.
+    /// Position in a file.
     File {
         /// File as the user named it.
         file: String,

@@ -1,4 +1,4 @@
-//! Where the nodes of a mesh are: bounds, nodes at a place, rigid placement.
+//! Geometry of a mesh: bounds, nodes at a place, rigid placement.
 
 use super::Mesh;
 use super::topology::FACES;

@@ -1,4 +1,4 @@
-//! Whether the elements of a mesh can be integrated: the sign of `det ∂x/∂ξ`, indices, repeated nodes.
+//! Quality of the elements of a mesh: the sign of `det ∂x/∂ξ`, indices, repeated nodes.
 //!
 //! The determinant of a trilinear hexahedron at ξ is compared with that of a brick whose edges are as long as the three
 //! columns of `∂x/∂ξ` there: the ratio is 1 for bricks of any proportions, 0 for a flat corner, −1 for a brick turned
@@ -88,7 +88,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// What is found and what is expected of an element, where they differ; `twin` has the same nodes.
+    /// Returns the fault of an element as the values found and expected, if it has one; `twin` has the same nodes.
     fn fault(
         &self,
         nodes: &[usize; 8],

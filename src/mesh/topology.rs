@@ -1,4 +1,4 @@
-//! How the elements of a mesh hang together: faces of one element only, connected parts.
+//! Topology of the elements of a mesh: faces of one element only, connected parts.
 
 use super::Mesh;
 use crate::math::DisjointSets;

@@ -1,4 +1,4 @@
-//! What is asked of a system, as far as it decides which terms are called for.
+//! The analysis of a system, as far as it decides which terms the model needs.
 
 use crate::model::constant::Parameter;
 use crate::model::quantity::Quantity;
@@ -22,7 +22,7 @@ impl Coordinates {
         }
     }
 
-    /// What a word in files names.
+    /// Returns the coordinates that a word in files names.
     pub fn named(word: &str) -> Option<Self> {
         [Self::Reduced, Self::Redundant]
             .into_iter()
@@ -37,13 +37,13 @@ pub struct Analysis {
     pub coordinates: Option<Coordinates>,
     /// Length of the intervals in ms, about; it scales multipliers.
     pub interval: f64,
-    /// What can be measured.
+    /// Quantities that can be measured.
     pub quantities: Vec<Quantity>,
     /// Those of them, by index, of which a curved function is minimised.
     pub curved: BTreeSet<usize>,
     /// Constants that are sought.
     pub parameters: Vec<Parameter>,
-    /// Whether anything moves: a state of rest has neither inertia nor viscosity.
+    /// True for a motion; a state of rest has neither inertia nor viscosity.
     pub of_motion: bool,
     /// Sources whose voltage is zero all the time.
     pub zero_voltage: BTreeSet<usize>,

@@ -1,4 +1,4 @@
-//! From a system to its model: presolve, coordinates, terms and constraints, measures.
+//! Construction of the model of a system: presolve, coordinates, terms and constraints, measures.
 
 use crate::coordinates::{CoordinateMap, Reduced};
 use crate::functional::Functional;
@@ -41,7 +41,7 @@ impl Model {
         Self::answering(system, question)
     }
 
-    /// Builds the model of what a question calls for, and of nothing else.
+    /// Builds the model of the terms that an analysis needs, and of no others.
     ///
     /// # Errors
     /// Reduced coordinates were asked for and do not exist.
@@ -204,7 +204,7 @@ impl Model {
         })
     }
 
-    /// How the coordinates of the joints of the scene are read from the poses of its bodies.
+    /// Returns the readings of the joint coordinates of the scene from the poses of its bodies.
     fn gauges(system: &System, condensed: &Presolved) -> Vec<JointReading> {
         let reference: Vec<Pose> = system.bodies.iter().map(Body::pose).collect();
         let coordinates = condensed.system.joint_coordinates();

@@ -1,4 +1,4 @@
-//! Whether a system makes sense: what a reader of files checks entry by entry, for systems that are made by a program.
+//! Validation of a system that is made by a program: the checks that a reader of files makes entry by entry.
 
 use crate::model::system::{Attachment, JointKind, System};
 use std::collections::BTreeSet;
@@ -10,16 +10,16 @@ use thiserror::Error;
 pub struct SystemError {
     /// Name of the part.
     pub part: String,
-    /// What was found.
+    /// Value that was found.
     pub found: String,
-    /// What was expected.
+    /// Value that was expected.
     pub expected: String,
 }
 
 /// Rounding of moments that satisfy the triangle inequality with equality, and of unit vectors.
 const ROUNDING: f64 = 1e-12;
 
-/// Collects nothing: the first mistake is the answer.
+/// Collects nothing: the first error is returned.
 fn require(
     holds: bool,
     part: &str,

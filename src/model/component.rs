@@ -1,5 +1,5 @@
-//! A part of a scene that answers for itself: what it ties together, which terms of the action it makes and why, what is
-//! observed of it.
+//! Component of a scene: the parts that it connects, the terms of the action that it makes and their reasons, and its
+//! observations.
 
 use crate::model::attachment::Attachment;
 use crate::model::terms::Terms;
@@ -17,14 +17,14 @@ pub trait Component: Debug + Send + Sync {
     /// The points that it ties together, in the order in which a picture joins them by lines.
     fn points(&self) -> Vec<Attachment>;
 
-    /// Whether it exerts a force in the reference configuration: then it may move what it ties, otherwise nothing starts to
+    /// Returns true if it exerts a force in the reference configuration: then it may move what it ties, otherwise nothing starts to
     /// move because of it.
     fn is_prestressed(&self) -> bool;
 
     /// Makes its terms, with reasons; or says why one is left out.
     fn build(&self, terms: &mut Terms<'_>);
 
-    /// Names and units of what is tabulated of it at every instant: `[("length", "mm")]`.
+    /// Names and units of its tabulated quantities at every instant: `[("length", "mm")]`.
     fn columns(&self) -> Vec<(&'static str, &'static str)> {
         Vec::new()
     }
@@ -34,7 +34,7 @@ pub trait Component: Debug + Send + Sync {
         Vec::new()
     }
 
-    /// Whether pictures draw a coil between its two points, in place of a line.
+    /// Returns true if pictures draw a coil between its two points, in place of a line.
     fn is_coiled(&self) -> bool {
         false
     }

@@ -1,6 +1,6 @@
 //! Constants of components that may be sought, and parameters that they follow.
 
-/// How a relative permittivity enters the energy.
+/// Law by which a relative permittivity enters the energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DielectricLaw {
     /// As in [`first_order`](crate::model::system::ElectricConstants::first_order).
@@ -34,7 +34,7 @@ pub enum Constant {
     JointDamping(usize),
 }
 
-/// A unit of the International System: its symbol, and how many of it the unit of a constant is.
+/// A unit of the International System: its symbol, and the factor from the unit of a constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SiUnit {
     /// Symbol, empty for a ratio.
@@ -76,7 +76,7 @@ pub struct Parameter {
     pub lower: f64,
     /// Upper bound.
     pub upper: f64,
-    /// Where the solver starts.
+    /// Value at which the solver starts.
     pub guess: f64,
 }
 
@@ -97,26 +97,26 @@ impl Constant {
         }
     }
 
-    /// Whether it is a length of the geometry of a muscle at rest, on which its mass and stretch depend.
+    /// Returns true if it is a length of the geometry of a muscle at rest, on which its mass and stretch depend.
     pub fn is_shape(self) -> bool {
         matches!(self, Self::Side(..) | Self::End(..))
     }
 
-    /// Whether it has to be positive to have a meaning.
+    /// Returns true if it must be positive to have a meaning.
     pub fn is_positive(self) -> bool {
         !matches!(self, Self::End(..))
     }
 }
 
 impl Parameter {
-    /// A value that tells how large it is: its guess, or the distance of its bounds where that is zero.
+    /// Typical size of its value: its guess, or the distance of its bounds where that is zero.
     pub fn size(&self) -> f64 {
         let sizes = [self.guess.abs(), self.upper - self.lower];
         let found = sizes.into_iter().find(|s| *s > 0.0 && s.is_finite());
         found.unwrap_or(1.0)
     }
 
-    /// Whether it moves an end of a muscle.
+    /// Returns true if it moves an end of a muscle.
     pub fn moves(&self, muscle: usize) -> bool {
         let is_end = |c: Constant| matches!(c, Constant::End(m, ..) if m == muscle);
         self.constants.iter().any(|c| is_end(c.constant))
@@ -132,6 +132,6 @@ pub struct FoundParameter {
     pub value: f64,
     /// Unit of the International System.
     pub unit: SiUnit,
-    /// Whether it lies at a bound, where the solver would have gone on.
+    /// True if it lies at a bound, where the solver would have gone on.
     pub is_at_bound: bool,
 }

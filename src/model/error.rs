@@ -1,8 +1,8 @@
-//! Why a model or a start cannot be had.
+//! Errors of the construction of a model.
 
 use thiserror::Error;
 
-/// A system does not allow what is asked of it.
+/// A system does not permit the analysis.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ModelError {
     /// Reduced coordinates need a tree.

@@ -1,17 +1,17 @@
-//! How far electric fields reach: which elements have one, and which voltages do something.
+//! Extent of electric fields: elements that have one, and voltages that have an effect.
 
 use crate::math::DisjointSets;
 use crate::model::system::{Potential, Solid, System};
 use std::collections::{BTreeSet, HashMap};
 
 impl Solid {
-    /// Whether a field reaches each element, if no voltage is zero all the time.
+    /// For each element, true if a field reaches it, provided that no voltage is zero all the time.
     pub fn elements_with_field(&self) -> Vec<bool> {
         dielectric(self)
     }
 }
 
-/// Whether a field reaches each element: its material has electric constants, and the dielectric part of the block that it
+/// For each element, true if a field reaches it: its material has electric constants, and the dielectric part of the block that it
 /// belongs to touches electrodes of different voltages. Electrodes that are held at a voltage part a block; a floating one
 /// joins what it touches.
 pub(super) fn dielectric(solid: &Solid) -> Vec<bool> {

@@ -10,7 +10,7 @@ use crate::model::system::{JointKind, System};
 /// Joints in an order from the ground outwards, those that close loops, and bodies that nothing holds.
 #[derive(Clone, Debug)]
 pub struct Graph {
-    /// (joint, whether it is walked from child to parent).
+    /// (joint, true if it is walked from child to parent).
     tree: Vec<(usize, Direction)>,
     /// Joints that close loops.
     loops: Vec<usize>,
@@ -74,14 +74,14 @@ impl Graph {
         }
     }
 
-    /// Why reduced coordinates do not exist, if they do not.
+    /// Returns the reason why reduced coordinates do not exist, if they do not.
     pub fn obstacle(&self, system: &System) -> Option<ModelError> {
         let &joint = self.loops.first()?;
         let joint = system.joints[joint].name.clone();
         Some(ModelError::NoTree { joint })
     }
 
-    /// Whether the joints form a tree from the ground and have one coordinate each, or none.
+    /// Returns true if the joints form a tree from the ground and have one coordinate each, or none.
     pub fn has_one_coordinate_a_joint(&self, system: &System) -> bool {
         let mut joints = system.joints.iter();
         let is_tree = self.loops.is_empty() && self.free.is_empty();

@@ -1,7 +1,7 @@
-//! What nothing moves: parts of a system at rest that no force acts on.
+//! Immobile parts of a system: bodies, blocks and muscles at rest on which no force acts.
 //!
 //! In the reference configuration muscles and blocks are free of stress, so that weight and electric fields are the only
-//! forces. Bodies hang together by joints, muscles and glue, and the ground hangs together with nothing.
+//! forces. Joints, muscles and glue connect bodies. Two parts fixed to the ground are not thereby connected.
 
 use crate::math::DisjointSets;
 use crate::model::analysis::Analysis;
@@ -12,15 +12,15 @@ use crate::model::system::System;
 /// Parts of a scene that rest all the time.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Immobile {
-    /// Whether each body rests.
+    /// For each body, true if it rests.
     pub bodies: Vec<bool>,
-    /// Whether each block of the scene rests.
+    /// For each block of the scene, true if it rests.
     pub solids: Vec<bool>,
-    /// Whether each muscle rests.
+    /// For each muscle, true if it rests.
     pub muscles: Vec<bool>,
 }
 
-/// What rests of a system whose sources at zero voltage drive nothing any more.
+/// Returns the immobile parts of a system whose sources at zero voltage drive nothing any more.
 pub(super) fn immobile(system: &System, question: &Analysis) -> Immobile {
     let counts = [
         system.bodies.len(),

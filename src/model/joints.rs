@@ -1,4 +1,4 @@
-//! What joints let move, and joint coordinates read from poses.
+//! Motions that joints permit, and joint coordinates read from poses.
 
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
@@ -17,7 +17,7 @@ pub(super) fn triad(n: &Vector) -> [Vector; 2] {
     [a, n.cross(&a)]
 }
 
-/// How the coordinate of a joint is read from the poses of its bodies.
+/// Reading of the coordinate of a joint from the poses of its bodies.
 #[derive(Clone, Debug)]
 pub struct JointReading {
     /// Index among the joint coordinates; `None` where the joint has none.
@@ -26,7 +26,7 @@ pub struct JointReading {
     pub measure: JointCoordinate,
 }
 
-/// What the coordinate is.
+/// Formula of the coordinate.
 #[derive(Clone, Debug)]
 pub enum JointCoordinate {
     /// atan2(b·c, a·c).
@@ -55,7 +55,7 @@ pub enum Screw {
 }
 
 impl JointKind {
-    /// Its screws from the parent outwards, and after how many of them a chart stands, where they tell any rotation.
+    /// Returns its screws from the parent outwards, and the number of screws in front of its chart, where they give any rotation.
     pub fn screws(&self) -> (Vec<Screw>, Option<usize>) {
         let axes = [Vector::x(), Vector::y(), Vector::z()];
         match *self {
@@ -89,7 +89,7 @@ impl System {
         self.joints.iter().map(index).collect()
     }
 
-    /// What a unit force on each joint coordinate does to the whole system, as a force and a torque about the origin: between
+    /// Returns the effect of a unit force on each joint coordinate on the whole system, as a force and a torque about the origin: between
     /// two bodies nothing, from the ground the axis of the joint. Joints with several coordinates take no such force.
     pub fn joint_pulls(&self) -> Vec<[Vector; 2]> {
         let none = [Vector::zeros(); 2];

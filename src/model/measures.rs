@@ -1,4 +1,4 @@
-//! Measures of quantities: what they read, and their formulas.
+//! Measures of quantities: the vectors and scalars that they read, and their formulas.
 
 use crate::element::FieldPoint;
 use crate::energy::{
@@ -27,7 +27,7 @@ pub(super) struct Measures {
     pub(super) places: Vec<Option<usize>>,
 }
 
-/// What quantities are measured on.
+/// Data on which quantities are measured.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known<'a> {
     pub(super) condensed: &'a Presolved,
@@ -171,7 +171,7 @@ impl Known<'_> {
     }
 }
 
-/// Whether a function of a quantity is curved, so that all that the quantity reads couples.
+/// Shape of a function of a quantity: linear, or curved, so that all that the quantity reads couples.
 #[derive(Clone, Copy, Debug)]
 enum Shape {
     Linear,

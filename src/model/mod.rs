@@ -1,4 +1,4 @@
-//! Where physics meets indices: from a checked system to sums of terms over its coordinates.
+//! The model: from a checked system to sums of terms over its coordinates, where physics meets indices.
 
 mod analysis;
 mod attachment;

@@ -19,19 +19,19 @@ use crate::sparse::Symmetry;
 /// A system with its coordinates, vectors and terms: constant during a run.
 #[derive(Debug)]
 pub struct Model {
-    /// What the scene means.
+    /// System of the scene.
     pub system: System,
-    /// What is asked of it.
+    /// Analysis for which the model is made.
     pub analysis: Analysis,
-    /// What remains of it to be solved for; its blocks are in `continua`.
+    /// Presolved system; its blocks are in `solids`.
     pub presolved: Presolved,
-    /// Which coordinates.
+    /// Kind of the coordinates.
     pub coordinates: Coordinates,
     /// The action as a function of coordinates and voltages.
     pub action: Reduced,
     /// The vectors that terms read, in terms of poses.
     pub vectors: Vec<MaterialVector>,
-    /// What is unknown or prescribed, at instants and in intervals.
+    /// Variables, unknown or prescribed, at instants and in intervals.
     pub variables: Variables,
     /// Sources whose voltage does something or would, were it not zero all the time: all that files have voltages of.
     pub reached: Vec<usize>,
@@ -45,7 +45,7 @@ pub struct Model {
     pub markers: Vec<usize>,
     /// Index of each quantity of the question among the measures of its site; `None` where nothing of the model can change it.
     pub measured: Vec<Option<usize>>,
-    /// How the coordinates of each joint are read from poses.
+    /// Readings of the coordinates of each joint from poses.
     pub gauges: Vec<JointReading>,
     /// Time that scales multipliers: the action holds −h₀ λ·g, in ms.
     pub multiplier_time: f64,
@@ -128,7 +128,7 @@ impl Model {
         moves.then_some(rates)
     }
 
-    /// Whether the tangent of a step is symmetric: all coordinates are nodes', and every force has a potential.
+    /// Returns the symmetry of the tangent of a step: symmetric if all coordinates are nodes', and every force has a potential.
     pub fn step_symmetry(&self) -> Symmetry {
         let motion = &self.action.motion;
         let terms = &self.action.intervals.terms;
@@ -194,7 +194,7 @@ impl Model {
         found.expect("a parameter of the analysis")
     }
 
-    /// Typical sizes of the unknowns of a step: 1 rad, the length of the system; infinite where the model does not tell.
+    /// Typical sizes of the unknowns of a step: 1 rad, the length of the system; infinite where the model does not know them.
     pub fn sizes(&self) -> Vec<f64> {
         let length = self.length();
         let size = |variable: &Variable| match variable.size {

@@ -1,4 +1,4 @@
-//! What a coordinate of a model is, in words and in kind.
+//! Names and kinds of the coordinates of a model.
 
 use crate::coordinates::CoordinateMap;
 use crate::math::Vector;
@@ -10,7 +10,7 @@ use crate::model::solid_block::SolidBlock;
 use crate::model::system::{JointKind, System};
 use crate::model::variables::{Role, Size, Variable};
 
-/// What coordinates are named by.
+/// Data from which coordinates get their names.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Named<'a> {
     pub(super) coordinates: Coordinates,
@@ -69,7 +69,7 @@ impl Named<'_> {
 }
 
 impl Model {
-    /// Whether coordinate `i` is a length, rather than an angle or a component of a director.
+    /// Returns true if coordinate `i` is a length, rather than an angle or a component of a director.
     pub fn is_length(&self, i: usize) -> bool {
         self.variables.with(Role::Coordinate)[i].size == Size::Length
     }
@@ -85,9 +85,9 @@ impl Model {
 pub struct Freedom<'m> {
     /// Name of the joint, or of the body that is free.
     pub of: &'m str,
-    /// What it moves.
+    /// Motion that it permits.
     pub screw: Screw,
-    /// Whether it is the only coordinate of its joint.
+    /// True if it is the only coordinate of its joint.
     pub is_only: bool,
 }
 

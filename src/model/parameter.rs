@@ -1,4 +1,4 @@
-//! Sought constants in a system: their values put in their places, their units, and where none can be sought.
+//! Sought constants in a system: their values put in their places, their units, and the cases in which none can be sought.
 
 use crate::model::constant::{
     Constant, DielectricLaw, Follower, FoundParameter, MOST_MOVES, Parameter, SiUnit,
@@ -79,7 +79,7 @@ impl Constant {
         (index >= count).then(|| format!("there is no {what} {index}, only {count}"))
     }
 
-    /// Why it cannot be sought, should it be so.
+    /// Returns the reason why it cannot be sought, if there is one.
     fn obstacle(self, system: &System) -> Option<String> {
         if let Some(missing) = self.missing(system) {
             return Some(missing);
@@ -144,7 +144,7 @@ impl Parameter {
         )
     }
 
-    /// What was found, at a value.
+    /// Returns the result for the parameter at a value.
     pub fn found(&self, value: f64, system: &System) -> FoundParameter {
         let near = |bound: f64| (value - bound).abs() <= AT_BOUND * self.size();
         FoundParameter {
@@ -171,7 +171,7 @@ pub fn with_parameters(system: &System, parameters: &[Parameter], values: &[f64]
 pub struct NotSought {
     /// Index of the parameter.
     pub parameter: usize,
-    /// Why.
+    /// Reason.
     pub reason: String,
 }
 
@@ -181,7 +181,7 @@ impl fmt::Display for NotSought {
     }
 }
 
-/// Why a parameter cannot be sought, should there be one.
+/// Returns the reason why a parameter cannot be sought, if there is one.
 ///
 /// # Errors
 /// A constant cannot be sought, follows two parameters, loses its meaning within the bounds, or the guess lies outside them.

@@ -1,5 +1,5 @@
-//! What an action is made of: names of the terms in the order in which they are summed, why each is there, and why another is
-//! not.
+//! Plan of the action: names of the terms in the order in which they are summed, and the reasons why each is present or
+//! absent.
 
 /// Weight, the one term that acts in every place with a mass.
 pub(super) const GRAVITY: &str = "gravity";
@@ -33,12 +33,12 @@ pub(super) fn rank(term: &str) -> usize {
     place.unwrap_or(TERMS.len())
 }
 
-/// What calls for a term that is there.
+/// Term that is present, with its reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Present {
     /// Name of the term.
     pub term: &'static str,
-    /// What calls for it, before the names: "stiffness of".
+    /// Reason, before the names: "stiffness of".
     pub why: &'static str,
     /// Names of the parts of the scene that do.
     pub of: Vec<String>,
@@ -49,7 +49,7 @@ pub struct Present {
 pub struct LeftOut {
     /// Name of the term.
     pub term: &'static str,
-    /// Why it is not there.
+    /// Reason why it is absent.
     pub why: &'static str,
 }
 

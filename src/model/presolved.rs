@@ -1,5 +1,5 @@
-//! What remains of a system to be solved for: bodies that are welded together are one, what nothing moves is ground, and a
-//! source without voltage drives nothing.
+//! Presolved system: welded bodies are merged, immobile parts belong to the ground, and sources without voltage drive
+//! nothing.
 //!
 //! The muscles, blocks and markers of the condensed system are those of the scene in its order; bodies and joints are fewer.
 
@@ -12,7 +12,7 @@ use crate::model::system::{
 };
 use nalgebra::SymmetricEigen;
 
-/// Where a body of the scene is found.
+/// Location of a body of the scene in the presolved system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BodyLocation {
     /// It is this body of the condensed system.
@@ -30,21 +30,21 @@ pub enum BodyLocation {
     Ground,
 }
 
-/// A system without what is not solved for.
+/// A system reduced to the parts that are solved for.
 #[derive(Clone, Debug)]
 pub struct Presolved {
     /// The system.
     pub system: System,
-    /// Where each body of the scene is found.
+    /// Location of each body of the scene.
     pub bodies: Vec<BodyLocation>,
     /// Joint of the scene of each joint.
     pub joints: Vec<usize>,
-    /// What nothing moves.
+    /// Immobile parts.
     pub immobile: Immobile,
 }
 
 impl Presolved {
-    /// What remains of a system for a question.
+    /// Presolves a system for an analysis.
     pub fn new(system: &System, question: &Analysis) -> Self {
         let mut rest = system.clone();
         set_to_zero(&mut rest, question);
@@ -122,7 +122,7 @@ impl Presolved {
         self.bodies.iter().zip(reference).map(pose).collect()
     }
 
-    /// Body of the condensed system that carries what is fixed to a body of the scene; `None` is the ground.
+    /// Body of the condensed system that carries a body of the scene; `None` is the ground.
     pub fn carrier(&self, body: Option<usize>) -> Option<usize> {
         match self.bodies[body?] {
             BodyLocation::Ground => None,
@@ -130,7 +130,7 @@ impl Presolved {
         }
     }
 
-    /// Poses of the condensed bodies from those of the bodies of the scene; `reference` where none tells.
+    /// Poses of the condensed bodies from those of the bodies of the scene; `reference` where none is known.
     pub fn condense(&self, poses: &[Pose], reference: &[Pose]) -> Vec<Pose> {
         let mut condensed = reference.to_vec();
         for (place, pose) in self.bodies.iter().zip(poses) {

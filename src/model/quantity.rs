@@ -25,7 +25,7 @@ pub enum Region {
     },
 }
 
-/// Where a true electric field is read.
+/// Place where a true electric field is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldPlace {
     /// In a lumped muscle.
@@ -63,7 +63,7 @@ pub enum Quantity {
     },
     /// (|e|/E)² of the true field e under the voltages of an interval.
     SquaredField {
-        /// Where it is read.
+        /// Place where it is read.
         place: FieldPlace,
         /// E in V/mm.
         limit: f64,
@@ -77,7 +77,7 @@ pub enum Quantity {
         /// Component 0, 1 or 2.
         axis: usize,
     },
-    /// How far a component of the place of a marker moves in an interval, in mm.
+    /// Step of a component of the place of a marker in an interval, in mm.
     MarkerStep {
         /// Marker index.
         marker: usize,
@@ -106,12 +106,12 @@ pub enum Quantity {
 const MEGAVOLT_PER_METRE: f64 = 1e3;
 
 impl Quantity {
-    /// Whether it is measured in the intervals rather than at the instants.
+    /// Returns true if it is measured in the intervals rather than at the instants.
     pub fn is_of_intervals(&self) -> bool {
         matches!(self, Self::SquaredField { .. } | Self::MarkerStep { .. })
     }
 
-    /// When it is measured, in front of the number of the instant or interval.
+    /// Returns the noun of its time, in front of the number of the instant or interval.
     pub fn when(&self) -> &'static str {
         match self {
             Self::SquaredField { at, .. } => match at {
@@ -137,7 +137,7 @@ impl Quantity {
         }
     }
 
-    /// What a value means to people: a coordinate, stretch, field or distance, and its unit.
+    /// Returns a value as shown to users: a coordinate, stretch, field or distance, and its unit.
     pub fn plain(&self, value: f64, system: &System) -> (f64, &'static str) {
         match *self {
             Self::SquaredStretch { .. } => (value.sqrt(), ""),
@@ -154,7 +154,7 @@ impl Quantity {
         }
     }
 
-    /// After how much its values repeat themselves: a full turn of an angle.
+    /// Returns the period of its values: a full turn of an angle.
     pub fn period(&self, system: &System) -> Option<f64> {
         match *self {
             Self::Joint { joint, .. } => (joint_unit(system, joint) == "rad").then_some(TAU),
@@ -162,7 +162,7 @@ impl Quantity {
         }
     }
 
-    /// Whether its values are lengths.
+    /// Returns the typical size of its values: lengths or not.
     pub fn size(&self, system: &System) -> Size {
         match *self {
             Self::Joint { joint, .. } if joint_unit(system, joint) == "rad" => Size::One,

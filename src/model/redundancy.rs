@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// A gradient whose part independent of the others is smaller than this follows from them.
 const DEPENDENT: f64 = 1e-9;
-/// More multipliers than these are not looked at.
+/// Number of multipliers above which redundancy is not checked.
 const MANY: usize = 2000;
 
 impl Model {

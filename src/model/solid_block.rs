@@ -1,4 +1,4 @@
-//! An elastic block as the model sees it: vectors and potentials of its nodes, laws of its elements, charges of its electrodes.
+//! An elastic block in the model: vectors and potentials of its nodes, laws of its elements, charges of its electrodes.
 
 use crate::element::{Dielectric, Elastomer, ElementGeometry, Fields, Local, Passive, Volume};
 use crate::functional::ScalarArg;
@@ -8,19 +8,19 @@ use crate::model::system::{ElectricConstants, Electrode, ElementKind, Material, 
 /// A block as the model sees it.
 #[derive(Clone, Debug)]
 pub struct SolidBlock {
-    /// What the scene says.
+    /// Block of the scene.
     pub solid: Solid,
     /// Vector of each node of the mesh.
     pub vectors: Vec<usize>,
     /// Terminal of each node of the mesh; `None` where there is no potential.
     pub terminals: Vec<Option<ScalarArg>>,
-    /// Whether it is a muscle, whose electrodes are one.
+    /// True if it is a muscle, whose electrodes are one.
     pub of_muscle: bool,
     /// Geometry of each element.
     pub shapes: Vec<ElementGeometry>,
-    /// Whether a field reaches each element.
+    /// For each element, true if a field reaches it.
     pub is_dielectric: Vec<bool>,
-    /// Whether all nodes rest on the ground, and no field is there.
+    /// True if all nodes rest on the ground, and there is no field.
     pub is_immobile: bool,
 }
 

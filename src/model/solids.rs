@@ -1,4 +1,4 @@
-//! Elastic blocks before they become terms: which vector each node of a mesh is, and where its potential comes from.
+//! Layout of elastic blocks before they become terms: the vector of each node of a mesh, and the source of its potential.
 //!
 //! A node glued to a body is a material point of it, a node held in all directions a point of the ground; all others have
 //! coordinates. Only nodes that an electric field reaches have a potential.
@@ -22,11 +22,11 @@ pub(super) struct Solids {
     pub(super) nodes: Vec<NodePlace>,
     /// Block and node of the mesh of each of them.
     pub(super) names: Vec<(usize, usize)>,
-    /// Node and place on a body that multipliers hold together, and what they are called.
+    /// Node and place on a body that multipliers keep together, and their names.
     pub(super) ties: Vec<(MaterialVector, String)>,
 }
 
-/// What is in use of a potential before it is numbered.
+/// Source of a potential before it is numbered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Connection {
     Terminal(ScalarArg),

@@ -35,7 +35,7 @@ impl Sought {
         pairs.find(|(_, follower)| follower.constant == constant)
     }
 
-    /// Whether a constant of some kind is sought.
+    /// Returns true if a constant of some kind is sought.
     pub fn any(&self, is_kind: impl Fn(Constant) -> bool) -> bool {
         let constants = self.parameters.iter().flat_map(|p| &p.constants);
         constants
@@ -63,7 +63,7 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// None yet, behind so many arguments that are components of vectors.
+    /// Makes an empty list, behind this number of arguments that are components of vectors.
     pub fn new(vectors: usize) -> Self {
         Self {
             vectors,

@@ -33,7 +33,7 @@ impl Model {
         })
     }
 
-    /// Whether some body turns in ways that joint coordinates in files do not tell: it is free, or on a spherical joint.
+    /// Returns true if some body turns in ways that joint coordinates in files do not give: it is free, or on a spherical joint.
     pub fn turns_freely(&self) -> bool {
         let mut joints = self.presolved.system.joints.iter();
         !self.graph.free().is_empty() || joints.any(|joint| joint.kind.freedoms() > 1)

@@ -1,4 +1,4 @@
-//! What a scene means: bodies, joints, muscles and markers in g, mm, ms, N, V, names resolved.
+//! The system of a scene: bodies, joints, muscles and markers in g, mm, ms, N, V, names resolved.
 
 use crate::mesh::Mesh;
 pub use crate::model::attachment::Attachment;
@@ -27,17 +27,17 @@ pub struct System {
     pub components: Components,
 }
 
-/// What a voltage drives, and the name of the voltage.
+/// Part that a voltage drives, and the name of the voltage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
     /// Name in files.
     pub name: String,
-    /// Whether the voltage does anything: a muscle without electric constants takes none.
+    /// True if the voltage has an effect: a muscle without electric constants takes none.
     pub takes_voltage: bool,
 }
 
 impl System {
-    /// Whether a support holds a marker in the direction of an axis.
+    /// Returns true if a support holds a marker in the direction of an axis.
     pub fn holds_marker(&self, marker: usize, axis: usize) -> bool {
         let Marker { point, solid, .. } = &self.markers[marker];
         let Some(solid) = solid.map(|s| &self.solids[s]) else {
@@ -118,7 +118,7 @@ impl System {
 pub struct Joint {
     /// Unique name.
     pub name: String,
-    /// What it lets move.
+    /// Motion that it permits.
     pub kind: JointKind,
     /// Body on the side of the root; `None` is the ground.
     pub parent: Option<usize>,
@@ -130,7 +130,7 @@ pub struct Joint {
     pub damping: Option<f64>,
 }
 
-/// What a joint lets move.
+/// Motion that a joint permits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointKind {
     /// Rotation about a unit axis.
@@ -166,13 +166,13 @@ pub struct Muscle {
     pub layer_thickness: f64,
     /// Elastomer.
     pub material: Material,
-    /// Whether the inertia of the changing cross-section is called for.
+    /// True if the inertia of the changing cross-section is asked for.
     pub section_inertia: bool,
-    /// How it is modelled.
+    /// Model of the muscle.
     pub fidelity: Fidelity,
 }
 
-/// How a muscle is modelled.
+/// Model of a muscle: lumped or finite elements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Fidelity {
     /// One stretch at constant volume.
@@ -200,7 +200,7 @@ pub struct Discretisation {
     /// Layers of the model along the span, a divisor of the elements there; each stands for many layers of the muscle
     /// under the same field.
     pub layers: usize,
-    /// Which hexahedron.
+    /// Kind of hexahedron.
     pub element: ElementKind,
 }
 
@@ -213,7 +213,7 @@ pub struct Solid {
     pub mesh: Mesh,
     /// Material of each region of the mesh.
     pub materials: Vec<Material>,
-    /// Which hexahedron.
+    /// Kind of hexahedron.
     pub element: ElementKind,
     /// Electrodes; without any the block has no potential.
     pub electrodes: Vec<Electrode>,
@@ -225,7 +225,7 @@ pub struct Solid {
     pub velocities: Vec<Vector3<f64>>,
 }
 
-/// Which hexahedron: how it treats volume.
+/// Kind of hexahedron: its treatment of volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ElementKind {
     /// Trilinear with 2 × 2 × 2 Gauss points.
@@ -267,7 +267,7 @@ pub enum Potential {
 pub struct Support {
     /// The nodes.
     pub nodes: Vec<usize>,
-    /// Whether x, y, z are held.
+    /// Directions (x, y, z) that are held.
     pub held: [bool; 3],
 }
 
@@ -348,7 +348,7 @@ impl ElectricConstants {
 }
 
 impl Joint {
-    /// Whether it has one coordinate: revolute and prismatic joints do.
+    /// Returns true if it has one coordinate: revolute and prismatic joints do.
     pub fn has_coordinate(&self) -> bool {
         self.kind.freedoms() == 1
     }

@@ -1,5 +1,5 @@
-//! Where components hand over their terms: what reads nothing that moves is left out, what is of one kind is collected, and the
-//! reasons are written down.
+//! Collection of the terms of components: elements of one kind make one term, those that read nothing that moves are left out, and the
+//! reasons are recorded.
 
 use crate::energy::{Energy, Gravity, SoughtEnergy};
 use crate::functional::{
@@ -17,7 +17,7 @@ use crate::model::variables::{Role, Variables};
 use std::any::Any;
 use std::fmt;
 
-/// The bodies that carry what is fixed to bodies of the scene.
+/// The bodies of the condensed system that carry those of the scene.
 pub(super) struct Carriers<'a> {
     /// The condensed body of each body of the scene; `None` is the ground.
     pub(super) of: Vec<Option<usize>>,
@@ -58,7 +58,7 @@ struct Collected {
     finish: fn(&str, Box<dyn Any>) -> Box<dyn Term>,
 }
 
-/// What elements of one type are together.
+/// Element that makes one term together with all of its type.
 pub(super) trait Member: Sized + 'static {
     fn term(name: &str, list: Vec<Self>) -> Box<dyn Term>;
 }
@@ -87,7 +87,7 @@ impl Member for Path {
     }
 }
 
-/// An element with the number of arguments of its formula, and whether that is a kinetic energy.
+/// An element with the number of arguments of its formula, and true for a kinetic energy.
 struct Of<E, const M: usize, const NV: usize, const NS: usize, const KINETIC: bool>(
     Element<E, NV, NS>,
 );
@@ -145,7 +145,7 @@ impl<'a> Terms<'a> {
         }
     }
 
-    /// Whether inertia and dissipation count: a state of rest has neither.
+    /// Returns true if inertia and dissipation count: a state of rest has neither.
     pub fn is_of_motion(&self) -> bool {
         self.of_motion
     }
@@ -156,7 +156,7 @@ impl<'a> Terms<'a> {
         MaterialVector::point(body, &point.at, self.bodies.reference)
     }
 
-    /// Whether nothing moves the points.
+    /// Returns true if nothing moves the points.
     pub fn is_immobile(&self, points: &[Attachment]) -> bool {
         let mut carriers = points.iter().map(|p| self.bodies.carrier(p.body));
         carriers.all(|carrier| carrier.is_none())
@@ -300,7 +300,7 @@ impl<'a> Terms<'a> {
         });
     }
 
-    /// The terms in the order of the plan, what they are there for, and what is left out.
+    /// Returns the terms in the order of the plan, their reasons, and the absent terms.
     pub(super) fn finish(mut self) -> (Vec<Box<dyn Term>>, Vec<Present>, Vec<LeftOut>) {
         self.collected
             .sort_by_key(|collected| plan::rank(collected.term));

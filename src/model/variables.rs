@@ -1,12 +1,12 @@
-//! The variables of a model in one table: what each is called, which role it has, and where it stands.
+//! The variables of a model in one table: name, role and position of each.
 //!
-//! What is a variable of an instant or of an interval, what has an equation, and what is prescribed from outside follows from roles.
+//! The role determines if a variable belongs to an instant or an interval, has an equation, or is prescribed from outside.
 //! Each role has one range of places in the list of its time, so that evaluations index and never search.
 
 use std::fmt;
 use std::ops::Range;
 
-/// What a variable belongs to.
+/// Part of the horizon to which a variable belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Time {
     /// It has a value at each instant.
@@ -17,7 +17,7 @@ pub enum Time {
     Horizon,
 }
 
-/// What a variable is. Roles of one time stand in this order in its list.
+/// Role of a variable. Roles of one time stand in this order in its list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
     /// Coordinate of the motion, with a momentum balance.
@@ -45,7 +45,7 @@ const ROLES: [Role; 6] = [
 ];
 
 impl Role {
-    /// What a variable of this role belongs to.
+    /// Returns the part of the horizon to which a variable of this role belongs.
     pub const fn time(self) -> Time {
         match self {
             Self::Parameter => Time::Horizon,
@@ -53,7 +53,7 @@ impl Role {
         }
     }
 
-    /// In which list it stands: a parameter in that of the scalars that terms read.
+    /// Returns the list in which it stands: a parameter in that of the scalars that terms read.
     const fn list(self) -> Time {
         match self {
             Self::Coordinate | Self::Multiplier => Time::Instant,
@@ -62,7 +62,7 @@ impl Role {
         }
     }
 
-    /// Whether a variable of this role has an equation of its own, so that a step forward and an equilibrium solve for it; others
+    /// Returns true if a variable of this role has an equation of its own, so that a step forward and an equilibrium solve for it; others
     /// are inputs.
     pub const fn has_equation(self) -> bool {
         match self {
@@ -72,14 +72,14 @@ impl Role {
     }
 }
 
-/// How large a variable typically is.
+/// Typical size of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
     /// One: an angle in rad, or a component of a direction.
     One,
     /// The length of the system.
     Length,
-    /// The model does not tell.
+    /// Not known by the model.
     Unknown,
 }
 
@@ -88,11 +88,11 @@ pub enum Size {
 pub struct Variable {
     /// Its role.
     pub role: Role,
-    /// What it is of; of a coordinate and the duration the full name.
+    /// Name of the part to which it belongs; of a coordinate and the duration the full name.
     pub name: String,
     /// Size of one, in rad, mm, ms or V: potentials are counted in a unit of their own.
     pub unit: f64,
-    /// How large its value typically is.
+    /// Typical size of its value.
     pub size: Size,
     /// Source of a voltage (see [`System::sources`](crate::model::System::sources)).
     pub source: Option<usize>,

@@ -47,7 +47,7 @@ pub struct Entries {
     pub cols: Vec<u32>,
 }
 
-/// Where a variable stands along a horizon.
+/// Position of a variable along a horizon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// In a stage; equations couple neighbouring ones.
@@ -94,11 +94,11 @@ pub trait Nlp {
     fn squares(&self) -> Vec<usize> {
         Vec::new()
     }
-    /// What variable `i` is, for messages.
+    /// Returns the name of variable `i`, for messages.
     fn variable_name(&self, i: usize) -> String {
         format!("x[{i}]")
     }
-    /// What constraint `i` is, for messages.
+    /// Returns the name of constraint `i`, for messages.
     fn constraint_name(&self, i: usize) -> String {
         format!("g[{i}]")
     }

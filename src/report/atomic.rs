@@ -1,4 +1,4 @@
-//! Writing a file whole or not at all.
+//! Writing of a file whole or not at all.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -19,7 +19,7 @@ const ABANDONED: Duration = Duration::from_secs(600);
 pub struct WriteError {
     /// The file or folder.
     pub path: PathBuf,
-    /// What the operating system said: no space left, permission denied, …
+    /// Error of the operating system: no space left, permission denied, …
     pub cause: io::Error,
 }
 

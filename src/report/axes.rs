@@ -1,33 +1,33 @@
-//! One axis of a plot: its range, its ticks, and where a value stands.
+//! One axis of a plot: its range, its ticks, and the positions of values.
 
-/// How values are laid along an axis.
+/// Scale of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     /// Equal differences, equal distances.
     Linear,
-    /// Equal ratios, equal distances; what is not positive is not drawn.
+    /// Equal ratios, equal distances; values that are not positive are not drawn.
     Log,
 }
 
-/// How far an axis reaches beyond its data.
+/// Extent of an axis beyond its data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// From the first value to the last, as for time.
+    /// First value to last value, as for time.
     Tight,
     /// A little further on both sides.
     Padded,
-    /// From a little below zero to a little beyond the largest, for what is never negative.
+    /// A little below zero to a little beyond the largest, for values that are never negative.
     FromZero,
 }
 
-/// What an axis shows.
+/// Label, scale and extent of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// Quantity and unit, such as `time [s]`.
     pub label: String,
     /// Linear or logarithmic.
     pub scale: Scale,
-    /// How far it reaches.
+    /// Extent beyond the data.
     pub extent: Extent,
 }
 

@@ -1,4 +1,4 @@
-//! A rigid body drawn as glass: what lies behind, then what lies before its inside.
+//! A rigid body drawn as glass: the walls behind its inside, then those in front of it.
 
 use nalgebra::Vector3;
 
@@ -9,7 +9,7 @@ use crate::report::solids::{Prism, circle};
 use crate::report::style::{self, Colour};
 use crate::report::view::{View, hull};
 
-/// Which of the two states a drawing shows.
+/// State that a drawing shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tint {
     /// The initial configuration in light grey.

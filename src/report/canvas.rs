@@ -52,7 +52,7 @@ impl Stroke {
     }
 }
 
-/// Where a text stands relative to its place.
+/// Alignment of a text relative to its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
     /// To the right of it.

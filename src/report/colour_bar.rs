@@ -1,4 +1,4 @@
-//! The bar that says which colour is which voltage.
+//! Colour bar: the voltages of the colours.
 
 use crate::report::axes::{Axis, Extent};
 use crate::report::canvas::{Align, Canvas, CanvasPoint, Stroke};

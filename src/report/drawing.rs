@@ -22,7 +22,7 @@ pub(super) fn lumped(system: &System) -> impl Iterator<Item = usize> + '_ {
     muscles.filter_map(|(i, m)| (m.fidelity == Fidelity::Lumped).then_some(i))
 }
 
-/// What is drawn between the walls of the bodies.
+/// Part that is drawn between the walls of the bodies.
 enum Inside<'a> {
     Muscle(usize, Prism),
     Skin(&'a Skin, usize),
@@ -40,7 +40,7 @@ impl Inside<'_> {
     }
 }
 
-/// What is drawn, and how.
+/// Parts that are drawn, and their view and colours.
 pub(super) struct Drawing<'a> {
     pub(super) system: &'a System,
     pub(super) trajectory: &'a Trajectory,
@@ -63,7 +63,7 @@ impl Drawing<'_> {
         canvas.outline(&places, Stroke::solid(style::REFERENCE, 0.6));
     }
 
-    /// Bodies as glass around muscles and joints, what is far first.
+    /// Bodies as glass around muscles and joints, far parts first.
     pub(super) fn instant(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
         let view = &self.view;
         let poses = &self.trajectory.poses[k];
@@ -223,7 +223,7 @@ impl Drawing<'_> {
     }
 }
 
-/// Colour of a marker among so many.
+/// Colour of a marker among a number of them.
 pub(super) fn marker_colour(marker: usize, count: usize) -> Colour {
     match count {
         1 => style::INK,

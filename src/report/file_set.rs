@@ -95,7 +95,7 @@ impl FileSet {
         Ok(())
     }
 
-    /// Brings what is in the files to the disk.
+    /// Flushes the files to the disk.
     fn sync(&self) -> Result<(), WriteError> {
         let next = AtomicUsize::new(0);
         let work = || -> Result<(), WriteError> {
@@ -129,7 +129,7 @@ impl FileSet {
     }
 }
 
-/// Removes a file; whether there was one.
+/// Removes a file; returns true if there was one.
 fn removed(path: &Path) -> Result<bool, WriteError> {
     match fs::remove_file(path) {
         Ok(()) => Ok(true),

@@ -1,4 +1,4 @@
-//! What a figure in space has room for: the system over the whole motion.
+//! Frame of a figure in space: the outline of the system over the whole motion.
 
 use std::collections::HashSet;
 

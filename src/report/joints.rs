@@ -119,7 +119,7 @@ pub fn energies(trajectory: &Trajectory, observations: &Observations) -> Vec<Ser
         .collect()
 }
 
-/// Whether a column is an energy of the system, not of one of many sources.
+/// Returns true if a column is an energy of the system, not of one of many sources.
 pub(super) fn is_energy(name: &str) -> bool {
     let is_of_one = ["_electrical_energy", "_mechanical_work"].map(|end| name.ends_with(end));
     (name.contains("energy") && is_of_one == [false; 2]) || name == "mechanical_work"

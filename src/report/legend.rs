@@ -1,4 +1,4 @@
-//! What stands beside a drawing in space: names of what is drawn, axes, a scale.
+//! Legend next to a drawing in space: names of the drawn parts, axes, a scale.
 
 use nalgebra::Vector3;
 
@@ -10,10 +10,10 @@ use crate::report::view::View;
 pub const ROW: f64 = 16.0;
 /// Height of axes and scale in pt.
 pub const TRIAD: f64 = 112.0;
-/// Where the text of a row begins in pt.
+/// Left end of the text of a row in pt.
 const TEXT: f64 = 20.0;
 
-/// How a thing looks in the drawing.
+/// Symbol of a part in the legend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LegendSymbol {
     /// A surface.

@@ -14,7 +14,7 @@ pub struct Series {
     pub points: Vec<[f64; 2]>,
     /// Colour of line and marks.
     pub colour: Colour,
-    /// Whether and how the points are joined.
+    /// Line that joins the points, if there is one.
     pub line: Option<Dash>,
     /// Width of the line in pt.
     pub width: f64,
@@ -73,7 +73,7 @@ impl Series {
     }
 }
 
-/// Whether a unit is equally long on both axes.
+/// Aspect ratio: a unit equally long on both axes or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aspect {
     /// The frame is filled.
@@ -85,7 +85,7 @@ pub enum Aspect {
 /// Curves over a pair of axes, legend to the right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinePlot {
-    /// What stands above the frame; empty for nothing.
+    /// Title above the frame; empty for nothing.
     pub title: String,
     /// Horizontal axis.
     pub x: Axis,

@@ -1,4 +1,4 @@
-//! What a run leaves behind: tables, figures and a page.
+//! Results of a run: tables, figures and a page.
 pub mod atomic;
 pub mod axes;
 pub mod body;
@@ -45,9 +45,9 @@ use crate::report::file_set::FileSet;
 /// Name of the page.
 const PAGE: &str = "report.html";
 
-/// Writes tables, figures and page; a page of an earlier run does not stay beside other results.
+/// Writes tables, figures and page; a page of an earlier run does not stay next to other results.
 ///
-/// A figure of what does not exist (voltages of no muscles, energies that were not observed) is not written.
+/// A figure without data (voltages of no muscles, energies that were not observed) is not written.
 ///
 /// # Errors
 /// A file cannot be written.

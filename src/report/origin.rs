@@ -1,4 +1,4 @@
-//! Where a result comes from, in one line: program, command, input, Ipopt.
+//! Origin of a result, in one line: program, command, input, Ipopt.
 
 /// Origin of a result: the first line of each table and the caption of each figure and page.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

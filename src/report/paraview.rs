@@ -1,7 +1,7 @@
 //! Instants of hexahedral meshes for ParaView: `.vtu` files and the `.pvd` file that lists them over time.
 //!
-//! An instant is an XML unstructured grid of VTK with all solids in one piece; numbers stand inline as 64-bit
-//! little-endian numbers in base64, packed block by block by zlib, so that each reads back identical. Units are the caller's; what a run leaves behind is in SI.
+//! An instant is an XML unstructured grid of VTK with all solids in one piece; numbers stand inline as 64-bit little-endian
+//! numbers in base64, packed block by block by zlib, so that each reads back identical. Units are the caller's; results of a run are in SI.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -18,7 +18,7 @@ use crate::report::origin::Origin;
 
 /// Number of a trilinear hexahedron in VTK.
 const HEXAHEDRON: u8 = 12;
-/// How a file says that its numbers are packed.
+/// Attribute of a file whose numbers are packed.
 pub(super) const PACKED: &str = r#" compressor="vtkZLibDataCompressor""#;
 /// Bytes that are packed at once.
 const BLOCK: usize = 1 << 20;
@@ -47,7 +47,7 @@ pub struct UnstructuredGrid<'a> {
     pub cell_data: &'a [Field<'a>],
 }
 
-/// Which data of a grid.
+/// Data of the points or of the cells of a grid.
 #[derive(Clone, Copy)]
 enum At {
     Points,
@@ -77,8 +77,8 @@ impl<'a> UnstructuredGrid<'a> {
 ///
 /// # Panics
 ///
-/// Where the values of a field are not as many as its components times points or cells, where fields of one name differ in
-/// their components, and where a cell has a point that does not exist.
+/// If the values of a field are not as many as its components times points or cells, if fields of one name differ in
+/// their components, or if a cell has a point that does not exist.
 pub fn vtu(grids: &[UnstructuredGrid<'_>], origin: &Origin) -> Vec<u8> {
     let mut text = head("UnstructuredGrid", PACKED, origin);
     text.push_str("<UnstructuredGrid>\n");

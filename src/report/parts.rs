@@ -17,7 +17,7 @@ use crate::report::solids::{Prism, SurfaceMesh};
 /// Folder of the instants, and name of the list of them.
 const NAME: &str = "parts";
 
-/// What a part is, as a number in the files.
+/// Kind of a part, as a number in the files.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Body,

@@ -1,4 +1,4 @@
-//! The system in space: where it began in light grey, where it is in the end coloured by the voltages that hold it.
+//! The system in space: its first instant in light grey, its last one coloured by the voltages that hold it.
 
 use nalgebra::Vector3;
 
@@ -21,15 +21,15 @@ const MOST: [f64; 2] = [400.0, 440.0];
 const MARGIN: f64 = 22.0;
 /// Least width of the column with colour bar and names in pt.
 const SIDE: f64 = 112.0;
-/// Height of the colour bar with what is above and below it in pt.
+/// Height of the colour bar with the texts above and below it in pt.
 const BAR: f64 = 154.0;
-/// Markers that are named at most.
+/// Maximum number of markers named.
 const NAMED: usize = 12;
 
-/// What a figure shows of a motion besides itself.
+/// Settings and further data of a figure of a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shown<'a> {
-    /// From where it is looked at.
+    /// Viewpoint.
     pub viewpoint: Viewpoint,
     /// Voltages in V, one per source, that hold the last instant, where they are known.
     pub held: Option<&'a [f64]>,
@@ -117,7 +117,7 @@ pub fn svg(
     })
 }
 
-/// Whether voltages colour anything.
+/// Returns true if voltages colour anything.
 pub(super) fn is_charged(system: &System, skins: &Skins) -> bool {
     !system.muscles.is_empty() || skins.list.iter().any(|skin| skin.is_charged)
 }
@@ -140,7 +140,7 @@ fn paths(system: &System, trajectory: &Trajectory, shown: &Shown<'_>) -> Vec<Vec
     path.collect()
 }
 
-/// What the drawn things are.
+/// Returns the names of the drawn parts.
 fn names(
     system: &System,
     trajectory: &Trajectory,

@@ -1,4 +1,4 @@
-//! What a report is made of.
+//! Input of a report: a run with its motion, observations and texts.
 
 use nalgebra::Vector3;
 
@@ -12,18 +12,18 @@ use crate::report::skins::Skins;
 use crate::report::viewpoint::Viewpoint;
 use crate::workflow::Tracked;
 
-/// How figures look, and what is written besides.
+/// Settings of figures, and further formats.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Figures {
-    /// From where figures in space look at the system.
+    /// Viewpoint of figures in space.
     pub view: Viewpoint,
-    /// Whether there is a glTF file of the motion.
+    /// True if a glTF file of the motion is written.
     pub gltf: bool,
-    /// Whether there are ParaView files of bodies, muscles and markers.
+    /// True if ParaView files of bodies, muscles and markers are written.
     pub parts: bool,
 }
 
-/// What there is to show of a run.
+/// Data of a run for its report.
 #[derive(Clone, Copy, Debug)]
 pub struct Run<'a> {
     /// The system that moved.
@@ -34,9 +34,9 @@ pub struct Run<'a> {
     pub skins: &'a Skins,
     /// Name of the motion in legends, such as `optimal voltages`.
     pub name: &'a str,
-    /// What was observed at the instants, see [`Trajectory::observe`]; energies are columns in N mm.
+    /// Observations at the instants, see [`Trajectory::observe`]; energies are columns in N mm.
     pub observations: &'a Observations,
-    /// What of it stands in `trajectory.csv`.
+    /// Columns of `trajectory.csv`.
     pub tabulated: &'a Observations,
     /// Another motion of the same system and its name, such as `constant voltages`.
     pub comparison: Option<(&'a str, &'a Trajectory)>,
@@ -46,17 +46,17 @@ pub struct Run<'a> {
     pub equilibria: Option<&'a Trajectory>,
     /// The whole path of equilibria, along which the page walks.
     pub branch: Option<Branch<'a>>,
-    /// How figures look.
+    /// Settings of figures.
     pub figures: Figures,
-    /// What markers and joints were to follow.
+    /// References of markers and joints.
     pub tracked: &'a [Tracked],
-    /// Where the results come from.
+    /// Origin of the results.
     pub origin: &'a Origin,
     /// Poses of the bodies where the motion was to end, where they are known.
     pub goal: Option<&'a [Pose]>,
     /// Places in mm where markers were to end, with their indices.
     pub targets: &'a [(usize, Vector3<f64>)],
-    /// What the page says of it; none where no page is wanted.
+    /// Texts of the page; none where no page is wanted.
     pub told: Option<&'a Told>,
 }
 
@@ -73,22 +73,22 @@ pub struct Branch<'a> {
     pub shown: usize,
 }
 
-/// What a page says of a run in words, and what it shows besides the motion.
+/// Texts of a page about a run, and its plots in addition to the motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Told {
     /// Title of the page.
     pub title: String,
-    /// Whether the question has an answer.
+    /// True if the task has an answer.
     pub is_solved: bool,
-    /// How it ended, in a few words.
+    /// Status, in a few words.
     pub answer: String,
-    /// What else there is to say: reasons, warnings.
+    /// Further notes: reasons, warnings.
     pub notes: Vec<String>,
-    /// Rows of the table beside the motion.
+    /// Rows of the table next to the motion.
     pub rows: Vec<(String, String)>,
-    /// Titles and plots of what is no function of time.
+    /// Titles and plots that are not functions of time.
     pub plots: Vec<(String, LinePlot)>,
-    /// Names and texts of what was asked and answered: `summary.json`, problem, scene.
+    /// Names and texts of the input and the answer: `summary.json`, problem, scene.
     pub documents: Vec<(String, String)>,
 }
 
@@ -133,7 +133,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// What a figure in space shows.
+    /// Returns the settings of a figure in space.
     pub(super) fn shown(&self) -> Shown<'_> {
         Shown {
             viewpoint: self.figures.view,

@@ -1,6 +1,6 @@
-//! Which instants of a long motion tables, figures and page show.
+//! Selection of the instants of a long motion that tables, figures and page show.
 //!
-//! Every n-th instant is shown, and where the motion is fast more of them, so that nothing is lost to the eye: what joints and markers do
+//! Every n-th instant is shown, and more of them where the motion is fast: the path of a joint or marker
 //! between two of them differs from the straight line by less than 1/500 of the height of a figure.
 
 use crate::dynamics::DiscreteTrajectory;
@@ -81,7 +81,7 @@ impl Sampled {
         }
     }
 
-    /// What was to be followed at these instants.
+    /// Returns the references at these instants.
     pub fn tracked(&self, full: &[Tracked]) -> Vec<Tracked> {
         let path = |path: &TrackedPath| path.at(&self.instants);
         let tracked = |tracked: &Tracked| Tracked {
@@ -97,7 +97,7 @@ impl Sampled {
     }
 }
 
-/// Another motion, which is drawn beside one: not more of it than of that.
+/// Another motion, which is drawn next to one: not more of it than of that.
 pub fn thinned(full: &Trajectory) -> Trajectory {
     let last = full.times.len() - 1;
     let mut instants: Vec<usize> = (0..=last).step_by((last / FEWEST).max(1)).collect();
@@ -118,7 +118,7 @@ fn multiples(times: &[f64], every: f64) -> Vec<usize> {
         .collect()
 }
 
-/// Every so many-th instant, and those between that are needed to see the motion.
+/// Returns each n-th instant, and those between that are needed to see the motion.
 fn seen(times: &[f64], observations: &Observations) -> Vec<usize> {
     let last = times.len() - 1;
     let stride = (last / FEWEST).max(1);
@@ -147,7 +147,7 @@ fn seen(times: &[f64], observations: &Observations) -> Vec<usize> {
     instants
 }
 
-/// A column, and how much of it cannot be seen.
+/// A column, and the part of its range that cannot be seen.
 struct Curve<'a> {
     values: &'a [f64],
     unseen: f64,
@@ -164,7 +164,7 @@ impl<'a> Curve<'a> {
         }
     }
 
-    /// Whether it differs visibly from the straight line between two instants.
+    /// Returns true if it differs visibly from the straight line between two instants.
     fn bends(&self, times: &[f64], from: usize, to: usize) -> bool {
         let Self { values, unseen } = self;
         let slope = (values[to] - values[from]) / (times[to] - times[from]);

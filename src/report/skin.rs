@@ -15,10 +15,10 @@ const FINEST: f64 = 2.0;
 const STEP: f64 = 0.03;
 /// Most patches along a side of a face.
 const PATCHES: usize = 12;
-/// Faces that are cut into patches at most.
+/// Maximum number of faces that are cut into patches.
 const FEW: usize = 1000;
 
-/// What colours a surface.
+/// Colour of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Paint<'a> {
     /// The initial configuration: outlines on light grey.
@@ -122,7 +122,7 @@ fn patches(corners: &[CanvasPoint; 4], values: &[f64; 4]) -> Vec<([CanvasPoint; 
     all.map(|(i, j)| part(i, j)).collect()
 }
 
-/// How an edge is drawn: strong where it is the body's, faint where it is an element's.
+/// Returns the stroke of an edge: strong where it is the body's, faint where it is an element's.
 fn edge(fill: Colour, is_sharp: bool, length: f64, is_reference: bool) -> Option<Stroke> {
     match (is_reference, is_sharp) {
         (true, true) => Some(Stroke::solid(style::REFERENCE, 0.6)),

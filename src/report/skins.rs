@@ -24,11 +24,11 @@ pub struct Skin {
     pub name: String,
     /// The muscle, by its index in the system; `None` for a block of the scene.
     pub muscle: Option<usize>,
-    /// Whether potentials reach it.
+    /// True if potentials reach it.
     pub is_charged: bool,
     /// Corners of the faces, counter-clockwise seen from outside.
     pub quads: Vec<[usize; 4]>,
-    /// Whether the edge from each corner of a face to the next is one of the body, rather than of its elements.
+    /// For each corner of a face, true if the edge to the next one is an edge of the body, rather than of its elements.
     pub sharp: Vec<[bool; 4]>,
     /// Places of the corners in the reference configuration in mm.
     pub reference: Vec<Vector3<f64>>,
@@ -116,7 +116,7 @@ impl Skins {
         }
     }
 
-    /// Where an instant stands among those shown; the last of them for others.
+    /// Returns the position of an instant among those shown; of the last of them for others.
     pub fn position(&self, instant: usize) -> usize {
         let found = self.instants.iter().position(|&k| k == instant);
         found.unwrap_or(self.instants.len().saturating_sub(1))

@@ -15,7 +15,7 @@ use crate::report::style;
 use crate::report::view::View;
 use crate::report::viewpoint::Viewpoint;
 
-/// Stills at most.
+/// Maximum number of stills.
 const MOST: usize = 6;
 /// Most width and height of a still in pt.
 const PANEL: [f64; 2] = [190.0, 240.0];

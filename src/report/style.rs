@@ -10,7 +10,7 @@ pub const FONT: &str = "Helvetica, Arial, Liberation Sans, sans-serif";
 pub const LABEL_SIZE: f64 = 11.0;
 /// Size of tick labels and legends in pt.
 pub const TICK_SIZE: f64 = 9.5;
-/// Size of labels beside points of a curve in pt.
+/// Size of labels next to points of a curve in pt.
 pub const LABEL_OF_POINT_SIZE: f64 = 7.5;
 /// Size of the caption that names the origin in pt.
 pub const CAPTION_SIZE: f64 = 6.5;
@@ -75,7 +75,7 @@ impl Colour {
     }
 }
 
-/// How a line is drawn.
+/// Pattern of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dash {
     /// Without gaps: agonists.

@@ -13,7 +13,7 @@ pub struct TableColumn<'a> {
     pub heading: String,
     /// Numbers as they are inside.
     values: &'a [f64],
-    /// How many of the unit in the heading one of the unit inside is.
+    /// Factor from the unit inside to the unit in the heading.
     factor: f64,
 }
 
@@ -156,5 +156,5 @@ fn quoted(cell: &str) -> String {
     }
 }
 
-/// What a spreadsheet takes for the begin of a formula; an apostrophe before it says that it is a text.
+/// Characters that a spreadsheet takes for the begin of a formula; an apostrophe before one marks the cell as text.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];

@@ -1,4 +1,4 @@
-//! What markers and joints follow, beside what they do.
+//! References of markers and joints next to their motion: table and figure.
 
 use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Series};
@@ -7,7 +7,7 @@ use crate::report::style;
 use crate::report::table::csv;
 use crate::workflow::Tracked;
 
-/// `tracking.csv`: one row per instant with each coordinate, what it was to be, and the deviation.
+/// `tracking.csv`: one row per instant with each coordinate, its reference, and the deviation.
 pub fn table(times: &[f64], tracked: &[Tracked], origin: &Origin) -> String {
     let mut header = vec!["time [ms]".to_owned()];
     let mut columns: Vec<&[f64]> = vec![times];

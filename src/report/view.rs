@@ -73,7 +73,7 @@ impl View {
         points.into_iter().map(|p| self.place(p)).collect()
     }
 
-    /// Distance towards the viewer in mm; what is larger hides what is smaller.
+    /// Distance towards the viewer in mm; parts of larger distance hide those of smaller.
     pub fn depth(&self, point: &Vector3<f64>) -> f64 {
         self.toward.dot(point)
     }

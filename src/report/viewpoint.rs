@@ -1,4 +1,4 @@
-//! From where figures look at the system.
+//! Viewpoint of figures in space.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -8,10 +8,10 @@ use crate::report::body::extent_points;
 use crate::report::skins::{Skins, shown};
 use crate::report::view::View;
 
-/// Where the viewer stands.
+/// Position of the viewer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Viewpoint {
-    /// Before, to the right and above, so that no axis is hidden.
+    /// In front, to the right and above, so that no axis is hidden.
     #[default]
     Oblique,
     /// On the z axis: x to the right, y upwards.

@@ -1,10 +1,10 @@
-//! A factorisation made again: the factors have the same bits as before.
+//! State of a method of factorisation, from which factors are made again with the same bits.
 
 use crate::sparse::Singular;
 use crate::sparse::backend::Backend;
 use crate::sparse::direct::Direct;
 
-/// How a solver factorises the next matrix: what it has learnt from those before.
+/// State of a solver that determines how it factorises the next matrix: what it has learnt from those before.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MethodState {
     /// The method, as a table names it.
@@ -14,7 +14,7 @@ pub struct MethodState {
 }
 
 impl Direct {
-    /// How the next matrix is factorised.
+    /// Returns the state that determines how the next matrix is factorised.
     pub fn state(&self) -> MethodState {
         MethodState {
             method: self.method().to_owned(),
@@ -22,7 +22,7 @@ impl Direct {
         }
     }
 
-    /// Factorises the next matrix as another solver of this pattern would; whether it can.
+    /// Factorises the next matrix as another solver of this pattern would; returns true if it can.
     pub fn take(&mut self, state: &MethodState) -> bool {
         while self.method() != state.method {
             match self.factorisation.more_robust() {

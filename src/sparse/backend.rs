@@ -1,4 +1,4 @@
-//! Who factorises a matrix, and what is fastest as a rule.
+//! Choice of the method of factorisation: by default the one that is fastest as a rule.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ pub const DENSE: usize = 48;
 /// Above this size MUMPS is faster than LU of faer, with OpenBLAS, as `benches/factorisation.rs` measures.
 const LARGE: usize = 15_000;
 
-/// Who factorises.
+/// Method and library of a factorisation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Backend {
     /// LU of nalgebra, for small matrices.
@@ -26,7 +26,7 @@ pub enum Backend {
 }
 
 impl Backend {
-    /// What is fastest.
+    /// Returns the method that is fastest for this size.
     pub(super) fn of_size(size: usize, symmetry: Symmetry) -> Self {
         match symmetry {
             _ if size <= DENSE => Self::Dense,

@@ -20,7 +20,7 @@ use crate::sparse::{Factorisation, Precision, Singular, Symmetry};
 const SINGLE: usize = 5_000;
 /// So many further matrices are tried in single precision in a row; then double precision stays.
 const RETRIES: usize = 2;
-/// What is added to entries near 1 to make a singular matrix regular.
+/// Number added to entries near 1 to make a singular matrix regular.
 const NEARBY: f64 = 1e-10;
 /// A residual above this, relative to the largest term of the equations, is refined.
 const POOR: f64 = 1e-13;
@@ -87,7 +87,7 @@ impl Direct {
     }
 
     /// A solver of symmetric matrices for an iteration that corrects what [`solve_roughly`](Self::solve_roughly) loses: the
-    /// factors of large ones are in single precision, where those tell the solution at all.
+    /// factors of large ones are in single precision, where those give the solution at all.
     ///
     /// Entries are those of [`with`](Self::with). Unknowns have places in space, from which the order of elimination follows;
     /// where too many have none, factors are in double precision.
@@ -153,7 +153,7 @@ impl Direct {
         self.factorisation.precision()
     }
 
-    /// From now on factors are in double precision; whether they were not before.
+    /// Makes factors in double precision from now on; returns true if they were not before.
     pub fn make_double(&mut self) -> bool {
         let is_single = self.precision() == Precision::Single;
         if let (true, Some(other)) = (is_single, self.factorisation.more_robust()) {
@@ -229,7 +229,7 @@ impl Direct {
         self.solve_to(rhs, POOR);
     }
 
-    /// Solves without a look at the residual, for an iteration that corrects what is lost.
+    /// Solves without checking the residual, for an iteration that corrects the error.
     ///
     /// # Panics
     /// No matrix has been factorised.
@@ -258,7 +258,7 @@ impl Direct {
         }
     }
 
-    /// The number of negative eigenvalues of the last matrix, which the sparse methods for symmetric matrices tell without
+    /// The number of negative eigenvalues of the last matrix, which the sparse methods for symmetric matrices give without
     /// further work.
     pub fn negative_pivots(&self) -> Option<usize> {
         self.factored
@@ -309,7 +309,7 @@ impl Direct {
 
     /// The unknown that nothing determines in a matrix whose factor failed, perhaps with infinite numbers.
     ///
-    /// A matrix nearby is regular, and its solution differs from the known one along what is not determined.
+    /// A matrix nearby is regular, and its solution differs from the known one along the undetermined unknowns.
     fn undetermined(&mut self, singular: Singular) -> Singular {
         for (slot, value) in self.values.iter_mut().enumerate() {
             *value += NEARBY * (1.0 + slot as f64).sin();

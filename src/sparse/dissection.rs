@@ -34,7 +34,7 @@ pub(crate) struct Dissection {
 /// A part of the unknowns: its two sides and what separates them, or unknowns that were not cut.
 #[derive(Debug)]
 pub(crate) struct Part {
-    /// Where the rows of the separator, or of the part that was not cut, stand in the order.
+    /// Range of the order that holds the rows of the separator, or of the part that was not cut.
     pub(crate) own: Range<usize>,
     /// The parts before and behind the cut.
     pub(crate) sides: Option<[usize; 2]>,
@@ -69,7 +69,7 @@ impl Dissection {
     }
 }
 
-/// Where a vertex is while a part is cut.
+/// Side of the cut on which a vertex lies.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Side {
     Outside,
@@ -85,7 +85,7 @@ struct Cut {
 }
 
 impl Cut {
-    /// Whether its sides are of similar size.
+    /// Returns true if the sides are of similar size.
     fn is_even(&self) -> bool {
         let [before, behind] = [&self.before, &self.behind].map(Vec::len);
         before.min(behind) as f64 > EVEN * before.max(behind) as f64

@@ -1,4 +1,4 @@
-//! What a method of factorisation answers.
+//! Interface of the methods of factorisation, and the error of a singular matrix.
 
 use std::fmt::Debug;
 
@@ -50,7 +50,7 @@ pub trait Factorisation: Debug + Send {
     /// Solves with the last factorisation, in place.
     fn solve(&mut self, rhs: &mut [f64]);
 
-    /// The number of negative eigenvalues, where the method tells it.
+    /// The number of negative eigenvalues, where the method gives it.
     fn negative_pivots(&self) -> Option<usize>;
 
     /// The same factorisation in single precision, if there is one.

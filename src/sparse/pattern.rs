@@ -2,7 +2,7 @@
 
 use crate::sparse::Symmetry;
 
-/// Where the entries of a square matrix stand, column by column; of a symmetric matrix the lower triangle.
+/// Positions of the entries of a square matrix, column by column; of a symmetric matrix the lower triangle.
 #[derive(Clone, Debug)]
 pub(crate) struct Pattern {
     pub(crate) size: usize,

@@ -10,7 +10,7 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// What a known solution may lose, with each unknown measured by its column: in single precision the part of an error
+    /// Largest error of a known solution that is accepted, with each unknown measured by its column: in single precision the part of an error
     /// that each iteration leaves.
     pub(crate) fn tolerated_loss(self) -> f64 {
         match self {

@@ -4,7 +4,7 @@ use crate::sparse::Symmetry;
 use crate::sparse::backend::Backend;
 use crate::sparse::direct::Direct;
 
-/// Scaling of rows and columns at once ends when their largest entries are between this and its inverse, or after so many
+/// Scaling of rows and columns ends when their largest entries are between this and its inverse, or after this number of
 /// rounds.
 const BALANCED: (f64, usize) = (4.0, 12);
 

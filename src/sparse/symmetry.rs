@@ -1,6 +1,6 @@
 //! Symmetry of a matrix, which chooses its factorisation.
 
-/// Whether a matrix equals its transpose.
+/// Symmetry of a matrix: equal to its transpose or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Symmetry {
     /// A = Aᵀ; the method may be one for quasi-definite or indefinite matrices.

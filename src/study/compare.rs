@@ -1,4 +1,4 @@
-//! Errors of all points: values against the limit of a reference, and what is an error by itself.
+//! Errors of all points: values against the limit of a reference, and measures that are errors by themselves.
 
 use crate::study::limit::{SequenceLimit, distance, limit, observed_order};
 use crate::study::measure::StudyMeasure;
@@ -12,13 +12,13 @@ const SAME: f64 = 1e-9;
 /// One measure of all points.
 #[derive(Debug)]
 pub struct Judged {
-    /// What is measured.
+    /// Quantity that is measured.
     pub measure: StudyMeasure,
     /// The limits of the methods, or that of the reference alone; none where nothing was solved, or nothing is compared.
     pub limits: Vec<Option<SequenceLimit>>,
-    /// Whether all methods have the one limit.
+    /// True if all methods have the one limit.
     pub is_shared: bool,
-    /// What an error is small against: the path length of the markers in mm, the size of the objective; 1 where errors are relative.
+    /// Size to which an error is relative: the path length of the markers in mm, the size of the objective; 1 where errors are relative.
     pub scale: f64,
     /// Errors by method and point, in mm or relative; none of a point without an answer.
     pub errors: Vec<Vec<Option<f64>>>,
@@ -188,7 +188,7 @@ fn order(points: &[Done<'_>], errors: &[Option<f64>], floor: f64) -> Option<f64>
 }
 
 /// The path length of the markers, as far as any of them gets from its start, or at rest from the reference configuration, in mm; 1
-/// for what is relative.
+/// for relative measures.
 fn scale(results: &Results<'_>, measure: StudyMeasure) -> f64 {
     let seen = || {
         results

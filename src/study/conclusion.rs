@@ -1,4 +1,4 @@
-//! What a study says, in a few sentences made of its own results: costs, observed orders, points without an answer.
+//! Conclusion of a study in a few sentences made of its own results: costs, observed orders, points without an answer.
 
 use crate::control::problem::{Task, Voltages};
 use crate::math::significant;
@@ -13,15 +13,15 @@ use crate::study::words::{Grouped, list, name, names, seconds, several};
 
 /// Times that differ by less than this factor do not differ clearly.
 const CLEAR: f64 = 1.2;
-/// Measures that tell most, the first one first; where a study has none of them, the costs of all that fall with refinement
-/// are told, and the orders of the first of these.
+/// Most informative measures, the first one first; where a study has none of them, the costs of all that fall with refinement
+/// are reported, and the orders of the first of these.
 const FIRST: [StudyMeasure; 4] = [
     StudyMeasure::Path,
     StudyMeasure::End,
     StudyMeasure::Place,
     StudyMeasure::Objective,
 ];
-/// An order that is further from the one of the method is told so.
+/// An order that is further from the one of the method is reported as such.
 const FAR: f64 = 0.4;
 /// Errors rise where the next one is larger by this part.
 const RISE: f64 = 1e-3;
@@ -51,7 +51,7 @@ pub fn conclusion(study: &Study, results: &Results<'_>, judged: &[Judged]) -> St
         .to_owned()
 }
 
-/// The measures that are told.
+/// Returns the measures that are reported.
 fn chosen(judged: &[Judged]) -> Vec<&Judged> {
     let of = |measure: StudyMeasure| judged.iter().find(|judged| judged.measure == measure);
     match FIRST.into_iter().find_map(of) {
@@ -63,7 +63,7 @@ fn chosen(judged: &[Judged]) -> Vec<&Judged> {
     }
 }
 
-/// Which method reaches the accuracies in the least time.
+/// Names the method that reaches each accuracy in the least time.
 fn cost(study: &Study, results: &Results<'_>, judged: &Judged) -> Option<String> {
     let unit = judged.measure.unit();
     let mut parts = Vec::new();
@@ -91,7 +91,7 @@ fn cost(study: &Study, results: &Results<'_>, judged: &Judged) -> Option<String>
     ))
 }
 
-/// What one accuracy costs by the cheapest method, and by the next.
+/// Describes the cost of one accuracy by the cheapest method, and by the next.
 fn paid(study: &Study, price: &Price, cheapest: usize, unit: Unit) -> String {
     let error = told(unit, price.error);
     let [_, median, upper] = price.costs[cheapest].unwrap_or([f64::NAN; 3]);
@@ -219,7 +219,7 @@ fn known<'a>(judged: &Judged, points: &'a [Done<'_>], m: usize) -> Vec<(&'a str,
     known.collect()
 }
 
-/// Where errors rise although what is refined is finer.
+/// Describes errors that rise under refinement.
 fn risen(judged: &Judged, known: &[(&str, [f64; 2])]) -> Option<String> {
     let rises = |pair: &&[(&str, [f64; 2])]| pair[1].1[1] > (1.0 + RISE) * pair[0].1[1];
     let risen: Vec<_> = known.windows(2).filter(rises).collect();
@@ -317,7 +317,7 @@ fn halved(study: &Study, results: &Results<'_>) -> Option<String> {
     ))
 }
 
-/// How many points there is something to say of, and the first of them with it.
+/// Returns the number of points with something to report, and the first of them with it.
 fn listed(
     study: &Study,
     results: &Results<'_>,

@@ -9,7 +9,7 @@ use crate::study::schedule::Results;
 
 /// The diagram of one measure; none where no error is above zero.
 ///
-/// The legend names the order that is observed; the first and the last point of a curve are labelled with what is refined.
+/// The legend names the observed order; the first and the last point of a curve are labelled with the refined value.
 pub(super) fn plot(study: &Study, results: &Results<'_>, judged: &Judged) -> Option<LinePlot> {
     let mut series = Vec::new();
     for (m, (method, points)) in study.methods.iter().zip(&results.methods).enumerate() {

@@ -1,4 +1,4 @@
-//! Where ever finer values lead: observed order and Richardson's limit.
+//! Limit of a sequence under refinement: observed order and Richardson's extrapolation.
 //!
 //! Errors C hᵖ of three successive values at h₁ > h₂ > h₃ leave
 //!
@@ -17,7 +17,7 @@ const STRAIGHT: f64 = 0.4;
 /// A curve that falls more slowly shows no order.
 const FLAT: f64 = 0.2;
 
-/// How a limit was found.
+/// Method by which a limit was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum How {
     /// Extrapolated from the last three values.
@@ -49,12 +49,12 @@ impl How {
 pub struct SequenceLimit {
     /// The limit.
     pub value: Vec<f64>,
-    /// How it was found.
+    /// Method by which it was found.
     pub how: How,
     /// The order observed in each three successive values; none where it is not sensible.
     pub orders: Vec<Option<f64>>,
-    /// How far the limit moved with the last value, where it could be extrapolated before; otherwise how far the finest value
-    /// is from it, or the one before from the finest. None of a single value.
+    /// Change of the limit by the last value, where it could be extrapolated before; otherwise the distance of the finest value
+    /// from it, or of the one before from the finest. None of a single value.
     pub uncertainty: Option<f64>,
     /// Differences that are no larger are rounding.
     pub rounding: f64,
@@ -144,7 +144,7 @@ pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<Sequenc
     Some(found)
 }
 
-/// Whether values go on as they went before, as errors C hᵖ do.
+/// Returns true if values go on as they went before, as errors C hᵖ do.
 fn is_one_way(a: &[f64], b: &[f64], c: &[f64]) -> bool {
     let steps = a.iter().zip(b).zip(c).map(|((a, b), c)| (b - a) * (c - b));
     steps.sum::<f64>() > 0.0

@@ -1,4 +1,4 @@
-//! What is measured of a point, how it is called, and which points have it.
+//! Measures of a point: their names and units, and the points that have them.
 
 use serde::Serialize;
 
@@ -8,7 +8,7 @@ use crate::model::{Coordinates, Model};
 
 pub use crate::files::study::MeasureSpec as StudyMeasure;
 
-/// What the problems of a study ask.
+/// Task of the problems of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StudyTask {
@@ -31,7 +31,7 @@ impl StudyTask {
     }
 }
 
-/// How an error is told.
+/// Unit of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// In mm, and in m in `study.json`.
@@ -110,7 +110,7 @@ impl StudyMeasure {
         }
     }
 
-    /// In what it is told.
+    /// Unit of its error.
     pub fn unit(self) -> Unit {
         match self {
             Self::End | Self::Path | Self::Place | Self::ResimulatedEnd | Self::ResimulatedPath => {
@@ -120,12 +120,12 @@ impl StudyMeasure {
         }
     }
 
-    /// Whether it is an error against a reference; the others are errors by themselves.
+    /// Returns true if it is an error against a reference; the others are errors by themselves.
     pub fn has_reference(self) -> bool {
         matches!(self, Self::End | Self::Path | Self::Place | Self::Objective)
     }
 
-    /// Whether it falls with a power of what is refined; what a solver left of its equations does not.
+    /// Returns true if it falls with a power of the refined quantity; residuals that a solver left do not.
     pub fn has_order(self) -> bool {
         !matches!(self, Self::ConstraintViolation | Self::Infeasibility)
     }
@@ -139,7 +139,7 @@ impl StudyMeasure {
     }
 }
 
-/// What there is to measure of points: a violation needs constraints that are left open, an energy that stays the same
+/// Returns the measures that points have: a violation needs constraints that are left open, an energy that stays the same
 /// needs constant voltages, a place a marker.
 pub fn available<'a>(
     asked: StudyTask,

@@ -1,10 +1,10 @@
-//! What accuracy costs in time: variants of one problem, timed and measured against what ever finer ones converge to.
+//! Work–precision studies: variants of one problem, timed and measured against the limit under refinement.
 //!
-//! - `request`: the command; `read`, `sizes`: the study file and all its problems; `measure`: what is measured of them.
+//! - `request`: the command; `read`, `sizes`: the study file and all its problems; `measure`: measures of them.
 //! - `outcome`, `schedule`: one run, and all of them in rounds.
 //! - `limit`, `compare`: observed orders and Richardson's limits; errors of all points.
-//! - `price`, `conclusion`, `words`: what accuracies cost; what it all says in words.
-//! - `table`, `diagram`, `record`, `page`: what is told.
+//! - `price`, `conclusion`, `words`: costs of accuracies; the conclusion in words.
+//! - `table`, `diagram`, `record`, `page`: output.
 
 pub mod compare;
 pub mod conclusion;

@@ -1,4 +1,4 @@
-//! One run of a point: the problem solved in memory, by the clock, and what is seen of the answer.
+//! One run of a point: the problem solved in memory, timed, and its answer observed.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -23,10 +23,10 @@ use crate::workflow::integrate;
 use crate::workflow::optimise;
 use crate::workflow::trajectory;
 
-/// How much finer the grid is on which optimal voltages are verified.
+/// Refinement factor of the grid on which optimal voltages are verified.
 pub const FINER: usize = 16;
 
-/// How a run ended.
+/// Outcome of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunOutcome {
     /// A word: `solved`, `simulated`, `at_rest`, or why there is no answer.
@@ -35,20 +35,20 @@ pub struct RunOutcome {
     pub message: Option<String>,
     /// Seconds of set-up and solution, without reading and measuring.
     pub seconds: f64,
-    /// Whether there is an answer.
+    /// True if there is an answer.
     pub is_solved: bool,
 }
 
-/// What is seen of an answer.
+/// Observations of an answer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Observed {
     /// Instants as parts of the duration.
     pub instants: Vec<f64>,
     /// Places of the markers of the study at the instants, in mm.
     pub places: Vec<Vec<Vector3<f64>>>,
-    /// Where the markers are in the reference configuration, in mm.
+    /// Places of the markers in the reference configuration, in mm.
     pub reference: Vec<Vector3<f64>>,
-    /// What is one number: the objective, and errors that need no reference.
+    /// Scalar values: the objective, and errors that need no reference.
     pub numbers: BTreeMap<StudyMeasure, f64>,
     /// Iterations of the solver, or of Newton's method over all steps.
     pub iterations: usize,
@@ -59,7 +59,7 @@ pub struct Observed {
 /// The status of a run that Ctrl-C ended.
 pub const INTERRUPTED: &str = "interrupted";
 
-/// Runs a point once; what is seen of an answer is looked at where `markers` are named, after the clock has stopped.
+/// Runs a point once; where `markers` are named, its answer is observed after the clock has stopped.
 pub fn run(point: &StudyPoint, markers: Option<&[String]>) -> (RunOutcome, Option<Observed>) {
     let began = Instant::now();
     match &point.loaded.task {

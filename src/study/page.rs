@@ -1,4 +1,4 @@
-//! `study.md`: the figures of a study and what they mean.
+//! `study.md`: the figures of a study and their meaning.
 
 use std::fmt::Write;
 
@@ -86,7 +86,7 @@ fn how_it_was_run(results: &Results<'_>) -> String {
     )
 }
 
-/// What each accuracy costs by each method.
+/// Returns the table of costs of each accuracy by each method.
 fn prices(study: &Study, results: &Results<'_>, judged: &[Judged]) -> Option<String> {
     let mut rows = String::new();
     for judged in judged.iter().filter(|judged| judged.measure.has_order()) {
@@ -202,7 +202,7 @@ fn failed(study: &Study, results: &Results<'_>) -> Option<String> {
     (!text.is_empty()).then(|| format!("## Points without an answer\n\n{text}"))
 }
 
-/// How a user runs one point of each method alone.
+/// Returns the commands that run one point of each method alone.
 fn again(study: &Study, results: &Results<'_>) -> String {
     let mut text = "## A point alone\n\nThe coarsest point of each method; the others differ in what is refined.\n\n```sh\n".to_owned();
     for points in &results.methods {

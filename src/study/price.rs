@@ -8,7 +8,7 @@ use crate::study::schedule::{Done, Results};
 /// Accuracies that are priced, as parts of the scale of a measure.
 pub const ACCURACIES: [f64; 3] = [1e-2, 1e-4, 1e-6];
 
-/// What one accuracy costs.
+/// Cost of one accuracy.
 #[derive(Debug)]
 pub struct Price {
     /// The accuracy as a part of the scale.
@@ -28,7 +28,7 @@ impl Price {
     }
 }
 
-/// What the accuracies cost by each method, those that none reaches included.
+/// Returns the costs of the accuracies by each method, those that none reaches included.
 pub fn prices(results: &Results<'_>, judged: &Judged) -> Vec<Price> {
     let of = |accuracy: f64| {
         let wanted = accuracy * judged.scale;
@@ -46,7 +46,7 @@ pub fn prices(results: &Results<'_>, judged: &Judged) -> Vec<Price> {
     ACCURACIES.map(of).into()
 }
 
-/// The error that a point surely does not exceed: what is below the uncertainty of the reference may be as large as that.
+/// The error that a point surely does not exceed: an error below the uncertainty of the reference may be as large as that.
 pub fn surely(judged: &Judged, method: usize, point: usize) -> Option<f64> {
     Some(judged.errors[method][point]?.max(judged.floors[method]))
 }

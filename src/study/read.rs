@@ -19,19 +19,19 @@ const POINTS: usize = 3;
 pub struct Study {
     /// Title of the page.
     pub title: String,
-    /// What is compared and why.
+    /// Subject of the comparison and its reason.
     pub about: Option<String>,
-    /// What its problems ask.
+    /// Task of its problems.
     pub asked: StudyTask,
     /// The methods that are compared, in their order.
     pub methods: Vec<Method>,
-    /// What errors are measured against.
+    /// Reference of errors.
     pub reference: Reference,
     /// Names of the markers whose places are compared.
     pub markers: Vec<String>,
-    /// What is measured.
+    /// Quantities that are measured.
     pub measures: Vec<StudyMeasure>,
-    /// How often each point is timed.
+    /// Number of timed runs of each point.
     pub runs: usize,
 }
 
@@ -40,7 +40,7 @@ pub struct Study {
 pub struct Method {
     /// Name in legends and tables.
     pub name: String,
-    /// What is refined.
+    /// Name of the refinement.
     pub refined: String,
     /// The points, coarsest first.
     pub points: Vec<StudyPoint>,
@@ -61,7 +61,7 @@ pub struct StudyPoint {
     pub loaded: Loaded,
 }
 
-/// What errors are measured against.
+/// Reference of errors.
 #[derive(Debug)]
 pub enum Reference {
     /// Each method against its own limit.
@@ -189,7 +189,7 @@ fn of_one(
     Ok(Reference::Of { method, points })
 }
 
-/// What all points ask: the same kind of problem, and motions of the same length.
+/// Checks that all points have the same task: the same kind of problem, and motions of the same length.
 fn same_question(
     methods: &[Method],
     reference: &Reference,
@@ -274,7 +274,7 @@ fn markers(
     Ok(wanted)
 }
 
-/// What is measured: what the study names, or what there is.
+/// Returns the measures: those that the study names, or all that there are.
 fn measures(
     spec: &StudySpec,
     asked: StudyTask,

@@ -1,4 +1,4 @@
-//! `study.json`: every point with its input, its seconds and its errors, and what these are measured against; SI units.
+//! `study.json`: every point with its input, its seconds and its errors, and the references of these; SI units.
 
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -27,14 +27,14 @@ struct Record<'a> {
     asked: StudyTask,
     /// `complete` or `interrupted`.
     status: &'static str,
-    /// What the results say, in words.
+    /// Conclusion, in words.
     conclusion: &'a str,
     /// Timed runs that were asked for.
     runs: usize,
     markers: &'a [String],
     /// Instants that all points have, as parts of the duration.
     instants: Vec<f64>,
-    /// How much finer the grid of a re-simulation is.
+    /// Refinement factor of the grid of a re-simulation.
     resimulated_finer: usize,
     measures: Vec<MeasureRecord>,
     methods: Vec<MethodRecord<'a>>,
@@ -44,12 +44,12 @@ struct Record<'a> {
     versions: Versions,
 }
 
-/// What is measured, and against what.
+/// Measure with its references.
 #[derive(Debug, Serialize)]
 struct MeasureRecord {
     measure: StudyMeasure,
     unit: &'static str,
-    /// What an error is small against.
+    /// Size to which an error is relative.
     scale: f64,
     /// Limits; empty for what is an error by itself.
     references: Vec<LimitRecord>,
@@ -83,7 +83,7 @@ struct PointRecord<'a> {
     size: f64,
     problem: String,
     set: &'a [String],
-    /// What does the same on the command line.
+    /// Command line that runs the point.
     command: String,
     status: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -109,10 +109,10 @@ struct Seconds<'a> {
     runs: &'a [f64],
 }
 
-/// What it ran on.
+/// Machine of the runs.
 #[derive(Debug, Serialize)]
 pub(super) struct Machine {
-    /// Name of the processor, where the system tells it.
+    /// Name of the processor, where the system gives it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) processor: Option<String>,
     pub(super) cores: usize,
@@ -261,7 +261,7 @@ fn of_point<'a>(study: &Study, done: &'a Done<'a>) -> PointRecord<'a> {
     }
 }
 
-/// What a user types to run a point alone.
+/// Returns the command line that runs a point alone.
 pub(super) fn command(asked: StudyTask, point: &StudyPoint) -> String {
     let word = match asked {
         StudyTask::Control => "solve",

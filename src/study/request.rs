@@ -1,4 +1,4 @@
-//! What is asked of the command `study`.
+//! Request of the command `study`.
 
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ pub struct StudyRequest {
     pub output: Option<PathBuf>,
     /// Timed runs of each point, in place of those of the file.
     pub runs: Option<usize>,
-    /// Whether progress is shown.
+    /// Display of progress.
     pub progress: ProgressDisplay,
 }
 

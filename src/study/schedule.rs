@@ -1,4 +1,4 @@
-//! All runs of a study: each point once to look at its answer, then round after round by the clock, so that whatever else the
+//! All runs of a study: each point once to observe its answer, then round after round of timed runs, so that whatever else the
 //! machine does falls on all alike.
 
 use indicatif::ProgressBar;
@@ -13,9 +13,9 @@ use crate::study::read::{Reference, Study, StudyPoint};
 pub struct Done<'a> {
     /// The point.
     pub point: &'a StudyPoint,
-    /// How its first run ended, which is not timed.
+    /// Outcome of its first run, which is not timed.
     pub first: RunOutcome,
-    /// What is seen of its answer.
+    /// Observations of its answer.
     pub seen: Option<Observed>,
     /// Seconds of its timed runs, ascending.
     pub seconds: Vec<f64>,
@@ -28,7 +28,7 @@ pub struct Results<'a> {
     pub methods: Vec<Vec<Done<'a>>>,
     /// Those of the reference alone, which are not timed.
     pub reference: Vec<Done<'a>>,
-    /// Whether Ctrl-C ended it early.
+    /// True if Ctrl-C ended it early.
     pub is_interrupted: bool,
 }
 
@@ -50,7 +50,7 @@ fn extra(study: &Study) -> &[StudyPoint] {
     }
 }
 
-/// Runs every point once and looks at its answer; what Ctrl-C leaves out is told as interrupted.
+/// Runs every point once and observes its answer; points that Ctrl-C leaves out are reported as interrupted.
 pub(super) fn look<'a>(study: &'a Study, bar: &ProgressBar) -> Results<'a> {
     let look = |name: &str, point: &'a StudyPoint| {
         bar.set_message(format!("{name}, {}", point.label));
@@ -117,7 +117,7 @@ impl Done<'_> {
         bar.inc(1);
     }
 
-    /// Steps that had to be halved in the run that was looked at.
+    /// Steps that had to be halved in the run that was observed.
     pub fn halved(&self) -> usize {
         self.seen.as_ref().map_or(0, |seen| seen.halved)
     }

@@ -1,10 +1,10 @@
-//! How fine the points of a refinement are, and what they are called.
+//! Sizes and labels of the points of a refinement.
 
 use crate::files::study::RefineSpec;
 use crate::files::{SceneError, Scope};
 use serde_json::Value;
 
-/// What the points of a refinement are called, and lengths that fall towards zero.
+/// Labels of the points of a refinement, and lengths that fall towards zero.
 pub(super) fn sizes(
     refine: &RefineSpec,
     scope: &Scope<'_>,

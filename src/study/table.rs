@@ -63,7 +63,7 @@ fn full(value: Option<f64>) -> String {
 
 /// The same in columns, rounded, with the orders below.
 ///
-/// An error that is no larger than the uncertainty of the reference is told as less than that.
+/// An error that is no larger than the uncertainty of the reference is reported as less than that.
 pub(super) fn text(study: &Study, results: &Results<'_>, judged: &[Judged]) -> String {
     let same = |method: &crate::study::read::Method| method.refined == study.methods[0].refined;
     let refined = match study.methods.iter().all(same) {

@@ -17,7 +17,7 @@ impl Grouped {
     }
 }
 
-/// Whether methods need names.
+/// Returns true if methods need names.
 pub(super) fn several(study: &Study) -> bool {
     study.methods.len() > 1
 }

@@ -1,4 +1,4 @@
-//! What a solved variant leaves in its folder: `variant.json`, written last, and the numbers of its results.
+//! Record of a solved variant in its folder: `variant.json`, written last, and the numbers of its results.
 
 use std::fs;
 use std::path::Path;
@@ -16,7 +16,7 @@ use crate::sweep::read::Variant;
 
 /// Begins the headings of numbers at the end of a motion, or at rest.
 pub(super) const END: &str = "end: ";
-/// How a variant ended.
+/// Record of a variant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Kept {
     /// Overrides.
@@ -24,9 +24,9 @@ pub(super) struct Kept {
     pub(super) identity: String,
     /// The word of its summary; `refused` where the input is wrong, `failed` where it broke off.
     pub(super) status: String,
-    /// Whether its question has an answer.
+    /// True if its question has an answer.
     pub(super) is_solved: bool,
-    /// What was said where it left no summary.
+    /// Message where it left no summary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) message: Option<String>,
     /// Wall time in s.
@@ -48,7 +48,7 @@ struct Summary {
 }
 
 impl Kept {
-    /// How the variant ended that said this; the files of its solve are in `folder`.
+    /// Makes the record of a variant that ended with this; the files of its solve are in `folder`.
     pub(super) fn of(variant: &Variant, end: &RunEnd, folder: &Path) -> Self {
         let (word, message) = match &end.said {
             Said::NotStarted => ("not_started", None),
@@ -80,7 +80,7 @@ impl Kept {
         Self::of(variant, &end, Path::new(""))
     }
 
-    /// What the folder of a variant holds of its end, if nothing is left to do then.
+    /// Returns the record in the folder of a variant, if nothing is left to do for it.
     pub(super) fn found(variant: &Variant, folder: &Path) -> Found<Self> {
         let Ok(text) = fs::read_to_string(folder.join(OF_VARIANT)) else {
             return Found::Nothing;
@@ -97,12 +97,12 @@ impl Kept {
         }
     }
 
-    /// Whether another attempt may end otherwise.
+    /// Returns true if another attempt may end otherwise.
     pub(super) fn is_unfinished(&self) -> bool {
         is_unfinished(&self.status)
     }
 
-    /// Writes it into the folder of the variant, with what tells whether the files there are still whole.
+    /// Writes it into the folder of the variant, with the hashes of the files there.
     pub(super) fn write(&mut self, folder: &Path) -> Result<(), CommandError> {
         make_folder(folder)?;
         let path = folder.join(OF_VARIANT);

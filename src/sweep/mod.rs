@@ -1,7 +1,7 @@
-//! Variants of one problem, solved at once, each in a folder of its own; what is solved already is not solved again.
+//! Variants of one problem, solved in parallel, each in a folder of its own; variants that are solved already are not solved again.
 //!
 //! - `request`: the command; `read`, `values`: the sweep file and its variants.
-//! - `kept`: what a variant leaves; `table`, `page`: what all of them tell.
+//! - `kept`: record of a variant; `table`, `page`: all of them together.
 
 mod kept;
 mod page;
@@ -82,7 +82,7 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
     Ok(told(request.shard, &sweep, &ends, before, &folder, began))
 }
 
-/// What the folders of the variants held before.
+/// Records that the folders of the variants held before.
 #[derive(Default)]
 struct Before {
     /// Variants that were whole.
@@ -182,7 +182,7 @@ fn write(
     Ok(atomic::write(&folder.join("report.html"), page.as_bytes())?)
 }
 
-/// How many variants ended how.
+/// Returns the numbers of variants by their ends.
 fn told(
     shard: Shard,
     sweep: &Sweep,
@@ -231,7 +231,7 @@ fn told(
     }
 }
 
-/// The first notes of one kind, and how many more there are.
+/// The first notes of one kind, and the number of further ones.
 fn first(mut notes: Vec<String>) -> Vec<String> {
     if notes.len() > NOTES {
         let more = notes.len() - NOTES;

@@ -1,4 +1,4 @@
-//! `report.html`: any two columns of the table against each other, all that varies in parallel coordinates, and all rows.
+//! `report.html`: scatter plot of two columns of the table, parallel coordinates of the varied values and results, and all rows.
 
 use serde_json::json;
 
@@ -9,7 +9,7 @@ use crate::sweep::read::Sweep;
 
 /// The page around everything, as that of a run.
 const FRAME: &str = include_str!("page.html");
-/// What draws it.
+/// Script that draws it.
 const MODULE: &str = include_str!("page.js");
 
 /// The page; `table` has a row of headings first.

@@ -21,23 +21,23 @@ pub(super) struct Sweep {
     pub(super) title: String,
     /// The problem file.
     pub(super) problem: PathBuf,
-    /// What varies, by its place in the problem.
+    /// Entries that vary, by their places in the problem.
     pub(super) places: Vec<String>,
     pub(super) variants: Vec<Variant>,
-    /// Whether several variants may be solved at once in one process.
+    /// True if several variants may be solved in parallel in one process.
     pub(super) run_at_once: bool,
 }
 
 /// A variant of the problem.
 #[derive(Debug)]
 pub(super) struct Variant {
-    /// What is written at each place that varies.
+    /// Values at the places that vary.
     pub(super) values: Vec<Value>,
     /// All overrides, as they are typed after `--set`.
     pub(super) set: Vec<String>,
     /// Of the problem that it asks for; of the overrides where that is refused.
     pub(super) identity: Identity,
-    /// Why its problem is refused.
+    /// Reason why its problem is refused.
     pub(super) refused: Option<String>,
 }
 
@@ -100,7 +100,7 @@ pub(super) fn read_sweep(path: &Path) -> Result<Sweep, SceneError> {
     }
 }
 
-/// Places and values of what is written under `vary`.
+/// Places and values of the entries under `vary`.
 fn varied(
     spec: &SweepSpec,
     scope: &Scope<'_>,

@@ -1,4 +1,4 @@
-//! What is asked of the command `sweep`.
+//! Request of the command `sweep`.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -16,11 +16,11 @@ pub struct SweepRequest {
     pub output: Option<PathBuf>,
     /// The part of the variants that is solved.
     pub shard: Shard,
-    /// Where variants are solved.
+    /// Processes or threads in which variants are solved.
     pub run_in: RunIn,
     /// Seconds that the whole command may take.
     pub max_seconds: Option<f64>,
-    /// Whether progress is shown.
+    /// Display of progress.
     pub progress: ProgressDisplay,
 }
 
@@ -45,7 +45,7 @@ impl Shard {
     /// All variants.
     pub const ALL: Self = Self { number: 1, of: 1 };
 
-    /// Whether the variant with an index belongs to it.
+    /// Returns true if the variant with an index belongs to it.
     pub(crate) fn has(self, index: usize) -> bool {
         index % self.of == self.number - 1
     }

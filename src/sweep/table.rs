@@ -6,7 +6,7 @@ use crate::files::si;
 use crate::sweep::kept::{END, Kept};
 use crate::sweep::read::Sweep;
 
-/// Headings and rows of cells; a cell of what does not exist is empty.
+/// Headings and rows of cells; a cell without a value is empty.
 pub(super) fn table(sweep: &Sweep, ends: &[Kept]) -> Vec<Vec<String>> {
     let mut names: Vec<&String> = Vec::new();
     for name in ends.iter().flat_map(|end| end.numbers.keys()) {
@@ -36,7 +36,7 @@ pub(super) fn table(sweep: &Sweep, ends: &[Kept]) -> Vec<Vec<String>> {
     [head].into_iter().chain(rows).collect()
 }
 
-/// What varies at one place.
+/// Entry that varies at one place.
 struct Varied {
     heading: String,
     cells: Vec<String>,

@@ -20,14 +20,14 @@ pub(super) enum Values {
 #[derive(Debug)]
 pub(super) struct Range {
     ends: [f64; 2],
-    /// What follows the number, with its space; nothing for plain numbers.
+    /// Text after the number, with its space; nothing for plain numbers.
     unit: Option<String>,
     spacing: SpacingSpec,
     count: Option<usize>,
 }
 
 impl Values {
-    /// Reads what is written.
+    /// Reads the values of an entry.
     pub(super) fn of(written: &VarySpec, scope: &Scope<'_>) -> Result<Self, SceneError> {
         match written {
             VarySpec::Values(values) if values.is_empty() => {

@@ -1,4 +1,4 @@
-//! As fine a grid as an accuracy needs: each from the solution on the one before, until the estimated error is small enough.
+//! Refinement of the grid to an accuracy: each grid starts from the solution on the one before, until the estimated error is small enough.
 
 use std::time::Instant;
 
@@ -7,14 +7,14 @@ use serde::Serialize;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::estimate::{Convergence, ErrorSample, Measures, greatest};
 
-/// No grid has more than so many times the intervals of the first.
+/// Largest ratio of the intervals of a grid to those of the first.
 const FINEST: usize = 1 << 10;
 /// The finest grid for an estimate, in times the intervals of the first.
 const ESTIMATED: usize = 8;
 /// No grid has more variables than this.
 const VARIABLES: usize = 2_000_000;
 
-/// What is asked about the error of discretisation.
+/// Target of the error of discretisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AccuracyTarget {
     /// Grids are refined until every error is estimated below this.
@@ -28,7 +28,7 @@ pub enum AccuracyTarget {
 pub struct Attempt<R> {
     /// The run.
     pub run: R,
-    /// What of it is compared.
+    /// Values that are compared.
     pub sample: ErrorSample,
     /// Number of intervals or steps.
     pub intervals: usize,
@@ -36,24 +36,24 @@ pub struct Attempt<R> {
     pub iterations: usize,
     /// Unknowns of all instants.
     pub variables: usize,
-    /// How it ended, in a word.
+    /// Status at its end, in a word.
     pub status: &'static str,
-    /// Whether it came to its end.
+    /// True if it came to its end.
     pub is_complete: bool,
 }
 
-/// What `summary.json` says of the error of discretisation.
+/// Error of discretisation, as written to `summary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Accuracy {
     /// The error that was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub requested: Option<f64>,
-    /// Whether the estimate is below it.
+    /// True if the estimate is below it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub is_met: Option<bool>,
     /// Estimated errors of the solution that is kept; none where there is no second grid.
     pub estimate: Measures,
-    /// Whether differences that fall over three grids confirm the estimate.
+    /// True if differences that fall over three grids confirm the estimate.
     pub is_confirmed: bool,
     /// Orders in the step that the last three grids show, as observed; zero or less where differences do not fall.
     pub order: Measures,
@@ -61,7 +61,7 @@ pub struct Accuracy {
     pub assumed_order: f64,
     /// The grids, coarsest first.
     pub levels: Vec<GridLevel>,
-    /// Why there is no finer grid, where the accuracy is not met or no estimate could be made.
+    /// Reason why there is no finer grid, where the accuracy is not met or no estimate could be made.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stopped: Option<String>,
 }
@@ -71,7 +71,7 @@ pub struct Accuracy {
 pub struct GridLevel {
     /// Number of intervals or steps.
     pub intervals: usize,
-    /// How it ended.
+    /// Status at its end.
     pub status: &'static str,
     /// Seconds, set-up and comparison included.
     pub seconds: f64,
@@ -90,11 +90,11 @@ pub struct GridLevel {
 pub struct Refined<R> {
     /// The run on the finest grid that was solved; the one on the first grid where only its error was asked for.
     pub run: R,
-    /// How many times the intervals of the first grid it has.
+    /// Factor by which its intervals exceed those of the first grid.
     pub times: usize,
     /// Iterations on the grids up to its own.
     pub iterations: usize,
-    /// What is told of it.
+    /// Error of discretisation, as reported.
     pub accuracy: Accuracy,
 }
 
@@ -204,7 +204,7 @@ pub fn refine<R>(
     })
 }
 
-/// Whether there is an estimate, all of it below a value.
+/// Returns true if there is an estimate, all of it below a value.
 fn is_below(estimate: &Measures, value: f64) -> bool {
     greatest(estimate).is_some_and(|(_, error)| error <= value)
 }

@@ -1,4 +1,4 @@
-//! Which bounds and limits a point reaches, and how often.
+//! Active bounds and limits of a point, with their numbers of rows.
 
 use std::collections::BTreeMap;
 
@@ -11,22 +11,22 @@ use crate::nlp::Nlp;
 /// A bound that is reached.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Active {
-    /// What reaches it, and its value with unit.
+    /// Quantity that reaches it, and its value with unit.
     pub what: String,
-    /// In how many of its rows.
+    /// Number of its rows that are reached.
     pub count: usize,
-    /// How many rows it has.
+    /// Number of its rows.
     pub of: usize,
-    /// `interval` or `instant`; nothing of what there is once.
+    /// `interval` or `instant`; nothing for a bound that exists once.
     pub noun: &'static str,
-    /// Whether it is a bound of voltages.
+    /// True if it is a bound of voltages.
     pub is_voltage: bool,
 }
 
 /// A value this near to a bound, relative to the range or the bound, has reached it.
 const NEAR: f64 = 1e-3;
 
-/// The bounds that a point reaches, the most frequent first; that a voltage is not negative is not told.
+/// Active bounds, most frequent first. Zero lower bounds of voltages are not listed.
 pub fn active(
     program: &mut Transcription<'_>,
     x: &[f64],
@@ -125,7 +125,7 @@ pub fn active(
     seen.list()
 }
 
-/// Whether a value has reached its lower and its upper bound, or is beyond.
+/// Returns for its lower and its upper bound true if a value has reached it, or is beyond.
 fn reached(value: f64, low: f64, high: f64) -> [bool; 2] {
     let range = high - low;
     let size = |bound: f64| match range.is_finite() {
@@ -138,7 +138,7 @@ fn reached(value: f64, low: f64, high: f64) -> [bool; 2] {
     ]
 }
 
-/// Counts by what is told.
+/// Counts by name.
 #[derive(Debug, Default)]
 struct ActiveLimits(BTreeMap<String, Active>);
 

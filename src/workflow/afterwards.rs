@@ -1,4 +1,4 @@
-//! What follows a goal that no voltages are known to hold: the motion under the last voltages, held on.
+//! Motion after a goal that no known voltages hold: under the last voltages, held on.
 
 use std::ops::ControlFlow;
 
@@ -18,7 +18,7 @@ use crate::workflow::motion::solved_of;
 const DURATIONS: usize = 5;
 /// A drift from the goal, as a part of the path length, from which on it is not held.
 const DRIFTS: f64 = 0.05;
-/// Parts of the goal told at most.
+/// Maximum number of parts of the goal listed.
 const TOLD: usize = 3;
 
 /// The motion after the goal, under the voltages of the last interval.
@@ -26,18 +26,18 @@ const TOLD: usize = 3;
 pub struct Afterwards {
     /// Time that was simulated in s.
     pub seconds: f64,
-    /// How far each part of the goal is left, the farthest first.
+    /// Departure from each part of the goal, the farthest first.
     pub goal: Vec<Departure>,
     /// Greatest drift of the system from the last optimal instant.
     pub drift: Distance,
-    /// Why the simulation ended early.
+    /// Reason why the simulation ended early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
-    /// Whether the system stays at its goal.
+    /// True if the system stays at its goal.
     pub is_held: bool,
 }
 
-/// How far a part of a goal is left.
+/// Departure from a part of a goal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Departure {
     /// The marker or the joint.
@@ -46,7 +46,7 @@ pub struct Departure {
     pub deviation: f64,
     /// Unit of the deviation: m or rad.
     pub unit: &'static str,
-    /// When it is greatest, in s after the end.
+    /// Time at which it is greatest, in s after the end.
     pub time: f64,
 }
 
@@ -103,7 +103,7 @@ pub(crate) fn afterwards(
     })
 }
 
-/// How far each part of a goal is left along a motion that begins there.
+/// Returns the departures from the parts of a goal along a motion that begins there.
 fn departures(model: &Model, goal: &BoundaryState, motion: &Trajectory) -> Vec<Departure> {
     let system = &model.system;
     let farthest = |name: &str, unit: &'static str, far: &dyn Fn(usize) -> f64| {

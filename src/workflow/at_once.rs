@@ -1,4 +1,4 @@
-//! Pieces of work at once, each on its share of the cores.
+//! Parallel map: pieces of work in several threads, each on its share of the cores.
 
 use std::any::Any;
 use std::io;
@@ -21,7 +21,7 @@ pub type Answered<A> = Result<A, String>;
 /// The answers to all items, in their order, found in at most `threads` threads.
 ///
 /// A thread has its share of the cores for what is parallel within an answer: with as many threads as cores no half of a horizon competes
-/// with another answer, and stops where the one that calls is asked to. A panic is the end of one answer alone. `told` hears of each answer in this thread, as soon as there is one.
+/// with another answer, and stops where the one that calls is asked to. A panic is the end of one answer alone. `told` is called in this thread with each answer, as soon as there is one.
 pub fn at_once<T: Sync, A: Send>(
     items: &[T],
     threads: usize,
@@ -81,7 +81,7 @@ pub fn begin<A: Send + 'static>(
     thread.spawn(|| on_cores(cores(), work))
 }
 
-/// Does work in a pool of so many threads, which ends with it: one of which this thread were a part would never be freed.
+/// Does work in a pool of this number of threads, which ends with it: one of which this thread were a part would never be freed.
 fn on_cores<A: Send>(count: usize, work: impl FnOnce() -> A + Send) -> A {
     let pool = ThreadPoolBuilder::new()
         .num_threads(count)

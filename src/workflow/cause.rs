@@ -1,8 +1,8 @@
-//! Causes for which an optimum of the discrete equations is no motion of the system.
+//! Reasons why the discrete optimum is not a motion of the system.
 
 use crate::workflow::distance::Distance;
 
-/// Why an optimum of the discrete equations is no motion of the system.
+/// Reason why the discrete optimum is not a motion of the system.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cause {
     /// In one interval it is another root of the equations of a step than a step forward finds.
@@ -11,16 +11,16 @@ pub enum Cause {
         interval: usize,
         /// Its time in s.
         time: f64,
-        /// The joint that turns farthest in it, and by how much in rad.
+        /// The joint that turns farthest in it, and its angle in rad.
         turns: Option<(String, f64)>,
-        /// How far the simulation is from the optimum after it.
+        /// Distance of the simulation from the optimum after it.
         distance: Distance,
     },
-    /// A simulation with so many steps for an interval ends early.
+    /// A simulation with this number of steps for an interval ends early.
     Ends {
         /// Steps for an interval.
         steps: usize,
-        /// Why.
+        /// Reason.
         failure: String,
     },
     /// Rounding grows until the motion is another one.
@@ -36,7 +36,7 @@ pub enum Cause {
         error: f64,
         /// Greatest distance from the optimum with finer steps.
         distance: Distance,
-        /// Whether two refinements agree on it.
+        /// True if two refinements agree on it.
         is_confirmed: bool,
     },
 }

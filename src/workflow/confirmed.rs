@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-11;
 pub struct EstimatedError {
     /// Its greatest distance from the exact motion, in rad and lengths of the system.
     pub error: f64,
-    /// Whether a second refinement shows the order of the method.
+    /// True if a second refinement shows the order of the method.
     pub is_confirmed: bool,
 }
 

@@ -1,4 +1,4 @@
-//! An optimum that its own voltages do not reproduce, solved again on finer grids until they do.
+//! Refinement of an optimum that its own voltages do not reproduce: it is solved again on finer grids until they do.
 
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -10,7 +10,7 @@ use crate::workflow::error::WorkflowError;
 use crate::workflow::iterate::Iterate;
 use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
 
-/// How many times the intervals of the problem are tried.
+/// Multiples of the intervals of the problem that are tried.
 const TIMES: [usize; 3] = [2, 4, 8];
 /// No grid has more variables than this.
 const VARIABLES: usize = 2_000_000;
@@ -22,7 +22,7 @@ pub struct Cured {
     pub optimum: Optimum,
     /// Iterations on all grids.
     pub iterations: usize,
-    /// Why another grid was taken, or that none gave an optimum that is reproduced.
+    /// Note on the reason for another grid, or on the lack of an optimum that is reproduced.
     pub note: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! How far motions are from each other, and how far they go.
+//! Distances between motions, and lengths of their paths.
 
 use serde::Serialize;
 
@@ -9,10 +9,10 @@ use crate::model::system::JointKind;
 /// Ways that count as none, in rad and in lengths of the system.
 const NO_LENGTH: f64 = 1e-3;
 
-/// How far an instant is from another, or how long a way is.
+/// Distance of an instant from another, or length of a path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Distance {
-    /// Greatest distance of a joint angle, or of the orientation of a body that joint angles do not tell, in rad.
+    /// Greatest distance of a joint angle, or of the orientation of a body that joint angles do not give, in rad.
     pub angle: f64,
     /// Greatest distance of a joint displacement, of the centre of a body or of a node in m.
     pub length: f64,
@@ -116,7 +116,7 @@ fn metres(model: &Model) -> f64 {
 }
 
 /// Calls `visit` with number, kind and distance (rad or m) of each joint, body and coordinate of a node; of a body also the angle
-/// between its orientations, where joint coordinates do not tell all.
+/// between its orientations, where joint coordinates do not give all.
 fn each(
     model: &Model,
     motion: &Solution,

@@ -1,4 +1,4 @@
-//! What leaves the domain of the first-order dielectric, in one note and in `summary.json`.
+//! Muscles outside the domain of the first-order dielectric, in one note and in `summary.json`.
 
 use serde::Serialize;
 
@@ -16,9 +16,9 @@ pub(crate) struct Outside {
     stretch: f64,
     /// Stretch beyond which charge and stiffness are negative.
     limit: f64,
-    /// When it is outside for the first time, in s.
+    /// First time at which it is outside, in s.
     first: f64,
-    /// When the stretch is largest, in s.
+    /// Time at which the stretch is largest, in s.
     time: f64,
 }
 

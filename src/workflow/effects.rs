@@ -1,4 +1,4 @@
-//! What a scene calls for, counted: elements, the unknowns each effect reads, and what it couples.
+//! Model terms and their sizes: elements, the unknowns that each term reads, and the pairs that it couples.
 
 use serde::Serialize;
 
@@ -16,7 +16,7 @@ pub struct EffectCounts {
     pub name: String,
     /// `kinetic`, `potential`, `virtual work` or `constraint`.
     pub kind: &'static str,
-    /// What in scene and problem calls for it.
+    /// Entries of scene and problem that need it.
     pub why: String,
     /// Elements.
     pub elements: usize,
@@ -36,12 +36,12 @@ pub struct EffectCounts {
     pub microseconds: f64,
 }
 
-/// What a model is made of, and what it does without.
+/// Terms of a model, and the absent ones.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Plan {
     /// Effects that scene and problem call for.
     pub effects: Vec<EffectCounts>,
-    /// What they do not call for.
+    /// Terms that they do not need.
     pub absent: Vec<Absent>,
 }
 
@@ -55,7 +55,7 @@ impl Plan {
     }
 }
 
-/// Which matrix the pairs of an effect are counted in.
+/// Matrix in which the pairs of an effect are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Matrix {
     /// Jacobian and Hessian of a program.
@@ -116,7 +116,7 @@ pub fn effect_counts(model: &Model, control: Option<&Control>, spent: f64) -> Ve
     each(model).zip(times).map(count).collect()
 }
 
-/// What is unknown, and where.
+/// Unknowns of the matrix.
 struct Unknowns {
     /// Number of coordinates.
     coordinates: usize,
@@ -125,7 +125,7 @@ struct Unknowns {
     matrix: Matrix,
 }
 
-/// What a scalar of an interval is in the matrix.
+/// Role of a scalar of an interval in the matrix.
 #[derive(Clone, Copy)]
 struct Scalar {
     has_equation: bool,

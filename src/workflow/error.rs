@@ -1,4 +1,4 @@
-//! Why there is no result.
+//! Errors of tasks.
 
 use std::error::Error as StdError;
 
@@ -8,19 +8,19 @@ use crate::control::BoundaryError;
 use crate::dynamics::EquilibriumError;
 use crate::ipopt::{IpoptError, Status};
 
-/// How a robot that nothing holds starts.
+/// Hint at the start of a robot that nothing holds.
 const FLOATS: &str =
     "; a robot that floats starts from its joint angles: \"start\": { \"joint_angles\": {} }";
 
-/// Why there is no result; places are paths in the problem, such as `control.goal`.
+/// Reason why there is no result; places are paths in the problem, such as `control.goal`.
 #[derive(Debug, Error)]
 pub enum WorkflowError {
-    /// What a problem asks for does not exist.
+    /// The problem asks for something that does not exist.
     #[error("{place}: {reason}")]
     Problem {
         /// Path in the problem.
         place: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// The problem is right, but a start or goal at rest was not found.
@@ -28,7 +28,7 @@ pub enum WorkflowError {
     NoEquilibrium {
         /// Path in the problem.
         place: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
     /// The earlier solution that a solve starts from cannot be used.

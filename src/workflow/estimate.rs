@@ -1,7 +1,7 @@
-//! Errors of discretisation, estimated from what changes when the grid is refined.
+//! Errors of discretisation, estimated from the changes under refinement of the grid.
 //!
 //! With d the difference between a grid and the one with half its step, errors that fall like hᵖ leave `d/(2ᵖ − 1)` on the
-//! finer grid and `d 2ᵖ/(2ᵖ − 1)` on the coarser one. Three grids show p, which is told as it is. The midpoint rule has order
+//! finer grid and `d 2ᵖ/(2ᵖ − 1)` on the coarser one. Three grids show p, which is reported as it is. The midpoint rule has order
 //! two, so that a p above two is chance: in an estimate a difference counts as no less than a quarter of the one before.
 
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::model::Model;
 use crate::model::system::JointKind;
 
-/// Errors or orders by the name of what is measured.
+/// Errors or orders by the name of the measure.
 pub type Measures = BTreeMap<&'static str, f64>;
 
 /// The measure that a grid has by itself: the motion against the one under the same voltages with half the step.
@@ -24,7 +24,7 @@ const ORDERS: [f64; 2] = [0.5, 2.0];
 /// Differences below this are rounding.
 const ROUNDING: f64 = 1e-13;
 
-/// What of a run is compared with the same on another grid, and with the motion at half the step.
+/// Values of a run that are compared with those on another grid, and with the motion at half the step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrorSample {
     /// The objective; a simulation has none.
@@ -84,7 +84,7 @@ impl ErrorSample {
         }
     }
 
-    /// Greatest deviations along the path and at the end from a motion on a grid of so many times the intervals.
+    /// Greatest deviations along the path and at the end from a motion on a grid with this multiple of the intervals.
     fn apart(&self, fine: &Self) -> [f64; 2] {
         let times = (fine.path.len() - 1) / (self.path.len() - 1).max(1);
         let places = |k: usize| {
@@ -133,7 +133,7 @@ impl ErrorSample {
     }
 }
 
-/// Differences from grid to grid, and what they say of the error.
+/// Differences from grid to grid, and the error that they show.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Convergence {
     /// By grid from the second on, those with the grid before; for [`RESPONSE`] from the first on, its own.
@@ -143,7 +143,7 @@ pub struct Convergence {
 /// A difference between two grids.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Difference {
-    /// As it is; infinite where there is no number.
+    /// As it is; infinite where it is not finite.
     seen: f64,
     /// No less than a quarter of the one before.
     believed: f64,
@@ -173,7 +173,7 @@ impl Convergence {
         orders
     }
 
-    /// Whether all measures have two differences of which the second is smaller by at least the least order that estimates believe, or is
+    /// Returns true if all measures have two differences of which the second is smaller by at least the least order that estimates believe, or is
     /// rounding.
     pub fn is_confirmed(&self) -> bool {
         let falls = |list: &Vec<Difference>| match list.as_slice() {

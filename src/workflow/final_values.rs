@@ -1,4 +1,4 @@
-//! Where a motion ends of what the final costs of its objective ask for.
+//! Final values of a motion: the quantities that the final costs of its objective name.
 
 use serde::Serialize;
 
@@ -12,9 +12,9 @@ use crate::workflow::tracking::path;
 pub struct FinalValue {
     /// `tip_x`, `joint1`.
     pub name: String,
-    /// What the cost asks for, in the unit.
+    /// Value that the cost asks for, in the unit.
     pub asked: f64,
-    /// Where the motion ends.
+    /// Value at the end of the motion.
     pub reached: f64,
     /// The distance of both, of angles without full turns.
     pub deviation: f64,

@@ -1,4 +1,4 @@
-//! How far an objective may lie above its least value: the gap that the barrier of the bounds leaves.
+//! Duality gap: a bound of the difference between an objective and its least value, which the barrier of the bounds leaves.
 //!
 //! A solver of interior points ends where the products of multipliers z with the distances d from their bounds are as small as the
 //! tolerance asks for, not zero. Their sum Σ z d is the gap to the dual objective, which bounds what is lost where the problem is convex
@@ -9,9 +9,9 @@ use crate::control::Transcription;
 use crate::ipopt::SolverResult;
 use crate::nlp::{Bounds, Nlp};
 
-/// A gap as a part of the objective from which on a smaller tolerance is asked for, and told where it stays.
+/// A gap as a part of the objective from which on a smaller tolerance is set, and a warning is given where it stays.
 const PART: f64 = 0.01;
-/// Scaled gaps below these are none: one to make smaller, and one to tell of.
+/// Scaled gaps below these are zero: one to make smaller, and one to report.
 const NONE: f64 = 1e-10;
 const UNTOLD: f64 = 1e-8;
 /// No tolerance is smaller than this.
@@ -51,7 +51,7 @@ fn product(multiplier: f64, distance: f64) -> f64 {
     }
 }
 
-/// The tolerance with which the gap of a solution becomes small beside its objective; none where it is small, or cannot become so.
+/// The tolerance with which the gap of a solution becomes small relative to its objective; none where it is small, or cannot become so.
 pub(crate) fn tighter(
     program: &Transcription<'_>,
     solution: &SolverResult,

@@ -133,7 +133,7 @@ pub fn integrate_to(
     )
 }
 
-/// Why nothing more may be begun.
+/// Returns the reason why no other run may begin.
 fn stop(seconds: Option<f64>) -> Option<&'static str> {
     match seconds {
         _ if interrupt::requested() => Some("interrupted"),
@@ -142,7 +142,7 @@ fn stop(seconds: Option<f64>) -> Option<&'static str> {
     }
 }
 
-/// What is compared of an optimum.
+/// Returns the values of an optimum that are compared.
 fn sample(optimum: &Optimum, is_free: bool) -> ErrorSample {
     let kept = &optimum.motion;
     let sample = ErrorSample {

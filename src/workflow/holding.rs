@@ -1,4 +1,4 @@
-//! Whether the end of a motion can be kept: what is known of it before the solve, and what holding it shows.
+//! Check that the end of a motion can be kept: before the solve by known values, and after it by a simulation.
 
 use crate::control::BoundaryConditions;
 use crate::control::problem::{BoundaryState, Control, Hold};
@@ -42,7 +42,7 @@ pub(crate) fn check(
     }
 }
 
-/// Why the end of an optimum is not kept, in a line; nothing where it is, or where no voltages are known to keep it.
+/// Returns the reason why the end of an optimum is not kept, in a line; nothing where it is, or where no voltages are known to keep it.
 pub(crate) fn warning(
     control: &Control,
     model: &Model,
@@ -63,7 +63,7 @@ pub(crate) fn warning(
     (!reasons.is_empty()).then(|| format!("the goal cannot be kept: {}", reasons.join("; ")))
 }
 
-/// That nothing is known of what follows the end of a motion, where it is free.
+/// Note that the continuation of a motion with a free end is not known.
 pub(crate) fn free_end(control: &Control) -> Option<String> {
     (control.goal == BoundaryState::Free).then(|| {
         "the end is free: the motion need not come to rest there, and what follows it is not verified".to_owned()

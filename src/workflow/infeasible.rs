@@ -1,4 +1,4 @@
-//! Why a control problem has no solution, as far as the closest motion tells, and what may be changed.
+//! Explanation of an infeasible control problem by its closest motion, with the changes that may help.
 
 use std::ops::ControlFlow;
 
@@ -14,9 +14,9 @@ use crate::workflow::iterate::Iterate;
 use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
 use crate::workflow::second_start::is_infeasible;
 
-/// Bounds told at most.
+/// Maximum number of bounds listed.
 const TOLD: usize = 6;
-/// The free duration goes up to so many times the given one.
+/// Largest ratio of the free duration to the given one.
 const LONGEST: f64 = 20.0;
 /// Iterations of the solve with a free duration.
 const ITERATIONS: usize = 200;
@@ -27,7 +27,7 @@ const KINK: f64 = 5e-3;
 /// Of the length of the system in the duration: markers that are slower than this rest.
 const SLOW: f64 = 1e-4;
 
-/// What is known of a problem whose solve found no motion, line by line; `seconds` are left of the time allowed.
+/// Explains a problem whose solve found no motion, line by line; `seconds` are left of the time allowed.
 pub(crate) fn explain(
     system: &System,
     control: &Control,
@@ -75,7 +75,7 @@ fn kinks(optimum: &Optimum) -> Vec<String> {
     jumping.filter_map(told).collect()
 }
 
-/// Where the motion under the voltages of the last iterate ends.
+/// Returns the distance of the end of the motion under the voltages of the last iterate from the goal.
 fn miss(control: &Control, optimum: &Optimum) -> Option<String> {
     let Optimum {
         model,
@@ -117,7 +117,7 @@ fn miss(control: &Control, optimum: &Optimum) -> Option<String> {
     Some(format!("simulated under the voltages found, {what}{moves}"))
 }
 
-/// What of the goal is missed, in words and relative to the size of the system.
+/// Returns the missed parts of the goal, in words and relative to the size of the system.
 fn distances(
     model: &Model,
     boundary: &BoundaryConditions,
@@ -171,7 +171,7 @@ fn distances(
     }
 }
 
-/// What a free duration says.
+/// Result of a solve with a free duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Longer {
     /// A motion of this length in ms was found.
@@ -215,7 +215,7 @@ fn longer(system: &System, control: &Control, optimum: &Optimum, seconds: Option
     }
 }
 
-/// What may be changed.
+/// Returns the changes that may help.
 fn changes(control: &Control, optimum: &Optimum, longer: Longer) -> Vec<String> {
     let model = &optimum.model;
     let seconds = |ms: f64| significant(ms / 1e3, 3);

@@ -23,7 +23,7 @@ pub struct Simulated {
     pub model: Model,
     /// The motion as far as it went.
     pub history: DiscreteTrajectory,
-    /// Why it ended early.
+    /// Reason why it ended early.
     pub failure: Option<StepError>,
     /// Its error, where a tolerance controls its steps and it came to its end.
     pub error: Option<EstimatedError>,
@@ -37,7 +37,7 @@ pub struct Simulated {
 ///
 /// The steps are equal: as long as asked for, or a little shorter where they do not fit the duration.
 ///
-/// Where a tolerance controls the steps their number is not known, and the length is that of the first attempt.
+/// If a tolerance controls the steps, their number is not known, and the length is that of the first attempt.
 pub fn grid(task: &Simulation) -> (usize, f64) {
     if task.tolerance.is_some() {
         return (usize::MAX, task.step);

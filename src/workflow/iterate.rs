@@ -1,4 +1,4 @@
-//! A point that the solver of a control problem has come to.
+//! An iterate of the solver of a control problem.
 
 use std::fmt;
 
@@ -6,15 +6,15 @@ use crate::control::Solution;
 use crate::ipopt::Iteration;
 use crate::model::Model;
 
-/// A point that the solver has come to.
+/// An iterate of the solver.
 pub struct Iterate<'a> {
-    /// What the solver tells of it.
+    /// Report of the solver on it.
     pub report: &'a Iteration,
     /// The model.
     pub model: &'a Model,
     /// Its motion.
     pub motion: &'a dyn Fn() -> Solution,
-    /// What the solver told of the point before, and that one with its costates, with which a later solve goes on; where they are known.
+    /// Report of the solver on the iterate before, and that one with its costates, with which a later solve goes on; where they are known.
     pub before: Option<(&'a Iteration, &'a dyn Fn() -> Solution)>,
 }
 

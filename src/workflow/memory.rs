@@ -1,4 +1,4 @@
-//! What a run is sure to need of the machine's memory, told before it begins to fill it.
+//! Lower bounds of the memory that a run needs, checked before it begins.
 
 use crate::math::memory::{available, readable};
 use crate::model::system::Fidelity;
@@ -13,7 +13,7 @@ const OF_ELEMENT: f64 = 1.2e5;
 const OF_DERIVATIVE: f64 = 200.0;
 /// Bytes of an instant in tables and figures.
 const OF_INSTANT: f64 = 1e3;
-/// Bytes of a body at an instant: its pose, in the motion and in what is drawn.
+/// Bytes of a body at an instant: its pose, in the motion and in the drawings.
 const OF_POSE: f64 = 192.0;
 
 /// Refuses a scene whose elements need more than there is.

@@ -1,15 +1,15 @@
-//! What is done with a problem, in memory: simulate, optimise, refine, verify.
+//! Tasks in memory: simulate, optimise, refine, verify.
 //!
-//! - `integrate`, `optimise`: a simulation, a control problem; `error`: why there is no result; `phase`: what is being done.
+//! - `integrate`, `optimise`: a simulation, a control problem; `error`: errors of tasks; `phase`: the present phase of work.
 //! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs.
-//! - `resimulate`: what an optimum is worth, by the `distance` of motions; `cure`: finer grids where it is none; `gap`: how far its objective may be from the
-//!   least; `holding`, `afterwards`: its end; `final_values`: what final costs miss.
+//! - `resimulate`: verification of an optimum, by the `distance` of motions; `cure`: finer grids where it fails; `gap`: duality gap of its
+//!  objective; `holding`, `afterwards`: its end; `final_values`: deviations from final costs.
 //! - `recentre`: a motion with other charts.
-//! - `second_start`, `infeasible`, `active`, `violations`: what is tried before a problem is called infeasible, and why it is.
-//! - `effects`, `reasons`, `stopwatch`: what a model consists of and why, what each term takes; `memory`: what is more than the machine has.
+//! - `second_start`, `infeasible`, `active`, `violations`: attempts before a problem is called infeasible, and the explanation.
+//! - `effects`, `reasons`, `stopwatch`: terms of a model, their reasons and times; `memory`: a refusal of more than the machine has.
 //! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material.
-//! - `tracking`: how closely a motion follows what its objective names.
-//! - `motion`: between what is solved for and a trajectory; `at_once`: pieces of work in several threads.
+//! - `tracking`: deviations of a motion from the references of its objective.
+//! - `motion`: conversion between unknowns and a trajectory; `at_once`: pieces of work in several threads.
 
 pub mod accuracy;
 pub(crate) mod active;

@@ -1,4 +1,4 @@
-//! From coordinates and multipliers to what people look at: poses, joint coordinates, voltages by muscle.
+//! Conversion of coordinates and multipliers to poses, joint coordinates and voltages by muscle.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::math::Vector;
 use crate::model::system::Joint;
 use crate::model::{FoundParameter, Model, Role};
 
-/// What is kept of a motion.
+/// Returns the solution that is stored of a motion.
 pub fn solved(model: &Model, history: &DiscreteTrajectory, costates: Option<Costates>) -> Solution {
     solved_of(
         model,

@@ -38,11 +38,11 @@ const RESAMPLED: Start = Start::Primal { mu_init: 1e-2 };
 /// violate them by 1e-6 to 1e-4, those that jump at other instants by 4e-4 to 4e-2.
 const FITS: f64 = 2e-4;
 
-/// How often at most it is solved again with other charts of its rotations, and to a smaller tolerance.
+/// Largest number of times that it is solved again with other charts of its rotations, and to a smaller tolerance.
 const CHARTS: usize = 4;
 const TIGHTENED: usize = 3;
 
-/// What a solve may take, in place of what its problem says.
+/// Limits of a solve, in place of those of its problem.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolveLimits {
     /// Iterations of the solver.
@@ -62,7 +62,7 @@ pub struct Optimum {
     pub boundary: BoundaryConditions,
     /// The motion: the optimal one, or the last iterate.
     pub motion: Solution,
-    /// What the solver returned.
+    /// Result of the solver.
     pub solution: SolverResult,
     /// Interval in which the span of a muscle turns by a right angle or more, and the muscle: the discrete equations hold, but
     /// describe no motion.
@@ -79,26 +79,26 @@ pub struct Optimum {
     pub hessian_nonzeros: usize,
     /// Seconds before the solver began.
     pub setup: f64,
-    /// What became of the solution that it started from.
+    /// Changes of the solution that it started from.
     pub carried: Carried,
     /// The verification of its voltages, where the solver found a solution.
     pub resimulation: Option<Resimulation>,
     /// Seconds that the test took.
     pub tested: f64,
-    /// How the first start ended, where a displaced second one found the optimum.
+    /// Status of the first start, where a displaced second one found the optimum.
     pub restarted: Option<Status>,
     /// Bounds and limits that the motion reaches, the most frequent first; none of a solution.
     pub active: Vec<Active>,
-    /// How far the objective may lie above its least value, in its unit.
+    /// Bound of the objective above its least value, in its unit.
     pub gap: f64,
-    /// That this is much beside the objective, where it is.
+    /// Warning that this is large relative to the objective, where it is.
     pub(crate) wide: Option<String>,
-    /// What follows a goal that no voltages are known to hold.
+    /// Motion after a goal that no known voltages hold.
     pub afterwards: Option<Afterwards>,
 }
 
 impl Optimum {
-    /// Whether it is an optimal motion: the solver found it, and a simulation under its voltages reproduces it.
+    /// Returns true if it is an optimal motion: the solver found it, and a simulation under its voltages reproduces it.
     pub fn is_solved(&self) -> bool {
         self.meets_equations() && self.cause().is_none()
     }
@@ -123,17 +123,17 @@ impl Optimum {
         }
     }
 
-    /// Whether it meets the discrete equations, reproduced or not.
+    /// Returns true if it meets the discrete equations, reproduced or not.
     pub(crate) fn meets_equations(&self) -> bool {
         self.solution.status.is_solved() && self.reversed.is_none()
     }
 
-    /// Why a simulation does not reproduce it, where it does not.
+    /// Returns the reason why a simulation does not reproduce it, where it does not.
     pub fn cause(&self) -> Option<&Cause> {
         self.resimulation.as_ref()?.cause.as_ref()
     }
 
-    /// How it ended, in a word.
+    /// Returns its status, in a word.
     pub fn word(&self) -> &'static str {
         match self.cause() {
             _ if self.reversed.is_some() => "unresolved",
@@ -332,11 +332,11 @@ pub(crate) struct Prepared<'m> {
     pub(crate) program: Transcription<'m>,
     pub(crate) point: StartingPoint,
     pub(crate) start: Start,
-    /// What became of the earlier solution.
+    /// Changes of the earlier solution.
     pub(crate) carried: Carried,
 }
 
-/// Whether a program with more equations than unknowns is refused.
+/// Treatment of a program with more equations than unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Counted {
     /// It has no solution.

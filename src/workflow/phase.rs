@@ -1,20 +1,20 @@
-//! What is being done before there is anything to count, told to whoever listens.
+//! Phases of work before there is anything to count, reported to a listener.
 
 use std::cell::RefCell;
 
 type Listener = Box<dyn Fn(&'static str)>;
 
 thread_local! {
-    /// Who listens to the work of this thread.
+    /// Listener to the phases of this thread.
     static LISTENER: RefCell<Option<Listener>> = const { RefCell::new(None) };
 }
 
-/// From now on `listener` is told what this thread does: building the model, finding the start, ….
+/// Makes this thread report its phases to `listener`: building the model, finding the start, ….
 pub fn listen_to_phases(listener: impl Fn(&'static str) + 'static) {
     LISTENER.replace(Some(Box::new(listener)));
 }
 
-/// Tells what is being done from now on.
+/// Reports the phase that begins now.
 pub(crate) fn phase(doing: &'static str) {
     LISTENER.with_borrow(|listener| {
         if let Some(listener) = listener {

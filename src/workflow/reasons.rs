@@ -1,4 +1,4 @@
-//! Why an effect is called for, and why another is not, in words.
+//! Reasons why an effect is present or absent, in words.
 
 use serde::Serialize;
 
@@ -9,16 +9,16 @@ use crate::model::{BodyLocation, Model};
 /// Something that a scene or a problem could call for and does not.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Absent {
-    /// Name of the effect, or of what is no unknown.
+    /// Name of the effect, or of the part that is no unknown.
     pub name: String,
-    /// Why it is not there.
+    /// Reason why it is absent.
     pub why: String,
 }
 
-/// So many names are written out.
+/// Largest number of names listed.
 const LISTED: usize = 6;
 
-/// What calls for a term that a model has.
+/// Returns the reasons for a term that a model has.
 pub(crate) fn why(term: &str, model: &Model) -> String {
     let reasons = model.present.iter().filter(|present| present.term == term);
     let told = reasons.map(|present| {
@@ -28,7 +28,7 @@ pub(crate) fn why(term: &str, model: &Model) -> String {
     told.collect::<Vec<_>>().join("; ")
 }
 
-/// What a model has not, and what of the scene is no unknown.
+/// Returns the absent terms of a model, and the parts of the scene that are no unknowns.
 pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
     let mut list = Vec::new();
     let mut add = |name: String, why: String| list.push(Absent { name, why });

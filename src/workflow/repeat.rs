@@ -14,16 +14,16 @@ use crate::workflow::motion::solved;
 /// A distance that grows by this factor within one step is no growth of rounding.
 const JUMP: f64 = 1e3;
 
-/// A simulation under optimal voltages, with so many steps for an interval.
+/// A simulation under optimal voltages, with this number of steps for an interval.
 pub(crate) struct Repeat {
     pub(crate) history: DiscreteTrajectory,
     motion: Solution,
     /// Distances from the optimum at its instants, as far as it goes.
     distances: Vec<Distance>,
     pub(crate) failure: Option<String>,
-    /// Whether some of its steps had to be halved.
+    /// True if some of its steps had to be halved.
     pub(crate) is_halved: bool,
-    /// Whether redundant constraints keep a step forward from being taken at all.
+    /// True if redundant constraints keep a step forward from being taken at all.
     is_untestable: bool,
 }
 
@@ -66,7 +66,7 @@ impl Repeat {
         all.fold(Distance::default(), Distance::max)
     }
 
-    /// Why a simulation with the step of the optimum is another motion, where it is by more than `same`.
+    /// Returns the reason why a simulation with the step of the optimum is another motion, where it is by more than `same`.
     pub(crate) fn cause(&self, model: &Model, optimal: &Solution, same: f64) -> Option<Cause> {
         if self.is_halved && self.failure.is_none() {
             return None;

@@ -29,7 +29,7 @@ const TOO_COARSE: f64 = 0.25;
 const FINER: [usize; 5] = [2, 4, 8, 16, 32];
 /// A distance between two refinements that is at most this part of the one before falls as the order of the method demands.
 const FALLS: f64 = 0.5;
-/// What is left of an error after the last refinement, as a part of it.
+/// Remainder of an error after the last refinement, as a part of it.
 const LEFT: f64 = 0.25;
 /// Parts of the path length below this are rounding.
 const ROUNDING: f64 = 1e-7;
@@ -38,7 +38,7 @@ const LOST: f64 = 1.0;
 /// A drift from the goal, as a part of the path length, from which on it is not held.
 const DRIFTS: f64 = 0.05;
 
-/// What became of optimal voltages.
+/// Verification of optimal voltages.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Resimulation {
     /// Greatest deviation from the optimal motion at its instants, with its step.
@@ -51,7 +51,7 @@ pub struct Resimulation {
     /// where a simulation ended early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<f64>,
-    /// Whether distances that fall from refinement to refinement confirm that error.
+    /// True if distances that fall from refinement to refinement confirm that error.
     pub is_confirmed: bool,
     /// Time for which the voltages of the goal are held afterwards in s; absent where they are not known.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -59,16 +59,16 @@ pub struct Resimulation {
     /// Greatest drift from the last optimal instant in that time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub drift: Option<Distance>,
-    /// Why it ended early.
+    /// Reason why it ended early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
-    /// Why the optimum is no motion of the system.
+    /// Reason why the optimum is not a motion of the system.
     #[serde(skip)]
     pub cause: Option<Cause>,
     /// The motion with half the step, where there is one.
     #[serde(skip)]
     pub(crate) half: Option<DiscreteTrajectory>,
-    /// Where the motion with the step of the optimum ends.
+    /// End of the motion with the step of the optimum.
     #[serde(skip)]
     end: Option<Start>,
 }
@@ -80,7 +80,7 @@ pub struct Finer {
     pub steps: usize,
     /// Greatest deviation from the optimal motion at its instants.
     pub deviation: Distance,
-    /// Why it ended early.
+    /// Reason why it ended early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
 }
@@ -127,7 +127,7 @@ pub(crate) fn resimulate(
 }
 
 impl Resimulation {
-    /// Estimates the error with finer and finer steps until their distances fall; whether no simulation ended early.
+    /// Estimates the error with finer and finer steps until their distances fall; returns true if no simulation ended early.
     fn refine(&mut self, model: &Model, start: &Start, optimal: &Solution, least: f64) -> bool {
         let with = |steps: usize| Repeat::of(model, start, optimal, steps);
         let mut before: Option<(Repeat, f64)> = None;
@@ -210,7 +210,7 @@ impl Resimulation {
         self.failure = failure.map(|error| error.to_string());
     }
 
-    /// Whether the goal is held: its voltages are known, and under them the system stays.
+    /// Returns true if the goal is held: its voltages are known, and under them the system stays.
     pub(crate) fn is_held(&self, model: &Model) -> bool {
         let stays = |drift: Distance| drift.over(self.path_length, model) <= DRIFTS;
         self.failure.is_none() && self.drift.is_some_and(stays)

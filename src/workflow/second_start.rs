@@ -4,10 +4,10 @@ use crate::control::BoundaryConditions;
 use crate::control::problem::{Control, Guess, Voltages};
 use crate::ipopt::{SolverResult, Status};
 
-/// Iterations of the second start; what is found from it is found soon.
+/// Iterations of the second start; an optimum is found from it soon or not at all.
 pub(crate) const ITERATIONS: usize = 100;
 
-/// Whether a solve ended for want of a motion that keeps goal and limits.
+/// Returns true if a solve ended for want of a motion that keeps goal and limits.
 pub(crate) fn is_infeasible(status: Status) -> bool {
     matches!(status, Status::Infeasible | Status::RestorationFailed)
 }
@@ -15,7 +15,7 @@ pub(crate) fn is_infeasible(status: Status) -> bool {
 /// Iterations after which a limit of them says something of the problem.
 const MANY: usize = 50;
 
-/// Whether a solve ended without a motion that keeps goal and limits, by its verdict or after many iterations, so that it is worth telling why.
+/// Returns true if a solve ended without a motion that keeps goal and limits, by its verdict or after many iterations, so that an explanation helps.
 pub(crate) fn is_unreached(solution: &SolverResult) -> bool {
     let is_long = solution.iterations.len() > MANY;
     is_infeasible(solution.status) || (solution.status == Status::IterationLimit && is_long)

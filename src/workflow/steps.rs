@@ -1,4 +1,4 @@
-//! What is told of the steps of a simulation: whether they resolve its motion, and which would.
+//! Warnings about the steps of a simulation that do not resolve its motion, with steps that would.
 
 use crate::control::problem::Simulation;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
@@ -41,7 +41,7 @@ pub fn divided(task: &Simulation) -> Option<String> {
     })
 }
 
-/// A warning where the steps do not resolve the motion well, or are too few to tell.
+/// A warning where the steps do not resolve the motion well, or are too few for an estimate.
 pub(crate) fn told(
     error: Option<LocalError>,
     history: &DiscreteTrajectory,

@@ -1,4 +1,4 @@
-//! How long one evaluation of each effect takes.
+//! Times of one evaluation of each effect.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -9,7 +9,7 @@ use crate::model::Model;
 
 /// Most evaluations of one effect.
 const MOST: u32 = 10_000;
-/// The least of so many means is told.
+/// Number of means, of which the least is reported.
 const ROUNDS: u32 = 3;
 
 /// Time in µs of one evaluation with second derivatives of each effect at the reference configuration, those of the intervals

@@ -13,15 +13,15 @@ use crate::workflow::confirmed::EstimatedError;
 use crate::workflow::distance::Distance;
 use crate::workflow::motion::solved;
 
-/// How often a motion is begun again with a tighter tolerance.
+/// Largest number of times that a motion is begun again with a tighter tolerance.
 const AGAIN: usize = 4;
 /// A tolerance is tightened to leave this part of the one that was asked for.
 const LEAVES: f64 = 0.6;
-/// Factors by which it is tightened at most, and where nothing is confirmed.
+/// Largest factors by which it is tightened, and where nothing is confirmed.
 const MOST: f64 = 0.01;
 const UNCONFIRMED: f64 = 0.1;
 
-/// What a motion by a tolerance is made of.
+/// Parts of a motion by a tolerance.
 pub(crate) struct ByTolerance<'a> {
     pub(crate) model: &'a Model,
     pub(crate) solving: Solving,
@@ -37,7 +37,7 @@ pub(crate) type Found = (
 );
 
 impl ByTolerance<'_> {
-    /// The motion that goes on from where it has `begun`, or one in shorter steps whose error is confirmed to be below the tolerance.
+    /// The motion resumed from where it has `begun`, or one in shorter steps whose error is confirmed to be below the tolerance.
     pub(crate) fn run(
         &self,
         begun: DiscreteTrajectory,

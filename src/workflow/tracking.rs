@@ -1,4 +1,4 @@
-//! How closely a motion follows what its objective names: deviations of markers and joints, read off the motion itself.
+//! Tracking errors: deviations of markers and joints from the references of the objective, read off the motion itself.
 
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use crate::model::system::{Joint, System};
 use crate::model::{Quantity, joint_unit};
 use crate::workflow::optimise::Optimum;
 
-/// A marker or a joint, what it was to follow, and how closely it did.
+/// A marker or a joint, its reference, and its deviations.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tracked {
     /// `marker` or `joint`.
@@ -24,7 +24,7 @@ pub struct Tracked {
     /// Deviations of a simulation under the same voltages with half the step; absent where there was none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub simulated: Option<TrackingError>,
-    /// What it tracked, one for each direction of a marker.
+    /// Paths that it tracked, one for each direction of a marker.
     #[serde(skip)]
     pub paths: Vec<TrackedPath>,
     /// Deviation at each instant, in mm or rad.
@@ -43,16 +43,16 @@ pub struct TrackingError {
     pub time_of_maximum: f64,
 }
 
-/// A coordinate and what it was to be, at each instant, in mm or rad.
+/// A coordinate and its reference, at each instant, in mm or rad.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackedPath {
     /// `tip_x`, `joint1`.
     pub name: String,
     /// Direction of a marker.
     pub axis: Option<usize>,
-    /// What it is.
+    /// Value.
     pub value: Vec<f64>,
-    /// What it was to be.
+    /// Reference.
     pub reference: Vec<f64>,
     /// Their difference, of angles without full turns.
     pub(crate) difference: Vec<f64>,
@@ -145,7 +145,7 @@ fn of_marker(cost: &QuantityCost) -> Option<usize> {
     }
 }
 
-/// A coordinate of a motion beside what it was to be.
+/// A coordinate of a motion and its reference.
 pub(crate) fn path(
     system: &System,
     cost: &QuantityCost,

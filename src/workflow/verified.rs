@@ -1,4 +1,4 @@
-//! A control problem on as many intervals as the verification of its optimum needs to confirm an accuracy.
+//! Refinement of a control problem until the verification of its optimum confirms an accuracy.
 //!
 //! The error of a grid falls with the square of its step: from the error e that a verification confirms on N intervals the next grid has
 //! about N √(e/ε), and begins at the optimum before.
@@ -14,7 +14,7 @@ use crate::workflow::error::WorkflowError;
 use crate::workflow::iterate::Iterate;
 use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
 
-/// Deviation of the motion under the optimal voltages that is confirmed where no accuracy is asked for, as a part of the path length.
+/// Deviation of the motion under the optimal voltages that is confirmed where no accuracy is set, as a part of the path length.
 pub const ACCURACY: f64 = 0.01;
 /// The part of the accuracy that the next grid is made for.
 const AIMED: f64 = 0.7;
@@ -105,7 +105,7 @@ pub fn verified(
     })
 }
 
-/// Whether the verification confirms an error of no more than this part of the path length.
+/// Returns true if the verification confirms an error of no more than this part of the path length.
 fn is_confirmed(optimum: &Optimum, accuracy: f64) -> bool {
     let tested = optimum.resimulation.as_ref();
     tested.is_some_and(|tested| {
@@ -114,7 +114,7 @@ fn is_confirmed(optimum: &Optimum, accuracy: f64) -> bool {
     })
 }
 
-/// How many times the intervals the next grid has.
+/// Returns the factor of the intervals of the next grid.
 fn factor(optimum: &Optimum, accuracy: f64) -> f64 {
     let tested = optimum
         .resimulation

@@ -1,4 +1,4 @@
-//! Which equations and limits a point violates, by name.
+//! Violated equations and limits of a point, by name.
 
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use crate::nlp::Nlp;
 /// A row that does not hold.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Violation {
-    /// What the row says.
+    /// Equation or limit of the row.
     pub row: String,
     /// Distance to its bounds in its unit; absent where the row has no value.
     #[serde(skip_serializing_if = "Option::is_none")]

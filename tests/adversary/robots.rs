@@ -13,7 +13,7 @@ pub(crate) struct Robot {
     pub(crate) voltages: BTreeMap<String, f64>,
 }
 
-/// What robots may have.
+/// Parts that robots may have.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Parts {
     pub(crate) weight: bool,

@@ -73,7 +73,7 @@ pub fn hold(segments: usize) -> Vec<f64> {
     (0..segments).flat_map(pair).collect()
 }
 
-/// From rest without voltages to rest at the hold voltages.
+/// Motion from rest without voltages to rest at the hold voltages.
 pub fn rest_to_rest(segments: usize, intervals: usize, duration: f64) -> Control {
     Control {
         duration: Duration::Given(duration),

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 /// Upper bound of the voltages in V.
 const MOST: f64 = 3000.0;
 
-/// What a goal asks for.
+/// Kind of a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// The equilibrium under random voltages.
@@ -36,7 +36,7 @@ pub(crate) struct Goal {
     pub(crate) tip: Vector3<f64>,
 }
 
-/// What is left of a solve: its word, and all numbers of its point and its multipliers; nothing where the goal is refused.
+/// Record of a solve: its status, and all numbers of its point and its multipliers; nothing where the goal is refused.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Solved {
     pub(crate) word: &'static str,

@@ -49,7 +49,7 @@ pub(crate) fn interrupt_group(leader: &Child) {
     killpg(pid(leader), Signal::SIGINT).expect("the group runs");
 }
 
-/// Whether a process of the group that a program led still runs.
+/// Returns true if a process of the group that a program led still runs.
 pub(crate) fn group_runs(leader: &Child) -> bool {
     killpg(pid(leader), None).is_ok()
 }

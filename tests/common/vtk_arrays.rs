@@ -92,7 +92,7 @@ fn codes(lengths: &[usize]) -> HashMap<(usize, usize), usize> {
     codes
 }
 
-/// What zlib packed.
+/// Unpacks the data of zlib.
 fn inflate(packed: &[u8]) -> Vec<u8> {
     assert_eq!(packed[0] & 15, 8, "deflate");
     assert_eq!(

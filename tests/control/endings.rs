@@ -1,4 +1,4 @@
-//! What is told of the end of a motion: goals that nothing holds, final costs that are missed, objectives above their least value.
+//! Messages about the end of a motion: goals that nothing holds, final costs that are missed, objectives above their least value.
 
 use crate::verdicts::{kept, read, told};
 use serde_json::Value;

@@ -10,7 +10,7 @@ use proboscis::workflow::SolveLimits;
 use proboscis::workflow::optimise;
 use std::ops::ControlFlow;
 
-/// What a solve of a well-posed problem may end with.
+/// Statuses with which a solve of a well-posed problem may end.
 const CLASSIFIED: [Status; 7] = [
     Status::Solved,
     Status::Acceptable,

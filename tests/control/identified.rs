@@ -17,7 +17,7 @@ use std::ops::ControlFlow;
 
 const INTERVALS: usize = 40;
 const H: f64 = 5.0;
-/// What the material has.
+/// Constants of the material.
 const TRUE: [f64; 2] = [0.137, 0.71];
 
 /// Shear modulus and viscosity of all muscles.

@@ -12,7 +12,7 @@ use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::Nlp;
 use std::ops::ControlFlow;
 
-/// What is known of a solved problem.
+/// Data of a solved problem.
 pub(crate) struct Optimum {
     pub(crate) model: Model,
     pub(crate) boundary: BoundaryConditions,

@@ -22,7 +22,7 @@ fn problem(name: &str, changes: &[&str]) -> (System, Control) {
     (loaded.system, *control)
 }
 
-/// What a program of a kept problem says, with its guess.
+/// Evaluates the program of a kept problem, with its guess.
 fn of_program<A>(
     name: &str,
     changes: &[&str],

@@ -34,7 +34,7 @@ fn joint(joint: usize) -> Quantity {
     Quantity::Joint { joint, near: 0.0 }
 }
 
-/// Where the tip of a motion is at an instant, from the pose of the last body.
+/// Place of the tip of a motion at an instant, from the pose of the last body.
 fn tip(found: &Optimum, k: usize) -> Vector3<f64> {
     let system = &found.model.system;
     let point = &system.markers[0].point;

@@ -1,4 +1,4 @@
-//! What an optimum is worth: guesses that change nothing that is asked, violations that are numbers, voltages that hold.
+//! Verdicts on optima: guesses that change no condition of the problem, violations that are numbers, voltages that hold.
 
 use proboscis::app::CommandInput;
 use proboscis::app::CommandOutput;

@@ -155,7 +155,7 @@ fn potentials_have_symmetric_second_derivatives() {
     }
 }
 
-/// How a program is spoiled.
+/// Fault that is put into a program.
 #[derive(Clone, Copy, Debug)]
 enum Spoiled {
     Nothing,

@@ -30,7 +30,7 @@ fn capacitance(system: &System, model: &Model, z: &[f64], muscle: &Muscle) -> f6
     -2.0 * volume * density / muscle.layer_thickness.powi(2)
 }
 
-/// From a charged rest to voltages that hold the goal, or from no charge to an end that nothing holds; free or given duration in both
+/// Motions from a charged rest to voltages that hold the goal, or from no charge to an end that nothing holds; free or given duration in both
 /// coordinates; long enough for both halves of a horizon.
 fn problems() -> Vec<Control> {
     let mut list = Vec::new();

@@ -1,4 +1,4 @@
-//! What an energy says in blocks, as one gradient and one Hessian.
+//! Blocks of an energy gathered to one gradient and one Hessian.
 
 use crate::naive_formulas::Formula;
 use nalgebra::{SMatrix, SVector};
@@ -35,7 +35,7 @@ fn gathered<E: Formula<M>, const M: usize>(
     (gradient, hessian)
 }
 
-/// What an energy says up to an order; nothing along w of a virtual work, which is never asked for it.
+/// Derivatives of an energy up to an order; nothing along w of a virtual work, which is never asked for it.
 pub(crate) fn jet_of<E: Formula<M>, const M: usize, const ORDER: usize>(
     energy: &E,
     p: &SVector<f64, M>,

@@ -9,7 +9,7 @@ use proboscis::energy::{
 
 /// The naive formula of an energy.
 pub(crate) trait Formula<const M: usize>: Energy<M> {
-    /// How many of its arguments are vectors.
+    /// Number of its arguments that are vectors.
     const VECTORS: usize = M / 3;
 
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; M]) -> D;

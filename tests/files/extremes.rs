@@ -153,7 +153,7 @@ fn sizes_that_nobody_means_are_refused() {
     }
 }
 
-/// What is allowed as a number may still be more than the machine holds.
+/// An allowed number may still be more than the machine holds.
 #[cfg(target_os = "linux")]
 #[test]
 fn what_the_memory_cannot_hold_is_refused_before_it_is_filled() {

@@ -142,7 +142,7 @@ fn nested(depth: usize) -> Value {
     (0..depth).fold(json!(0), |inner, _| json!([inner]))
 }
 
-/// What a slip of the pen, or malice, writes in place of a value.
+/// Values that an error of typing, or malice, puts in place of one.
 fn wrong_value() -> impl Strategy<Value = Value> {
     let numbers = select(vec![
         0.0, -1.0, 1e308, -1e308, 1e-308, 5e-324, 1e18, 0.5, 1e9,
@@ -362,7 +362,7 @@ fn overrides_are_taken_or_refused() {
     );
 }
 
-/// What long runs of the properties have found.
+/// Failures that long runs of the properties have found.
 #[test]
 fn found_before() {
     let mut scene: Value =

@@ -1,4 +1,4 @@
-//! What a scene means, chains written out included.
+//! Systems of scene files, chains written out included.
 
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
 use proboscis::control::problem::{BoundaryState, PathConstraint, Rest, Task};

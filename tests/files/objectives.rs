@@ -1,4 +1,4 @@
-//! What an objective names, and its mistakes.
+//! Objectives of problem files, and their errors.
 
 use crate::scene::{Case, PROBLEM, SCENE, check, elastic_scene, folder, mistake};
 use proboscis::control::Signal;

@@ -191,7 +191,7 @@ fn unit(root: &Value, value: &Value, said: &str) -> String {
     unit.to_owned()
 }
 
-/// What stands for a key that is not written.
+/// Default of a key that is not written.
 fn default(value: &Value, said: &str) -> String {
     let written = &value["default"];
     let is_empty = written.as_object().is_some_and(Map::is_empty)

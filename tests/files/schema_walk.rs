@@ -123,7 +123,7 @@ fn first(value: &Value) -> String {
     }
 }
 
-/// Whether a type of a schema has a key that takes a value.
+/// Returns true if a type of a schema has a key that takes a value.
 fn is_known(name: &str, key: &str, value: &Value) -> bool {
     schemas().iter().any(|(root_name, _, root)| {
         let defs = root["$defs"].as_object().unwrap();
@@ -143,7 +143,7 @@ fn is_known(name: &str, key: &str, value: &Value) -> bool {
     })
 }
 
-/// Whether a value is of the kind of a node.
+/// Returns true if a value is of the kind of a node.
 fn fits(root: &Value, node: &Value, value: &Value) -> bool {
     let (node, _) = resolved(root, node);
     for key in ["anyOf", "oneOf"] {
@@ -195,7 +195,7 @@ fn keys(node: &Value, found: &mut BTreeSet<String>) {
     }
 }
 
-/// Whether a text has a key, in backticks or quotes, alone or as a part of a path.
+/// Returns true if a text has a key, in backticks or quotes, alone or as a part of a path.
 fn names(text: &str, key: &str) -> bool {
     let ends = |before: &str, after: &str| {
         let opens = before.ends_with(['`', '"', '.']);

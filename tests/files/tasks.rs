@@ -1,4 +1,4 @@
-//! What a problem asks: methods, tables, solutions, given voltages.
+//! Tasks of problem files: methods, tables, solutions, given voltages.
 
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
 use proboscis::control::Signal;

@@ -45,7 +45,7 @@ fn four_bar(kinds: [&str; 2]) -> Value {
     })
 }
 
-/// From the reference to an angle of the crank.
+/// Turn of the crank from the reference to an angle.
 fn turn_crank() -> Value {
     let mut task = control(
         "0.2 s",

@@ -58,7 +58,7 @@ const CASES: [&str; 40] = [
 /// Cases whose outcome is words alone.
 const WITHOUT_FIGURE: [&str; 2] = ["redundant-joint", "same-run-twice"];
 
-/// How a case ends.
+/// Verdict on a case.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Verdict {
     /// The answer is right.
@@ -86,10 +86,10 @@ pub(crate) struct Case {
     pub(crate) name: &'static str,
     /// Title of section and figure.
     pub(crate) title: &'static str,
-    /// What must hold.
+    /// Law that must hold.
     pub(crate) law: &'static str,
     pub(crate) verdict: Verdict,
-    /// What was seen: numbers, or the words of a refusal.
+    /// Observations: numbers, or the words of a refusal.
     pub(crate) seen: Vec<String>,
     pub(crate) x: Axis,
     pub(crate) y: Axis,
@@ -170,7 +170,7 @@ impl Case {
     }
 }
 
-/// What stands before the name of a section.
+/// Text before the name of a section.
 const MARK: &str = "<a id=\"";
 
 /// The sections of a page by name.
@@ -183,13 +183,13 @@ fn sections(page: &str) -> BTreeMap<String, String> {
     parts.filter_map(section).collect()
 }
 
-/// What a line of a section says after its start.
+/// Returns the rest of a line of a section after its start.
 fn line<'a>(section: &'a str, start: &str) -> &'a str {
     let found = section.lines().find_map(|line| line.strip_prefix(start));
     found.unwrap_or_default().trim_end_matches('.')
 }
 
-/// How many cases end how, in a sentence.
+/// Returns the numbers of cases by their ends, in a sentence.
 fn conclusion<'a>(sections: impl Iterator<Item = (&'a &'static str, &'a String)>) -> String {
     let verdicts: Vec<&str> = sections.map(|(_, text)| line(text, "Verdict: ")).collect();
     let count = |verdict: Verdict| verdicts.iter().filter(|v| **v == verdict.words()).count();

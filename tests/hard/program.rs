@@ -19,7 +19,7 @@ const LIMIT: Duration = Duration::from_secs(300);
 /// Entries of `summary.json` that say nothing where nothing is known.
 const UNKNOWN: [&str; 4] = ["is_stable", "unstable_directions", "jacobian", "hessian"];
 
-/// What a run left.
+/// Results of a run.
 #[derive(Debug)]
 pub(crate) struct Run {
     folder: TempDir,
@@ -166,7 +166,7 @@ fn table(path: &Path, name: &str) -> Vec<f64> {
         .collect()
 }
 
-/// Where a run failed, a table may have cells without a number.
+/// Checks the files of a run; where it failed, a table may have cells without a number.
 fn check_folder(folder: &Path, is_answer: bool) {
     let mut seen = 0;
     for entry in fs::read_dir(folder).unwrap() {

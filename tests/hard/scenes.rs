@@ -109,7 +109,7 @@ pub(crate) fn equilibrium(voltages: Value) -> Value {
     json!({ "equilibrium": { "voltages": voltages } })
 }
 
-/// From rest without voltages to a goal with least effort.
+/// Motion from rest without voltages to a goal with least effort.
 pub(crate) fn control(duration: &str, intervals: usize, goal: Value) -> Value {
     json!({ "control": {
         "duration": duration, "intervals": intervals,

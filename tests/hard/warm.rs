@@ -104,7 +104,7 @@ fn beam(elements: [usize; 3]) -> Value {
     })
 }
 
-/// From rest to where the tip rests under 16 kV on one layer and 1 kV on the other.
+/// Motion from rest to where the tip rests under 16 kV on one layer and 1 kV on the other.
 fn bend(scene: &Value, intervals: usize) -> Value {
     let hold = json!({ "beam.lower": "16 kV", "beam.upper": "1 kV" });
     let rest = run(scene, &equilibrium(hold.clone())).solved();

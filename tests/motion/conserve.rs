@@ -1,4 +1,4 @@
-//! What the discrete motion conserves: momenta and constraints to rounding, energy without drift.
+//! Conservation of the discrete motion: momenta and constraints to rounding, energy without drift.
 
 use crate::common::{
     at_reference, bare, body, column, columns, joint, motion, placed, spin, trunk,

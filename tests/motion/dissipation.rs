@@ -1,4 +1,4 @@
-//! What viscosity and dampers take away.
+//! Dissipation by viscosity and dampers.
 
 use crate::common::{at_reference, bare, body, column, joint, motion, richardson, trunk};
 use nalgebra::{Matrix3, Vector3};

@@ -52,7 +52,7 @@ fn pendulum() -> System {
     bare(vec![mass], vec![pivot], Some(Vector3::new(0.0, -9.81, 0.0)))
 }
 
-/// Where the pendulum is at a time: φ″ = 9.81 cos φ from φ = 0, φ measured from −x to −y, by Runge and Kutta's method.
+/// Place of the pendulum at a time: φ″ = 9.81 cos φ from φ = 0, φ measured from −x to −y, by Runge and Kutta's method.
 fn exact_pendulum(time: f64) -> Vector3<f64> {
     let steps = 100_000;
     let h = time / f64::from(steps);

@@ -1,4 +1,4 @@
-//! What is observed along a motion is what the formulas say.
+//! Observations along a motion against their formulas.
 
 use crate::common::{at_reference, bare, body, column, columns, joint, motion, placed, trunk};
 use nalgebra::{Matrix3, Vector3};

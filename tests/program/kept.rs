@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-/// Whether a kept problem has finite elements, whose derivatives are too many for differences.
+/// Returns true if a kept problem has finite elements, whose derivatives are too many for differences.
 fn has_elements(name: &str) -> bool {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems");
     let system = read_problem(&path.join(name), &[]).unwrap().system;

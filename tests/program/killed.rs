@@ -1,4 +1,4 @@
-//! What a program that is killed leaves.
+//! Files of a program that is killed.
 
 use crate::output::arrays;
 use crate::runs::{problem, read, run};

@@ -1,4 +1,4 @@
-//! What a run writes of a motion: all of a short one, of a long one what can be seen, and what its problem asks for.
+//! Output of a motion: all of a short one, the visible instants of a long one, and the selection of its problem.
 
 use crate::runs::{problem, read, run, workshop};
 use proboscis::files::npz::NpzWriter;

@@ -59,7 +59,7 @@ fn run<'a>(system: &'a System, trajectory: &'a Trajectory) -> Run<'a> {
     }
 }
 
-/// Whether a number of single precision is the one of double precision.
+/// Returns true if a number of single precision is the one of double precision.
 fn close(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-6 * b.abs().max(1.0)
 }

@@ -1,4 +1,4 @@
-//! What ParaView is given reads back as it was: checked with a naive reader of XML, base64 and zlib and zlib.
+//! Files for ParaView, read back identical by a naive reader of XML, base64 and zlib.
 
 use crate::common::vtk_arrays::unpacked;
 use nalgebra::Vector3;

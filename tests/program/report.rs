@@ -1,4 +1,4 @@
-//! What a run leaves: tables read back, figures are well-formed, files are whole or absent.
+//! Results of a run: tables read back, figures are well-formed, files are whole or absent.
 
 use std::fs;
 
@@ -52,7 +52,7 @@ pub(crate) fn assert_well_formed(svg: &str) {
     assert!(open.is_empty() && rest.trim().is_empty());
 }
 
-/// How many polylines have this colour.
+/// Returns the number of polylines of this colour.
 pub(crate) fn polylines(svg: &str, colour: style::Colour) -> usize {
     let stroke = format!("stroke=\"{}\"", colour.hex().to_uppercase());
     let lines = svg.lines();

@@ -1,4 +1,4 @@
-//! What accuracy costs: studies of motions with a closed form, refused studies, points that fail, and their files.
+//! Studies of motions with a closed form, refused studies, points that fail, and their files.
 
 use crate::common::signals::Listening as _;
 use crate::runs::run;
@@ -84,7 +84,7 @@ pub(crate) fn record(folder: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(folder.join("out/study.json")).unwrap()).unwrap()
 }
 
-/// What the record says of one measure.
+/// Returns the record of one measure.
 pub(crate) fn of<'a>(record: &'a Value, measure: &str) -> &'a Value {
     let all = record["measures"].as_array().unwrap();
     all.iter()

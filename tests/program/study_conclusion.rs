@@ -1,4 +1,4 @@
-//! What a study says in words, of results that are made up.
+//! Conclusions of studies in words, of results that are made up.
 
 use nalgebra::Vector3;
 use proboscis::study::compare::judge;
@@ -56,7 +56,7 @@ fn study(methods: &[&str]) -> (TempDir, Study) {
     (folder, study)
 }
 
-/// What a study says whose points have these errors in mm and median times in ms.
+/// Conclusion of a study whose points have these errors in mm and median times in ms.
 fn said(study: &Study, points: &[[(f64, f64); 4]], change: impl Fn(&mut Results<'_>)) -> String {
     let done = |m: usize, k: usize| {
         let (error, milliseconds) = points[m][k];

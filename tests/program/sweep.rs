@@ -36,7 +36,7 @@ fn column(table: &(Vec<String>, Vec<Vec<String>>), name: &str) -> Vec<String> {
     table.1.iter().map(|row| row[at].clone()).collect()
 }
 
-/// When the summary of each variant was written.
+/// Times at which the summaries of the variants were written.
 fn written(folder: &Path) -> Vec<std::time::SystemTime> {
     let variants = folder.join("results/sweeps/sweep/variants");
     let folders: BTreeSet<_> = fs::read_dir(variants)

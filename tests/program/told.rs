@@ -1,4 +1,4 @@
-//! What the user is told: that a run was stopped, which derivatives are wrong, what a command does not know.
+//! Messages to the user: a run was stopped, derivatives are wrong, a command does not know an option.
 
 use crate::common::programs::{HS071_START, Program, hs071, one_variable};
 use crate::common::signals::Listening as _;
@@ -82,7 +82,7 @@ fn a_solve_is_stopped_at_the_next_question() {
     assert!(solution.x.iter().all(|x| x.is_finite()));
 }
 
-/// What a stop left half done is not taken for done.
+/// A stop leaves no half-done work that is taken for done.
 #[test]
 fn a_program_that_was_stopped_is_evaluated_anew() {
     let loaded = read_problem(problem("pair").as_ref(), &[]).unwrap();

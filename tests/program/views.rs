@@ -1,4 +1,4 @@
-//! From where figures look, and what stands in them.
+//! Viewpoints of figures, and the parts inside their frames.
 
 use crate::page::page_data;
 use crate::report::{assert_well_formed, polylines};
@@ -81,7 +81,7 @@ fn bending(lean: impl Fn(f64) -> [f64; 2]) -> (System, Trajectory) {
     (system, trajectory)
 }
 
-/// How far a trunk leans in mm at a part of the motion.
+/// Lean of a trunk in mm at a part of the motion.
 type Lean<'a> = &'a dyn Fn(f64) -> [f64; 2];
 
 #[test]

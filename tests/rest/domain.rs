@@ -1,4 +1,4 @@
-//! Where the domain of the first-order dielectric ends, and how that is told.
+//! End of the domain of the first-order dielectric, and the messages about it.
 
 use crate::stable::{file, model, reference, run, scene, summary};
 use proboscis::dynamics::{DiscreteTrajectory, largest_stretch, out_of_domain};

@@ -297,7 +297,7 @@ fn a_link_too_heavy_to_stand_leans_aside() {
     }
 }
 
-/// What nothing holds is named; what only its weight holds hangs.
+/// Parts that nothing holds are named; parts that only their weight holds hang.
 #[test]
 fn joints_without_stiffness_are_named() {
     let mut written = json!({

@@ -294,7 +294,7 @@ pub(crate) fn silicone(lame_lambda: f64) -> Material {
     dielectric(0.1, lame_lambda, electric)
 }
 
-/// How far the middle of the free face of a clamped stack of four layers moves, of which a quarter is modelled.
+/// Displacement of the middle of the free face of a clamped stack of four layers, of which a quarter is modelled.
 fn clamped_stack(element: ElementKind, side: usize) -> f64 {
     let size = Vector3::new(10.0, 10.0, 40.0);
     let mesh = Grid::uniform(Vector3::zeros(), size, [side, side, 8 * side]).mesh();

@@ -1,4 +1,4 @@
-//! What blocks cannot do is refused by name, and what they lose is found: floating, inverted, pulled in, buckled blocks.
+//! Blocks that are refused by name, and losses of stability that are found: floating, inverted, pulled in, buckled blocks.
 
 use crate::common::solid::{DRIVEN, block, dielectric, electrode, held, placed, system};
 use nalgebra::Vector3;

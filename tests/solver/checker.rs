@@ -152,7 +152,7 @@ fn child(name: &str) {
     check(&system, &control, factor);
 }
 
-/// What the checker says.
+/// Output of the checker.
 fn output(name: &str) -> String {
     let this = std::env::current_exe().unwrap();
     let result = Command::new(this)

@@ -19,7 +19,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What the solver calls.
+/// Callback of the solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Callback {
     Objective,
@@ -39,7 +39,7 @@ const CALLBACKS: [Callback; 6] = [
     Callback::Observer,
 ];
 
-/// How it fails.
+/// Manner of its failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     /// No value exists, so that the solver is answered "false"; an observer asks to stop.

@@ -1,4 +1,4 @@
-//! What stands in the place of MA57, called as Ipopt calls it: it answers a solve that runs in this thread, and no one else.
+//! Adapter in the place of MA57, called as Ipopt calls it: it answers a solve that runs in this thread, and no one else.
 
 #![expect(unsafe_code, reason = "C interface of MA57")]
 
@@ -59,7 +59,7 @@ type Solve = unsafe extern "C" fn(
     Integers,
 );
 
-/// What stands in the place of `MA57AD`, `MA57BD` and `MA57CD`.
+/// Functions in the place of `MA57AD`, `MA57BD` and `MA57CD`.
 fn functions() -> (Analyse, Factor, Solve) {
     assert!(LinearSolver::has_stages(), "an Ipopt that takes them");
     let [analyse, factor, solve] = functions_of_ma57();
@@ -245,7 +245,7 @@ fn what_was_not_analysed_ends_the_solve_with_a_panic() {
     assert!(panic.is_some_and(|panic| panic.contains("analysed first")));
 }
 
-/// What MA57 tells of a matrix: signs of eigenvalues, rank, and that it is singular.
+/// The adapter reports signs of eigenvalues, rank, and singularity of a matrix as MA57 does.
 #[test]
 fn answers_tell_inertia_and_rank() {
     let ask = || {

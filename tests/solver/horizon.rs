@@ -13,7 +13,7 @@ pub(crate) struct System {
     pub(crate) unknowns: Vec<Unknown>,
 }
 
-/// What a horizon is made of.
+/// Parameters of a horizon.
 #[derive(Clone, Copy)]
 pub(crate) struct Horizon {
     pub(crate) intervals: usize,
@@ -21,9 +21,9 @@ pub(crate) struct Horizon {
     pub(crate) inputs: usize,
     /// Inequalities of each interval.
     pub(crate) limits: usize,
-    /// Whether one variable couples all stages.
+    /// True if one variable couples all stages.
     pub(crate) has_border: bool,
-    /// What is added to the entry of each state in its own equation.
+    /// Number added to the entry of each state in its own equation.
     pub(crate) own: f64,
 }
 

@@ -330,7 +330,7 @@ fn ipopt_is_silent_and_reads_no_file_of_the_working_directory() {
     );
 }
 
-/// What an observer is told of the iterate before is what Ipopt returns where it is stopped there; multipliers of bounds are near.
+/// The iterate before, as an observer sees it, is what Ipopt returns where it is stopped there; multipliers of bounds are near.
 #[test]
 fn the_iterate_before_has_the_multipliers_that_ipopt_returns() {
     let stopped_at = |last: usize| {

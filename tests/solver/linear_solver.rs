@@ -283,7 +283,7 @@ fn options_of_ipopt_come_first() {
     assert_eq!(solution.linear.solver, "mumps");
 }
 
-/// Where MA57 itself is asked for, the linear solver that stands in its place has no program: the solve fails in good order.
+/// If MA57 itself is asked for, the linear solver that stands in its place has no program: the solve fails in good order.
 #[test]
 fn no_other_solve_is_answered() {
     assert!(LinearSolver::has_stages());

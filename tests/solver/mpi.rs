@@ -12,7 +12,7 @@ use std::process::Command;
 
 const CHILD: &str = "PROBOSCIS_START_OF_MPI";
 
-/// Whether MPI runs, as it says itself; nothing where there is none in the process.
+/// Returns true if MPI runs, as it says itself; nothing where there is none in the process.
 fn runs() -> Option<bool> {
     type Ask = unsafe extern "C" fn(*mut c_int) -> c_int;
     // SAFETY: the name ends in NUL, and the library is loaded.

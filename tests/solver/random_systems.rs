@@ -88,7 +88,7 @@ fn deficient() -> impl Strategy<Value = DMatrix<f64>> {
         })
 }
 
-/// Whether factors found the inertia. In the place of a zero eigenvalue an error of rounding may have either sign.
+/// Returns true if factors found the inertia. In the place of a zero eigenvalue an error of rounding may have either sign.
 fn is(found: Inertia, expected: Inertia) -> bool {
     let range = expected.negative..=expected.negative + expected.zero;
     found.zero <= expected.zero && range.contains(&found.negative)

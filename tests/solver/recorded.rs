@@ -16,7 +16,7 @@ pub(crate) struct Recording {
     pub(crate) matrices: Vec<Vec<f64>>,
 }
 
-/// Where recordings are.
+/// Folder of the recordings.
 pub(crate) fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/solver/systems")
 }
@@ -144,7 +144,7 @@ impl Signs {
         self.zero + self.near == 0
     }
 
-    /// Whether they are those of factors, where what is zero or near zero may have either sign.
+    /// Returns true if they are those of factors, where eigenvalues that are zero or near zero may have either sign.
     fn are(&self, found: Inertia) -> bool {
         let uncertain = self.zero + self.near;
         let most = self.negative + uncertain - found.zero.min(uncertain);

@@ -45,7 +45,7 @@ fn solution(factors: &mut Factors) -> Vec<f64> {
     x
 }
 
-/// How often a factorisation asks whether to stop.
+/// Number of times that a factorisation asks if it is to stop.
 fn questions(system: &System) -> usize {
     let asked = AtomicUsize::new(0);
     let count = || {

@@ -1,4 +1,4 @@
-//! What is absent changes no bit.
+//! Absent effects change no bit.
 
 use crate::common::cases::control;
 use crate::common::random::Random;

@@ -1,4 +1,4 @@
-//! What a scene does not call for is not solved for: welded and fixed bodies, what nothing moves, sources without voltage,
+//! Presolve: a scene is not solved for parts that it does not need: welded and fixed bodies, immobile parts, sources without voltage,
 //! inertia and friction at rest. Counts have closed forms, and numbers are those of the scene without it to the last bit.
 
 use crate::common::cases::{cases, control, hold, joints};

@@ -2,7 +2,7 @@
 
 use crate::sources::sources;
 
-/// From the ground up; folders of one line do not know each other.
+/// Floors from the ground up; folders of one line do not know each other.
 const FLOORS: [&[&str]; 13] = [
     &["math"],
     &["mesh", "sparse", "kkt", "nlp"],

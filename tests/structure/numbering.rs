@@ -7,7 +7,7 @@ use proboscis::model::{Coordinates, Model, Role, System, Time};
 use proboscis::nlp::Nlp;
 use std::collections::BTreeSet;
 
-/// What a list of names has to begin with, and to end with.
+/// Returns the names that begin with a text.
 fn names<'n>(names: &'n [String], begin: &str) -> Vec<&'n str> {
     let all = names.iter().map(String::as_str);
     all.filter(|name| name.starts_with(begin)).collect()

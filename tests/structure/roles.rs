@@ -1,5 +1,5 @@
-//! What a scalar of an interval is follows from its role: only the table of variables and the numbering of a horizon compute with how
-//! many voltages or potentials there are.
+//! Roles of the scalars of an interval: only the table of variables and the numbering of a horizon compute with the numbers of
+//! voltages and potentials.
 
 use crate::sources::sources;
 
@@ -13,7 +13,7 @@ fn is_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// Where the expression that ends at `end` begins: names, points, calls and references.
+/// Returns the begin of the expression that ends at `end`: names, points, calls and references.
 fn start(code: &str, end: usize) -> usize {
     let (mut at, mut depth) = (end, 0);
     for (i, c) in code[..end].char_indices().rev() {
@@ -50,7 +50,7 @@ fn counts(code: &str) -> Vec<[&str; 3]> {
     found
 }
 
-/// Whether something is computed with a number: it is added, compared, or cuts a list.
+/// Returns true if something is computed with a number: it is added, compared, or cuts a list.
 fn is_computed([before, _, after]: &[&str; 3]) -> bool {
     let operators = ['+', '-', '*', '/', '%', '<'];
     let calls = ["checked_sub(", "split_at(", "split_at_mut(", ".."];

@@ -1,4 +1,4 @@
-//! The sources as text: what this group of tests reads of them.
+//! Sources as text: the parts of them that this group of tests reads.
 
 use std::fs;
 use std::path::Path;

@@ -1,11 +1,11 @@
-//! Where solves run, and how they end.
+//! Engines that run solves, and the ends of solves.
 
 use serde::Serialize;
 
 use crate::control::problem::Task;
 use crate::ipopt::Options;
 
-/// Where solves of a batch run.
+/// Engine that runs the solves of a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunIn {
@@ -23,7 +23,7 @@ pub enum RunIn {
 }
 
 impl RunIn {
-    /// The same for solves that may be done beside others in one process or not.
+    /// The same for solves that may run in parallel with others in one process or not.
     pub(crate) fn of_tasks(self, run_at_once: bool) -> Self {
         match self {
             Self::Threads if !run_at_once => Self::Processes,
@@ -34,7 +34,7 @@ impl RunIn {
     }
 }
 
-/// Whether a task may be done beside others in one process.
+/// Returns true if a task may run in parallel with others in one process.
 pub(crate) fn task_runs_at_once(task: &Task) -> bool {
     match task {
         Task::Control(control) => Options {
@@ -47,14 +47,14 @@ pub(crate) fn task_runs_at_once(task: &Task) -> bool {
     }
 }
 
-/// What a solve says when it has ended.
+/// End of a solve.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Said {
     /// There was no time for it.
     NotStarted,
     /// The question has an answer.
     Solved,
-    /// Its files tell why not; where it left none, these words do.
+    /// Its files give the reason; where it left none, these words do.
     Unsolved(String),
     /// It broke off.
     Failed(String),
@@ -62,7 +62,7 @@ pub(crate) enum Said {
     Refused(String),
 }
 
-/// What a process said that ended with a status and wrote words to standard error; none where a signal ended it.
+/// Returns the end of a process with a status and words on standard error; no status where a signal ended it.
 pub(super) fn of_status(status: Option<i32>, words: &str) -> Said {
     let words = words.trim_end();
     let words = words.strip_prefix("error: ").unwrap_or(words).to_owned();
@@ -77,7 +77,7 @@ pub(super) fn of_status(status: Option<i32>, words: &str) -> Said {
 /// The end of a solve.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RunEnd {
-    /// What it said.
+    /// End, with the words of the solve.
     pub(crate) said: Said,
     /// Wall time in s.
     pub(crate) seconds: f64,

@@ -1,4 +1,4 @@
-//! A solve as it is typed, and a process of it.
+//! A solve as typed on the command line, and a process of it.
 
 use std::ffi::OsString;
 use std::fs::File;
@@ -32,7 +32,7 @@ pub(super) fn as_typed(request: CommandInput) -> CommandInput {
     }
 }
 
-/// What one types for a solve.
+/// Returns the words of the command line of a solve.
 pub(super) fn words(request: &CommandInput) -> Vec<OsString> {
     let mut words: Vec<OsString> = vec!["solve".into(), request.input.clone().into()];
     let mut option = |name: &str, value: OsString| words.extend([name.into(), value]);

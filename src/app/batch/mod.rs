@@ -1,7 +1,7 @@
-//! Several solves at once, as many as there are cores: the starts of a problem, or the variants of a sweep.
+//! Several solves in parallel, as many as there are cores: the starts of a problem, or the variants of a sweep.
 //!
-//! - `plan`: what is to be solved; `end`: how a solve ends; `launch`: a solve as it is typed, and a process of it.
-//! - `threads`, `processes`, `hyperqueue`: where they run; `parent`: with whom a process ends.
+//! - `plan`: the solves of a batch; `end`: the end of a solve; `launch`: a solve as typed, and a process of it.
+//! - `threads`, `processes`, `hyperqueue`: engines; `parent`: the end of a process with its parent.
 
 mod end;
 mod hyperqueue;
@@ -20,7 +20,7 @@ pub(crate) use end::{RunEnd, Said, task_runs_at_once};
 pub use parent::end_with_parent;
 pub(crate) use plan::Batch;
 
-/// Runs all of a batch; `told` hears how each ended, in the thread that calls, and may let no other one begin.
+/// Runs all of a batch; `told` is called at each end, in the thread that calls, and may let no other one begin.
 ///
 /// # Errors
 /// A process cannot be had.
@@ -42,10 +42,10 @@ pub(crate) fn run_all(
     }
 }
 
-/// Whether solves can run there.
+/// Checks that solves can run there.
 ///
 /// # Errors
-/// What they need is missing.
+/// A program that they need is missing.
 pub(crate) fn check_run_in(run_in: RunIn) -> Result<(), CommandError> {
     match run_in {
         RunIn::Threads | RunIn::Here | RunIn::InTurn | RunIn::Processes => Ok(()),

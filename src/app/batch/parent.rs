@@ -1,4 +1,4 @@
-//! A process of a batch ends when the program that started it does, however that ends.
+//! End of the processes of a batch with the program that started them, however that ends.
 //!
 //! The program holds one end of a pipe, of which the other one is the standard input of the process. The operating system closes
 //! what a program held when it is gone, also after `kill -9`, and the process reads the end of its input. Nothing is sent.

@@ -1,4 +1,4 @@
-//! What is to be solved, and when another solve may begin.
+//! Solves of a batch, and the condition under which another one may begin.
 
 use std::path::Path;
 use std::time::Instant;
@@ -11,17 +11,17 @@ use crate::ipopt::interrupt;
 /// Solves, each with a folder of its own.
 #[derive(Debug)]
 pub(crate) struct Batch<'a> {
-    /// What is solved.
+    /// Solves.
     pub(crate) runs: &'a [CommandInput],
     /// Text that stands for that of the problem file, in threads.
     pub(crate) text: Option<&'a str>,
-    /// Where.
+    /// Engine.
     pub(crate) run_in: RunIn,
     /// Folder of all results.
     pub(crate) folder: &'a Path,
     /// Seconds that all of them may take together.
     pub(crate) max_seconds: Option<f64>,
-    /// When the command began.
+    /// Time at which the command began.
     pub(crate) began: Instant,
 }
 
@@ -36,7 +36,7 @@ impl Batch<'_> {
         })
     }
 
-    /// Whether there is time left and Ctrl-C was not pressed.
+    /// Returns true if there is time left and Ctrl-C was not pressed.
     pub(super) fn may_go_on(&self) -> bool {
         !interrupt::requested() && self.left().is_none_or(|left| left > 0.0)
     }

@@ -1,4 +1,4 @@
-//! Solves in processes, as many at once as there are cores.
+//! Solves in processes, as many in parallel as there are cores.
 
 use std::io::{Read, Seek};
 use std::ops::ControlFlow;
@@ -103,7 +103,7 @@ fn ask_to_stop(child: &Child) {
     let _ = child;
 }
 
-/// What a process said when it ended with a status.
+/// Returns the end of a process with a status.
 fn said(done: &mut Running, status: ExitStatus) -> Said {
     let mut told = String::new();
     done.told.rewind().ok();

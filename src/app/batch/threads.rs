@@ -1,4 +1,4 @@
-//! Solves in threads of this process, as many at once as there are cores, or one.
+//! Solves in threads of this process, as many in parallel as there are cores, or one.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,7 +11,7 @@ use crate::app::request::CommandInput;
 use crate::app::task;
 use crate::workflow::at_once::at_once;
 
-/// Runs all of a batch, at most so many at once.
+/// Runs all of a batch, at most this number in parallel.
 pub(super) fn run_all(
     batch: &Batch<'_>,
     threads: usize,

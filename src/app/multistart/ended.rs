@@ -1,4 +1,4 @@
-//! How one start ended, and which of them found one optimum.
+//! End of one start, and comparison of the optima of several.
 
 use super::start::{Start, folder_of};
 use crate::app::batch::{RunEnd, Said};
@@ -19,7 +19,7 @@ pub(super) const SAME_VOLTAGE: f64 = 1e-3;
 /// The word of a start for which there was no time.
 const NOT_STARTED: &str = "not_started";
 
-/// How one start ended.
+/// End of one start.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Ended {
     /// Its number, from 1.
@@ -28,7 +28,7 @@ pub(super) struct Ended {
     pub(super) seed: Option<u64>,
     /// The word of its summary; `not_started`, or `failed` where it left none.
     pub(super) status: String,
-    /// Why it left no summary.
+    /// Reason why it left no summary.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) message: Option<String>,
     pub(super) objective: Option<f64>,
@@ -42,12 +42,12 @@ pub(super) struct Ended {
     pub(super) is_solved: bool,
     #[serde(skip)]
     pub(super) voltages: Vec<f64>,
-    /// What else was said of it.
+    /// Further notes on it.
     #[serde(skip)]
     pub(super) notes: Vec<String>,
 }
 
-/// What is read of the summary of a start.
+/// Entries that are read of the summary of a start.
 #[derive(Deserialize)]
 pub(super) struct Summary {
     pub(super) status: String,
@@ -64,7 +64,7 @@ pub(super) struct Seconds {
     pub(super) total: f64,
 }
 
-/// What is read of the solution of a start.
+/// Entries that are read of the solution of a start.
 #[derive(Deserialize)]
 pub(super) struct SolutionRecord {
     pub(super) voltages: BTreeMap<String, Vec<f64>>,
@@ -141,7 +141,7 @@ impl Ended {
         })
     }
 
-    /// Whether two solutions are one optimum.
+    /// Returns true if two solutions are one optimum.
     fn is_same(&self, other: &Self) -> bool {
         let (Some(a), Some(b)) = (self.objective, other.objective) else {
             return false;
@@ -181,7 +181,7 @@ pub(super) fn best(ended: &[Ended]) -> Option<usize> {
     (rank(&ended[best]).0 < 2).then_some(best)
 }
 
-/// Numbers the distinct optima, the best first; how many there are.
+/// Numbers the distinct optima, the best first; returns their number.
 pub(super) fn number_optima(ended: &mut [Ended]) -> usize {
     let mut solved: Vec<usize> = (0..ended.len()).filter(|&i| ended[i].is_solved).collect();
     let objective = |i: usize| ended[i].objective.unwrap_or(f64::INFINITY);

@@ -31,7 +31,7 @@ pub(super) struct Section<'a> {
     pub(super) each: &'a [Ended],
 }
 
-/// Writes the files of the best start and the table of all, and tells of them.
+/// Writes the files of the best start and the table of all, and returns a message.
 pub(super) fn write(
     request: &CommandInput,
     batch: &Batch<'_>,
@@ -120,7 +120,7 @@ pub(super) fn rows(ended: &[Ended]) -> Vec<Vec<String>> {
     [head].into_iter().chain(ended.iter().map(row)).collect()
 }
 
-/// The table as `starts.csv`; cells of what does not exist are empty.
+/// The table as `starts.csv`; cells without a value are empty.
 fn cells(ended: &[Ended]) -> Vec<Vec<String>> {
     let header = [
         "start",

@@ -32,7 +32,7 @@ const MOST: usize = 1000;
 
 /// Solves a control problem from its own guess and from `starts − 1` random ones, as many at once as there are cores.
 ///
-/// The files of the best solution go to the folder itself, beside `starts.csv`.
+/// The files of the best solution go to the folder itself, next to `starts.csv`.
 ///
 /// # Errors
 /// The input is wrong, or the results cannot be written. A start that fails is no error as long as one succeeds.

@@ -1,4 +1,4 @@
-//! Whether a control problem has more equations than unknowns, and what asks for them.
+//! Check for control problems with more equations than unknowns, and the conditions that add them.
 
 use std::collections::BTreeMap;
 

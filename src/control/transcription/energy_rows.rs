@@ -140,7 +140,7 @@ impl EnergyRow {
         self.ends = ends(rest, self.source);
     }
 
-    /// Whether voltages of neighbouring intervals meet: in the electrical energy.
+    /// Returns true if voltages of neighbouring intervals couple: in the electrical energy.
     pub(super) fn couples_intervals(&self) -> bool {
         self.weights[0] != 0.0
     }

@@ -9,7 +9,7 @@ use crate::control::problem::{Control, Duration};
 use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};
 use crate::model::{Model, Role};
 
-/// Which variables and rows the program of a control problem has on a number of intervals.
+/// Variables and rows of the program of a control problem on a number of intervals.
 #[derive(Clone, Debug)]
 pub(in crate::control) struct Layout {
     pub(in crate::control) unknowns: Numbering,
@@ -73,7 +73,7 @@ impl Layout {
         }
     }
 
-    /// What a limit or goal is, for those who carry costates from one grid to another.
+    /// Returns the site of a limit or goal, to carry costates from one grid to another.
     pub(in crate::control) fn limit(&self, index: usize) -> LimitSite {
         let limit = &self.limits[index];
         LimitSite {
@@ -85,12 +85,12 @@ impl Layout {
     }
 }
 
-/// Where the rows of a limit or goal are.
+/// Site of the rows of a limit or goal.
 #[derive(Clone, Debug)]
 pub(in crate::control) struct LimitSite {
-    /// Whether it holds at the end only.
+    /// True if it holds at the end only.
     pub(in crate::control) is_goal: bool,
-    /// Whether it is read in intervals, rather than at instants.
+    /// True if it is read in intervals, rather than at instants.
     pub(in crate::control) is_of_intervals: bool,
     /// Instants or intervals at which it is a row.
     pub(in crate::control) at: Range<usize>,

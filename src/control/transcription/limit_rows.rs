@@ -10,7 +10,7 @@ use std::ops::Range;
 /// Mark of a scalar among the entries of a gradient.
 pub(super) const SCALAR: usize = 2;
 
-/// Where in time a quantity is measured.
+/// Site in time at which a quantity is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::control) enum Site {
     Instants,
@@ -36,7 +36,7 @@ pub(super) struct LimitRow {
 }
 
 /// Rows of the bounded quantities over a horizon, with the entries their gradients have. A path limit has no row where start
-/// or goal give all that it reads: there it is looked at before.
+/// or goal give all that it reads: there it is checked before.
 pub(super) fn limit_rows(
     model: &Model,
     list: &[BoundedQuantity],
@@ -104,7 +104,7 @@ pub(super) fn limit_rows(
 }
 
 impl Site {
-    /// Where a quantity is measured.
+    /// Returns the site at which a quantity is measured.
     pub(in crate::control) fn of(quantity: &Quantity) -> Self {
         match quantity.is_of_intervals() {
             true => Self::Intervals,
@@ -125,7 +125,7 @@ impl Site {
         }
     }
 
-    /// How many instants a quantity of the site reads.
+    /// Returns the number of instants that a quantity of the site reads.
     pub(super) fn sides(self) -> usize {
         match self {
             Self::Instants => 1,

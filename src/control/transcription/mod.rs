@@ -47,7 +47,7 @@ use placed::Placed;
 use segment::Workspace;
 use units::{KILOVOLT, MILLISECOND};
 
-/// A horizon of at least so many intervals is evaluated in two stretches.
+/// Number of intervals from which on a horizon is evaluated in two stretches.
 const TWO_STRETCHES: usize = 16;
 
 /// An entry of a matrix of the program: where its value is found, and its scale.
@@ -78,7 +78,7 @@ pub struct Transcription<'m> {
     /// Unit of voltages in kV.
     kilovolt: f64,
     momentum: Vec<f64>,
-    /// What comes to rest at the end.
+    /// Part of the system that comes to rest at the end.
     rests: Rests,
     /// Bounds of the variables, and of the scaled rows.
     bounds: Bounds,
@@ -99,7 +99,7 @@ pub struct Transcription<'m> {
     row_scales: Vec<f64>,
     // Values and what is kept of them.
     benches: [Workspace; 2],
-    /// Where a long horizon is cut in two, and a copy of that instant.
+    /// Instant at which a long horizon is cut in two, and a copy of it.
     middle: Option<usize>,
     halo: Configuration,
     measured: Part,
@@ -306,7 +306,7 @@ impl<'m> Transcription<'m> {
         &self.limits[index].bounded
     }
 
-    /// What a value of a limit or goal means to people, and its unit.
+    /// Returns a value of a limit or goal as shown to users, and its unit.
     pub fn plain(&self, index: usize, value: f64) -> (f64, &'static str) {
         let quantity = &self.limits[index].bounded.quantity;
         quantity.plain(value, &self.model.system)

@@ -1,4 +1,4 @@
-//! Start and goal of a program that stands already.
+//! Exchange of start and goal of a program that exists.
 
 use crate::control::BoundaryError;
 use crate::control::conditions::BoundaryConditions;
@@ -54,7 +54,7 @@ impl Transcription<'_> {
         Ok(())
     }
 
-    /// Whether these ends give and ask for what the program was built for.
+    /// Returns an error unless these ends give the same values and equations as those that the program was built for.
     fn check_ends(&self, boundary: &BoundaryConditions) -> Result<(), BoundaryError> {
         let other = |reason: String| Err(BoundaryError::OtherProgram { reason });
         let BoundaryConditions { start, goal, .. } = boundary;

@@ -1,6 +1,6 @@
-//! What is known of the instants of a horizon.
+//! State of the kinematics of a horizon: the quantities known at its instants.
 
-/// What is known of the instants at the present point.
+/// Quantities known at the instants for the present point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Placed {
     /// Coordinates only.

@@ -1,4 +1,4 @@
-//! Between motions and points of the program.
+//! Conversion between motions and points of the program.
 
 use crate::control::guess::InitialGuess;
 use crate::control::numbering::Column;
@@ -8,7 +8,7 @@ use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt;
 
-/// Tells the motion and the costates of a point: what is given with what the variables are.
+/// Decoder of points to motions and costates: given values together with the variables.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     z: Vec<Vec<f64>>,
@@ -75,7 +75,7 @@ impl Transcription<'_> {
         self.decoder().decode(x)
     }
 
-    /// What tells the motion of a point without the program, which a solver has while it works.
+    /// Returns a decoder of points to motions that works without the program, which a solver holds while it works.
     pub fn decoder(&self) -> Decoder {
         let scalar_count = self.model.action.layout().interval_scalars;
         Decoder {

@@ -1,4 +1,4 @@
-//! What the solver asks.
+//! The transcription as a nonlinear program: values, derivatives and structures for the solver.
 
 use crate::control::limits::{BoundedQuantity, When};
 use crate::control::numbering::{Column, Row};

@@ -13,7 +13,7 @@ use crate::functional::{BlockMask, Horizon, Order, Outer, Sample};
 use crate::ipopt::interrupt::TimeLimit;
 use crate::math::Vector;
 
-/// What all stretches read.
+/// Data that all stretches read.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shared<'a> {
     pub(super) action: &'a Reduced,
@@ -61,7 +61,7 @@ pub(super) struct Segment<'a> {
     pub(super) rows: &'a mut [f64],
 }
 
-/// What a order needs of an instant.
+/// Returns the quantities of an instant that an order of derivatives needs.
 pub(super) fn needed(order: Order) -> Placed {
     match order {
         Order::Gradient => Placed::Vectors,
@@ -112,7 +112,7 @@ impl Segment<'_> {
         square
     }
 
-    /// Places an instant as far as the order needs it, and clears what is added to.
+    /// Places an instant as far as the order needs it, and clears the sums.
     fn prepare(&mut self, j: usize) {
         let Shared {
             action,

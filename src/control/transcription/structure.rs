@@ -1,4 +1,4 @@
-//! Which entries of the periodic values the Jacobian and the Hessian keep.
+//! Structures of Jacobian and Hessian: the entries of the periodic values that they keep.
 
 use crate::control::BoundaryError;
 use crate::control::numbering::Row;
@@ -181,7 +181,7 @@ impl Transcription<'_> {
     }
 }
 
-/// Whether it is time to stop.
+/// Returns an error if it is time to stop.
 fn go_on() -> Result<(), BoundaryError> {
     match interrupt::stop() {
         Some(status) => Err(BoundaryError::Stopped(status)),

@@ -25,7 +25,7 @@ pub(super) struct Ends<'a> {
     pub(super) columns_l: [&'a [f64]; 2],
 }
 
-/// Where blocks go, and the storage on the way.
+/// Destination of blocks, and the storage on the way.
 #[derive(Debug)]
 pub(super) struct BlockDestination<'a> {
     pub(super) target: &'a Destination,

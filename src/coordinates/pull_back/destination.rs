@@ -1,10 +1,10 @@
-//! Where blocks go: the values of an interval, or of an instant.
+//! Destination of blocks: the values of an interval, or of an instant.
 
 use crate::coordinates::map::CoordinateMap;
 use crate::coordinates::pattern::StepPattern;
 
-/// Where the blocks of one interval go in the values: places of the four blocks, of both mixed blocks and of scalars;
-/// mixed blocks and scalars without a place (`usize::MAX`) go nowhere.
+/// Offsets of the blocks of one interval in the values: of the four blocks, of both mixed blocks and of scalars;
+/// mixed blocks and scalars without an offset (`usize::MAX`) go nowhere.
 #[derive(Clone, Copy, Debug)]
 pub struct Destination {
     /// (k, k), (k, k+1), (k+1, k), (k+1, k+1).
@@ -15,7 +15,7 @@ pub struct Destination {
     pub scalars: usize,
 }
 
-/// Where a sum lives in time.
+/// Place of a sum in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::coordinates) enum Site {
     /// Scalars are those of the interval.

@@ -26,12 +26,12 @@ pub(super) struct Group {
     cross: Vec<Scatter>,
 }
 
-/// Where an entry of a local matrix goes.
+/// Destination of an entry of a local matrix.
 #[derive(Clone, Copy, Debug)]
 struct Scatter {
     from: u32,
     to: u32,
-    /// Where it goes in the transposed block.
+    /// Its position in the transposed block.
     transposed: u32,
 }
 
@@ -47,7 +47,7 @@ impl Group {
         }
     }
 
-    /// Whether pairs of these supports belong to it: one support is the beginning of the other on both sides.
+    /// Returns true if pairs of these supports belong to it: one support is the beginning of the other on both sides.
     pub(super) fn fits(&self, supports: &[Vec<usize>; 2], stride: [usize; 2]) -> bool {
         let mut both = self.supports.iter().zip(supports);
         self.stride == stride && both.all(|(s, t)| s.starts_with(t) || t.starts_with(s))

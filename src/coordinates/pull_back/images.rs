@@ -32,7 +32,7 @@ impl<'a> Columns<'a> {
         &self.all[first as usize..][..3 * self.stride]
     }
 
-    /// Images of so many vectors, one by one.
+    /// Makes images of this number of vectors, one by one.
     #[inline(always)]
     fn images<'i>(&self, images: &'i mut [f64]) -> ChunksExactMut<'i, f64> {
         images.chunks_exact_mut(3 * self.stride)

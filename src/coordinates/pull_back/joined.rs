@@ -1,4 +1,4 @@
-//! Pairs of a vector on the tree and a linear one: where an elastic block is glued to a body.
+//! Pairs of a vector on the tree and a linear one, for elastic blocks that are glued to bodies.
 
 use crate::coordinates::map::LinearPart;
 use crate::coordinates::pattern::StepPattern;
@@ -15,7 +15,7 @@ struct Entry {
     slot: usize,
     /// Slot of the pair in the other order.
     transposed: usize,
-    /// Whether the articulated vector gives the row.
+    /// True if the articulated vector gives the row.
     row_is_articulated: bool,
     column: usize,
     stride: usize,
@@ -132,7 +132,7 @@ impl Joined {
     }
 }
 
-/// What the articulated columns meet in a block: its column or row at the axis of the linear coordinate.
+/// Returns the vector that the articulated columns meet in a block: its column or row at the axis of the linear coordinate.
 fn line(entry: &Entry, block: &Matrix) -> Vector {
     if entry.row_is_articulated {
         block.column(entry.axis).into()

@@ -1,6 +1,6 @@
 //! A coupled pair of articulated vectors.
 
-/// Which kind of block a pair has.
+/// Kind of the block of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BlockKind {
     Full,
@@ -14,6 +14,6 @@ pub(super) struct Pair {
     pub(super) slot: u32,
     /// Slot of the pair in the other order.
     pub(super) transposed: u32,
-    /// Where the columns of both start.
+    /// Offsets at which the columns of both start.
     pub(super) first: [u32; 2],
 }

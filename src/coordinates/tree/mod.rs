@@ -12,7 +12,7 @@
 //!
 //! and R·P″_l is its derivative along l, in which axes and points move with the twists of their parents.
 //!
-//! Three turns about perpendicular axes tell any rotation, but none of them moves a body alone once the second one is a right
+//! Three turns about perpendicular axes give any rotation, but none of them moves a body alone once the second one is a right
 //! angle. Before such turns stands a chart: a rotation that belongs to the configuration as data, a unit quaternion, so that
 //! the turns stay small. [`Tree::recentre`] puts the turns into the chart; nothing moves.
 
@@ -24,7 +24,7 @@ use crate::coordinates::configuration::{Moments, TreeState};
 use crate::kinematics::{Carrier, MaterialVector, Pose, VectorTerm};
 use crate::math::{Matrix, Vector, counted};
 
-/// What a link of a tree lets move.
+/// Motion that a link of a tree permits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LinkKind {
     /// Rotation about the axis.
@@ -38,7 +38,7 @@ pub enum LinkKind {
 /// One screw of a joint, or a joint without any, between two frames; links stand in an order in which parents come first.
 #[derive(Clone, Debug)]
 pub struct Link {
-    /// What it lets move.
+    /// Motion that it permits.
     pub kind: LinkKind,
     /// Parent frame; `None` is the ground.
     pub parent: Option<usize>,

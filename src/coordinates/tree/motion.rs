@@ -1,4 +1,4 @@
-//! Where bodies and vectors are at joint coordinates, and how they move with them.
+//! Positions of bodies and vectors at joint coordinates, and their derivatives by these.
 
 use crate::coordinates::configuration::{Configuration, TreeState};
 use crate::coordinates::tree::charts::rotation;

@@ -22,7 +22,7 @@ pub(super) const LARGEST: f64 = 0.1;
 pub(super) const SMALLEST: f64 = 1e-7;
 /// Limit of steps in the search of a limit point.
 const STEPS: usize = 200;
-/// How often the step over a branching point is halved.
+/// Largest number of halvings of the step over a branching point.
 const HALVINGS: usize = 24;
 /// Slope ḟ that counts as zero; the fraction is then exact to its square.
 const FLAT: f64 = 1e-6;
@@ -30,7 +30,7 @@ const FLAT: f64 = 1e-6;
 /// Least stretch of a muscle on a path: below it the path ends.
 const SHORTEST: f64 = 0.05;
 
-/// Where an equilibrium is lost.
+/// State at which an equilibrium is lost.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LimitPoint {
     pub(super) fraction: f64,

@@ -1,4 +1,4 @@
-//! A state of rest: its stiffness, and how it was found.
+//! A state of rest: its stiffness, and the route to it.
 
 use crate::dynamics::rest::instability::{Instability, Load};
 use crate::dynamics::rest::mode::Mode;
@@ -14,17 +14,17 @@ pub struct Equilibrium {
     /// and for elastic blocks.
     pub stiffness: Vec<f64>,
     /// Number of directions in which the potential energy falls, by the inertia of the tangent; `None` where the
-    /// factorisation does not tell.
+    /// factorisation does not give it.
     pub unstable: Option<usize>,
     /// The softest mode; `None` at the points of a path, and where nothing moves.
     pub softest: Option<Mode>,
-    /// How it was found.
+    /// Route on which it was found.
     pub route: Route,
     /// Newton iterations over all loads.
     pub iterations: usize,
 }
 
-/// How an equilibrium was found.
+/// Route on which an equilibrium was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Route {
     /// On the path of growing loads: the weights, then the voltages.
@@ -35,19 +35,19 @@ pub enum Route {
     Minimum(StabilityLoss),
 }
 
-/// Where the path of growing loads loses its stable equilibrium.
+/// State at which the path of growing loads loses its stable equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilityLoss {
     /// The load that grew.
     pub load: Load,
     /// Its fraction.
     pub fraction: f64,
-    /// How, where that was found.
+    /// Kind of instability, where that was found.
     pub kind: Option<Instability>,
 }
 
 impl Equilibrium {
-    /// Whether the equilibrium is stable; `None` where that is not known.
+    /// Returns true if the equilibrium is stable; `None` where that is not known.
     pub fn is_stable(&self) -> Option<bool> {
         match self.stiffness.first() {
             Some(&smallest) => Some(smallest > 0.0),
@@ -55,7 +55,7 @@ impl Equilibrium {
         }
     }
 
-    /// Where growing loads lose the stable equilibrium, if it does not lie on their path.
+    /// Returns the state at which growing loads lose the stable equilibrium, if it does not lie on their path.
     pub fn loss(&self) -> Option<StabilityLoss> {
         match self.route {
             Route::Loads => None,

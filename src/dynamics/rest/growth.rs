@@ -74,7 +74,7 @@ pub(super) fn unloaded(
     }
 }
 
-/// How far a load has grown.
+/// State up to which a load has grown.
 #[derive(Debug)]
 pub(super) struct Grown {
     pub(super) state: RestState,
@@ -138,7 +138,7 @@ pub(super) fn grow(
     })
 }
 
-/// Why the path ends at a state: the limit point next to it, or the last equilibrium.
+/// Returns the end of the path at a state: the limit point next to it, or the last equilibrium.
 pub(super) fn at_limit(
     statics: &mut Statics<'_>,
     state: &[f64],

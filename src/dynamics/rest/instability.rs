@@ -1,6 +1,6 @@
-//! Loads that grow, and how equilibria are lost under them.
+//! Growing loads, and the instabilities by which equilibria are lost under them.
 
-/// What grows along a path.
+/// Load that grows along a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Load {
     /// The weights, without voltages.
@@ -9,7 +9,7 @@ pub enum Load {
     Voltages,
 }
 
-/// How an equilibrium under a growing load is lost.
+/// Instability by which an equilibrium under a growing load is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Instability {
     /// The path turns back: beyond this voltage there is no equilibrium nearby (pull-in).
@@ -39,7 +39,7 @@ impl Instability {
         }
     }
 
-    /// What a limit point of a load is.
+    /// Returns the instability at a limit point of a load.
     pub(super) fn of_turn(load: Load) -> Self {
         match load {
             Load::Weight => Self::Collapse,

@@ -1,7 +1,7 @@
 //! Static equilibria: under growing loads, along paths, and their stability.
 //!
 //! - `statics`: Newton on the rows of rest; `settle`, `minimum`: states that Newton's method does not reach.
-//! - `instability`, `ramp`, `growth`: loads that grow; `arc`: the path of equilibria by arc length; `continuation`: told point by point.
+//! - `instability`, `ramp`, `growth`: loads that grow; `arc`: the path of equilibria by arc length; `continuation`: its points.
 //! - `equilibrium`, `mode`, `softest`, `stability`: a state of rest and its softest mode; `stable`: the stable one.
 
 mod arc;

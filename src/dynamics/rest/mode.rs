@@ -1,6 +1,6 @@
-//! The softest mode of a state of rest, and what makes it soft.
+//! The softest mode of a state of rest, and the cause of its softness.
 
-/// What makes a mode soft: the smallest of the three parts of its stiffness.
+/// Cause of a soft mode: the smallest of the three parts of its stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Softening {
     /// The forces of voltages, as in pull-in.
@@ -16,8 +16,8 @@ pub enum Softening {
 pub struct Mode {
     /// Change of each coordinate; the largest is 1 (rad, or lengths of the system).
     pub direction: Vec<f64>,
-    /// What moves most, in words: joints, or bodies, or a node of a block, then the muscle whose stretch changes most.
+    /// Parts that move most, in words: joints, or bodies, or a node of a block, then the muscle whose stretch changes most.
     pub moves: String,
-    /// What makes it soft; `None` where nothing takes from the elastic stiffness along it.
+    /// Cause of its softness; `None` where nothing takes from the elastic stiffness along it.
     pub softening: Option<Softening>,
 }

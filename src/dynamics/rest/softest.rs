@@ -1,5 +1,5 @@
-//! The softest mode of a state of rest: along which direction its potential energy rises least or falls, what moves there,
-//! and what makes it soft.
+//! The softest mode of a state of rest: the direction along which its potential energy rises least or falls, the parts that move,
+//! and the cause of its softness.
 
 use crate::dynamics::rest::mode::{Mode, Softening};
 use crate::dynamics::rest::statics::Statics;
@@ -8,18 +8,18 @@ use crate::model::system::Fidelity;
 use crate::model::{Coordinates, Freedom, Model, Screw};
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// Up to so many coordinates the stiffness is looked at eigenvalue by eigenvalue.
+/// Number of coordinates up to which the eigenvalues of the stiffness are computed.
 const EIGENVALUES: usize = 100;
 /// Steps of the inverse iteration for larger systems.
 const STEPS: usize = 30;
 /// Parts of the largest motion below this are not named.
 const NAMED: f64 = 0.5;
-/// So many parts are named at most.
+/// Maximum number of parts named.
 const LISTED: usize = 3;
 /// Parts of the stiffness below this of the elastic one are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether the stiffness in joint coordinates can be looked at eigenvalue by eigenvalue.
+/// Returns true if the stiffness in joint coordinates is small enough for a full eigenvalue decomposition.
 fn is_small(model: &Model) -> bool {
     let motion = &model.action.motion;
     let joints_alone = motion.tree.is_some() && motion.of_nodes.is_empty();
@@ -95,7 +95,7 @@ fn inverse_iteration(statics: &mut Statics<'_>) -> Option<Vec<f64>> {
     Some(vector)
 }
 
-/// A direction of length 1 with what it moves.
+/// A direction of length 1 with the parts that it moves.
 fn named(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64], direction: Vec<f64>) -> Mode {
     let largest = direction.iter().zip(statics.scales());
     let (v, s) = largest.fold((0.0_f64, 1.0), |(m, s), (v, scale)| {
@@ -146,7 +146,7 @@ fn softening(
         .map(|(softening, _)| softening)
 }
 
-/// What moves along a direction, in words.
+/// Names the parts that move along a direction.
 fn moves(model: &Model, z: &[f64], direction: &[f64]) -> String {
     let motion = &model.action.motion;
     let mut instant = motion.placed(z);

@@ -21,9 +21,9 @@ use crate::model::{Coordinates, Model};
 
 /// Steps along a path beyond its limit point, and those for models with nodes.
 const STEPS: [usize; 2] = [300, 40];
-/// How far a state is pushed along its softest mode, in radians and lengths of the system.
+/// Length of a push along the softest mode, in radians and lengths of the system.
 const PUSH: f64 = 0.05;
-/// How often a push is halved where it has no energy.
+/// Largest number of halvings of a push where it has no energy.
 const HALVINGS: usize = 8;
 /// Stiffness below this part of the largest is none.
 const ROUND_OFF: f64 = 1e-13;
@@ -206,7 +206,7 @@ fn under(
     }
 }
 
-/// Whether a state of rest is stable; `None` where that is not known.
+/// Returns true if a state of rest is stable; `None` where that is not known.
 fn is_stable(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64]) -> Option<bool> {
     statics.evaluate(state, voltages);
     statics.factor().ok()?;

@@ -27,16 +27,16 @@ const LONG: f64 = 0.5;
 /// A state of rest: the unknowns of a step (see [`Variables`](crate::model::Variables)).
 pub(super) type RestState = Vec<f64>;
 
-/// From how far Newton's method may come.
+/// Range of the updates of Newton's method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum UpdateRange {
-    /// From anywhere: long updates are shortened.
+    /// Start from anywhere: long updates are shortened.
     Far,
-    /// From a neighbour on a path: a long update is a failure, for it may end on another path.
+    /// Start at a neighbour on a path: a long update is a failure, for it may end on another path.
     Near,
 }
 
-/// How Newton's method ended.
+/// Outcome of Newton's method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NewtonOutcome {
     Converged,
@@ -250,7 +250,7 @@ impl<'m> Statics<'m> {
             .map(move |(entry, place)| (entry, -self.values[place] / h))
     }
 
-    /// Whether anything has a weight.
+    /// Returns true if anything has a weight.
     pub(super) fn has_weight(&self) -> bool {
         self.gravity.iter().any(|force| *force != Vector::zeros())
     }
@@ -336,7 +336,7 @@ impl<'m> Statics<'m> {
     }
 
     /// Number of directions in which the potential energy of the state evaluated and factorised last falls, potentials
-    /// following; `None` where the factorisation does not tell.
+    /// following; `None` where the factorisation does not give them.
     ///
     /// The tangent is −h S with S the saddle of coordinates, multipliers and potentials: each multiplier has one negative
     /// eigenvalue of S, potentials have those of their own block, what remains belongs to the coordinates.

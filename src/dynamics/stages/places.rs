@@ -1,4 +1,4 @@
-//! Where the derivatives of the equations of a step with several points lie.
+//! Positions of the derivatives of the equations of a step with several points.
 
 use crate::dynamics::tangent::EntryList;
 use crate::model::Model;

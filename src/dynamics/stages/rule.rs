@@ -1,4 +1,4 @@
-//! The methods beside the midpoint rule, told by where they look and what they carry from step to step.
+//! The methods other than the midpoint rule, defined by their samples and by the data that they carry from step to step.
 //!
 //! A step has points 0 (its start), 1, …, s (its end) with vectors x⁰ … x^s, and samples at which the sum over an interval is
 //! evaluated. A sample i looks at the place x and the rate v of a combination of the points, as an interval of the same
@@ -19,7 +19,7 @@ use crate::dynamics::stages::lobatto::Lobatto;
 use crate::math::Vector;
 use std::slice;
 
-/// What changes from method to method.
+/// Part of the equations that differs from method to method.
 #[derive(Clone, Debug)]
 pub(super) enum Rule {
     /// Galerkin's variational integrator.
@@ -30,10 +30,10 @@ pub(super) enum Rule {
     Alpha(Alpha),
 }
 
-/// Where a sample looks, and who feels its forces: weights of the points for the sides a and b.
+/// Weights of a sample: of the points that it reads and that its forces act on, for the sides a and b.
 #[derive(Clone, Debug)]
 pub(super) struct Weights {
-    /// Where in the step its voltages are read, from 0 to 1.
+    /// Time in the step at which its voltages are read, from 0 to 1.
     pub(super) part: f64,
     /// Of the quadrature.
     pub(super) quadrature: f64,
@@ -44,7 +44,7 @@ pub(super) struct Weights {
 }
 
 impl Rule {
-    /// Points besides the start.
+    /// Number of points in addition to the start.
     pub(super) fn degree(&self) -> usize {
         match self {
             Self::Galerkin(lobatto) => lobatto.points.len() - 1,
@@ -52,7 +52,7 @@ impl Rule {
         }
     }
 
-    /// Where in the step the points lie, from 0 to 1.
+    /// Returns the times of the points in the step, from 0 to 1.
     pub(super) fn points(&self) -> Vec<f64> {
         match self {
             Self::Galerkin(lobatto) => lobatto.points.clone(),
@@ -104,7 +104,7 @@ impl Rule {
     }
 }
 
-/// A sample at the end of the step, with the rate `rate` (x¹ − x⁰)/h besides what is carried.
+/// A sample at the end of the step, with the rate `rate` (x¹ − x⁰)/h in addition to what is carried.
 fn at_end(rate: f64, give: [f64; 2]) -> Weights {
     Weights {
         part: 1.0,
@@ -117,7 +117,7 @@ fn at_end(rate: f64, give: [f64; 2]) -> Weights {
     }
 }
 
-/// The generalised-α method: parameters, and what it carries.
+/// The generalised-α method: parameters, and the data that it carries.
 #[derive(Clone, Debug)]
 pub(super) struct Alpha {
     alpha_m: f64,

@@ -153,7 +153,7 @@ fn moving(model: &Model, start: &Start) -> (Vec<Vector>, Vec<Vector>) {
     (instant.w, momenta)
 }
 
-/// What terms read of an interval of given length.
+/// Returns the input of terms on an interval of given length.
 pub(super) fn between<'a>(vectors: [&'a [Vector]; 2], scalars: &'a [f64], h: f64) -> Sample<'a> {
     Sample {
         vectors,
@@ -262,12 +262,12 @@ impl Stages<'_> {
         }
     }
 
-    /// How many points the next guess may be made of.
+    /// Returns the largest number of points from which the next guess may be made.
     fn most_points(&self) -> usize {
         self.points.len().max(3)
     }
 
-    /// Makes room for so many points of the next guess, one or more.
+    /// Makes room for this number of points of the next guess, one or more.
     pub(super) fn resize_trail(&mut self, count: f64) {
         let last = self.trail[self.trail.len() - 1].clone();
         self.trail

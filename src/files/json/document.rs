@@ -1,4 +1,4 @@
-//! A JSON file as text and as values: reading, overrides, and mistakes with their place in it.
+//! A JSON file as text and as values: reading, overrides, and errors with their place in it.
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -17,7 +17,7 @@ use crate::files::json::wording::wording;
 /// A JSON file.
 #[derive(Debug)]
 pub(crate) struct Document {
-    /// Where it was read.
+    /// Path from which it was read.
     pub(crate) path: PathBuf,
     /// Places set on the command line.
     pub(crate) set: Vec<Set>,
@@ -118,7 +118,7 @@ impl Document {
         }
     }
 
-    /// The values as a type, or the first mistake.
+    /// The values as a type, or the first error.
     pub(crate) fn parse<T: DeserializeOwned>(&self) -> Result<T, SceneError> {
         self.refuse_unprintable()?;
         let parsed = match &self.completed {
@@ -281,7 +281,7 @@ impl Document {
         ))
     }
 
-    /// JSON readers keep the last of two equal keys without a word; here that is a mistake.
+    /// JSON readers keep the last of two equal keys without a word; here that is an error.
     fn refuse_repeated_keys(&self) -> Result<(), SceneError> {
         let Some((place, key)) = repeated(&self.text) else {
             return Ok(());

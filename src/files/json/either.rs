@@ -1,4 +1,4 @@
-//! Values that are written as a scalar or as an object, read without losing the place of a mistake.
+//! Values that are written as a scalar or as an object, read without losing the place of an error.
 
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
@@ -17,10 +17,10 @@ pub(crate) trait ScalarOrObject<'de>: Sized {
     /// Type of the object.
     type Object: Deserialize<'de>;
 
-    /// From the scalar.
+    /// Makes the value from the scalar.
     fn scalar(scalar: Self::Scalar) -> Self;
 
-    /// From the object.
+    /// Makes the value from the object.
     fn object(object: Self::Object) -> Self;
 }
 

@@ -1,4 +1,4 @@
-//! What is wrong with a scene or a problem: the place, what was found, what is expected, and the nearest name.
+//! Error in a scene or a problem: the place, the value found, the value expected, and the nearest name.
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use std::borrow::Cow;
@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use crate::files::json::locate::JsonPath;
 
-/// A mistake in a file or in an override; [`fmt::Display`] is one readable line, [`SceneError::excerpt`] the text around it.
+/// An error in a file or in an override; [`fmt::Display`] is one readable line, [`SceneError::excerpt`] the text around it.
 #[derive(Clone, Debug)]
 pub struct SceneError(Box<Mistake>);
 
@@ -17,9 +17,9 @@ pub(crate) struct Mistake {
     pub(crate) file: String,
     /// Path of the value in the file, empty for the whole.
     pub(crate) path: String,
-    /// What was found.
+    /// Value that was found.
     pub(crate) found: String,
-    /// What is expected instead.
+    /// Value that is expected instead.
     pub(crate) expected: String,
     /// The nearest name.
     pub(crate) nearest: Option<String>,
@@ -65,7 +65,7 @@ impl Excerpt {
     }
 }
 
-/// The text with question marks, as many as bytes, in place of what cannot be printed, and spaces for carriage returns; places
+/// The text with question marks, as many as bytes, in place of unprintable characters, and spaces for carriage returns; places
 /// in it stay where they are.
 fn shown(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
@@ -92,12 +92,12 @@ impl SceneError {
         &self.0.path
     }
 
-    /// What was found.
+    /// Returns the value that was found.
     pub fn found(&self) -> &str {
         &self.0.found
     }
 
-    /// What is expected instead.
+    /// Returns the value that is expected instead.
     pub fn expected(&self) -> &str {
         &self.0.expected
     }
@@ -112,7 +112,7 @@ impl SceneError {
         self.0.overridden.as_ref()
     }
 
-    /// The lines of the file around the mistake, marked, where there is such a place.
+    /// The lines of the file around the error, marked, where there is such a place.
     pub fn excerpt(&self) -> Option<String> {
         let Excerpt {
             lines,
@@ -175,7 +175,7 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
-/// Whether a character only shows itself: a control character can command a terminal, and marks of direction can make a line
+/// Returns true if a character only shows itself: a control character can command a terminal, and marks of direction can make a line
 /// read as what it does not say.
 pub(crate) fn is_printable(c: char) -> bool {
     !c.is_control() && !matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
@@ -193,20 +193,20 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(escaped.collect())
 }
 
-/// Lines shown before and after a mistake.
+/// Lines shown before and after an error.
 const CONTEXT: usize = 1;
-/// Of mistakes that are longer than so many lines, the first and the last lines are shown.
+/// Number of lines of an error above which only the first and the last lines are shown.
 const UNFOLDED: usize = 8;
 /// Bytes of the longest line that is shown.
 const LONGEST_LINE: usize = 2000;
-/// Characters that are told of a name of a file, of a path, or of what was found.
+/// Maximum number of characters shown of a name of a file, of a path, or of a value found.
 const TOLD: usize = 400;
-/// Characters that are told of what is expected, which may be a list of names.
+/// Maximum number of characters shown of an expected value, which may be a list of names.
 const EXPECTED: usize = 1200;
 /// Characters of the longest message.
 const MESSAGE: usize = 4000;
 
-/// A text of at most so many characters: of a longer one its beginning and its end.
+/// Shortens a text to this number of characters: of a longer one its beginning and its end stay.
 fn shortened(text: &str, most: usize) -> Cow<'_, str> {
     // A character takes at most four bytes.
     let length = match text.len() <= most {
@@ -226,7 +226,7 @@ fn shortened(text: &str, most: usize) -> Cow<'_, str> {
     ))
 }
 
-/// A message as it is told, in one line of a few thousand characters, with escapes for those that are not printable.
+/// Formats a message in one line of a few thousand characters, with escapes for those that are not printable.
 pub fn message(text: &str) -> String {
     printable(&shortened(text, MESSAGE)).into_owned()
 }

@@ -1,4 +1,4 @@
-//! JSON laid out for people: what fits stands on one line.
+//! JSON laid out for people: a value that fits stands on one line.
 
 /// Columns of a line.
 const WIDTH: usize = 110;
@@ -14,7 +14,7 @@ pub(crate) fn lay_out(compact: &str) -> String {
 /// Compact JSON, whose lists are known by their ends.
 struct Compact<'a> {
     text: &'a str,
-    /// Where lists open, in this order, and the places behind them.
+    /// Positions at which lists open, in this order, and the positions behind them.
     ends: Vec<(usize, usize)>,
 }
 

@@ -1,4 +1,4 @@
-//! Places in a JSON document: paths such as `muscles[1].from.body`, and the bytes where their values stand.
+//! Places in a JSON document: paths such as `muscles[1].from.body`, and the bytes of their values.
 
 use rustc_hash::FxHashSet;
 use std::borrow::Cow;
@@ -48,7 +48,7 @@ impl JsonPath {
         }
     }
 
-    /// Whether this place is the other one or lies inside it.
+    /// Returns true if this place is the other one or lies inside it.
     pub(crate) fn is_within(&self, other: &Self) -> bool {
         self.0.starts_with(&other.0)
     }
@@ -85,7 +85,7 @@ impl fmt::Display for JsonPath {
     }
 }
 
-/// Where the value at a place stands, with its key.
+/// Returns the bytes of the value at a place, with its key.
 pub(crate) fn find(text: &str, place: &JsonPath) -> Option<Entry> {
     let value = Scanner::of(text).value()?;
     let whole = Entry { key: None, value };
@@ -136,7 +136,7 @@ pub(crate) fn repeated(text: &str) -> Option<(JsonPath, Range<usize>)> {
     found
 }
 
-/// The first string, key or value, of which a character does not belong to what is expected.
+/// The first string, key or value, that has an unexpected character.
 pub(crate) fn wrong_string(text: &str, belongs: impl Fn(char) -> bool) -> Option<WrongString> {
     let mut found = None;
     walk(text, &mut |walk, met| {
@@ -164,16 +164,16 @@ pub(crate) fn wrong_string(text: &str, belongs: impl Fn(char) -> bool) -> Option
 #[derive(Debug)]
 pub(crate) struct WrongString {
     pub(crate) place: JsonPath,
-    /// What it says.
+    /// Its text.
     pub(crate) says: String,
-    /// Whether it is a key.
+    /// True if it is a key.
     pub(crate) is_key: bool,
 }
 
 /// Nesting that is followed, as deep as serde_json reads.
 const DEEPEST: usize = 128;
 
-/// What is met on the way through a text.
+/// Token on the way through a text.
 enum Met {
     /// An object or list begins.
     Open,
@@ -197,7 +197,7 @@ struct Walk<'a> {
     way: Vec<Way>,
 }
 
-/// Says what is met, until it answers `None`, or the text is no JSON.
+/// Calls back with each token, until the callback answers `None`, or the text is no JSON.
 fn walk(text: &str, visit: &mut dyn FnMut(&Walk<'_>, Met) -> Option<()>) {
     let mut walk = Walk {
         scanner: Scanner::of(text),

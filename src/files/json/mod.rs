@@ -1,4 +1,4 @@
-//! JSON text: values with their places, mistakes that quote them, overrides, the layout of what is written.
+//! JSON text: values with their places, errors that quote them, overrides, the layout of written files.
 //!
 //! - `source`: the bytes of a file, if there is room for them; `document`: a file; `scope`: a value with its place, for messages.
 //! - `scan`, `locate`: its text value by value, and where these stand; `reader`: values of serde from it. Beside the text nothing is kept of a file.

@@ -1,17 +1,17 @@
-//! Words for what is not offered, and what is said of them.
+//! Words for features that are not offered, and the messages about them.
 
-/// Where the limits are listed.
+/// Place of the list of the limits.
 const LIMITS: &str = "docs/accuracy.md#limits-of-validity";
 
-/// Words that stand for one thing, and what is said of it.
+/// Words that stand for one thing, and the message about it.
 struct NotOffered {
     /// Singular, in lower case with underscores.
     words: &'static [&'static str],
-    /// What there is, and what there is instead.
+    /// Message: the features offered, and the way to use them instead.
     said: &'static str,
 }
 
-/// What people look for.
+/// Words for which users look.
 const TABLE: &[NotOffered] = &[
     NotOffered {
         words: &[
@@ -228,7 +228,7 @@ const TABLE: &[NotOffered] = &[
     },
 ];
 
-/// What is said of a word that stands for what is not offered.
+/// Returns the message about a word that stands for a feature that is not offered.
 pub(super) fn not_offered(word: &str) -> Option<String> {
     let word = word.to_lowercase().replace([' ', '-'], "_");
     let one = TABLE.iter().find(|entry| {

@@ -1,6 +1,6 @@
 //! Values of serde from the text of a JSON file, as serde_json reads them from its values, without values in between.
 //!
-//! The text is JSON. Messages are those of [`serde_json::Value`] as a deserializer: they have no line, since a place is told by its path.
+//! The text is JSON. Messages are those of [`serde_json::Value`] as a deserializer: they have no line, since a path identifies the place.
 
 use serde::Deserialize;
 use serde::de::{
@@ -267,7 +267,7 @@ impl<'a> Deserializer<'a> for Key<'a> {
     }
 }
 
-/// What stands under the word of a variant.
+/// Value under the word of a variant.
 struct Content<'r, 'a>(Option<&'r mut Reader<'a>>);
 
 impl<'a> Content<'_, 'a> {

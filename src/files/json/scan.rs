@@ -140,7 +140,7 @@ impl<'a> Scanner<'a> {
     }
 }
 
-/// What a string says; none where the bytes are no string.
+/// Returns the text of a string; none where the bytes are no string.
 pub(crate) fn string(text: &str, bytes: Range<usize>) -> Option<Cow<'_, str>> {
     let quoted = text.get(bytes)?;
     let inside = quoted.strip_prefix('"')?.strip_suffix('"')?;

@@ -35,7 +35,7 @@ impl<'a> Scope<'a> {
         Self { place, ..*self }
     }
 
-    /// The mistake that here stands something else than expected.
+    /// Returns the error of a value here that is not the expected one.
     pub(crate) fn wrong(
         &self,
         found: impl Into<String>,
@@ -59,7 +59,7 @@ impl<'a> Scope<'a> {
         })
     }
 
-    /// The file that a path written here names: beside the document.
+    /// The file that a path written here names: relative to the document.
     pub(crate) fn file(&self, path: &str, expected: &str) -> Result<PathBuf, SceneError> {
         let file = Some(self.document.beside(path)).filter(|file| file.is_file());
         file.ok_or_else(|| self.missing(path, "file", expected))
@@ -155,7 +155,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// A list without repeated, empty or reserved names; `place` tells where a name stands.
+    /// A list without repeated, empty or reserved names; `place` gives the place of a name.
     pub(crate) fn unique(
         &self,
         names: &[String],

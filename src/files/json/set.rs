@@ -81,23 +81,23 @@ impl Override {
     }
 }
 
-/// Where a value goes.
+/// Destination of a value.
 struct Slot {
     /// The place itself, entries of lists by their indices, or the first place on the way to it that is not there yet.
     place: JsonPath,
     /// The bytes in whose place it is written.
     bytes: Range<usize>,
     missing: Missing,
-    /// What was found in place of a way there, and what is expected.
+    /// Value that was found in place of a way there, and the value expected.
     wrong: Option<(String, String)>,
 }
 
-/// What is not there yet of the way to a value.
+/// Missing part of the way to a value.
 #[derive(Default)]
 struct Missing {
     /// Keys, one inside the other.
     keys: Vec<String>,
-    /// Whether there are other keys beside the first one.
+    /// True if there are other keys next to the first one.
     has_others: bool,
 }
 
@@ -112,7 +112,7 @@ impl Missing {
     }
 }
 
-/// Finds where a value goes: what is not there yet is made, and a key that has no meaning is found when the file is read.
+/// Finds the destination of a value: a missing way is made, and a key that has no meaning is found when the file is read.
 fn slot(text: &str, place: &JsonPath) -> Slot {
     let mut slot = Slot {
         place: JsonPath::default(),
@@ -187,10 +187,10 @@ fn index_of(text: &str, list: Scanner<'_>, name: &str) -> Option<usize> {
     list.entries().position(|entry| named(entry.value))
 }
 
-/// Most names of a list that are told.
+/// Maximum number of names of a list that are shown.
 const NAMES: usize = 20;
 
-/// What was found in place of a value that goes on as a step does, and what is expected.
+/// Returns the value that was found in place of one that goes on as a step does, and the value expected.
 fn no_way(text: &str, inside: Scanner<'_>, step: &Step, parent: &str) -> (String, String) {
     let is_list = inside.peek() == Some(b'[');
     let length = inside.entries().count();

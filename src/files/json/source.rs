@@ -15,19 +15,19 @@ const OF_BYTE: f64 = 8.0;
 /// Bytes of the largest file where the memory of the machine is not known.
 const LARGEST: u64 = 1 << 30;
 
-/// What came through standard input. A process reads it once: several starts have the same problem.
+/// Bytes from standard input. A process reads it once: several starts have the same problem.
 static STANDARD_INPUT: Mutex<Option<Vec<u8>>> = Mutex::new(None);
 
-/// Why there are no bytes.
+/// Reason why there are no bytes.
 #[derive(Debug)]
 pub(crate) enum NoBytes {
-    /// What the operating system said.
+    /// Error of the operating system.
     Unreadable(io::Error),
-    /// What was found, and what is expected.
+    /// Size that was found, and the size expected.
     TooLarge(String, String),
 }
 
-/// Whether a file that is typed stands for standard input.
+/// Returns true if a file that is typed stands for standard input.
 pub(crate) fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")
 }
@@ -51,7 +51,7 @@ pub(crate) fn of_standard_input() -> Result<Vec<u8>, NoBytes> {
     Ok(read.insert(bytes).clone())
 }
 
-/// Reads all, if that is no more than there is room for; a `size` that is known is looked at first.
+/// Reads all, if there is room for it; a `size` that is known is checked first.
 fn limited(from: impl Read, size: u64) -> Result<Vec<u8>, NoBytes> {
     let free = available();
     let most = free.map_or(LARGEST, |free| (free / OF_BYTE) as u64);
@@ -75,10 +75,10 @@ fn limited(from: impl Read, size: u64) -> Result<Vec<u8>, NoBytes> {
     }
 }
 
-/// Whether a text is JSON.
+/// Checks that a text is JSON.
 ///
 /// # Errors
-/// The first mistake in it.
+/// The first error in it.
 pub(crate) fn check_json(text: &str) -> Result<(), serde_json::Error> {
     serde_json::from_str::<Anything>(text).map(|_| ())
 }

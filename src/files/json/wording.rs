@@ -1,4 +1,4 @@
-//! Messages of serde in the words of this project: what was found, what is expected, which name is near.
+//! Messages of serde in the words of this project: the value found, the value expected, the nearest name.
 
 use crate::files::json::error::nearest;
 use crate::files::json::not_offered::not_offered;
@@ -8,7 +8,7 @@ pub(crate) struct Wording {
     pub(crate) found: String,
     pub(crate) expected: String,
     pub(crate) nearest: Option<String>,
-    /// Whether the key is wrong, not its value.
+    /// True if the key is wrong, not its value.
     pub(crate) at_key: bool,
 }
 
@@ -47,8 +47,8 @@ pub(crate) fn wording(key: Option<&str>, message: &str) -> Wording {
     plain(format!("{count}{}", json_word(found)), json_word(expected))
 }
 
-/// A word that is none of those `expected`, which are in backticks, or stand there beside other kinds of value: then the words are told with the
-/// one that is wrong.
+/// Error of a word that is none of those `expected`, which are in backticks, or next to other kinds of value: then the words are shown with the
+/// wrong one.
 fn unknown_word(variant: &str, expected: &str) -> Wording {
     let (variant, words) = variant.split_once(AMONG).unwrap_or((variant, expected));
     let variant = variant.trim_matches('`');
@@ -74,7 +74,7 @@ fn unknown_key(key: &str, expected: &str) -> Wording {
     }
 }
 
-/// What was found, with what is said of it.
+/// Describes the value found, with the message about it.
 fn found(what: String, said: Option<String>) -> String {
     match said {
         Some(said) => format!("{what}, {said}"),

@@ -1,4 +1,4 @@
-//! From a problem as written to the task it means, with one voltage per source and indices for names.
+//! Conversion of a problem file to its task, with one voltage per source and indices for names.
 
 use crate::control::problem::{AtRest, Task};
 use crate::files::json::error::SceneError;

@@ -1,4 +1,4 @@
-//! From a control problem as written to the task.
+//! Conversion of the control entry of a problem file to its task.
 
 use crate::control::Signal;
 use crate::control::problem::{
@@ -304,7 +304,7 @@ pub(crate) fn solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<Solver, Sce
     })
 }
 
-/// Who solves the linear systems; named once.
+/// Reads the solver of the linear systems; named once.
 fn linear_solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<LinearSolver, SceneError> {
     let Some(named) = spec.linear_solver else {
         return Ok(LinearSolver::Auto);

@@ -1,4 +1,4 @@
-//! Counts and coordinates, which several tasks ask for.
+//! Conversion of counts and coordinates, which several tasks have.
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;

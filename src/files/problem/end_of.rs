@@ -17,16 +17,16 @@ use crate::math::{Matrix, Vector};
 use crate::model::Coordinates;
 use crate::model::system::System;
 
-/// What a path should be.
+/// Expected value of a path.
 const FOLDER: &str = "the folder of a simulation or of a solved control problem, which holds a solution.json; a state of rest is \"rest_at_voltages\"";
-/// Who writes what is expected.
+/// Program that writes the expected file.
 const WRITTEN: &str = "a result that simulate or solve wrote";
 /// Status of solves whose solution is a motion of the robot.
 const SOLVED: [&str; 4] = ["solved", "acceptable", "feasible_point", "not_held"];
 /// Status of a simulation that came to its end; others go as far as they go.
 const SIMULATED: &str = "simulated";
 
-/// What is read of a solution.
+/// Entries that are read of a solution.
 #[derive(Deserialize)]
 struct Ended {
     configuration: Configuration,
@@ -64,7 +64,7 @@ struct State {
     meshes_mm: BTreeMap<String, Vec<[f64; 3]>>,
 }
 
-/// What is read of a summary.
+/// Entries that are read of a summary.
 #[derive(Deserialize)]
 struct Summary {
     status: String,
@@ -131,7 +131,7 @@ pub(crate) fn end_of(
     })
 }
 
-/// Refuses a result that is no motion, and notes what there is to say of one that is.
+/// Refuses a result that is no motion, and returns notes on one that is.
 fn status(file: &Path, scope: &Scope<'_>) -> Result<Vec<String>, SceneError> {
     let beside = file.with_file_name("summary.json");
     let shown = file.display();

@@ -1,4 +1,4 @@
-//! From weights of energies as written to costs of sources.
+//! Conversion of weights of energies in a problem file to costs of sources.
 
 use crate::control::problem::{EnergyCost, SourceEnergy};
 use crate::files::json::error::SceneError;
@@ -7,7 +7,7 @@ use crate::files::problem::spec_energies::EnergySpec;
 use crate::files::problem::state::driven;
 use crate::model::system::System;
 
-/// What an energy may be of, for messages: the charge of an electrode of finite elements is not known at instants.
+/// Names that an energy may have, for messages: the charge of an electrode of finite elements is not known at instants.
 const LUMPED: &str =
     "lumped muscles: all sources, or those that \"sources\" names beside the \"weight\"";
 

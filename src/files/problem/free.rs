@@ -1,4 +1,4 @@
-//! From sought constants as written to parameters.
+//! Conversion of the sought constants of a problem file to parameters.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -100,7 +100,7 @@ fn read(
         .map_err(|found| scope.wrong(found, kind.expected()))
 }
 
-/// What is read of a solution: values that were found, in SI units, by paths in the scene.
+/// Entries that are read of a solution: values that were found, in SI units, by paths in the scene.
 #[derive(Debug, Deserialize)]
 struct FoundRecord {
     #[serde(default)]

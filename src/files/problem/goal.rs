@@ -1,4 +1,4 @@
-//! From a goal as written to indices, places and orientations.
+//! Conversion of the goal of a problem file to indices, places and orientations.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! From a guess as written to the guess.
+//! Conversion of the guess of a problem file to the guess of a task.
 
 use crate::control::Earlier;
 use crate::control::problem::{BoundaryState, Guess, Voltages};
@@ -45,7 +45,7 @@ pub(crate) fn guess(
     build()
 }
 
-/// The guess where none is written: of elastic blocks the motion under the voltages that hold the goal, where they are named, as nothing tells the
+/// The guess where none is written: of elastic blocks the motion under the voltages that hold the goal, where they are named, as the goal lacks the
 /// places of nodes to interpolate between.
 pub(crate) fn unwritten(goal: &BoundaryState, system: &System) -> Guess {
     let of_muscles = system

@@ -1,4 +1,4 @@
-//! From path limits as written to indices, bounds and regions.
+//! Conversion of path limits of a problem file to indices, bounds and regions.
 
 use crate::control::problem::{PathConstraint, Side};
 use crate::files::json::error::SceneError;

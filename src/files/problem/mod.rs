@@ -1,4 +1,4 @@
-//! The problem file: what is written (`spec`, `spec_*`) and how it becomes a [`Task`](crate::control::problem::Task).
+//! The problem file: its types as written (`spec`, `spec_*`) and their conversion to a [`Task`](crate::control::problem::Task).
 //!
 //! - `build`: the problem; `control`, `simulation`: its two longer tasks.
 //! - `state`, `end_of`, `goal`, `limits`, `free`, `guess`, `voltages`, `signal`, `track`, `energies`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,

@@ -1,4 +1,4 @@
-//! From what is to be written of a motion to its meaning.
+//! Conversion of the output entry of a problem file to the columns and instants shown.
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
@@ -6,7 +6,7 @@ use crate::files::problem::spec_output::OutputSpec;
 use crate::files::scene::names::names;
 use crate::model::system::System;
 
-/// What tables, figures and page show of a motion.
+/// Part of a motion that tables, figures and page show.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Output {
     /// Time in ms between the instants shown.
@@ -57,7 +57,7 @@ pub(crate) fn output(
 }
 
 impl Output {
-    /// Whether a column stands in the table.
+    /// Returns true if a column stands in the table.
     pub fn takes(&self, column: &str, system: &System) -> bool {
         let Some(quantities) = &self.quantities else {
             return true;

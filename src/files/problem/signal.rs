@@ -1,4 +1,4 @@
-//! From functions of time as written to signals.
+//! Conversion of functions of time in a problem file to signals.
 
 use crate::control::Signal;
 use crate::control::problem::Voltages;

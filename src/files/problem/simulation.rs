@@ -1,4 +1,4 @@
-//! From a simulation as written to the task.
+//! Conversion of the simulation entry of a problem file to its task.
 
 use crate::control::problem::{BoundaryState, Simulation};
 use crate::dynamics::{Integrator, Newton, Solving};

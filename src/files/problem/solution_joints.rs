@@ -12,7 +12,7 @@ use crate::files::problem::state::joint_with_coordinate;
 use crate::model::joint_unit;
 use crate::model::system::System;
 
-/// What is read of a solution: coordinates in rad or m by joint, one per instant.
+/// Entries that are read of a solution: coordinates in rad or m by joint, one per instant.
 #[derive(Debug, Deserialize)]
 struct SolutionRecord {
     /// Instants in s.

@@ -13,7 +13,7 @@ use crate::files::problem::state::{driven, voltages};
 use crate::files::units::quantity::Quantity;
 use crate::model::system::System;
 
-/// What is read of a solution.
+/// Entries that are read of a solution.
 #[derive(Debug, Deserialize)]
 struct SolutionRecord {
     /// Instants in s.

@@ -12,7 +12,7 @@ use crate::files::problem::spec_simulate::SimulateSpec;
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::scene::spec::SceneSpec;
 
-/// What is asked of a scene: exactly one of `simulate`, `equilibrium`, `control`.
+/// Task for a scene: exactly one of `simulate`, `equilibrium`, `control`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProblemSpec {
@@ -31,7 +31,7 @@ pub struct ProblemSpec {
     /// Optimal control.
     #[serde(default)]
     pub control: Option<ControlSpec>,
-    /// What tables, figures and page show of a motion.
+    /// Part of a motion that tables, figures and page show.
     #[serde(default)]
     pub output: Option<OutputSpec>,
 }
@@ -46,7 +46,7 @@ pub struct EquilibriumSpec {
     /// Coordinates.
     #[serde(default)]
     pub coordinates: Option<CoordinatesSpec>,
-    /// Follow the path of equilibria from zero voltage by arc length for so many points, past limit points such as pull-in.
+    /// Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as pull-in.
     #[serde(default)]
     pub path: Option<usize>,
 }

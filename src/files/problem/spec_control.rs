@@ -23,7 +23,7 @@ pub struct ControlSpec {
     /// Final time, SI unit s, or its bounds and a guess.
     pub duration: DurationSpec,
     /// Number of intervals, 1 or more, or `"auto"`, as where it is not written: as many as the verification of the optimum needs to confirm
-    /// an error of 1 % of the path length, or of what `--accuracy` says.
+    /// an error of 1 % of the path length, or of the part that `--accuracy` gives.
     #[serde(default)]
     pub intervals: Option<IntervalsSpec>,
     /// Initial state.
@@ -41,11 +41,11 @@ pub struct ControlSpec {
     /// Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`.
     #[serde(default)]
     pub free: FreeMap,
-    /// What becomes of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is
+    /// Treatment of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is
     /// `reported` (where not written), or refused where holding it is `required`.
     #[serde(default)]
     pub hold: HoldSpec,
-    /// What is minimised.
+    /// Objective that is minimised.
     pub objective: ObjectiveSpec,
     /// Path limits.
     #[serde(default)]
@@ -53,7 +53,7 @@ pub struct ControlSpec {
     /// Coordinates.
     #[serde(default)]
     pub coordinates: Option<CoordinatesSpec>,
-    /// Where the solver starts; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages, otherwise
+    /// Initial guess of the solver; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages, otherwise
     /// `"interpolate"`.
     #[serde(default)]
     pub guess: Option<GuessSpec>,
@@ -62,7 +62,7 @@ pub struct ControlSpec {
     pub solver: SolverSpec,
 }
 
-/// How many intervals there are.
+/// Number of intervals.
 #[derive(Clone, Copy, Debug, JsonSchema)]
 #[serde(untagged)]
 pub enum IntervalsSpec {
@@ -123,7 +123,7 @@ pub struct FreeDurationSpec {
     pub min: Quantity<Time>,
     /// Upper bound, SI unit s.
     pub max: Quantity<Time>,
-    /// Where the solver starts, SI unit s.
+    /// Duration at which the solver starts, SI unit s.
     pub guess: Quantity<Time>,
 }
 
@@ -146,10 +146,10 @@ pub struct ObjectiveSpec {
     /// Weight per J of the mechanical work of the electrical forces of lumped muscles, of all sources or of named ones.
     #[serde(default)]
     pub mechanical_work: EnergySpec,
-    /// What markers and joints follow in time.
+    /// References of markers and joints in time.
     #[serde(default)]
     pub track: Vec<TrackSpec>,
-    /// Where markers and joints are to end.
+    /// Targets of markers and joints at the end.
     #[serde(default, rename = "final")]
     pub at_the_end: Vec<FinalSpec>,
 }
@@ -164,7 +164,7 @@ pub struct SolverSpec {
     /// Limit of iterations, 500 where not written.
     #[serde(default)]
     pub max_iterations: Option<usize>,
-    /// Who solves the linear systems, `auto` where not written.
+    /// Solver of the linear systems, `auto` where not written.
     #[serde(default)]
     pub linear_solver: Option<ControlSolverSpec>,
     /// Options of Ipopt by name.
@@ -172,7 +172,7 @@ pub struct SolverSpec {
     pub ipopt: BTreeMap<String, OptionSpec>,
 }
 
-/// Who solves the linear systems of a control problem.
+/// Solver of the linear systems of a control problem.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ControlSolverSpec {

@@ -15,7 +15,7 @@ pub struct FreeSpec {
     pub min: Quantity<SoughtConstant>,
     /// Upper bound.
     pub max: Quantity<SoughtConstant>,
-    /// Where the solver starts; the value of the scene where not written.
+    /// Value at which the solver starts; the value of the scene where not written.
     #[serde(default)]
     pub guess: Option<Quantity<SoughtConstant>>,
     /// Other constants by their paths that are this one times a number.

@@ -1,4 +1,4 @@
-//! The method of a simulation as it is written, and as it is meant.
+//! The method of a simulation as it is written, and its conversion.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
@@ -23,7 +23,7 @@ pub enum IntegratorWord {
     Midpoint,
     /// Implicit Euler, order 1; damps.
     ImplicitEuler,
-    /// Generalised α with the spectral radius 0.8, order 2; damps what is fast.
+    /// Generalised α with the spectral radius 0.8, order 2; damps fast oscillations.
     GeneralisedAlpha,
 }
 

@@ -93,10 +93,10 @@ pub enum All {
 pub struct MarkerLimitSpec {
     /// Name of the marker.
     pub marker: String,
-    /// Where it stays.
+    /// Region in which it stays.
     #[serde(default)]
     pub inside: Option<RegionSpec>,
-    /// What it stays out of.
+    /// Region outside which it stays.
     #[serde(default)]
     pub outside: Option<RegionSpec>,
 }

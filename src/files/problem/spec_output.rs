@@ -1,10 +1,10 @@
-//! What is written of a motion, as it is written in a problem.
+//! Output entry of a problem file: the part of a motion that is shown.
 
 use crate::files::units::quantity::{Quantity, Time};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// What tables, figures and page show of a motion; all of it stays in the solution.
+/// Part of a motion that tables, figures and page show; all of it stays in the solution.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OutputSpec {

@@ -101,7 +101,7 @@ fn time() -> String {
 
 /// A measure that may be a function of time.
 pub trait FollowedInTime: PhysicalQuantity + JsonSchema {
-    /// What is expected, for messages.
+    /// Expected value, for messages.
     const EXPECTED: &'static str;
 }
 

@@ -28,7 +28,7 @@ pub struct SimulateSpec {
     /// Constant voltages, those of a solution, or a table; 0 where not written.
     #[serde(default)]
     pub voltages: VoltagesSpec,
-    /// Where it starts; the reference configuration at rest where not written.
+    /// Start of the motion; the reference configuration at rest where not written.
     #[serde(default)]
     pub start: Option<StartSpec>,
     /// Coordinates.
@@ -37,15 +37,15 @@ pub struct SimulateSpec {
     /// The method; the midpoint variational integrator where not written.
     #[serde(default)]
     pub integrator: Option<IntegratorSpec>,
-    /// When the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`.
+    /// Occasions at which the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`.
     #[serde(default)]
     pub newton: Option<NewtonSpec>,
-    /// Who factorises it; the one that is fastest as a rule where not written.
+    /// Method of its factorisation; the one that is fastest as a rule where not written.
     #[serde(default)]
     pub linear_solver: Option<LinearSolverSpec>,
 }
 
-/// How long steps are.
+/// Length of the steps.
 #[derive(Clone, Debug, JsonSchema)]
 #[serde(untagged)]
 pub enum StepSpec {
@@ -98,7 +98,7 @@ impl Visitor<'_> for StepVisitor {
     }
 }
 
-/// When the tangent of a step is factorised.
+/// Occasions at which the tangent of a step is factorised.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NewtonSpec {
@@ -119,7 +119,7 @@ impl From<NewtonSpec> for Newton {
     }
 }
 
-/// Who factorises a tangent.
+/// Method of the factorisation of a tangent.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LinearSolverSpec {

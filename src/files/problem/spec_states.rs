@@ -86,7 +86,7 @@ pub struct RestGoalSpec {
     /// Orientations by body.
     #[serde(default)]
     pub orientations: Option<BTreeMap<String, OrientationSpec>>,
-    /// What comes to rest at an equilibrium, at positions of markers and at orientations: `everything`, or `bodies` and these markers alone,
+    /// Part that comes to rest at an equilibrium, at positions of markers and at orientations: `everything`, or `bodies` and these markers alone,
     /// also called `markers`. Where not written everything, or, of elastic blocks that have more coordinates than the voltages can bring to rest, bodies
     /// and these markers.
     #[serde(default)]
@@ -112,7 +112,7 @@ pub struct OrientationSpec {
     pub angle: Option<Quantity<Angle>>,
 }
 
-/// What comes to rest at a goal.
+/// Part that comes to rest at a goal.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RestSpec {
@@ -124,7 +124,7 @@ pub enum RestSpec {
     Markers,
 }
 
-/// What becomes of a goal that cannot be kept.
+/// Treatment of a goal that cannot be kept.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum HoldSpec {

@@ -1,4 +1,4 @@
-//! What an objective follows in time and where it is to end, as it is written.
+//! References in time and targets at the end of an objective, as written in a problem file.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -7,7 +7,7 @@ use crate::files::problem::spec_signal::SignalSpec;
 use crate::files::scene::point::PartialPoint;
 use crate::files::units::quantity::{JointCoordinate, Length, Quantity};
 
-/// What is to be followed: exactly one of the three.
+/// Marker or joints that follow a reference: exactly one of the three.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrackSpec {
@@ -75,7 +75,7 @@ pub struct TrackJointsSpec {
     pub weight: Option<f64>,
 }
 
-/// What is to end near a place: exactly one of the two.
+/// Marker or joint that ends near a place: exactly one of the two.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FinalSpec {

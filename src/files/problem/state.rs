@@ -1,4 +1,4 @@
-//! From states and voltages as written to indices and one voltage per source.
+//! Conversion of states and voltages of a problem file to indices and one voltage per source.
 
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -17,10 +17,10 @@ use crate::files::units::quantity::{
 use crate::model::Graph;
 use crate::model::system::{JointKind, Source, System};
 
-/// What a name of a voltage may be, for messages.
+/// Expected name of a voltage, for messages.
 pub(crate) const A_SOURCE: &str = "the name of a muscle or of a driven electrode (block.electrode)";
 
-/// What gives a material an electric term, for messages.
+/// Keys that give a material an electric term, for messages.
 pub(crate) const ELECTRIC_KEYS: &str =
     "a material with \"relative_permittivity\", or \"c1\" and \"c2\"";
 

@@ -1,4 +1,4 @@
-//! From what an objective follows, and where it is to end, as written to costs of quantities.
+//! Conversion of the `track` and `final` entries of a problem file to costs of quantities.
 
 use crate::control::Signal;
 use crate::control::problem::{CostFunction, During, QuantityCost};

@@ -8,7 +8,7 @@ use crate::files::problem::solution_voltages::{of_solution, of_table};
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::model::system::System;
 
-/// What a path to an earlier result should be.
+/// Expected value of a path to an earlier result.
 pub(crate) const SOLUTION_PATH: &str =
     "the path of a solution.json, or of the folder that holds it";
 

@@ -1,4 +1,4 @@
-//! From a body as written to its principal moments of inertia and directors.
+//! Conversion of a body of a scene file to its principal moments of inertia and directors.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,4 +1,4 @@
-//! From a scene as written to the system it means: names resolved and everything checked.
+//! Conversion of a scene file to its system: names resolved and everything checked.
 
 use std::cell::Cell;
 
@@ -158,7 +158,7 @@ impl<'a> NamedEntries<'a> {
     }
 }
 
-/// What a chain needs to be written out.
+/// Checks the entries from which a chain is written out.
 fn check_chain(
     chain: &ChainSpec,
     materials: &[(String, Material)],

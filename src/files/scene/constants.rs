@@ -1,4 +1,4 @@
-//! Constants of a scene by their paths, as an optimisation may seek them: which constants of components follow each.
+//! Constants of a scene by their paths, as an optimisation may seek them: the constants of components that follow each.
 
 use crate::files::json::locate::{JsonPath, Step};
 use crate::files::scene::spec::{Dielectric, SceneSpec};
@@ -11,20 +11,20 @@ use crate::model::{Constant, DielectricLaw, Follower};
 /// A constant of a scene.
 #[derive(Debug)]
 pub(crate) struct SceneConstant {
-    /// What follows it.
+    /// Constants of components that follow it.
     pub(crate) followers: Vec<Follower>,
-    /// What it is.
+    /// Its kind.
     pub(crate) kind: Kind,
     /// Its value in the scene, in the units inside.
     pub(crate) value: f64,
 }
 
-/// Why a path names no constant that can be sought.
+/// Reason why a path names no constant that can be sought.
 #[derive(Debug)]
 pub(crate) struct NoConstant {
-    /// What is wrong.
+    /// Value that is wrong.
     pub(crate) found: String,
-    /// What would be right.
+    /// Value that is expected.
     pub(crate) expected: String,
 }
 
@@ -35,7 +35,7 @@ const OFFERED: &str = "a path such as \"materials.NAME.shear_modulus\" (or visco
 
 type Found = Result<SceneConstant, NoConstant>;
 
-/// The constant at a path; `written` is the scene as it is written, `system` what it means.
+/// The constant at a path; `written` is the scene as it is written, `system` its system.
 pub(crate) fn constant(path: &str, written: &SceneSpec, system: &System) -> Found {
     let unknown = || NoConstant {
         found: "no constant of the scene that can be sought".to_owned(),

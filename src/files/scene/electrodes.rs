@@ -1,4 +1,4 @@
-//! From electrodes as written to the nodes of one potential each.
+//! Conversion of electrodes of a scene file to the nodes of one potential each.
 
 use std::collections::BTreeMap;
 

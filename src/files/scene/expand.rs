@@ -9,7 +9,7 @@ use crate::files::scene::spec::{
 };
 use crate::files::units::quantity::Quantity;
 
-/// The same scene without shorthand; what the chain stands for comes after what is written.
+/// The same scene without shorthand; the parts of the chain come after those that are written.
 ///
 /// The chain is in order: positive lengths, perpendicular axes.
 pub(crate) fn expanded(mut scene: SceneSpec) -> SceneSpec {

@@ -1,4 +1,4 @@
-//! The graph of bodies and joints: what hangs together, whether it is a tree, and how many degrees of freedom a tree has.
+//! The graph of bodies and joints: its connected parts, its loops, and the number of degrees of freedom of a tree.
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;

@@ -1,4 +1,4 @@
-//! From a marker as written to a point of a body, or to the node of a block.
+//! Conversion of a marker of a scene file to a point of a body, or to the node of a block.
 
 use nalgebra::Vector3;
 

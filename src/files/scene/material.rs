@@ -1,4 +1,4 @@
-//! From materials as written to their constants.
+//! Conversion of materials of a scene file to their constants.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! From a box or a Gmsh file as written to a mesh.
+//! Conversion of a box or a Gmsh file of a scene file to a mesh.
 
 use nalgebra::Vector3;
 
@@ -51,7 +51,7 @@ fn from_file(path: &str, spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed, 
     Ok(Meshed { mesh, planes: None })
 }
 
-/// What is wrong with a mesh, at the place in the scene that asks for it.
+/// Converts an error of a mesh to one at the place in the scene that asks for it.
 fn mesh_mistake(error: &MeshError, scope: &Scope<'_>) -> SceneError {
     match error {
         MeshError::Unreadable { file, cause } => {

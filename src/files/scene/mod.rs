@@ -1,7 +1,7 @@
-//! The scene file: what is written (`spec`, `spec_solids`, `point`) and how it becomes a [`System`](crate::model::System).
+//! The scene file: its types as written (`spec`, `spec_solids`, `point`) and their conversion to a [`System`](crate::model::System).
 //!
 //! - `build`: the scene; `body`, `material`, `muscle`, `marker`: its parts; `components`: kinds of which each has one file for both.
-//! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `graph`: how joints hang together; `names`: what names mean.
+//! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `graph`: connections by joints; `names`: resolution of names.
 //! - `constants`: constants by their paths, as an optimisation may seek them.
 //! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
 

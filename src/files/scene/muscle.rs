@@ -1,4 +1,4 @@
-//! From a muscle as written to its span, section and model.
+//! Conversion of a muscle of a scene file to its span, section and model.
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
@@ -63,7 +63,7 @@ pub(crate) fn muscle(
     })
 }
 
-/// How a muscle is modelled; the keys stand in `scope`.
+/// Returns the model of a muscle; the keys stand in `scope`.
 pub(crate) fn fidelity(
     spec: &ModelSpec<'_>,
     materials: &[(String, Material)],
@@ -115,7 +115,7 @@ pub(crate) fn check_elements(elements: [usize; 3], scope: &Scope<'_>) -> Result<
     Ok(())
 }
 
-/// Which hexahedron; trilinear where not written.
+/// Returns the kind of hexahedron; trilinear where not written.
 pub(crate) fn element_kind(spec: Option<ElementSpec>) -> ElementKind {
     match spec.unwrap_or_default() {
         ElementSpec::Hex8 => ElementKind::Hex8,

@@ -1,4 +1,4 @@
-//! What names in a scene mean: bodies, points of bodies, materials.
+//! Resolution of names in a scene: bodies, points of bodies, materials.
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;

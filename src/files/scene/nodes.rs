@@ -1,4 +1,4 @@
-//! From a place of a block as written to its nodes: a face, a plane, or a box.
+//! Conversion of a place of a block in a scene file to its nodes: a face, a plane, or a box.
 
 use nalgebra::Vector3;
 
@@ -133,7 +133,7 @@ fn nodes_in_box(
     Ok(nodes)
 }
 
-/// How far from a plane in mm a node may lie to be in it.
+/// Returns the distance from a plane in mm up to which a node counts as in it.
 fn tolerance(mesh: &Mesh) -> f64 {
     let [low, high] = extent(mesh);
     IN_PLANE * (high - low).norm()

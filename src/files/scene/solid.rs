@@ -1,4 +1,4 @@
-//! From an elastic block as written to nodes, materials, electrodes, supports and velocities.
+//! Conversion of an elastic block of a scene file to nodes, materials, electrodes, supports and velocities.
 
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -126,7 +126,7 @@ fn supports(spec: &SolidSpec, mesh: &Mesh, scope: &Scope<'_>) -> Result<Vec<Supp
     spec.fixed.iter().enumerate().map(support).collect()
 }
 
-/// Whether x, y, z are among some directions.
+/// Returns for x, y, z true if they are among some directions.
 fn along(directions: &[AxisName]) -> [bool; 3] {
     [AxisName::X, AxisName::Y, AxisName::Z].map(|axis| directions.contains(&axis))
 }

@@ -12,7 +12,7 @@ use crate::files::units::quantity::{
     Stress, Viscosity,
 };
 
-/// What exists. Positions and axes are given in the reference configuration, in the ground frame; what is not written does not exist.
+/// Scene. Positions and axes are given in the reference configuration, in the ground frame; parts that are not written do not exist.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneSpec {
@@ -71,7 +71,7 @@ pub struct MaterialSpec {
     /// Relative permittivity, 1 or more; or give `c1` and `c2`; without either the material has no electric term.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative_permittivity: Option<f64>,
-    /// How `relative_permittivity` enters the energy; `first_order` where not written.
+    /// Law by which `relative_permittivity` enters the energy; `first_order` where not written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dielectric: Option<Dielectric>,
     /// Constant of the term c₁ E·E, SI unit F/m = N/V².
@@ -85,7 +85,7 @@ pub struct MaterialSpec {
     pub viscosity: Option<Quantity<Viscosity>>,
 }
 
-/// How the relative permittivity enters the energy.
+/// Law by which the relative permittivity enters the energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Dielectric {
@@ -118,7 +118,7 @@ pub struct BodySpec {
     pub inertia: Option<[Quantity<MomentOfInertia>; 3]>,
     /// Centre of mass, SI unit m.
     pub position: Point,
-    /// Whether the body is free of the ground: no chain of joints leads there.
+    /// True if the body is free of the ground: no chain of joints leads there.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub free: bool,
 }
@@ -166,7 +166,7 @@ pub struct JointSpec {
     /// Rotation about a point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spherical: Option<Nothing>,
-    /// Any motion: the child is as free as without the joint, and its orientation in the first body is told.
+    /// Any motion: the child is as free as without the joint, and results give its orientation in the first body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub floating: Option<Nothing>,
     /// No motion.
@@ -178,7 +178,7 @@ pub struct JointSpec {
     pub child: String,
     /// Place, SI unit m.
     pub at: Point,
-    /// Whether the joint is locked as it stands in the reference configuration: it is then `fixed`, and what it connects is one
+    /// True if the joint is locked as it stands in the reference configuration: it is then `fixed`, and the bodies that it connects are one
     /// body.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub locked: bool,
@@ -200,7 +200,7 @@ pub struct AxisSpec {
 #[serde(deny_unknown_fields)]
 pub struct Nothing {}
 
-/// Declares what is written of stacked muscles: the keys that all have, and those of their places.
+/// Declares the keys of stacked muscles: those that all have, and those of their places.
 macro_rules! stacked {
     ($(#[$about:meta])* $name:ident { $($first:tt)* } { $($last:tt)* }) => {
         $(#[$about])*
@@ -217,7 +217,7 @@ macro_rules! stacked {
             /// Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             pub layers: Option<usize>,
-            /// Which hexahedron; `hex8` where not written. Of `finite_elements` only.
+            /// Kind of hexahedron; `hex8` where not written. Of `finite_elements` only.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             pub element: Option<ElementSpec>,
             /// Name of the material.
@@ -254,7 +254,7 @@ stacked! {
         pub from: PointSpec,
         /// End.
         pub to: PointSpec,
-        /// Whether the inertia of the changing cross-section is called for.
+        /// True if the inertia of the changing cross-section is taken into account.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         pub section_inertia: bool,
     }
@@ -279,7 +279,7 @@ pub(crate) struct ModelSpec<'a> {
     pub(crate) material: &'a str,
 }
 
-/// How a muscle is modelled.
+/// Model of a muscle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MuscleModel {

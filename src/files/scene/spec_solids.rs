@@ -36,7 +36,7 @@ pub struct SolidSpec {
     /// Length of a unit of the Gmsh file, SI unit m; 1 m where not written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<Quantity<Length>>,
-    /// Which hexahedron; `hex8` where not written.
+    /// Kind of hexahedron; `hex8` where not written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub element: Option<ElementSpec>,
     /// Electrodes; without any the block has no potential.
@@ -64,7 +64,7 @@ impl SolidSpec {
     }
 }
 
-/// Which hexahedron: how it treats volume.
+/// Kind of hexahedron: its treatment of volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ElementSpec {
@@ -88,7 +88,7 @@ pub struct GridSpec {
     pub elements: [DivisionSpec; 3],
 }
 
-/// How a direction of a box is cut.
+/// Division of a direction of a box.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum DivisionSpec {

@@ -1,6 +1,6 @@
 //! Files to start from: an elephant trunk of any number of segments and its rest-to-rest problem.
 
-/// A scene and a problem of a trunk; the problem reads the scene from `scene.json` beside it.
+/// A scene and a problem of a trunk; the problem reads the scene from `scene.json` next to it.
 ///
 /// Each joint is bent by one muscle of its pair at the goal: 1.7 kV towards −x, 1.6 kV towards +z.
 pub fn new_trunk(segments: usize) -> (String, String) {

@@ -17,7 +17,7 @@ const OF_NAMES: [&str; 2] = ["voltages/", "configuration/joints/"];
 /// Begins the names of arrays of bodies.
 const OF_BODIES: &str = "configuration/bodies/";
 
-/// Takes the arrays out of what is written, into the bytes of a file of this name.
+/// Moves the arrays out of a record, into the bytes of a file of this name.
 ///
 /// # Errors
 /// A name of the scene is too long for them.
@@ -61,7 +61,7 @@ pub(super) fn taken(file: &mut File, name: &str) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// What tells that there is a file of arrays.
+/// Entry that names the file of arrays, if there is one.
 #[derive(Deserialize)]
 struct WithArrays {
     #[serde(default)]

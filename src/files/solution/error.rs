@@ -1,4 +1,4 @@
-//! Why a file is no solution of a scene.
+//! Errors of a file that is no solution of a scene.
 
 use std::io;
 use std::path::PathBuf;
@@ -11,17 +11,17 @@ use crate::files::npz::NpzError;
 pub struct SolutionError {
     /// The file.
     pub path: PathBuf,
-    /// Why.
+    /// Reason.
     pub reason: Reason,
 }
 
-/// Why a file is no solution of a scene.
+/// Reason why a file is no solution of a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum Reason {
     /// It cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(io::Error),
-    /// There is no room for what is read from it.
+    /// There is not enough memory for its contents.
     #[error("found {found}, expected {expected}")]
     TooLarge {
         /// Its size.
@@ -39,7 +39,7 @@ pub enum Reason {
     NoSolution {
         /// Path in the file.
         place: String,
-        /// What is wrong there.
+        /// Value that was found there.
         found: String,
     },
     /// Its names are not those of the scene.
@@ -50,7 +50,7 @@ pub enum Reason {
     Arrays {
         /// Their file.
         path: PathBuf,
-        /// Why.
+        /// Cause.
         cause: NpzError,
     },
     /// Its arrays were written with another file.

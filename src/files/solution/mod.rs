@@ -6,10 +6,10 @@
 //! behind which its three turns count, and the `momentum` of each coordinate at the end; `costates` has the multipliers of the optimisation, unscaled. A file made
 //! by hand needs `time`, `voltages` and the coordinates of the joints, in `joints` or in `configuration.joints`.
 //!
-//! Of a long motion all that is an array stands in `solution.npz` beside it, under the path that it would have here: `state/z`,
+//! Of a long motion all arrays stand in `solution.npz` next to it, under the paths that they would have here: `state/z`,
 //! `voltages/muscle1`.
 //!
-//! - `record`: what is written; `write`, `read`: between a solution and the file; `arrays`: the file beside it; `error`: why it cannot be used.
+//! - `record`: the types; `write`, `read`: conversion between a solution and the file; `arrays`: the file next to it; `error`: its errors.
 
 mod arrays;
 mod error;

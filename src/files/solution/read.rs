@@ -1,4 +1,4 @@
-//! From a file to a solution of a model.
+//! Reader of solution files: from a file to a solution of a model.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;

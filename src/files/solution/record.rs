@@ -1,4 +1,4 @@
-//! What is written in a `solution.json`.
+//! Types of `solution.json`.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ pub(super) const METRE: f64 = 1e3;
 pub(super) struct File {
     #[serde(default)]
     pub(super) scene: String,
-    /// Where all that is an array here stands, of a long motion.
+    /// File that holds the arrays of a long motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) arrays: Option<ArraysOf>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -47,7 +47,7 @@ pub(super) struct File {
     pub(super) barrier: Option<f64>,
 }
 
-/// A file of arrays beside a solution.
+/// A file of arrays next to a solution.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ArraysOf {
     /// Its name.

@@ -1,4 +1,4 @@
-//! From a solution to its files.
+//! Writer of solution files: from a solution to `solution.json` and its arrays.
 
 use std::io;
 
@@ -18,7 +18,7 @@ const MOST: usize = 200_000;
 pub struct Written {
     /// Of `solution.json`.
     pub json: String,
-    /// Of the file of arrays beside it, where it has one.
+    /// Bytes of the file of arrays next to it, where it has one.
     pub arrays: Option<Vec<u8>>,
 }
 
@@ -38,7 +38,7 @@ pub fn written(model: &Model, solved: &Solution, arrays_file: &str) -> io::Resul
     })
 }
 
-/// How many numbers there are, nearly.
+/// Returns the approximate number of numbers.
 fn numbers(solved: &Solution) -> usize {
     let rows = |rows: &[Vec<f64>]| rows.len() * rows.first().map_or(0, Vec::len);
     let poses = solved.poses.len() * solved.poses.first().map_or(0, Vec::len);
@@ -51,7 +51,7 @@ fn numbers(solved: &Solution) -> usize {
     12 * poses + lists.into_iter().map(|list| rows(list)).sum::<usize>()
 }
 
-/// What is written.
+/// Returns the record that is written.
 fn record(model: &Model, solved: &Solution) -> File {
     let system = &model.system;
     let columns = |j: usize, unit: f64| solved.joints.iter().map(|row| row[j] / unit).collect();

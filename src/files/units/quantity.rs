@@ -29,7 +29,7 @@ impl Kind {
     }
 }
 
-/// What a [`Quantity`] measures.
+/// Quantity that a [`Quantity`] measures.
 pub trait PhysicalQuantity {
     /// Name of the measure in the JSON Schema.
     const NAME: &'static str;
@@ -174,7 +174,7 @@ pub struct Quantity<M> {
 }
 
 impl<M: PhysicalQuantity> Quantity<M> {
-    /// A number in SI units; the error says what was found instead.
+    /// A number in SI units; the error names the value found instead.
     pub(crate) fn try_from_number(number: f64) -> Result<Self, String> {
         Self {
             written: Written::Number(number),
@@ -183,7 +183,7 @@ impl<M: PhysicalQuantity> Quantity<M> {
         .checked()
     }
 
-    /// Reads a text such as `50 mm`; the error says what was found instead.
+    /// Reads a text such as `50 mm`; the error names the value found instead.
     ///
     /// # Errors
     /// The text is no number with a unit that is known here.
@@ -224,7 +224,7 @@ impl<M: PhysicalQuantity> Quantity<M> {
         self.converted(&M::kinds()[0])
     }
 
-    /// Value in the units inside, read as one kind; the error says what was found instead.
+    /// Value in the units inside, read as one kind; the error names the value found instead.
     ///
     /// # Errors
     /// Its unit is of another kind.
@@ -331,7 +331,7 @@ impl<M: PhysicalQuantity> JsonSchema for Quantity<M> {
     }
 }
 
-/// What has this dimension, in words.
+/// Describes a quantity of this dimension in words.
 fn describe(dimension: Dimension) -> String {
     named_kinds()
         .into_iter()

@@ -66,7 +66,7 @@ impl fmt::Display for Dimension {
 /// A unit as a multiple of the coherent SI unit: factor × 10^exponent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unit {
-    /// Factor beside the power of ten, 1 for decimal units.
+    /// Factor in addition to the power of ten, 1 for decimal units.
     pub(crate) factor: f64,
     /// Power of ten.
     pub(crate) exponent: i32,
@@ -242,7 +242,7 @@ fn split_power(text: &str) -> Option<(i32, &str)> {
     (power.abs() <= LARGEST).then_some((power, &body[end..]))
 }
 
-/// The operator at the start of a text (whether it divides), and the rest.
+/// The operator at the start of a text (true for a division), and the rest.
 fn split_operator(text: &str) -> Option<(bool, &str)> {
     let rest = text.trim_start();
     if let Some(rest) = rest.strip_prefix('/') {

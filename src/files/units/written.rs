@@ -1,8 +1,8 @@
-//! A quantity as it is written: a number, or a text of a number with a unit.
+//! A quantity as it is written: a number, or a string of a number with a unit.
 
 use crate::files::units::unit::{Unit, scale};
 
-/// What was written: a number in SI units, or a text with a unit. It takes 16 bytes, and lists of many thousands are read.
+/// Written value: a number in SI units, or a string with a unit. It takes 16 bytes, and lists of many thousands are read.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Written {
     Number(f64),
@@ -22,7 +22,7 @@ impl Written {
     }
 }
 
-/// Number and unit of a text; the error says what was found instead.
+/// Number and unit of a text; the error names the value found instead.
 pub(super) fn parts(text: &str) -> Result<(f64, Unit), String> {
     let (number, tail) = split_number(text.trim_start());
     let number: f64 = number

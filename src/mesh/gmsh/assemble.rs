@@ -1,4 +1,4 @@
-//! From the contents of a file to a mesh: used nodes, regions of physical volumes, sets of the other physical groups.
+//! Conversion of the contents of a file to a mesh: used nodes, regions of physical volumes, sets of the other physical groups.
 
 use super::contents::{Contents, Element, Group, UNGROUPED};
 use crate::mesh::Mesh;

@@ -1,4 +1,4 @@
-//! What a file holds, by the numbers in it.
+//! Contents of a file, by the numbers in it.
 
 use super::lines::Line;
 use crate::mesh::error::MeshError;

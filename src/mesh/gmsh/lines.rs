@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use std::iter::Enumerate;
 use std::str::{FromStr, SplitWhitespace};
 
-/// What is left of a file; empty lines do not count.
+/// Remaining lines of a file; empty lines do not count.
 pub(super) struct Lines<'a> {
     file: &'a str,
     left: Enumerate<std::str::Lines<'a>>,
@@ -25,7 +25,7 @@ pub(super) struct Line<'a> {
 pub(super) struct Words<'a> {
     line: Line<'a>,
     left: SplitWhitespace<'a>,
-    /// What the line is expected to say.
+    /// Expected form of the line.
     shape: &'a str,
 }
 

@@ -33,7 +33,7 @@ const SECTION: &str = "a section such as $Nodes";
 ///
 /// # Panics
 ///
-/// Where the unit is not a positive number.
+/// If the unit is not a positive number.
 ///
 /// # Errors
 /// The file cannot be read, or is no mesh of hexahedra that can be computed with.

@@ -1,4 +1,4 @@
-//! Parts of a scene that answer for themselves.
+//! Components of a scene: terms, connections and observations of each kind of part.
 
 pub(super) mod body;
 pub(super) mod muscle;

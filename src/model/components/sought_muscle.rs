@@ -57,7 +57,7 @@ impl<'a> SoughtMuscle<'a> {
         })
     }
 
-    /// Whether the elastic or electric energy reads a parameter.
+    /// Returns true if the elastic or electric energy reads a parameter.
     fn is_in_energy(&self, is_driven: bool) -> bool {
         self.reads(|constant| match constant {
             Constant::Permittivity(..) | Constant::Layer(_) => is_driven,
@@ -119,7 +119,7 @@ impl<'a> SoughtMuscle<'a> {
         }
     }
 
-    /// Adds the energy, where it reads a parameter; says whether it does.
+    /// Adds the energy, where it reads a parameter; returns true if it does.
     pub(super) fn energy(
         &self,
         input: Option<usize>,
@@ -190,7 +190,7 @@ impl<'a> SoughtMuscle<'a> {
         }
     }
 
-    /// Adds the viscous work, where it reads a parameter; says whether it does.
+    /// Adds the viscous work, where it reads a parameter; returns true if it does.
     pub(super) fn viscosity(
         &self,
         viscosity: f64,
@@ -216,7 +216,7 @@ impl<'a> SoughtMuscle<'a> {
     }
 }
 
-/// How far both ends of a muscle move with a parameter, in the ground frame at rest.
+/// Returns the derivatives of both ends of a muscle by a parameter, in the ground frame at rest.
 fn directions(parameter: &Parameter, muscle: usize) -> [Vector; 2] {
     let mut ends = [Vector::zeros(); 2];
     for follower in &parameter.constants {

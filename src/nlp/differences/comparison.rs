@@ -1,4 +1,4 @@
-//! One sparse matrix beside its differences.
+//! Comparison of one sparse matrix with its differences.
 
 use super::report::{EntryStatus, Matrix, WrongEntry};
 use crate::nlp::{Entries, Nlp};
@@ -9,7 +9,7 @@ pub const TOLERANCE: f64 = 1e-5;
 /// Part of the row's size below which an entry is not measured by its own size.
 const FLOOR: f64 = 1e-3;
 
-/// A sparse matrix beside its differences.
+/// A sparse matrix and its differences.
 pub(super) struct Comparison {
     /// Analytic entries by column, duplicates summed, sorted by row.
     columns: Vec<Vec<(usize, f64)>>,
@@ -71,7 +71,7 @@ impl Comparison {
         }
     }
 
-    /// Puts the rows from `first` on of a column beside their differences.
+    /// Compares the rows from `first` on of a column with their differences.
     pub(super) fn compare(
         &mut self,
         column: usize,
@@ -112,7 +112,7 @@ impl Comparison {
         far.map(|pair| pair.column).collect()
     }
 
-    /// Puts the entries above the tolerance of a column beside differences of another step.
+    /// Compares the entries above the tolerance of a column with differences of another step.
     pub(super) fn compare_again(&mut self, column: usize, difference: impl Fn(usize) -> f64) {
         for index in 0..self.pairs.len() {
             let pair = &self.pairs[index];

@@ -2,7 +2,7 @@
 //!
 //! The gradient is compared with differences of f, the Jacobian with differences of g, and the Hessian with differences of
 //! the gradient of the Lagrangian, σ ∇f + Σ yᵢ ∇gᵢ, for random σ and y away from one: a Hessian that ignores σ or the size
-//! of y shows. Every pair of row and column is looked at, so an entry missing in the structure shows too.
+//! of y shows. Every pair of row and column is checked, so an entry missing in the structure shows too.
 //!
 //! # What an error is relative to
 //!

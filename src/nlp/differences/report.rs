@@ -1,4 +1,4 @@
-//! What a check of derivatives found.
+//! Report of a check of derivatives by differences.
 
 use std::fmt;
 
@@ -13,12 +13,12 @@ pub enum Matrix {
     Hessian,
 }
 
-/// Whether an entry has a place in the structure.
+/// Presence of an entry in the structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EntryStatus {
-    /// It has.
+    /// The structure has the entry.
     Stored,
-    /// It has none, so that its analytic value is zero.
+    /// The structure has no such entry, so that its analytic value is zero.
     Missing,
 }
 
@@ -27,11 +27,11 @@ pub enum EntryStatus {
 pub struct WrongEntry {
     /// The matrix.
     pub matrix: Matrix,
-    /// What the row belongs to.
+    /// Name of the row.
     pub row: String,
     /// The variable of the column.
     pub column: String,
-    /// Whether the structure has this entry.
+    /// Presence of the entry in the structure.
     pub place: EntryStatus,
     /// Value given by the program.
     pub analytic: f64,
@@ -41,7 +41,7 @@ pub struct WrongEntry {
     pub error: f64,
 }
 
-/// What a check found.
+/// Findings of a check.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
     /// Greatest relative error of the gradient.

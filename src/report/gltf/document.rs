@@ -17,7 +17,7 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 const LINE_STRIP: u32 = 3;
 const TRIANGLES: u32 = 4;
 
-/// Where a node is, in m.
+/// Placement of a node, in m.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
     pub(super) translation: Vector3<f64>,
@@ -36,7 +36,7 @@ impl Placed {
     }
 }
 
-/// What of a node changes over time.
+/// Part of a node that changes over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Moving {
     /// Its place.
@@ -47,7 +47,7 @@ pub(super) enum Moving {
     Stretched,
 }
 
-/// What connects points.
+/// Connection of points.
 #[derive(Clone, Debug)]
 pub(super) enum Mode {
     Line,

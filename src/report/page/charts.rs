@@ -31,7 +31,7 @@ pub(super) fn charts(run: &Run<'_>, told: &Told) -> Vec<Value> {
     charts
 }
 
-/// What is no function of time.
+/// Returns the plots that are not functions of time.
 pub(super) fn plots(told: &Told) -> Vec<Value> {
     let plots = told.plots.iter();
     let chart = |(title, plot): &(String, LinePlot)| json!({ "title": title, "kind": "plot", "panels": [panel("", plot)] });
@@ -71,7 +71,7 @@ fn of_voltages(run: &Run<'_>) -> Option<Value> {
         .then(|| json!({ "title": "Voltages", "kind": kind, "time": true, "panels": panels }))
 }
 
-/// What a source acts on: the joint between the bodies of a muscle, or these; the block of an electrode.
+/// Returns the parts on which a source acts: the joint between the bodies of a muscle, or these; the block of an electrode.
 fn pair(system: &System, source: usize) -> String {
     let Some(muscle) = system.muscles.get(source) else {
         let sources = system.sources();

@@ -17,9 +17,9 @@ pub(super) const LIBRARIES: [(&str, &[u8]); 2] = [
 
 /// The page around everything, with places `{{name}}` for what differs.
 pub(super) const FRAME: &str = include_str!("page.html");
-/// How it looks.
+/// Style sheet of the page.
 pub(super) const SHEET: &str = include_str!("page.css");
-/// What all pages share.
+/// Scripts that all pages share.
 const HELPERS: [&str; 2] = [include_str!("read.js"), include_str!("theme.js")];
 /// The modules of the page of a run in the order in which they need each other.
 pub(super) const MODULES: [&str; 10] = [

@@ -1,4 +1,4 @@
-//! Results side by side: curves of the same quantity over each other, rows of their tables beside each other.
+//! Results side by side: overlaid curves of the same quantity, and rows of their tables next to each other.
 
 use serde_json::{Value, json};
 
@@ -6,7 +6,7 @@ use crate::report::origin::Origin;
 use crate::report::page::page;
 use crate::report::style;
 
-/// Where the data of a page begin, and where they end.
+/// Begin and end of the data of a page.
 const DATA: [&str; 2] = [
     "<script type=\"application/json\" id=\"data\">",
     "</script>",

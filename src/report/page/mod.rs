@@ -1,4 +1,4 @@
-//! `report.html`: one page that needs nothing else, with the motion in space, its curves, and what is told of them.
+//! `report.html`: one self-contained page with the motion in space, its curves, and its texts.
 //!
 //! The page is written here as data and drawn in the browser: `page.html` and `page.css` are its frame, the modules `*.js` its
 //! code, which stands on three.js and Chart.js.
@@ -57,13 +57,13 @@ pub fn of_plots(subject: &str, told: &Told, origin: &Origin) -> String {
     page(&format!("{subject}: {}", told.title), origin, &data)
 }
 
-/// A page with its title, where it comes from, and what it shows.
+/// A page with its title, its origin, and its contents.
 fn page(title: &str, origin: &Origin, data: &Value) -> String {
     framed(code::FRAME, title, origin, data, &code::MODULES)
 }
 
 /// A frame with its places `{{name}}` filled: `title`, `origin`, `sheet`, `data`, `script`, and `libraries`, the code of others;
-/// `modules` are the code of the page beside the helpers that all pages share.
+/// `modules` are the code of the page in addition to the helpers that all pages share.
 pub fn framed(frame: &str, title: &str, origin: &Origin, data: &Value, modules: &[&str]) -> String {
     // In JSON such a sign stands in texts only; there it must not end the script.
     let data = data.to_string().replace('<', "\\u003c");

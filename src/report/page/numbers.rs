@@ -5,7 +5,7 @@ use base64::engine::general_purpose::STANDARD;
 use nalgebra::Vector3;
 use serde_json::Value;
 
-/// Numbers in single precision; what is none stays NaN.
+/// Numbers in single precision; NaN stays NaN.
 pub(super) fn numbers(values: impl IntoIterator<Item = f64>) -> Value {
     let bytes = values
         .into_iter()

@@ -1,4 +1,4 @@
-//! What moves on a page: bodies and lumped muscles as solids that are moved, elastic blocks as surfaces whose corners move.
+//! Moving parts of a page: bodies and lumped muscles as solids that are moved, elastic blocks as surfaces whose corners move.
 
 use nalgebra::Vector3;
 use serde_json::{Value, json};
@@ -14,7 +14,7 @@ use crate::report::solids::{Prism, SurfaceMesh};
 use crate::report::style;
 use crate::report::ties;
 
-/// Length in mm of the axis that tells the direction of a joint.
+/// Length in mm of the axis that shows the direction of a joint.
 const AXIS: f64 = 1.0;
 /// Most points of the path of a marker.
 const POINTS: usize = 2000;
@@ -213,7 +213,7 @@ impl Stage<'_> {
         system.joints.iter().map(joint).collect()
     }
 
-    /// Paths of the markers, beside those that they were to follow and those of the motion that is compared.
+    /// Paths of the markers, with their references and those of the motion that is compared.
     fn markers(&self) -> Vec<Value> {
         let (system, motion) = (self.run.system, self.run.trajectory);
         let kept = chosen(motion.times.len());
@@ -252,7 +252,7 @@ impl Stage<'_> {
     }
 }
 
-/// Of many points of a path so many as can be seen, the first and the last among them.
+/// Thins the points of a path to those that can be seen, the first and the last among them.
 fn chosen(count: usize) -> impl Iterator<Item = usize> + Clone {
     let last = count.saturating_sub(1);
     let most = last.min(POINTS);

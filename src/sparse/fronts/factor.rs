@@ -21,7 +21,7 @@ pub(super) struct Elimination<'a> {
     pub(super) is_over: IsOver<'a>,
 }
 
-/// Why a front is not eliminated.
+/// Reason why a front is not eliminated.
 pub(super) enum Undone {
     Singular(Singular),
     Stopped,

@@ -1,4 +1,4 @@
-//! Solution with the panels of a tree: upwards what each front passes on, downwards what it is told.
+//! Solution with the panels of a tree: forward substitution upwards, back substitution downwards.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{
@@ -19,11 +19,11 @@ pub(super) struct Passage<'a, T> {
     pub(super) panels: &'a [T],
     /// Unknowns of the subtree, in the order of elimination.
     pub(super) x: &'a mut [T],
-    /// Later rows of each front of the subtree: upwards what they are updated by, downwards their solution.
+    /// Later rows of each front of the subtree: upwards their updates, downwards their solution.
     pub(super) passed: &'a mut [T],
 }
 
-/// What belongs to one front, and to the subtrees of its sides.
+/// Vectors cut into the part of one front and those of the subtrees of its sides.
 struct Cut<'a, T> {
     panel: MatRef<'a, T>,
     x: &'a mut [T],

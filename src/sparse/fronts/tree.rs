@@ -1,4 +1,4 @@
-//! The tree of fronts: which rows each one eliminates, which later rows it updates, and where its numbers stand.
+//! The tree of fronts: the rows that each one eliminates, the later rows that it updates, and the positions of its numbers.
 
 use std::ops::Range;
 
@@ -20,7 +20,7 @@ pub(super) struct Front {
     pub(super) own: usize,
     /// Later rows that it updates, as places in the order of elimination, ascending.
     pub(super) boundary: Vec<u32>,
-    /// Where those stand in the front that takes the update.
+    /// Positions of these rows in the front that takes the update.
     pub(super) above: Vec<u32>,
     /// Fronts whose updates it takes.
     pub(super) sides: Option<Sides>,
@@ -40,9 +40,9 @@ pub(super) struct Front {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sides {
     pub(super) fronts: [usize; 2],
-    /// Where the space of the second one begins.
+    /// Offset at which the space of the second one begins.
     pub(super) second: usize,
-    /// Whether both are worked on at once; it follows from the pattern alone.
+    /// True if both are worked on in parallel; it follows from the pattern alone.
     pub(super) at_once: bool,
 }
 

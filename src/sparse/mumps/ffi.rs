@@ -49,7 +49,7 @@ const ICNTL: usize = 60;
 const CNTL: usize = 15;
 const INFOG: usize = 80;
 
-/// What an instance is asked to do.
+/// Job of an instance, with its number.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Job {
     Analyse = 1,
@@ -169,7 +169,7 @@ impl Drop for Instance {
     }
 }
 
-/// A structure of another version than the header's has its parts elsewhere; versions are told apart by their first two numbers.
+/// A structure of another version than the header's has its parts elsewhere; the first two numbers of a version identify it.
 fn check_version(structure: NonNull<Structure>) {
     let mut most = 0;
     // SAFETY: the structure is valid, the first text ends in NUL, and the second one has `most` places in the structure.

@@ -12,7 +12,7 @@ use std::mem;
 use std::ptr::NonNull;
 use std::sync::{LazyLock, Once};
 
-/// What SCOTCH asks the environment for.
+/// Environment variable that SCOTCH reads.
 const SCOTCH_THREADS: &str = "SCOTCH_PTHREAD_NUMBER";
 
 /// Makes both work in one thread. The lock of this crate keeps their other users in it out.
@@ -59,10 +59,10 @@ pub(super) fn restart_random_numbers() {
     }
 }
 
-/// Whether there is room for the memory that OpenBLAS takes when it is called first, if it is loaded. Where there is none it asks again and
+/// Returns true unless OpenBLAS is loaded and lacks the memory that it takes at its first call. It would then ask again and
 /// again and never returns.
 pub(crate) fn has_room() -> bool {
-    /// What it takes, and a little.
+    /// Memory that OpenBLAS takes, and a little more.
     const ROOM: usize = 136 << 20;
     static HAS_ROOM: LazyLock<bool> = LazyLock::new(|| {
         let is_needed = loaded(c"openblas_set_num_threads").is_some();

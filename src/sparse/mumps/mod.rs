@@ -16,7 +16,7 @@ use ffi::{Instance, Job};
 pub(crate) use libraries::has_room;
 pub(crate) use lock::{Exclusive, exclusive};
 
-/// What is told where [`has_room`] says no.
+/// Error message where [`has_room`] returns false.
 pub(crate) const NO_ROOM: &str =
     "MUMPS needs more address space than this process may have: OpenBLAS takes 128 MB at once";
 

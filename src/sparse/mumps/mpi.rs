@@ -23,7 +23,7 @@ const SERIALIZED: c_int = 2;
 type Ask = unsafe extern "C" fn(*mut c_int) -> c_int;
 type Start = unsafe extern "C" fn(*mut c_int, *mut *mut *mut c_char, c_int, *mut c_int) -> c_int;
 
-/// Whether the libraries that the program needs have been initialised.
+/// True once the libraries that the program needs have been initialised.
 static ARE_INITIALISED: AtomicBool = AtomicBool::new(false);
 
 /// The loader calls it when all libraries that the program needs have been initialised.
@@ -54,7 +54,7 @@ pub(super) fn start() {
     });
 }
 
-/// What a function of MPI says; nothing without MPI.
+/// Answer of an MPI function; nothing without MPI.
 fn answer(question: &CStr) -> Option<bool> {
     let symbol = loaded(question)?;
     let mut flag = 0;
@@ -63,7 +63,7 @@ fn answer(question: &CStr) -> Option<bool> {
     Some(flag != 0)
 }
 
-/// Whether MPI runs, or nobody is to start it yet.
+/// Reports that MPI runs if it does, or if nobody is to start it yet.
 ///
 /// # Safety
 ///
@@ -77,7 +77,7 @@ unsafe extern "C" fn MPI_Initialized(flag: *mut c_int) -> c_int {
     SUCCESS
 }
 
-/// Whether MPI has ended or never ran.
+/// Reports that MPI has ended if it has, or never ran.
 ///
 /// # Safety
 ///

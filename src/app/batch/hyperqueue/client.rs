@@ -1,4 +1,4 @@
-//! The command `hq`, which asks a server of HyperQueue.
+//! The command `hq`, which sends requests to a server of HyperQueue.
 
 use std::ffi::OsStr;
 use std::io::ErrorKind;
@@ -12,7 +12,7 @@ use crate::app::error::CommandError;
 /// The command.
 const PROGRAM: &str = "hq";
 
-/// Whether there is a server that answers.
+/// Checks that there is a server that answers.
 ///
 /// # Errors
 /// There is none, or the command `hq` is not there.
@@ -36,7 +36,7 @@ pub(in crate::app::batch) fn check() -> Result<(), CommandError> {
     }
 }
 
-/// What the server answers.
+/// Returns the answer of the server.
 ///
 /// # Errors
 /// It does not, or not in JSON.
@@ -70,7 +70,7 @@ fn output(arguments: &[impl AsRef<OsStr>]) -> std::io::Result<Output> {
         .output()
 }
 
-/// What it said when it failed, without a trace of its calls.
+/// Returns its message after a failure, without a trace of its calls.
 fn message(output: &Output) -> String {
     let told = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
     let error = told.iter().find_map(|text| {

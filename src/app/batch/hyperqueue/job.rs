@@ -1,4 +1,4 @@
-//! What is kept of a job until all its ends are collected: its name, and the folder of each of its tasks.
+//! Record of a job until all its ends are collected: its name, and the folder of each of its tasks.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -100,7 +100,7 @@ impl Job {
         open.iter().filter_map(of).collect()
     }
 
-    /// What the server says of the tasks.
+    /// Returns the tasks as the server reports them.
     pub(super) fn tasks(&self) -> Result<Vec<Task>, CommandError> {
         let mut answer = ask(&["task", "list", &self.id])?;
         let tasks = answer.get_mut(&self.id).map(Value::take);
@@ -108,7 +108,7 @@ impl Job {
         tasks.ok_or_else(|| CommandError::Engine(format!("no tasks of the job {}", self.id)))
     }
 
-    /// The file of what a task wrote to standard error.
+    /// The file of the standard error of a task.
     pub(super) fn told(&self, task: usize) -> PathBuf {
         self.files.join(format!("{task}.txt"))
     }
@@ -118,13 +118,13 @@ impl Job {
         tell(&["job", "cancel", &self.id])
     }
 
-    /// Removes what was kept: all is collected.
+    /// Removes the record: all is collected.
     pub(super) fn forget(self) {
         fs::remove_dir_all(&self.files).ok();
     }
 }
 
-/// The folder of the results of a solve, from wherever it is looked at.
+/// The absolute folder of the results of a solve.
 fn whole(command: &CommandInput) -> Result<PathBuf, CommandError> {
     let folder = command.folder();
     path::absolute(&folder).map_err(|cause| {

@@ -1,4 +1,4 @@
-//! How a task of HyperQueue ended.
+//! End of a task of HyperQueue.
 
 use std::fs;
 use std::path::Path;
@@ -8,24 +8,24 @@ use serde_json::Value;
 
 use crate::app::batch::end::{RunEnd, Said, of_status};
 
-/// What the server says of a task.
+/// Task as the server reports it.
 #[derive(Debug, Deserialize)]
 pub(super) struct Task {
     /// Its number in the job.
     pub(super) id: usize,
     state: String,
-    /// Why it failed.
+    /// Reason why it failed.
     #[serde(default)]
     error: Option<String>,
 }
 
 impl Task {
-    /// Whether nothing more happens to it.
+    /// Returns true if it has ended for good.
     pub(super) fn has_ended(&self) -> bool {
         !matches!(self.state.as_str(), "waiting" | "running")
     }
 
-    /// How it ended, with what it wrote to standard error in the file `told`, and its results in `folder`; none where it was
+    /// Returns its end, with what it wrote to standard error in the file `told`, and its results in `folder`; none where it was
     /// cancelled.
     pub(super) fn end(&self, told: &Path, folder: &Path) -> Option<RunEnd> {
         let words = fs::read_to_string(told).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Parts of a scene of which each kind has one file: what is written, and how it becomes a component.
+//! Components of a scene with one file for each kind: its type as written, and the conversion to a component.
 
 mod spring;
 mod tendon;
