@@ -1,4 +1,4 @@
-//! A block of finite elements between two electrodes: it contracts under a voltage and rings.
+//! A block of finite elements between two electrodes: it contracts under a voltage and oscillates.
 
 use proboscis::prelude::*;
 

@@ -1,4 +1,4 @@
-//! The transcription of a control problem as a nonlinear program: values and exact sparse derivatives for any other solver.
+//! The nonlinear program of a control problem: values and exact sparse derivatives for another solver.
 
 use proboscis::Nlp;
 use proboscis::prelude::*;

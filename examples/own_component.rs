@@ -1,4 +1,4 @@
-//! A component of one's own: a nonlinear spring that stiffens, `¼ k |r|⁴`, with its formula and its term.
+//! A user-defined component: a hardening spring with the energy `¼ k |r|⁴`, its formula and its term.
 
 use nalgebra::{SVector, Vector3};
 use proboscis::prelude::*;

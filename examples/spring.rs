@@ -1,4 +1,4 @@
-//! A mass on a slide between two springs, against the closed form of its oscillation.
+//! A mass on a slide between two springs, compared with the closed form of its oscillation.
 
 use proboscis::prelude::*;
 use std::f64::consts::TAU;

@@ -1,4 +1,4 @@
-//! An arm between two muscles whose joint follows a sine, and how closely it does.
+//! An arm between two muscles: its joint follows a sine, and the tracking error is printed.
 
 use proboscis::prelude::*;
 

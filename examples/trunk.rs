@@ -1,4 +1,4 @@
-//! The elephant trunk in thirty lines: six segments, twelve muscles, swung by constant voltages and steered by optimal ones.
+//! The elephant trunk: six segments and twelve muscles, under constant voltages and under optimal ones.
 
 use proboscis::prelude::*;
 
