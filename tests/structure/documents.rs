@@ -1,5 +1,5 @@
-//! Documents and doc comments: links lead to files, sources that documents name exist, sections of `docs/theory.md` that
-//! sources cite are there, and doc comments begin with what they define.
+//! Form and references of the documents: links, names of sources and types, cited sections of `docs/theory.md`, lengths of
+//! lines, the folders in `docs/architecture.md`, the paths in `docs/glossary.md`.
 
 use crate::sources::{Source, sources};
 use std::collections::BTreeSet;
@@ -130,60 +130,117 @@ fn sections_that_sources_cite_exist() {
     assert!(seen > 10, "{seen} citations");
 }
 
-/// First words that make a question of a head or a doc comment, in place of a noun or a verb.
-const QUESTIONS: [&str; 9] = [
-    "What", "How", "Where", "Which", "Whether", "From", "When", "Why", "Who",
+/// Longest line of a document, without the targets of its links.
+const WIDTH: usize = 120;
+
+/// Documents that a program writes.
+const GENERATED: [&str; 1] = ["docs/reference.md"];
+
+/// Documents outside of those that other tests read.
+const OTHERS: [&str; 7] = [
+    "CHANGELOG.md",
+    "SECURITY.md",
+    "benches/README.md",
+    "benches/peers/README.md",
+    "fuzz/README.md",
+    "python/README.md",
+    "tests/reference/README.md",
 ];
 
-fn is_question(text: &str) -> bool {
-    let first = text.split(|c: char| !c.is_alphabetic()).next();
-    first.is_some_and(|word| QUESTIONS.contains(&word))
+/// Numbers and texts of the lines that are neither in a table nor in a block of code.
+fn prose(text: &str) -> Vec<(usize, &str)> {
+    let mut is_code = false;
+    let mut lines = Vec::new();
+    for (i, line) in text.lines().enumerate() {
+        let start = line.trim_start();
+        if start.starts_with("```") {
+            is_code = !is_code;
+        } else if !is_code && !start.starts_with('|') {
+            lines.push((i + 1, line));
+        }
+    }
+    lines
+}
+
+/// Characters of a line without the targets of its links.
+fn width(line: &str) -> usize {
+    let mut parts = line.split("](");
+    let first = parts.next().unwrap_or_default().chars().count();
+    let after = parts.map(|part| match part.split_once(')') {
+        Some((_, after)) => 1 + after.chars().count(),
+        None => 2 + part.chars().count(),
+    });
+    first + after.sum::<usize>()
 }
 
 #[test]
-fn heads_are_no_questions() {
+fn lines_of_prose_end_at_the_width() {
+    let others = OTHERS.map(|name| {
+        let path = PathBuf::from(name);
+        let text = fs::read_to_string(root().join(&path)).unwrap();
+        (path, text)
+    });
+    let all = documents().into_iter().chain(others);
     let mut seen = 0;
-    for folder in ["src", "tests", "benches", "examples", "fuzz", "python/src"] {
-        for source in sources(folder) {
-            let Some(head) = source
-                .text
-                .lines()
-                .next()
-                .and_then(|line| line.strip_prefix("//! "))
-            else {
-                continue;
-            };
-            let name = source.name;
-            assert!(
-                !is_question(head),
-                "the head of {folder}/{name} is {head:?}"
-            );
+    let mut long = Vec::new();
+    for (path, text) in all.filter(|(path, _)| !GENERATED.contains(&path.to_str().unwrap())) {
+        for (number, line) in prose(&text) {
+            if width(line) > WIDTH {
+                long.push(format!("{}:{number}", path.display()));
+            }
             seen += 1;
         }
     }
-    assert!(seen > 700, "{seen} heads");
+    assert!(long.is_empty(), "lines above {WIDTH} characters: {long:?}");
+    assert!(seen > 1500, "{seen} lines");
+}
+
+/// Paths of all folders below one of the repository, relative to it.
+fn folders(below: &str) -> BTreeSet<String> {
+    let parents = sources(below).into_iter().flat_map(|source| {
+        let ends: Vec<usize> = source.name.match_indices('/').map(|(at, _)| at).collect();
+        let name = source.name;
+        ends.into_iter().map(move |end| name[..end].to_owned())
+    });
+    parents.collect()
 }
 
 #[test]
-fn doc_comments_are_no_questions() {
-    let mut seen = 0;
-    for source in sources("src") {
-        let mut before = "";
-        for (number, line) in (1..).zip(source.text.lines()) {
-            let line = line.trim_start();
-            if let Some(text) = line
-                .strip_prefix("/// ")
-                .filter(|_| !before.starts_with("///"))
-            {
-                let name = &source.name;
-                assert!(
-                    !is_question(text),
-                    "src/{name}:{number} begins with {text:?}"
-                );
-                seen += 1;
-            }
-            before = line;
-        }
+fn architecture_is_short_and_names_every_folder() {
+    let text = fs::read_to_string(root().join("docs/architecture.md")).unwrap();
+    let lines = text.lines().count();
+    assert!(lines <= 200, "docs/architecture.md has {lines} lines");
+    let named: BTreeSet<&str> = spans(&text)
+        .into_iter()
+        .map(|span| span.trim_end_matches('/'))
+        .collect();
+    let folders = folders("src");
+    assert!(folders.len() > 35, "{} folders", folders.len());
+    for folder in folders {
+        let is_named = named.contains(folder.as_str());
+        assert!(is_named, "docs/architecture.md does not name src/{folder}");
     }
-    assert!(seen > 5000, "{seen} doc comments");
+}
+
+#[test]
+fn glossary_is_short_and_its_paths_exist() {
+    let text = fs::read_to_string(root().join("docs/glossary.md")).unwrap();
+    let entries: Vec<Vec<&str>> = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("| ")?.strip_suffix(" |"))
+        .map(|row| row.split(" | ").map(str::trim).collect::<Vec<_>>())
+        .filter(|cells| cells[0] != "term")
+        .collect();
+    let count = entries.len();
+    assert!((40..=80).contains(&count), "{count} entries");
+    let mut terms = BTreeSet::new();
+    for cells in &entries {
+        let [term, .., place] = cells[..] else {
+            panic!("an entry without a place: {cells:?}");
+        };
+        assert!(terms.insert(term), "{term} stands twice");
+        let path = place.trim_matches('`');
+        let exists = !path.is_empty() && root().join("src").join(path).is_file();
+        assert!(exists, "{term} names src/{path}");
+    }
 }
