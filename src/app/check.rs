@@ -18,7 +18,7 @@ use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
 use crate::nlp::differences::{self, Along, Matrix, WrongEntry};
 use crate::workflow::effects;
-use crate::workflow::optimise::{Counted, Prepared, prepare};
+use crate::workflow::prepare::{Counted, Prepared, prepare};
 use crate::workflow::resolve::resolve;
 
 /// Noise on each variable, relative to its size.

@@ -21,7 +21,7 @@ use crate::report::table;
 use crate::sparse::Symmetry;
 use crate::workflow::WorkflowError;
 use crate::workflow::effects::Plan;
-use crate::workflow::optimise::{Counted, Prepared, prepare};
+use crate::workflow::prepare::{Counted, Prepared, prepare};
 use crate::workflow::resolve::resolve;
 
 /// The plan: model terms in numbers, their reasons, and absent terms; with sizes; with a folder also pictures of Jacobian and Hessian.

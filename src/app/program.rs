@@ -9,7 +9,7 @@ use crate::app::task::read;
 use crate::app::words::key;
 use crate::control::problem::Task;
 use crate::nlp::Nlp;
-use crate::workflow::optimise::{Counted, Prepared, prepare};
+use crate::workflow::prepare::{Counted, Prepared, prepare};
 use crate::workflow::resolve::resolve;
 
 /// Checks the text of a problem as if it stood in the file `input`, which need not exist: paths in it are relative to that file. Returns what it asks

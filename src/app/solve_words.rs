@@ -5,6 +5,7 @@ use crate::ipopt::Status;
 use crate::math::significant;
 use crate::model::Model;
 use crate::workflow::final_values::FinalValue;
+use crate::workflow::optimum::Restarted;
 
 /// Maximum number of final values listed.
 const TOLD: usize = 6;
@@ -66,8 +67,9 @@ pub(super) fn unresolved(model: &Model, interval: usize, muscle: usize) -> Strin
 }
 
 /// Describes an optimum that the first start did not find.
-pub(super) fn restarted(first: Status) -> String {
-    format!("found from a second, displaced initial guess; the first ended {first}")
+pub(super) fn restarted(restarted: Restarted) -> String {
+    let Restarted { first, from } = restarted;
+    format!("found from {from}; the first start ended {first}")
 }
 
 /// Lists the final values of a motion for which final costs ask; of many the farthest in their own unit.

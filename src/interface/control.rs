@@ -21,7 +21,8 @@ use crate::workflow::domain;
 use crate::workflow::final_values::final_values;
 use crate::workflow::memory;
 use crate::workflow::motion::{history, trajectory};
-use crate::workflow::optimise::{Counted, Prepared, SolveLimits, prepare};
+use crate::workflow::optimum::SolveLimits;
+use crate::workflow::prepare::{Counted, Prepared, prepare};
 use crate::workflow::remark::Remarks;
 use crate::workflow::resolve::resolve;
 use crate::workflow::solve_remarks::add_remarks;
@@ -206,8 +207,7 @@ impl Control {
             ),
         };
         let mut remarks = Remarks::default();
-        let of = (system, &control);
-        add_remarks(&mut remarks, of, &found, note, self.max_seconds);
+        add_remarks(&mut remarks, &control, &found, note);
         remarks.warn("outside_domain", domain::note(&outside, true));
         let trajectory = trajectory(model, &found.motion);
         let ends = found.boundary.rest.each_ref().map(Option::as_deref);

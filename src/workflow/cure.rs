@@ -8,7 +8,8 @@ use crate::ipopt::interrupt;
 use crate::model::System;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::iterate::Iterate;
-use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
+use crate::workflow::optimise::optimise;
+use crate::workflow::optimum::{Optimum, SolveLimits};
 
 /// Multiples of the intervals of the problem that are tried.
 const TIMES: [usize; 3] = [2, 4, 8];

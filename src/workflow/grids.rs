@@ -13,7 +13,8 @@ use crate::workflow::estimate::ErrorSample;
 use crate::workflow::integrate::{Simulated, grid, integrate};
 use crate::workflow::iterate::Iterate;
 use crate::workflow::motion;
-use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
+use crate::workflow::optimise::optimise;
+use crate::workflow::optimum::{Optimum, SolveLimits};
 
 /// The solver's tolerance as a part of the accuracy asked for, where the problem names no smaller one.
 const SOLVER: f64 = 1e-2;

@@ -2,42 +2,29 @@
 
 use std::ops::ControlFlow;
 
-use crate::control::problem::{BoundaryState, Control, Duration, Objective};
+use crate::control::problem::{BoundaryState, Control};
 use crate::control::{BoundaryConditions, Place, Rests};
 use crate::coordinates::Configuration;
 use crate::dynamics::simulate;
 use crate::kinematics::Pose;
 use crate::math::significant;
 use crate::model::components::Tendon;
-use crate::model::{Component, Model, System, joint_unit};
-use crate::workflow::iterate::Iterate;
-use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
-use crate::workflow::second_start::is_infeasible;
+use crate::model::{Component, Model, joint_unit};
+use crate::workflow::optimum::Optimum;
+use crate::workflow::optimum::Shortest;
 
 /// Maximum number of bounds listed.
 const TOLD: usize = 6;
-/// Largest ratio of the free duration to the given one.
-const LONGEST: f64 = 20.0;
-/// Iterations of the solve with a free duration.
-const ITERATIONS: usize = 200;
-/// Seconds of that solve: those of the solve before, and no less than this.
-const PATIENCE: f64 = 2.0;
 /// Parts of the rest length of a tendon that are near to its kink.
 const KINK: f64 = 5e-3;
 /// Of the length of the system in the duration: markers that are slower than this rest.
 const SLOW: f64 = 1e-4;
 
-/// Explains a problem whose solve found no motion, line by line; `seconds` are left of the time allowed.
-pub(crate) fn explain(
-    system: &System,
-    control: &Control,
-    optimum: &Optimum,
-    seconds: Option<f64>,
-) -> Vec<String> {
+/// Explains a problem whose solve found no motion, line by line.
+pub(crate) fn explain(control: &Control, optimum: &Optimum) -> Vec<String> {
     let mut lines: Vec<String> = miss(control, optimum).into_iter().collect();
     lines.extend(optimum.active.iter().take(TOLD).map(|active| active.told()));
-    let longer = longer(system, control, optimum, seconds);
-    lines.extend(changes(control, optimum, longer));
+    lines.extend(changes(control, optimum));
     lines.extend(kinks(optimum));
     lines
 }
@@ -171,65 +158,24 @@ fn distances(
     }
 }
 
-/// Result of a solve with a free duration.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Longer {
-    /// A motion of this length in ms was found.
-    Found(f64),
-    /// None was found up to this length.
-    NotUpTo(f64),
-    /// It was not tried, or not to the end.
-    Unknown,
-}
-
-/// Looks for a motion of the shortest duration that is no shorter than the one asked for.
-fn longer(system: &System, control: &Control, optimum: &Optimum, seconds: Option<f64>) -> Longer {
-    let Duration::Given(given) = control.duration else {
-        return Longer::Unknown;
-    };
-    let mut free = control.clone();
-    let most = LONGEST * given;
-    free.duration = Duration::Free {
-        min: given,
-        max: most,
-        guess: 2.0 * given,
-    };
-    free.objective = Objective {
-        duration: 1.0,
-        ..Objective::default()
-    };
-    let patience = optimum.solution.seconds.solver.max(PATIENCE);
-    let allowed = SolveLimits {
-        iterations: Some(ITERATIONS),
-        seconds: Some(seconds.map_or(patience, |left| left.min(patience))),
-    };
-    let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
-    let Ok(found) = optimise(system, &free, None, allowed, &mut go_on) else {
-        return Longer::Unknown;
-    };
-    let duration = found.motion.times[found.motion.intervals()];
-    match found.solution.status {
-        _ if found.is_solved() => Longer::Found(duration),
-        status if is_infeasible(status) => Longer::NotUpTo(most),
-        _ => Longer::Unknown,
-    }
-}
-
 /// Returns the changes that may help.
-fn changes(control: &Control, optimum: &Optimum, longer: Longer) -> Vec<String> {
+fn changes(control: &Control, optimum: &Optimum) -> Vec<String> {
     let model = &optimum.model;
-    let seconds = |ms: f64| significant(ms / 1e3, 3);
     let mut lines = Vec::new();
-    match longer {
-        Longer::Found(ms) => lines.push(format!(
-            "change: a longer duration; with the duration free a motion of {} s was found",
-            seconds(ms)
+    match optimum.shortest {
+        Shortest::Longer(ms) => lines.push(format!(
+            "change: a longer duration; with the duration free the shortest motion found takes {} s",
+            no_shorter(ms / 1e3)
         )),
-        Longer::NotUpTo(ms) => lines.push(format!(
+        Shortest::NotUpTo(ms) => lines.push(format!(
             "a longer duration does not help: with the duration free none was found up to {} s",
-            seconds(ms)
+            significant(ms / 1e3, 3)
         )),
-        Longer::Unknown => {}
+        Shortest::AsGiven => lines.push(
+            "a motion of this duration exists: one was found with the duration free; change: more iterations, a cost of rate in the objective"
+                .to_owned(),
+        ),
+        Shortest::Unknown => {}
     }
     if optimum.active.iter().any(|active| active.is_voltage) {
         lines.push("change: wider voltage_bounds, if the muscles withstand them".to_owned());
@@ -245,4 +191,36 @@ fn changes(control: &Control, optimum: &Optimum, longer: Longer) -> Vec<String> 
         lines.push(format!("change: \"rate\": 0.002 in the objective; {jumps}"));
     }
     lines
+}
+
+/// A duration in three digits that is no shorter.
+fn no_shorter(seconds: f64) -> String {
+    let told = significant(seconds, 3);
+    match told.parse::<f64>() {
+        Ok(value) if value < seconds => {
+            let last = 10_f64.powf(seconds.log10().floor() - 2.0);
+            significant(value + last, 3)
+        }
+        _ => told,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::no_shorter;
+
+    #[test]
+    fn a_duration_that_is_told_is_no_shorter() {
+        for (seconds, told) in [
+            (0.1841, "0.185"),
+            (0.2, "0.200"),
+            (24.44, "24.5"),
+            (9.996, "10.00"),
+            (0.001_234, "0.00124"),
+        ] {
+            let found: f64 = no_shorter(seconds).parse().unwrap();
+            assert!(found >= seconds, "{found} for {seconds}");
+            assert_eq!(found, told.parse::<f64>().unwrap());
+        }
+    }
 }

@@ -1,11 +1,12 @@
 //! Tasks in memory: simulate, optimise, refine, verify.
 //!
-//! - `integrate`, `optimise`: a simulation, a control problem; `error`: errors of tasks; `phase`: the present phase of work.
+//! - `integrate`, `optimise`: a simulation, a control problem, with its result, the `optimum`; each `attempt` from one start, `prepare`d; `error`: errors of tasks; `phase`: the present
+//!   phase of work; `remark`, `solve_remarks`: warnings and notes.
 //! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs.
 //! - `resimulate`: verification of an optimum, by the `distance` of motions; `cure`: finer grids where it fails; `gap`: duality gap of its
 //!  objective; `holding`, `afterwards`: its end; `final_values`: deviations from final costs.
 //! - `recentre`: a motion with other charts.
-//! - `second_start`, `infeasible`, `active`, `violations`: attempts before a problem is called infeasible, and the explanation.
+//! - `further`, `second_start`, `shortest`, `combined`, `infeasible`, `active`, `violations`: attempts before a problem is called infeasible, and the explanation.
 //! - `effects`, `reasons`, `stopwatch`: terms of a model, their reasons and times; `memory`: a refusal of more than the machine has.
 //! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material.
 //! - `tracking`: deviations of a motion from the references of its objective.
@@ -15,7 +16,9 @@ pub mod accuracy;
 pub(crate) mod active;
 pub(crate) mod afterwards;
 pub mod at_once;
+pub(crate) mod attempt;
 pub(crate) mod cause;
+pub(crate) mod combined;
 pub(crate) mod confirmed;
 pub(crate) mod cure;
 pub(crate) mod distance;
@@ -24,6 +27,7 @@ pub(crate) mod effects;
 mod error;
 pub mod estimate;
 pub(crate) mod final_values;
+pub(crate) mod further;
 pub(crate) mod gap;
 pub(crate) mod grids;
 pub(crate) mod holding;
@@ -33,8 +37,10 @@ mod iterate;
 pub(crate) mod memory;
 pub(crate) mod motion;
 pub(crate) mod optimise;
+pub(crate) mod optimum;
 mod ordering;
 pub(crate) mod phase;
+pub(crate) mod prepare;
 pub(crate) mod reasons;
 mod recentre;
 pub(crate) mod remark;
@@ -42,6 +48,7 @@ pub(crate) mod repeat;
 pub(crate) mod resimulate;
 pub(crate) mod resolve;
 pub(crate) mod second_start;
+pub(crate) mod shortest;
 pub(crate) mod solve_remarks;
 pub(crate) mod steps;
 pub(crate) mod stopwatch;
@@ -62,8 +69,10 @@ pub use grids::{integrate_to, optimise_to};
 pub use integrate::{Simulated, grid, integrate, integrate_on};
 pub use iterate::Iterate;
 pub use motion::{solved, trajectory};
-pub use optimise::{Counted, Optimum, SolveLimits, optimise};
+pub use optimise::optimise;
+pub use optimum::{Optimum, Restarted, Shortest, SolveLimits};
 pub use phase::listen_to_phases;
+pub use prepare::Counted;
 pub use reasons::{Absent, absent};
 pub use remark::{Remark, Remarks, Severity};
 pub use resimulate::{Resimulation, under_constant_voltages};

@@ -1,63 +1,84 @@
-//! A second start from elsewhere, before a problem is called infeasible.
+//! Starts from elsewhere, before a problem is called infeasible.
 
-use crate::control::BoundaryConditions;
-use crate::control::problem::{Control, Guess, Voltages};
-use crate::ipopt::{SolverResult, Status};
+use std::ops::ControlFlow;
+use std::time::Instant;
 
-/// Iterations of the second start; an optimum is found from it soon or not at all.
-pub(crate) const ITERATIONS: usize = 100;
+use crate::control::Solution;
+use crate::control::problem::Control;
+use crate::model::System;
+use crate::workflow::combined::{put_after, put_before};
+use crate::workflow::further::{Further, ITERATIONS, displaced};
+use crate::workflow::iterate::Iterate;
+use crate::workflow::optimum::{Optimum, Restarted, Shortest, SolveLimits};
+use crate::workflow::phase::phase;
+use crate::workflow::shortest::shortest;
 
-/// Returns true if a solve ended for want of a motion that keeps goal and limits.
-pub(crate) fn is_infeasible(status: Status) -> bool {
-    matches!(status, Status::Infeasible | Status::RestorationFailed)
-}
+/// Starts, in words.
+const SHORTEST: &str = "the shortest motion";
+const DISPLACED: &str = "a second, displaced initial guess";
 
-/// Iterations after which a limit of them says something of the problem.
-const MANY: usize = 50;
-
-/// Returns true if a solve ended without a motion that keeps goal and limits, by its verdict or after many iterations, so that an explanation helps.
-pub(crate) fn is_unreached(solution: &SolverResult) -> bool {
-    let is_long = solution.iterations.len() > MANY;
-    is_infeasible(solution.status) || (solution.status == Status::IterationLimit && is_long)
-}
-
-/// The problem with another guess: the motion under the voltages of the goal, or half of the largest ones; interpolated where it
-/// was simulated.
-pub(crate) fn displaced(
+/// Solves a control problem again from other starts, where the first one led nowhere: from the shortest motion, where that is as short as is
+/// asked for, and, unless it is longer, from a displaced guess. The first solve, with the iterations of all, where none leads anywhere.
+pub(crate) fn second_starts(
+    system: &System,
     control: &Control,
-    boundary: &BoundaryConditions,
-    sources: usize,
-) -> Control {
-    let [low, high] = control.voltage_bounds;
-    let guess = match (&control.guess, &boundary.rest[1]) {
-        (Guess::Simulate(_), _) => Guess::Interpolate,
-        (_, Some(hold)) => Guess::Simulate(Voltages::Constant(hold.clone())),
-        (_, None) => {
-            // Without bounds nothing is known of the size of voltages.
-            let half = 0.5 * (low + high);
-            let half = if half.is_finite() { half } else { 0.0 };
-            Guess::Simulate(Voltages::Constant(vec![half; sources]))
-        }
+    (first, earlier): (Optimum, Option<&Solution>),
+    allowed: SolveLimits,
+    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
+) -> Optimum {
+    let further = Further {
+        system,
+        control,
+        allowed,
+        began: Instant::now(),
     };
-    Control {
-        guess,
-        ..control.clone()
+    let mut found = first;
+    if further.is_over() {
+        return found;
     }
+    phase("looking for the shortest motion");
+    let (said, motion) = shortest(&further, &mut found, earlier);
+    found.shortest = said;
+    if let (Shortest::AsGiven, Some(motion), false) = (said, motion, further.is_over()) {
+        phase("solving from the shortest motion");
+        found = replaced(
+            &further,
+            found,
+            (control, Some(&motion)),
+            SHORTEST,
+            observer,
+        );
+    }
+    let is_done = found.meets_equations() || matches!(said, Shortest::Longer(_));
+    if !is_done && earlier.is_none() && !further.is_over() {
+        phase(DISPLACED);
+        let displaced = displaced(control, &found);
+        found = replaced(&further, found, (&displaced, None), DISPLACED, observer);
+    }
+    found
 }
 
-/// The better of two solves, with the iterations, evaluations and seconds of both.
-pub(crate) fn one_of_both(first: SolverResult, second: SolverResult) -> SolverResult {
-    let (mut kept, other, is_second) = match second.status.is_solved() {
-        true => (second, first, true),
-        false => (first, second, false),
+/// Returns the optimum of another start, or the result before where that finds none; with the iterations of both.
+fn replaced(
+    further: &Further<'_>,
+    mut before: Optimum,
+    (control, earlier): (&Control, Option<&Solution>),
+    from: &'static str,
+    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
+) -> Optimum {
+    let Some(mut second) = further.solve(control, earlier, ITERATIONS, observer) else {
+        return before;
     };
-    let iterations = std::mem::take(&mut kept.iterations);
-    kept.iterations = match is_second {
-        true => other.iterations.into_iter().chain(iterations).collect(),
-        false => iterations.into_iter().chain(other.iterations).collect(),
-    };
-    kept.seconds += other.seconds;
-    kept.evaluations += other.evaluations;
-    kept.failed_evaluations += other.failed_evaluations;
-    kept
+    if !second.meets_equations() {
+        put_after(&mut before.solution, &second.solution);
+        return before;
+    }
+    let first = before.solution.status;
+    put_before(&mut second.solution, &before.solution);
+    Optimum {
+        setup: before.setup,
+        carried: before.carried,
+        restarted: Some(Restarted { first, from }),
+        ..second
+    }
 }

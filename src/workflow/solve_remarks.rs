@@ -1,23 +1,21 @@
 //! Remarks on a solve, the same for the command line, Python and Rust.
 
 use crate::control::problem::Control;
-use crate::model::System;
 use crate::workflow::afterwards::Afterwards;
+use crate::workflow::further::is_unreached;
 use crate::workflow::holding;
 use crate::workflow::infeasible::explain;
-use crate::workflow::optimise::Optimum;
+use crate::workflow::optimum::Optimum;
 use crate::workflow::remark::Remarks;
 use crate::workflow::resimulate::Resimulation;
-use crate::workflow::second_start::is_unreached;
 
-/// Adds all that is to be known of an optimum, or of the last iterate of a solve that found none: `refined` is why another grid
-/// was taken than that of the problem, and searching for reasons takes no more than `left` seconds.
+/// Adds all that is to be known of an optimum, or of the last iterate of a solve that found none; `refined` tells why another
+/// grid was taken than that of the problem.
 pub(crate) fn add_remarks(
     remarks: &mut Remarks,
-    (system, control): (&System, &Control),
+    control: &Control,
     optimum: &Optimum,
     refined: Option<String>,
-    left: Option<f64>,
 ) {
     let tested = optimum.resimulation.as_ref();
     let (model, boundary) = (&optimum.model, &optimum.boundary);
@@ -31,6 +29,6 @@ pub(crate) fn add_remarks(
     remarks.note("free_end", holding::free_end(control));
     remarks.note("linear_solver", optimum.solution.linear.note());
     if is_unreached(&optimum.solution) {
-        remarks.note("infeasible", explain(system, control, optimum, left));
+        remarks.note("infeasible", explain(control, optimum));
     }
 }

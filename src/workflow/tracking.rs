@@ -7,7 +7,7 @@ use crate::control::problem::{Control, CostFunction, During, QuantityCost};
 use crate::dynamics::trajectory::Trajectory;
 use crate::model::system::{Joint, System};
 use crate::model::{Quantity, joint_unit};
-use crate::workflow::optimise::Optimum;
+use crate::workflow::optimum::Optimum;
 
 /// A marker or a joint, its reference, and its deviations.
 #[derive(Clone, Debug, PartialEq, Serialize)]

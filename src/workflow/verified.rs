@@ -12,7 +12,8 @@ use crate::model::System;
 use crate::workflow::cure::Cured;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::iterate::Iterate;
-use crate::workflow::optimise::{Optimum, SolveLimits, optimise};
+use crate::workflow::optimise::optimise;
+use crate::workflow::optimum::{Optimum, SolveLimits};
 
 /// Deviation of the motion under the optimal voltages that is confirmed where no accuracy is set, as a part of the path length.
 pub const ACCURACY: f64 = 0.01;

@@ -96,6 +96,30 @@ fn random_goals_are_reached_or_refused_with_a_word() {
 }
 
 #[test]
+fn a_goal_that_is_just_reached_in_time_is_found_from_the_shortest_motion() {
+    // The guess of the problem ends in the limit of iterations; the shortest motion takes 0.2 s and no longer.
+    let changes = [
+        r#"control.goal={"markers":{"tip":[0.13047225366716458,0.23968469529064168,0.09329478813017689]}}"#,
+        "control.duration=0.2 s",
+        "control.solver.max_iterations=200",
+    ]
+    .map(str::to_owned);
+    let loaded = read_problem(&trunk(), &changes).expect("a goal");
+    let Task::Control(control) = loaded.task else {
+        panic!("a problem of control");
+    };
+    let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
+    let limits = SolveLimits::default();
+    let optimum = optimise(&loaded.system, &control, None, limits, &mut go_on);
+    let optimum = optimum.expect("a reachable goal");
+    assert!(optimum.is_solved(), "{}", optimum.word());
+    let duration = optimum.motion.times[optimum.motion.intervals()];
+    assert!((duration - 200.0).abs() < 1e-9, "{duration} ms");
+    let from = optimum.restarted.expect("another start").from;
+    assert_eq!(from, "the shortest motion");
+}
+
+#[test]
 fn a_simulation_as_a_guess_saves_iterations() {
     let mut goals = Goals::new(1);
     let mut all = [Vec::new(), Vec::new()];

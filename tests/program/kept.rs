@@ -51,6 +51,24 @@ fn a_new_trunk_can_be_solved_and_is_not_overwritten() {
 }
 
 #[test]
+fn new_trunks_of_many_segments_can_be_solved() {
+    let folder = workshop();
+    for segments in ["12", "24"] {
+        let place = format!("trunk{segments}");
+        let (status, _, err) = run(
+            folder.path(),
+            &["new", "trunk", "--segments", segments, &place],
+        );
+        assert_eq!(status, 0, "{err}");
+        let (status, out, err) = run(
+            folder.path(),
+            &["solve", &format!("{place}/problem.json"), "--no-report"],
+        );
+        assert_eq!(status, 0, "{out}{err}");
+    }
+}
+
+#[test]
 fn kept_schemas_are_those_of_the_program() {
     let folder = workshop();
     for file in ["scene", "problem"] {

@@ -1,0 +1,90 @@
+//! Further starts of a control problem whose first one led nowhere: when they are taken, their guesses and limits.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use crate::control::Solution;
+use crate::control::problem::{Control, Guess, Voltages};
+use crate::ipopt::{SolverResult, Status, interrupt};
+use crate::model::System;
+use crate::workflow::attempt::attempt;
+use crate::workflow::iterate::Iterate;
+use crate::workflow::optimum::{Optimum, SolveLimits};
+
+/// Iterations of the second start; an optimum is found from it soon or not at all.
+pub(crate) const ITERATIONS: usize = 100;
+
+/// Returns true if a solve ended for want of a motion that keeps goal and limits.
+pub(crate) fn is_infeasible(status: Status) -> bool {
+    matches!(status, Status::Infeasible | Status::RestorationFailed)
+}
+
+/// Iterations after which a limit of them says something of the problem.
+const MANY: usize = 50;
+
+/// Returns true if a solve ended without a motion that keeps goal and limits, by its verdict or after many iterations, so that an explanation helps.
+pub(crate) fn is_unreached(solution: &SolverResult) -> bool {
+    let is_long = solution.iterations.len() > MANY;
+    is_infeasible(solution.status) || (solution.status == Status::IterationLimit && is_long)
+}
+
+/// The problem with another guess: the motion under the voltages of the goal, or half of the largest ones; interpolated where it
+/// was simulated.
+pub(crate) fn displaced(control: &Control, first: &Optimum) -> Control {
+    let [low, high] = control.voltage_bounds;
+    let guess = match (&control.guess, &first.boundary.rest[1]) {
+        (Guess::Simulate(_), _) => Guess::Interpolate,
+        (_, Some(hold)) => Guess::Simulate(Voltages::Constant(hold.clone())),
+        (_, None) => {
+            // Without bounds nothing is known of the size of voltages.
+            let half = 0.5 * (low + high);
+            let half = if half.is_finite() { half } else { 0.0 };
+            let sources = first.model.sources.len();
+            Guess::Simulate(Voltages::Constant(vec![half; sources]))
+        }
+    };
+    Control {
+        guess,
+        ..control.clone()
+    }
+}
+
+/// Further starts of a control problem, and what they may take.
+pub(crate) struct Further<'a> {
+    pub(crate) system: &'a System,
+    pub(crate) control: &'a Control,
+    pub(crate) allowed: SolveLimits,
+    pub(crate) began: Instant,
+}
+
+impl Further<'_> {
+    /// Seconds that are left, where they are limited.
+    fn seconds(&self) -> Option<f64> {
+        let spent = self.began.elapsed().as_secs_f64();
+        self.allowed.seconds.map(|s| (s - spent).max(0.0))
+    }
+
+    /// Returns true if nothing more may be begun.
+    pub(crate) fn is_over(&self) -> bool {
+        interrupt::requested()
+            || interrupt::stop().is_some()
+            || self.seconds().is_some_and(|s| s <= 0.0)
+    }
+
+    /// Solves a problem of the same system, within so many iterations; none where it cannot be stated.
+    pub(crate) fn solve(
+        &self,
+        control: &Control,
+        earlier: Option<&Solution>,
+        iterations: usize,
+        observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
+    ) -> Option<Optimum> {
+        let most = self.allowed.iterations;
+        let most = most.unwrap_or(self.control.solver.max_iterations);
+        let limits = SolveLimits {
+            iterations: Some(iterations.min(most)),
+            seconds: self.seconds(),
+        };
+        attempt(self.system, control, earlier, limits, observer).ok()
+    }
+}
