@@ -25,7 +25,7 @@ pub(crate) fn put_after(kept: &mut SolverResult, later: &SolverResult) {
 }
 
 fn add_calls(kept: &mut SolverResult, other: &SolverResult) {
-    kept.seconds += other.seconds.clone();
-    kept.evaluations += other.evaluations.clone();
+    kept.seconds += other.seconds;
+    kept.evaluations += other.evaluations;
     kept.failed_evaluations += other.failed_evaluations;
 }

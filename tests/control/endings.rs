@@ -183,7 +183,11 @@ fn a_kink_and_a_limit_of_iterations_are_explained() {
     let change = format!("scene={}", serde_json::json!(file));
     let ended = told(
         &kept("tendon_finger_control"),
-        &[&change, "control.solver.max_iterations=120"],
+        &[
+            &change,
+            "control.intervals=40",
+            "control.solver.max_iterations=120",
+        ],
         &out,
     );
     assert!(!ended.is_solved);
