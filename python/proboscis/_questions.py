@@ -68,18 +68,18 @@ class Questions:
         """Returns the optimal control problem with these entries of `control` in a problem file.
 
         * `duration`: Final time, SI unit s, or its bounds and a guess.
-        * `objective`: What is minimised.
+        * `objective`: Objective that is minimised.
         * `start`: Initial state.
         * `voltage_bounds`: Lower and upper bound of every voltage that is sought, SI unit V.
         * `coordinates`: Coordinates.
         * `free`: Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`.
         * `goal`: Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then.
-        * `guess`: Where the solver starts; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages,
+        * `guess`: Initial guess of the solver; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages,
           otherwise `"interpolate"`.
-        * `hold`: What becomes of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is `reported`
+        * `hold`: Treatment of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is `reported`
           (where not written), or refused where holding it is `required`.
         * `intervals`: Number of intervals, 1 or more, or `"auto"`, as where it is not written: as many as the verification of the optimum
-          needs to confirm an error of 1 % of the path length, or of what `--accuracy` says.
+          needs to confirm an error of 1 % of the path length, or of the part that `--accuracy` gives.
         * `limits`: Path limits.
         * `solver`: Options of the solver.
         * `voltages`: Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no
@@ -127,9 +127,10 @@ class Questions:
         * `duration`: Length, SI unit s.
         * `coordinates`: Coordinates.
         * `integrator`: The method; the midpoint variational integrator where not written.
-        * `linear_solver`: Who factorises it; the one that is fastest as a rule where not written.
-        * `newton`: When the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`.
-        * `start`: Where it starts; the reference configuration at rest where not written.
+        * `linear_solver`: Method of its factorisation; the one that is fastest as a rule where not written.
+        * `newton`: Occasions at which the tangent of a step is factorised; where not written `modified` with finite elements, otherwise
+          `full`.
+        * `start`: Start of the motion; the reference configuration at rest where not written.
         * `step`: Step, SI unit s, or `"auto"`, as where it is not written: steps as short as the tolerance needs, by the midpoint rule.
         * `tolerance`: Sum of the estimated local errors that `"auto"` allows over the duration, of angles in rad, of lengths relative to the
           robot's size; 1e-3 where not written.
@@ -163,7 +164,8 @@ class Questions:
         """Finds the state of rest with these entries of `equilibrium` in a problem file; the others are those of `Problem.equilibrium`.
 
         * `coordinates`: Coordinates.
-        * `path`: Follow the path of equilibria from zero voltage by arc length for so many points, past limit points such as pull-in.
+        * `path`: Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as
+          pull-in.
         * `voltages`: Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
         """
         problem = self._problem(

@@ -67,11 +67,11 @@ class Cylinder(TypedDict):
 
 
 Dielectric: TypeAlias = "Literal['first_order', 'ideal']"
-"""How the relative permittivity enters the energy."""
+"""Law by which the relative permittivity enters the energy."""
 
 
 Division: TypeAlias = "int | Sequence[Layer]"
-"""How a direction of a box is cut."""
+"""Division of a direction of a box."""
 
 
 class Electrode(TypedDict):
@@ -97,7 +97,7 @@ class Electrode(TypedDict):
 
 
 Element: TypeAlias = "Literal['hex8', 'hex8_q1p0']"
-"""Which hexahedron: how it treats volume."""
+"""Kind of hexahedron: its treatment of volume."""
 
 
 Fixed: TypeAlias = "Text | Held"
@@ -147,7 +147,7 @@ class Layer(TypedDict):
 
 
 MuscleModel: TypeAlias = "Literal['lumped', 'finite_elements']"
-"""How a muscle is modelled."""
+"""Model of a muscle."""
 
 
 class Nothing(TypedDict):
@@ -164,7 +164,7 @@ class Pair(TypedDict):
     """Sides of the rectangular cross-section at rest, SI unit m."""
 
     element: NotRequired[Element]
-    """Which hexahedron; `hex8` where not written. Of `finite_elements` only."""
+    """Kind of hexahedron; `hex8` where not written. Of `finite_elements` only."""
 
     elements: NotRequired[Sequence[int] | Numbers]
     """Elements along both sides of the cross-section and along the span; of `finite_elements` only."""
@@ -273,7 +273,7 @@ class BodyVelocity(TypedDict):
 
 
 ControlSolver: TypeAlias = "Literal['auto', 'stages', 'mumps']"
-"""Who solves the linear systems of a control problem."""
+"""Solver of the linear systems of a control problem."""
 
 
 Coordinates: TypeAlias = "Literal['reduced', 'redundant']"
@@ -341,7 +341,7 @@ class FinalMarker(TypedDict):
 
 
 class Final(TypedDict):
-    """What is to end near a place: exactly one of the two."""
+    """Marker or joint that ends near a place: exactly one of the two."""
 
     joint: NotRequired[FinalJoint]
     """The coordinate of a joint ends near a value."""
@@ -354,7 +354,7 @@ class FreeDuration(TypedDict):
     """Bounds of a free final time."""
 
     guess: Quantity
-    """Where the solver starts, SI unit s."""
+    """Duration at which the solver starts, SI unit s."""
 
     max: Quantity
     """Upper bound, SI unit s."""
@@ -370,7 +370,7 @@ class Free(TypedDict):
     """Other constants by their paths that are this one times a number."""
 
     guess: NotRequired[Quantity]
-    """Where the solver starts; the value of the scene where not written."""
+    """Value at which the solver starts; the value of the scene where not written."""
 
     max: Quantity
     """Upper bound."""
@@ -432,7 +432,7 @@ GuessWord: TypeAlias = "Literal['interpolate']"
 
 
 Hold: TypeAlias = "Literal['reported', 'required']"
-"""What becomes of a goal that cannot be kept."""
+"""Treatment of a goal that cannot be kept."""
 
 
 class IntegratorObject(TypedDict):
@@ -454,7 +454,7 @@ IntegratorWord: TypeAlias = "Literal['midpoint', 'implicit_euler', 'generalised_
 
 
 Intervals: TypeAlias = "IntervalsWord | int"
-"""How many intervals there are."""
+"""Number of intervals."""
 
 
 IntervalsWord: TypeAlias = "Literal['auto']"
@@ -491,24 +491,24 @@ class Limit(TypedDict):
 
 
 LinearSolver: TypeAlias = "Literal['faer', 'mumps']"
-"""Who factorises a tangent."""
+"""Method of the factorisation of a tangent."""
 
 
 class MarkerLimit(TypedDict):
     """Region of a marker: exactly one of `inside` and `outside`."""
 
     inside: NotRequired[Region]
-    """Where it stays."""
+    """Region in which it stays."""
 
     marker: Text
     """Name of the marker."""
 
     outside: NotRequired[Region]
-    """What it stays out of."""
+    """Region outside which it stays."""
 
 
 Newton: TypeAlias = "Literal['full', 'modified', 'reused']"
-"""When the tangent of a step is factorised."""
+"""Occasions at which the tangent of a step is factorised."""
 
 
 class Objective(TypedDict):
@@ -524,7 +524,7 @@ class Objective(TypedDict):
     """Weight per J of the electrical energy from the sources of lumped muscles, of all sources or of named ones; what flows back is negative."""
 
     final: NotRequired[Sequence[Final]]
-    """Where markers and joints are to end."""
+    """Targets of markers and joints at the end."""
 
     mechanical_work: NotRequired[Energy]
     """Weight per J of the mechanical work of the electrical forces of lumped muscles, of all sources or of named ones."""
@@ -533,7 +533,7 @@ class Objective(TypedDict):
     """Weight of Σ |V_k − V_{k−1}|²/h, V in kV, h in s, with the rest voltages of start and goal at the ends."""
 
     track: NotRequired[Sequence[Track]]
-    """What markers and joints follow in time."""
+    """References of markers and joints in time."""
 
 
 Option: TypeAlias = "int | float | Text"
@@ -615,9 +615,9 @@ class RestGoal(TypedDict):
     """Orientations by body."""
 
     rest: NotRequired[Rest]
-    """What comes to rest at an equilibrium, at positions of markers and at orientations: `everything`, or `bodies` and these markers alone, also
-    called `markers`. Where not written everything, or, of elastic blocks that have more coordinates than the voltages can bring to rest, bodies
-    and these markers.
+    """Part that comes to rest at an equilibrium, at positions of markers and at orientations: `everything`, or `bodies` and these markers alone,
+    also called `markers`. Where not written everything, or, of elastic blocks that have more coordinates than the voltages can bring to rest,
+    bodies and these markers.
     """
 
     rest_at_voltages: NotRequired[Mapping[Any, Quantity]]
@@ -625,7 +625,7 @@ class RestGoal(TypedDict):
 
 
 Rest: TypeAlias = "Literal['everything', 'bodies', 'markers']"
-"""What comes to rest at a goal."""
+"""Part that comes to rest at a goal."""
 
 
 class SignalCsv(TypedDict):
@@ -687,7 +687,7 @@ class Solver(TypedDict):
     """Options of Ipopt by name."""
 
     linear_solver: NotRequired[ControlSolver]
-    """Who solves the linear systems, `auto` where not written."""
+    """Solver of the linear systems, `auto` where not written."""
 
     max_iterations: NotRequired[int]
     """Limit of iterations, 500 where not written."""
@@ -728,7 +728,7 @@ class Start(TypedDict):
 
 
 Step: TypeAlias = "StepWord | Quantity"
-"""How long steps are."""
+"""Length of the steps."""
 
 
 StepWord: TypeAlias = "Literal['auto']"
@@ -800,7 +800,7 @@ class TrackMarker(TypedDict):
 
 
 class Track(TypedDict):
-    """What is to be followed: exactly one of the three."""
+    """Marker or joints that follow a reference: exactly one of the three."""
 
     joint: NotRequired[TrackJoint]
     """The coordinate of a joint follows a function of time."""
@@ -834,25 +834,25 @@ class Control(TypedDict):
     """Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then."""
 
     guess: NotRequired[Guess]
-    """Where the solver starts; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages, otherwise
+    """Initial guess of the solver; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages, otherwise
     `"interpolate"`.
     """
 
     hold: NotRequired[Hold]
-    """What becomes of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is `reported` (where not
+    """Treatment of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is `reported` (where not
     written), or refused where holding it is `required`.
     """
 
     intervals: NotRequired[Intervals]
     """Number of intervals, 1 or more, or `"auto"`, as where it is not written: as many as the verification of the optimum needs to confirm an
-    error of 1 % of the path length, or of what `--accuracy` says.
+    error of 1 % of the path length, or of the part that `--accuracy` gives.
     """
 
     limits: NotRequired[Sequence[Limit]]
     """Path limits."""
 
     objective: Objective
-    """What is minimised."""
+    """Objective that is minimised."""
 
     solver: NotRequired[Solver]
     """Options of the solver."""
@@ -883,13 +883,13 @@ class Simulate(TypedDict):
     """The method; the midpoint variational integrator where not written."""
 
     linear_solver: NotRequired[LinearSolver]
-    """Who factorises it; the one that is fastest as a rule where not written."""
+    """Method of its factorisation; the one that is fastest as a rule where not written."""
 
     newton: NotRequired[Newton]
-    """When the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`."""
+    """Occasions at which the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`."""
 
     start: NotRequired[Start]
-    """Where it starts; the reference configuration at rest where not written."""
+    """Start of the motion; the reference configuration at rest where not written."""
 
     step: NotRequired[Step]
     """Step, SI unit s, or `"auto"`, as where it is not written: steps as short as the tolerance needs, by the midpoint rule."""
@@ -910,7 +910,7 @@ class Equilibrium(TypedDict):
     """Coordinates."""
 
     path: NotRequired[int]
-    """Follow the path of equilibria from zero voltage by arc length for so many points, past limit points such as pull-in."""
+    """Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as pull-in."""
 
     voltages: NotRequired[Mapping[Any, Quantity]]
     """Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named."""
@@ -949,7 +949,7 @@ class Chain(TypedDict):
 
 
 class Output(TypedDict):
-    """What tables, figures and page show of a motion; all of it stays in the solution."""
+    """Part of a motion that tables, figures and page show; all of it stays in the solution."""
 
     every: NotRequired[Quantity]
     """Time between the instants shown, SI unit s: those nearest to its multiples. Where not written all, and of a long motion so many that nothing

@@ -27,7 +27,7 @@ class Material(Part):
     * `c1`: Constant of the term c₁ E·E, SI unit F/m = N/V².
     * `c2`: Constant of the term c₂ C:(E⊗E), SI unit F/m = N/V².
     * `density`: Density, SI unit kg/m³; without it muscles are massless.
-    * `dielectric`: How `relative_permittivity` enters the energy; `first_order` where not written.
+    * `dielectric`: Law by which `relative_permittivity` enters the energy; `first_order` where not written.
     * `lame_lambda`: First Lamé constant λ, SI unit Pa; or give `poisson_ratio`. Finite elements need one of them.
     * `poisson_ratio`: Poisson's ratio, between −1 and 0.5; or give `lame_lambda`.
     * `relative_permittivity`: Relative permittivity, 1 or more; or give `c1` and `c2`; without either the material has no electric term.
@@ -73,7 +73,7 @@ class Body(Part):
     * `position`: Centre of mass, SI unit m.
     * `box`: Solid box with edges along the axes of the ground frame.
     * `cylinder`: Solid cylinder.
-    * `free`: Whether the body is free of the ground: no chain of joints leads there.
+    * `free`: True if the body is free of the ground: no chain of joints leads there.
     * `inertia`: Moments of inertia about the axes of the ground frame through the centre of mass, SI unit kg m²; overrides the shape's.
     * `sphere`: Solid sphere.
     """
@@ -114,8 +114,9 @@ class Joint(Part):
     * `parent`: Body on the side of the root, or `ground`.
     * `damping`: Damping of the joint coordinate, SI unit N m s/rad (revolute) or N s/m (prismatic).
     * `fixed`: No motion.
-    * `floating`: Any motion: the child is as free as without the joint, and its orientation in the first body is told.
-    * `locked`: Whether the joint is locked as it stands in the reference configuration: it is then `fixed`, and what it connects is one body.
+    * `floating`: Any motion: the child is as free as without the joint, and results give its orientation in the first body.
+    * `locked`: True if the joint is locked as it stands in the reference configuration: it is then `fixed`, and the bodies that it connects are
+      one body.
     * `prismatic`: Translation along an axis.
     * `revolute`: Rotation about an axis.
     * `spherical`: Rotation about a point.
@@ -163,11 +164,11 @@ class Muscle(Part):
     * `layer_thickness`: Thickness of one layer at rest, SI unit m.
     * `material`: Name of the material.
     * `to`: End.
-    * `element`: Which hexahedron; `hex8` where not written. Of `finite_elements` only.
+    * `element`: Kind of hexahedron; `hex8` where not written. Of `finite_elements` only.
     * `elements`: Elements along both sides of the cross-section and along the span; of `finite_elements` only.
     * `layers`: Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
     * `model`: Model; `lumped` where not written.
-    * `section_inertia`: Whether the inertia of the changing cross-section is called for.
+    * `section_inertia`: True if the inertia of the changing cross-section is taken into account.
     """
 
     kind, noun = "muscles", "muscle"
@@ -211,7 +212,7 @@ class Solid(Part):
 
     * `box`: Box with edges along the axes of the ground frame.
     * `electrodes`: Electrodes; without any the block has no potential.
-    * `element`: Which hexahedron; `hex8` where not written.
+    * `element`: Kind of hexahedron; `hex8` where not written.
     * `fixed`: Faces and other places that are held. A node that is glued as well moves with its body.
     * `glued`: Names of bodies by the faces that are glued to them; a face glued to `ground` is clamped.
     * `material`: Name of the material.
