@@ -20,11 +20,11 @@ pub(crate) struct Prepared<'m> {
     pub(crate) program: Transcription<'m>,
     pub(crate) point: StartingPoint,
     pub(crate) start: Start,
-    /// What became of the earlier solution.
+    /// Changes of the earlier solution.
     pub(crate) carried: Carried,
 }
 
-/// Whether a program with more equations than unknowns is refused.
+/// Treatment of a program with more equations than unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Counted {
     /// It has no solution.

@@ -8,6 +8,7 @@ mod circles;
 mod condensed;
 mod documents;
 mod floors;
+mod heads;
 mod lengths;
 mod numbering;
 mod roles;
