@@ -172,7 +172,8 @@ pub(super) fn control(
     notes.note("start", control.start.notes().iter().cloned());
     notes.note("goal", boundary.notes.iter().cloned());
     notes.note("moved_marker", moved_markers(system));
-    add_remarks(notes, control, &optimum, note);
+    let not_kept = not_kept.filter(|_| is_solved);
+    add_remarks(notes, control, &optimum, note, not_kept);
     notes.note("earlier_solution", carried(&optimum.carried));
     notes.note("second_start", optimum.restarted.map(restarted));
     summary.accuracy = accuracy;

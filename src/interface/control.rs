@@ -19,6 +19,7 @@ use crate::workflow::cause::Cause;
 use crate::workflow::cure::{Cured, reproduced};
 use crate::workflow::domain;
 use crate::workflow::final_values::final_values;
+use crate::workflow::holding;
 use crate::workflow::memory;
 use crate::workflow::motion::{history, trajectory};
 use crate::workflow::optimum::SolveLimits;
@@ -207,7 +208,9 @@ impl Control {
             ),
         };
         let mut remarks = Remarks::default();
-        add_remarks(&mut remarks, &control, &found, note);
+        let tested = found.resimulation.as_ref();
+        let not_kept = holding::warning(&control, model, &found.boundary, tested);
+        add_remarks(&mut remarks, &control, &found, note, not_kept);
         remarks.warn("outside_domain", domain::note(&outside, true));
         let trajectory = trajectory(model, &found.motion);
         let ends = found.boundary.rest.each_ref().map(Option::as_deref);

@@ -3,7 +3,7 @@
 use crate::control::problem::Control;
 use crate::workflow::afterwards::Afterwards;
 use crate::workflow::further::is_unreached;
-use crate::workflow::holding;
+use crate::workflow::holding::free_end;
 use crate::workflow::infeasible::explain;
 use crate::workflow::optimum::Optimum;
 use crate::workflow::remark::Remarks;
@@ -16,17 +16,15 @@ pub(crate) fn add_remarks(
     control: &Control,
     optimum: &Optimum,
     refined: Option<String>,
+    not_kept: Option<String>,
 ) {
     let tested = optimum.resimulation.as_ref();
-    let (model, boundary) = (&optimum.model, &optimum.boundary);
-    let not_kept = holding::warning(control, model, boundary, tested);
-    let not_kept = not_kept.filter(|_| optimum.is_solved());
     let left_goal = optimum.afterwards.as_ref().and_then(Afterwards::warning);
     remarks.note("refined_grid", refined);
     remarks.warn("coarse_intervals", tested.and_then(Resimulation::warning));
     remarks.warn("goal_not_held", not_kept.into_iter().chain(left_goal));
     remarks.warn("optimality_gap", optimum.wide.clone());
-    remarks.note("free_end", holding::free_end(control));
+    remarks.note("free_end", free_end(control));
     remarks.note("linear_solver", optimum.solution.linear.note());
     if is_unreached(&optimum.solution) {
         remarks.note("infeasible", explain(control, optimum));

@@ -150,6 +150,9 @@ fn an_end_that_cannot_be_kept_is_told_or_refused() {
         read(&folder.path().join("summary.json"))["status"],
         "not_held"
     );
+    // The reason is given once, and not as a warning too.
+    let reasons = leaves.notes.iter().filter(|note| note.contains("kept"));
+    assert_eq!(reasons.count(), 1, "{leaves:?}");
     // Nothing that is written goes by in silence.
     let ignored = CommandInput {
         input: pair,
