@@ -12,7 +12,6 @@ use crate::model::Model;
 #[derive(Debug)]
 pub(super) struct AtInstant<'m> {
     model: &'m Model,
-    scratch: Scratch,
     /// Made where rates follow from momenta under constraints.
     kinetic: Option<Kinetic<'m>>,
 }
@@ -21,7 +20,6 @@ impl<'m> AtInstant<'m> {
     pub(super) fn new(model: &'m Model) -> Self {
         Self {
             model,
-            scratch: model.action.scratch(Order::Gradient),
             kinetic: None,
         }
     }
@@ -29,10 +27,11 @@ impl<'m> AtInstant<'m> {
     /// Momentum of each coordinate at instant k, which is placed `here`: as recorded, at the start as the first interval asks for
     /// it, and otherwise that of the last instant.
     pub(super) fn momentum(
-        &mut self,
+        &self,
         history: &DiscreteTrajectory,
         k: usize,
         here: &Configuration,
+        scratch: &mut Scratch,
     ) -> Vec<f64> {
         let model = self.model;
         if let Some(momentum) = history.momenta.get(k) {
@@ -53,13 +52,13 @@ impl<'m> AtInstant<'m> {
             Order::Gradient,
             [&mut a, &mut b],
             &Interval::given(scalars, history.times[1] - history.times[0]),
-            &mut self.scratch,
+            scratch,
         );
         model
             .action
-            .evaluate_instant(Order::Gradient, &mut a, &[], &mut self.scratch);
+            .evaluate_instant(Order::Gradient, &mut a, &[], scratch);
         let mut rows = vec![0.0; model.action.motion.unknowns()];
-        model.action.rows(&mut a, &self.scratch, &mut rows);
+        model.action.rows(&mut a, scratch, &mut rows);
         rows[..n].iter().map(|row| -row).collect()
     }
 

@@ -327,7 +327,9 @@ impl<'m> Observer<'m> {
 
     /// Kinetic energy ½ p·v at instant k, and the momenta of all vectors with its rates v.
     fn moves(&mut self, history: &DiscreteTrajectory, k: usize) -> (f64, Vec<Vector>) {
-        let momentum = self.at_instant.momentum(history, k, &self.here);
+        let momentum = self
+            .at_instant
+            .momentum(history, k, &self.here, &mut self.scratch);
         let at_instant = &mut self.at_instant;
         let rates = at_instant.rates(history, k, &mut self.here, &momentum);
         let products = momentum.iter().zip(&rates).map(|(p, v)| p * v);

@@ -1,23 +1,17 @@
 //! Motion after a goal that no known voltages hold: under the last voltages, held on.
 
-use std::ops::ControlFlow;
-
 use serde::Serialize;
 
 use crate::control::Solution;
 use crate::control::problem::{BoundaryState, Control};
+use crate::dynamics::Start;
 use crate::dynamics::trajectory::Trajectory;
-use crate::dynamics::{Start, simulate};
-use crate::ipopt::interrupt;
 use crate::math::significant;
 use crate::model::{Model, joint_unit};
 use crate::workflow::distance::Distance;
-use crate::workflow::motion::solved_of;
+use crate::workflow::held::{Held, held, is_small};
+use crate::workflow::motion::trajectory;
 
-/// Durations of the motion that are simulated.
-const DURATIONS: usize = 5;
-/// A drift from the goal, as a part of the path length, from which on it is not held.
-const DRIFTS: f64 = 0.05;
 /// Maximum number of parts of the goal listed.
 const TOLD: usize = 3;
 
@@ -71,33 +65,16 @@ pub(crate) fn afterwards(
     if !is_named || end.momentum.len() != model.coordinate_count() {
         return None;
     }
-    let scalars = model.scalars(last);
-    let h = optimal.times[n] / n as f64;
-    let constant = |_: f64, _: f64| scalars.clone();
-    let steps = DURATIONS * n;
-    let (history, failure) =
-        simulate(
-            model,
-            &end,
-            h,
-            steps,
-            constant,
-            |_| match interrupt::requested() {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
-            },
-        );
-    let motion = Trajectory::from_history(model, &history);
-    let goal = departures(model, &control.goal, &motion);
-    let motion = solved_of(model, &history, motion, None);
-    let of = |k: usize| Distance::between(model, &motion, k, optimal, n);
-    let drift = (0..motion.times.len()).map(of);
-    let drift = drift.fold(Distance::default(), Distance::max);
+    let Held {
+        motion,
+        drift,
+        failure,
+    } = held(model, &end, optimal, last);
     let path_length = Distance::path_length(model, optimal);
     Some(Afterwards {
         seconds: motion.times[motion.intervals()] / 1e3,
-        goal,
-        is_held: failure.is_none() && drift.over(path_length, model) <= DRIFTS,
+        goal: departures(model, &control.goal, &trajectory(model, &motion)),
+        is_held: failure.is_none() && is_small(drift, path_length, model),
         drift,
         failure: failure.map(|error| error.to_string()),
     })

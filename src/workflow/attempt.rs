@@ -139,6 +139,7 @@ pub(crate) fn attempt(
             break;
         }
     }
+    let is_solved = solution.status.is_solved();
     let mut program = solver.into_program();
     drop(watch);
     let gap = gap::gap(&program, &solution);
@@ -146,19 +147,18 @@ pub(crate) fn attempt(
     let history = program.decode(&solution.x);
     let motion = Solution {
         hold: boundary.rest[1].clone(),
-        barrier: match solution.status.is_solved() {
+        barrier: match is_solved {
             true => None,
             false => solution.iterations.last().map(|last| last.mu),
         },
         ..solved(&model, &history, Some(program.costates(&solution.costates)))
     };
-    let violated = match solution.status.is_solved() {
-        true => Vec::new(),
-        false => violations(&mut program, &solution.x, HOLDS, NAMED),
-    };
-    let active = match solution.status.is_solved() {
-        true => Vec::new(),
-        false => active(&mut program, &solution.x, &model, control),
+    let (violated, active) = match is_solved {
+        true => (Vec::new(), Vec::new()),
+        false => (
+            violations(&mut program, &solution.x, HOLDS, NAMED),
+            active(&mut program, &solution.x, &model, control),
+        ),
     };
     let infeasibility = program.violation(&solution.x);
     let constraints = program.constraints().lower.len();
@@ -172,11 +172,11 @@ pub(crate) fn attempt(
             (found, boundary, Some(model))
         }
     };
-    let reversed = match solution.status.is_solved() {
+    let reversed = match is_solved {
         true => reversed_muscle(&model, &history),
         false => None,
     };
-    let is_motion = solution.status.is_solved() && reversed.is_none();
+    let is_motion = is_solved && reversed.is_none();
     if is_motion {
         phase("simulating under the optimal voltages");
     }

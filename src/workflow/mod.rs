@@ -4,7 +4,7 @@
 //!   phase of work; `remark`, `solve_remarks`: warnings and notes.
 //! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs.
 //! - `resimulate`: verification of an optimum, by the `distance` of motions; `cure`: finer grids where it fails; `gap`: duality gap of its
-//!  objective; `holding`, `afterwards`: its end; `final_values`: deviations from final costs.
+//!  objective; `held`, `holding`, `afterwards`: its end; `final_values`: deviations from final costs.
 //! - `recentre`: a motion with other charts.
 //! - `further`, `second_start`, `shortest`, `combined`, `infeasible`, `active`, `violations`: attempts before a problem is called infeasible, and the explanation.
 //! - `effects`, `reasons`, `stopwatch`: terms of a model, their reasons and times; `memory`: a refusal of more than the machine has.
@@ -30,6 +30,7 @@ pub(crate) mod final_values;
 pub(crate) mod further;
 pub(crate) mod gap;
 pub(crate) mod grids;
+pub(crate) mod held;
 pub(crate) mod holding;
 pub(crate) mod infeasible;
 pub(crate) mod integrate;

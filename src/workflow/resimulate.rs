@@ -10,15 +10,13 @@ use std::ops::ControlFlow;
 use serde::Serialize;
 
 use crate::control::{BoundaryConditions, Solution};
-use crate::dynamics::{DiscreteTrajectory, Start, StepError, simulate};
+use crate::dynamics::{DiscreteTrajectory, Start, StepError};
 use crate::model::Model;
 use crate::workflow::cause::Cause;
 use crate::workflow::distance::Distance;
-use crate::workflow::motion::solved;
-use crate::workflow::repeat::{Repeat, go_on};
+use crate::workflow::held::{self, DURATIONS, Held, constant, held};
+use crate::workflow::repeat::Repeat;
 
-/// Durations of the motion for which the goal is held.
-const HELD: usize = 5;
 /// Distance from the optimum on its own grid that counts as none, in rad and lengths of the system, and in tolerances of the
 /// solver.
 const SAME: (f64, f64) = (1e-4, 1e2);
@@ -35,8 +33,6 @@ const LEFT: f64 = 0.25;
 const ROUNDING: f64 = 1e-7;
 /// An estimated error beyond this part of the path length needs no better estimate.
 const LOST: f64 = 1.0;
-/// A drift from the goal, as a part of the path length, from which on it is not held.
-const DRIFTS: f64 = 0.05;
 
 /// Verification of optimal voltages.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -197,22 +193,16 @@ impl Resimulation {
         let (Some(end), Some(rest)) = (&self.end, &boundary.rest[1]) else {
             return;
         };
+        let Held { drift, failure, .. } = held(model, end, optimal, rest);
+        self.drift = Some(drift);
         let n = optimal.intervals();
-        let h = optimal.times[n] / n as f64;
-        let scalars = model.scalars(rest);
-        let constant = |_: f64, _: f64| scalars.clone();
-        let (history, failure) = simulate(model, end, h, HELD * n, constant, |_| go_on());
-        let motion = solved(model, &history, None);
-        let of = |k: usize| Distance::between(model, &motion, k, optimal, n);
-        let drift = (0..motion.times.len()).map(of);
-        self.drift = Some(drift.fold(Distance::default(), Distance::max));
-        self.held = Some((HELD * n) as f64 * h / 1e3);
+        self.held = Some((DURATIONS * n) as f64 * (optimal.times[n] / n as f64) / 1e3);
         self.failure = failure.map(|error| error.to_string());
     }
 
     /// Returns true if the goal is held: its voltages are known, and under them the system stays.
     pub(crate) fn is_held(&self, model: &Model) -> bool {
-        let stays = |drift: Distance| drift.over(self.path_length, model) <= DRIFTS;
+        let stays = |drift| held::is_small(drift, self.path_length, model);
         self.failure.is_none() && self.drift.is_some_and(stays)
     }
 
@@ -250,12 +240,9 @@ pub fn under_constant_voltages(
     optimal: &Solution,
     durations: usize,
 ) -> Option<(DiscreteTrajectory, Option<StepError>)> {
-    let scalars = model.scalars(boundary.rest[1].as_ref()?);
-    let n = optimal.intervals();
-    let h = optimal.times[n] / n as f64;
-    let constant = |_: f64, _: f64| scalars.clone();
+    let voltages = boundary.rest[1].as_ref()?;
     let start = &boundary.start;
-    Some(simulate(model, start, h, durations * n, constant, |_| {
+    Some(constant(model, start, optimal, voltages, durations, || {
         ControlFlow::Continue(())
     }))
 }

@@ -49,19 +49,18 @@ pub(crate) fn shortest(
     let freed = freed(further.control, given);
     let iterations = TIMES * first.solution.iterations.len();
     let iterations = iterations.clamp(FEWEST, MOST);
+    let displaced = match earlier {
+        None => Some((displaced(&freed, first), None, ITERATIONS)),
+        Some(_) => None,
+    };
+    let starts = [(freed, earlier, iterations)].into_iter().chain(displaced);
     let mut said = Shortest::Unknown;
-    for start in [Start::OfProblem, Start::Displaced] {
-        if further.is_over() || (start == Start::Displaced && earlier.is_some()) {
+    for (problem, earlier, iterations) in starts {
+        if further.is_over() {
             break;
         }
         let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
-        let found = match start {
-            Start::OfProblem => further.solve(&freed, earlier, iterations, &mut go_on),
-            Start::Displaced => {
-                let displaced = displaced(&freed, first);
-                further.solve(&displaced, None, ITERATIONS, &mut go_on)
-            }
-        };
+        let found = further.solve(&problem, earlier, iterations, &mut go_on);
         let Some(found) = found else {
             break;
         };
@@ -72,13 +71,6 @@ pub(crate) fn shortest(
         }
     }
     (said, None)
-}
-
-/// Start of the solve with a free duration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Start {
-    OfProblem,
-    Displaced,
 }
 
 /// Reads the end of a solve with a free duration for a given one.

@@ -44,27 +44,21 @@ impl<'a> Reader<'a> {
         string(self.0.text, bytes).ok_or_else(Self::broken)
     }
 
-    fn list<V: Visitor<'a>>(&mut self, visitor: V) -> Result<V::Value, Error> {
+    /// Moves past the object or list that begins here, of which `visit` takes all entries.
+    fn inside<T>(
+        &mut self,
+        [open, close]: [u8; 2],
+        expected: &'static str,
+        visit: impl FnOnce(Entries<'_, 'a>) -> Result<T, Error>,
+    ) -> Result<T, Error> {
         let whole = self.0;
-        self.expect(b'[')?;
-        let value = visitor.visit_seq(Entries::of(self))?;
-        if self.0.peek() != Some(b']') {
+        self.expect(open)?;
+        let value = visit(Entries::of(self))?;
+        if self.0.peek() != Some(close) {
             let length = whole.entries().count();
-            return Err(Error::invalid_length(length, &"fewer elements in array"));
+            return Err(Error::invalid_length(length, &expected));
         }
-        self.expect(b']')?;
-        Ok(value)
-    }
-
-    fn object<V: Visitor<'a>>(&mut self, visitor: V) -> Result<V::Value, Error> {
-        let whole = self.0;
-        self.expect(b'{')?;
-        let value = visitor.visit_map(Entries::of(self))?;
-        if self.0.peek() != Some(b'}') {
-            let length = whole.entries().count();
-            return Err(Error::invalid_length(length, &"fewer elements in map"));
-        }
-        self.expect(b'}')?;
+        self.expect(close)?;
         Ok(value)
     }
 }
@@ -82,8 +76,12 @@ impl<'a> Deserializer<'a> for &mut Reader<'a> {
 
     fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
         match self.0.peek().ok_or_else(Reader::broken)? {
-            b'{' => self.object(visitor),
-            b'[' => self.list(visitor),
+            b'{' => self.inside(*b"{}", "fewer elements in map", |entries| {
+                visitor.visit_map(entries)
+            }),
+            b'[' => self.inside(*b"[]", "fewer elements in array", |entries| {
+                visitor.visit_seq(entries)
+            }),
             b'"' => visit(self.string()?, visitor),
             _ => match self.scalar()? {
                 "null" => visitor.visit_unit(),
