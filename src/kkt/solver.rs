@@ -28,6 +28,8 @@ const KEPT: usize = 4;
 const EXPENSIVE: f64 = 200.0;
 /// Multiplications of a factorisation that a user waits for: some seconds.
 const LONG: f64 = 1e10;
+/// Requests for better factors than condensed ones beyond which no more matrices are factored as a whole: some thousands.
+const MOST_REQUESTS: u32 = 12;
 /// Backward error that calls for a stricter rule.
 const ERROR: f64 = 1e-3;
 
@@ -72,6 +74,11 @@ pub struct Solver {
     care: Care,
     /// With which a factorisation begins.
     least: Care,
+    /// With which that of the last matrix begins when it is given again, and that of some matrices behind it.
+    again: Care,
+    /// Number of these, and of requests for better factors than condensed ones.
+    followers: usize,
+    requests: u32,
     /// With which one that is not condensed begins for a while.
     lately: Care,
     /// Factorisations that this while lasts.
@@ -99,6 +106,9 @@ impl Solver {
             scales: Scales::default(),
             care: least,
             least,
+            again: least,
+            followers: 0,
+            requests: 0,
             lately: least,
             kept: 0,
             is_factored: false,
@@ -126,15 +136,25 @@ impl Solver {
     /// Forgets what the matrices so far have taught, so that the next ones are factored as by a new solver.
     pub fn restart(&mut self) {
         self.least = begin(&self.plan);
+        self.again = self.least;
+        (self.followers, self.requests) = (0, 0);
+        self.entries.clear();
         self.kept = 0;
         self.is_factored = false;
         self.is_told = false;
         self.statistics = Statistics::default();
     }
 
-    /// Asks for a stricter rule from now on.
+    /// Asks for a stricter rule: from now on where matrices are not condensed; where they are, for the last matrix and for twice as many
+    /// behind it as at the request before, of which there are none at first.
     pub fn improve(&mut self) {
-        self.least = self.care.max(self.least).stricter();
+        self.again = self.care.max(self.again).stricter();
+        if self.least == Care::Condensed {
+            self.followers = (1_usize << self.requests.min(MOST_REQUESTS)) - 1;
+            self.requests += 1;
+        } else {
+            self.least = self.again;
+        }
     }
 
     /// Factors the matrix with these entries, one for each of the pattern. A matrix with an entry that is no finite number counts as
@@ -168,8 +188,14 @@ impl Solver {
             "the entries of the pattern"
         );
         self.statistics.factorisations += 1;
-        self.entries.clear();
-        self.entries.extend_from_slice(entries);
+        if self.entries != entries {
+            self.entries.clear();
+            self.entries.extend_from_slice(entries);
+            match self.followers {
+                0 => self.again = self.least,
+                _ => self.followers -= 1,
+            }
+        }
         self.is_factored = false;
         if !entries.iter().all(|entry| entry.is_finite()) {
             return Ok(Inertia {
@@ -179,9 +205,9 @@ impl Solver {
         }
         let progress = &mut Progress::new(is_over);
         // Condensed factors cost so much less than others that they are tried whatever the matrices before needed.
-        self.care = match self.least {
+        self.care = match self.again {
             Care::Condensed => Care::Condensed,
-            least => least.max(self.lately()),
+            again => again.max(self.lately()),
         };
         let mut why = None;
         let outcome = loop {

@@ -353,6 +353,37 @@ fn a_matrix_behind_one_that_is_not_condensed_exactly_is_condensed() {
     assert!(inexact > 4, "{inexact}");
 }
 
+/// Better factors than condensed ones are asked for: the first time for one matrix, then for twice as many behind it as the time before.
+#[test]
+fn matrices_behind_one_that_needs_better_factors_are_condensed_again() {
+    let mut random = Random(13);
+    let systems = [0; 6].map(|_| System::of_horizon(CONDENSED, 1.0, &mut random));
+    let mut solver = solver(&systems[0], Some(&systems[0].unknowns));
+    let mut are_whole = Vec::new();
+    for request in 0..3 {
+        for (i, system) in systems.iter().enumerate() {
+            assert_eq!(solver.factor(&system.entries), system.inertia());
+            if i == 0 {
+                assert!(!solver.is_whole(), "request {request}");
+                solver.improve();
+                assert_eq!(solver.factor(&system.entries), system.inertia());
+                assert!(solver.is_whole(), "request {request}");
+            }
+            are_whole.push(solver.is_whole());
+            let error = error(system, &mut solver);
+            assert!(error < 1e-12, "{error:e}");
+        }
+    }
+    let counts = are_whole
+        .chunks(6)
+        .map(|part| part.iter().filter(|&&is| is).count());
+    assert_eq!(counts.collect::<Vec<_>>(), [1, 2, 4]);
+    solver.improve();
+    solver.restart();
+    solver.factor(&systems[5].entries);
+    assert!(!solver.is_whole());
+}
+
 fn is_input(shape: Horizon, variable: u32) -> bool {
     (variable as usize) % (shape.states + shape.inputs) < shape.inputs
 }
