@@ -193,10 +193,9 @@ fn sizes(program: &Transcription<'_>, model: &Model) -> Vec<f64> {
         .map(Mesh::shortest_edge)
         .fold(f64::INFINITY, f64::min);
     let size = (edge / model.length()).min(1.0);
-    let of_bodies = model.action.motion.of_bodies;
-    let n = model.coordinate_count();
+    let nodes = model.action.motion.nodes();
     let of = |column: &Column| match *column {
-        Column::Instant { i, .. } if (of_bodies..n).contains(&i) => size,
+        Column::Instant { i, .. } if nodes.contains(&i) => size,
         _ => 1.0,
     };
     program.unknowns().columns.iter().map(of).collect()

@@ -222,12 +222,13 @@ pub fn resolve_start(
             let z = model.coordinates_at(&joints(angles));
             check_constraints(model, &z, place)?;
             check_muscles(model, &z, place)?;
-            let rates = model.rates_at(&joints(angles), &joints(rates), velocities);
+            let of_joints = joints(rates);
+            let rates = model.rates_at(&joints(angles), &of_joints, velocities);
             let rates = rates.map_err(|body| BoundaryError::Follows {
                 place,
                 body: model.system.bodies[body].name.clone(),
             })?;
-            let rates = with_nodes(model, rates);
+            let rates = model.rates_of_all(&rates, &of_joints);
             Ok(Start::with_rates(model, z, &rates))
         }
         BoundaryState::EndOf(end) => {
@@ -238,22 +239,6 @@ pub fn resolve_start(
             Ok(start)
         }
         BoundaryState::Markers { .. } | BoundaryState::Free => unreachable!("it is a goal only"),
-    }
-}
-
-/// Rates of all coordinates from those of the bodies.
-fn with_nodes(model: &Model, mut rates: Vec<f64>) -> Vec<f64> {
-    let bodies = rates.len().min(model.action.motion.of_bodies);
-    match model.node_rates() {
-        Some(mut all) => {
-            all[..bodies].copy_from_slice(&rates[..bodies]);
-            all
-        }
-        None => {
-            rates.truncate(bodies);
-            rates.resize(model.coordinate_count(), 0.0);
-            rates
-        }
     }
 }
 

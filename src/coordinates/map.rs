@@ -4,6 +4,7 @@ use crate::coordinates::configuration::Configuration;
 use crate::coordinates::tree::{TangentColumns, Tree};
 use crate::kinematics::{Carrier, MaterialVector, Pose};
 use crate::math::{Matrix, Vector};
+use std::ops::Range;
 
 /// Dependence of one vector on the coordinates.
 #[derive(Clone, Debug)]
@@ -41,7 +42,8 @@ pub struct NodePlace {
 
 /// Coordinates of an instant and the vectors that follow from them.
 ///
-/// Coordinates of the bodies (of a tree, or directors) come first, then those of the nodes.
+/// Coordinates of the bodies (of a tree, or directors) come first, then those of the nodes, then internal ones: numbers that belong to
+/// a part of the scene and are no places.
 #[derive(Clone, Debug)]
 pub struct CoordinateMap {
     /// Number of coordinates u.
@@ -56,6 +58,8 @@ pub struct CoordinateMap {
     pub of_bodies: usize,
     /// Node and axis of each coordinate of the nodes.
     pub of_nodes: Vec<(usize, usize)>,
+    /// Number of internal coordinates.
+    pub of_internal: usize,
     /// Vectors with linear dependence.
     linear: Vec<usize>,
 }
@@ -71,6 +75,7 @@ impl CoordinateMap {
         tree: Tree,
         vectors: &[MaterialVector],
         nodes: &[NodePlace],
+        internal: usize,
         multipliers: usize,
     ) -> Self {
         let parts = parts_of_nodes(tree.coordinates(), nodes);
@@ -83,7 +88,13 @@ impl CoordinateMap {
         };
         let of_bodies = tree.coordinates();
         let vectors = vectors.iter().zip(tree.packed()).map(dependence).collect();
-        Self::new(vectors, Some(tree), of_bodies, nodes, multipliers)
+        Self::new(
+            vectors,
+            Some(tree),
+            of_bodies,
+            nodes,
+            [internal, multipliers],
+        )
     }
 
     /// Director coordinates of `bodies` bodies, and coordinates of nodes.
@@ -91,11 +102,12 @@ impl CoordinateMap {
         bodies: usize,
         vectors: &[MaterialVector],
         nodes: &[NodePlace],
+        internal: usize,
         multipliers: usize,
     ) -> Self {
         let parts = parts_of_nodes(12 * bodies, nodes);
         let vectors = vectors.iter().map(|v| linear(v, nodes, &parts)).collect();
-        Self::new(vectors, None, 12 * bodies, nodes, multipliers)
+        Self::new(vectors, None, 12 * bodies, nodes, [internal, multipliers])
     }
 
     fn new(
@@ -103,7 +115,7 @@ impl CoordinateMap {
         tree: Option<Tree>,
         of_bodies: usize,
         nodes: &[NodePlace],
-        multipliers: usize,
+        [of_internal, multipliers]: [usize; 2],
     ) -> Self {
         let axes = |(node, place): (usize, &NodePlace)| {
             let free = place.free;
@@ -114,14 +126,25 @@ impl CoordinateMap {
         let of_nodes: Vec<_> = nodes.iter().enumerate().flat_map(axes).collect();
         let is_linear = |&v: &usize| matches!(vectors[v], Dependence::Linear { .. });
         Self {
-            coordinates: of_bodies + of_nodes.len(),
+            coordinates: of_bodies + of_nodes.len() + of_internal,
             multipliers,
             linear: (0..vectors.len()).filter(is_linear).collect(),
             vectors,
             tree,
             of_bodies,
             of_nodes,
+            of_internal,
         }
+    }
+
+    /// Coordinates of the nodes.
+    pub fn nodes(&self) -> Range<usize> {
+        self.of_bodies..self.of_bodies + self.of_nodes.len()
+    }
+
+    /// Internal coordinates.
+    pub fn internal(&self) -> Range<usize> {
+        self.coordinates - self.of_internal..self.coordinates
     }
 
     /// Storage for an instant.
@@ -308,7 +331,7 @@ fn parts_of_nodes(first: usize, nodes: &[NodePlace]) -> Vec<Vec<LinearPart>> {
     nodes.iter().map(parts).collect()
 }
 
-/// The linear dependence of a vector on directors, nodes and coordinates of joints.
+/// The linear dependence of a vector on directors, nodes and single coordinates.
 fn linear(vector: &MaterialVector, nodes: &[NodePlace], of_node: &[Vec<LinearPart>]) -> Dependence {
     let mut constant = Vector::zeros();
     let mut parts = Vec::new();
@@ -327,7 +350,7 @@ fn linear(vector: &MaterialVector, nodes: &[NodePlace], of_node: &[Vec<LinearPar
                     }
                 }
             }
-            Carrier::Joint(coordinate) => parts.push(LinearPart {
+            Carrier::Coordinate(coordinate) => parts.push(LinearPart {
                 coordinate,
                 axis: 0,
                 factor: term.centre,

@@ -152,7 +152,7 @@ pub(super) fn momentum_maps(
                 Carrier::Ground => (term.at(&Pose::GROUND), *momentum),
                 // A vector that terms read holds no more than one node, and nothing else beside it.
                 Carrier::Node(_) => (*x, momentum + impulse),
-                Carrier::Joint(coordinate) => {
+                Carrier::Coordinate(coordinate) => {
                     let [force, torque] = places.pulls[coordinate];
                     linear += force * impulse.x;
                     angular += torque * impulse.x;

@@ -6,8 +6,8 @@ use crate::model::Component;
 use crate::model::System;
 use crate::model::components::{Other, Spring, Tendon};
 use crate::model::system::{
-    Attachment, Body, Discretisation, Electrode, ElementKind, Fidelity, Joint, JointKind, Marker,
-    Material, Muscle, Potential, Shape, Solid, Support, directors_along,
+    Attachment, Body, Discretisation, Electrode, ElementKind, Fidelity, Joint, JointKind,
+    JointSpring, Marker, Material, Muscle, Potential, Shape, Solid, Support, directors_along,
 };
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
@@ -111,6 +111,12 @@ impl Joint {
         Self { damping, ..self }
     }
 
+    /// Spring of its coordinate: stiffness in N mm/rad or N/mm, and the coordinate in rad or mm at which it exerts no force.
+    pub fn spring(self, stiffness: f64, rest: f64) -> Self {
+        let spring = Some(JointSpring { stiffness, rest });
+        Self { spring, ..self }
+    }
+
     /// A name of its own.
     pub fn named(self, name: impl Into<String>) -> Self {
         let name = name.into();
@@ -122,12 +128,10 @@ impl JointKind {
     /// The joint between a parent and a child, at the origin.
     pub fn between(self, parent: impl Into<Carrier>, child: Handle<Body>) -> Joint {
         Joint {
-            name: String::new(),
             kind: self,
             parent: parent.into().0,
             child: child.index(),
-            at: Vector3::zeros(),
-            damping: None,
+            ..Joint::default()
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! On director coordinates q = [φ; d₁; d₂; d₃] of a body every point φ + ρᵢ dᵢ, every director dᵢ and every difference
 //! of points of two bodies is linear: x = Σ (c φ + ρᵢ dᵢ) over a few terms. So is the place of a node of an elastic
-//! block, and a coordinate of a tree in its first component. Energies are functions of such vectors.
+//! block, and a coordinate that is no place in its first component. Energies are functions of such vectors.
 
 use crate::math::{Matrix, Vector};
 
@@ -42,8 +42,8 @@ pub enum Carrier {
     Body(usize),
     /// A node with coordinates of its own, numbered over all blocks; it has a place and no directors.
     Node(usize),
-    /// A coordinate of a joint of a tree, in rad or mm: the first component.
-    Joint(usize),
+    /// A coordinate of a joint of a tree, or an internal one: the first component.
+    Coordinate(usize),
 }
 
 impl Carrier {
@@ -143,11 +143,11 @@ impl MaterialVector {
         }
     }
 
-    /// A coordinate of a joint of a tree.
-    pub fn joint(coordinate: usize) -> Self {
+    /// A coordinate of a joint of a tree, or an internal one, in the first component.
+    pub fn coordinate(coordinate: usize) -> Self {
         Self {
             terms: vec![VectorTerm {
-                carrier: Carrier::Joint(coordinate),
+                carrier: Carrier::Coordinate(coordinate),
                 centre: 1.0,
                 directors: Vector::zeros(),
             }],
@@ -161,13 +161,13 @@ impl MaterialVector {
             .all(|t| matches!(t.carrier, Carrier::Ground | Carrier::Body(_)))
     }
 
-    /// The value at given poses of the bodies and places of the nodes; coordinates of joints are not read from poses.
+    /// The value at given poses of the bodies and places of the nodes; coordinates that are no places are not read from poses.
     pub fn at(&self, poses: &[Pose], nodes: &[Vector]) -> Vector {
         let part = |t: &VectorTerm| match t.carrier {
             Carrier::Ground => t.at(&Pose::GROUND),
             Carrier::Body(body) => t.at(&poses[body]),
             Carrier::Node(node) => nodes[node] * t.centre,
-            Carrier::Joint(_) => unreachable!("a coordinate is no place"),
+            Carrier::Coordinate(_) => unreachable!("a coordinate is no place"),
         };
         self.terms.iter().map(part).sum()
     }

@@ -7,6 +7,7 @@ use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::components::{body, muscle};
 use crate::model::error::ModelError;
 use crate::model::graph::Graph;
+use crate::model::internal::Internals;
 use crate::model::joints::JointReading;
 use crate::model::measures::{self, Measures};
 use crate::model::model::Model;
@@ -17,7 +18,7 @@ use crate::model::solids::Solids;
 use crate::model::system::{Attachment, Body, Muscle, System};
 use crate::model::terms::{Carriers, Terms};
 use crate::model::variables::{Role, Size, Time, Variable, Variables};
-use crate::model::{blocks, constraints, dampers, field_extent, plan};
+use crate::model::{blocks, constraints, dampers, field_extent, joint_springs, plan};
 
 impl Model {
     /// Builds the model of a system for intervals of about `h0` ms, in which `quantities` can be measured, any voltage may act
@@ -88,6 +89,12 @@ impl Model {
             &mut variables,
             &mut vectors,
         )?;
+        let of_bodies = match coordinates {
+            Coordinates::Reduced => graph.coordinate_count(rest),
+            Coordinates::Redundant => 12 * rest.bodies.len(),
+        };
+        let of_nodes = continua.nodes.iter().flat_map(|node| node.free);
+        let mut internals = Internals::behind(of_bodies + of_nodes.filter(|&free| free).count());
         let (intervals, mut present, mut left_out, spans) = {
             let carriers = (0..system.bodies.len()).map(|body| condensed.carrier(Some(body)));
             let bodies = Carriers {
@@ -111,6 +118,7 @@ impl Model {
             };
             terms.without(plan::GRAVITY, no_weight);
             dampers::build(&condensed, &reference, coordinates, &mut terms);
+            joint_springs::build(&condensed, coordinates, &mut internals, &mut terms);
             system.components.build(&mut terms);
             let (intervals, present, left_out) = terms.finish();
             (intervals, present, left_out, spans)
@@ -122,6 +130,7 @@ impl Model {
                 reference: &reference,
                 vectors: &mut vectors,
                 continua: &continua,
+                internals: &internals,
             }
             .constraints(question.interval),
         };
@@ -153,10 +162,17 @@ impl Model {
         let motion = match coordinates {
             Coordinates::Reduced => {
                 let tree = graph.tree(rest, &reference, list);
-                CoordinateMap::articulated(tree, list, &continua.nodes, multipliers)
+                CoordinateMap::articulated(
+                    tree,
+                    list,
+                    &continua.nodes,
+                    internals.list.len(),
+                    multipliers,
+                )
             }
             Coordinates::Redundant => {
-                CoordinateMap::redundant(rest.bodies.len(), list, &continua.nodes, multipliers)
+                let (bodies, internal) = (rest.bodies.len(), internals.list.len());
+                CoordinateMap::redundant(bodies, list, &continua.nodes, internal, multipliers)
             }
         };
         let intervals = {
@@ -172,6 +188,7 @@ impl Model {
                 motion: &motion,
                 nodes: &continua.names,
                 solids: &continua.list,
+                internals: &internals.list,
             };
             (0..motion.coordinates).for_each(|i| _ = variables.add(named.coordinate(i)));
             let multiplier = |name| Variable::of(Role::Multiplier, name, Size::Unknown);
@@ -189,6 +206,7 @@ impl Model {
             solids: continua.list,
             nodes: continua.nodes,
             node_names: continua.names,
+            internals: internals.list,
             spans,
             markers,
             measured: measures.places,

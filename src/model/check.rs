@@ -176,6 +176,15 @@ impl System {
             if let Some(damping) = joint.damping {
                 positive(&joint.name, "damping", damping)?;
             }
+            if let Some(spring) = joint.spring {
+                positive(&joint.name, "stiffness", spring.stiffness)?;
+                require(
+                    joint.has_coordinate() && spring.rest.is_finite(),
+                    &joint.name,
+                    || format!("a spring at rest at {}", spring.rest),
+                    "a spring of a revolute or prismatic joint, at rest at a finite coordinate",
+                )?;
+            }
         }
         Ok(())
     }

@@ -1,10 +1,11 @@
 //! Constraints that redundant coordinates leave open: rigid bodies and joints, times their multipliers.
 
-use crate::energy::{Coincidence, Energy, Orthogonality};
+use crate::energy::{Coincidence, Energy, JointAngle, JointDisplacement, Orthogonality};
 use crate::functional::{Element, Formulas, Group, Stencil, Term, VectorArg};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
-use crate::model::joints::triad;
+use crate::model::internal::Internals;
+use crate::model::joints::{JointCoordinate, JointReading, triad};
 use crate::model::plan::{self, LeftOut, Present};
 use crate::model::solids::Solids;
 use crate::model::system::{Glue, Joint, JointKind, System};
@@ -13,6 +14,7 @@ use crate::model::system::{Glue, Joint, JointKind, System};
 const RIGID: &str = "rigid bodies";
 const DIRECTIONS: &str = "joint directions";
 const POINTS: &str = "joint points";
+const COORDINATES: &str = "joint coordinates";
 const GLUE: &str = "glue";
 
 fn here(vector: usize) -> VectorArg {
@@ -29,6 +31,8 @@ pub(super) struct Builder<'a> {
     pub(super) vectors: &'a mut Vectors,
     /// Elastic blocks.
     pub(super) continua: &'a Solids,
+    /// Internal coordinates, those of joints among them.
+    pub(super) internals: &'a Internals,
 }
 
 /// Constraints collected for the action, with the names of their multipliers.
@@ -44,7 +48,8 @@ impl Made {
     /// No constraints: reduced coordinates leave none.
     pub(super) fn none() -> Self {
         let why = "reduced coordinates leave no constraint";
-        let left_out = [RIGID, DIRECTIONS, POINTS, GLUE].map(|term| LeftOut { term, why });
+        let left_out =
+            [RIGID, DIRECTIONS, POINTS, COORDINATES, GLUE].map(|term| LeftOut { term, why });
         Self {
             left_out: left_out.to_vec(),
             ..Self::default()
@@ -106,6 +111,11 @@ impl Builder<'_> {
         for (span, name) in &self.continua.ties {
             ties.point(self.vectors, name, span.clone());
         }
+        let mut measured = Measured {
+            names: ties.names,
+            ..Measured::default()
+        };
+        self.joint_coordinates(&mut measured);
         let bodies = self.system.bodies.iter().map(|body| body.name.as_str());
         let bodies: Vec<&str> = bodies.collect();
         let named = self.system.joints.iter().map(|joint| joint.name.as_str());
@@ -119,16 +129,60 @@ impl Builder<'_> {
             ("redundant coordinates at the ends of", &named[..]),
         );
         let mut made = Made {
-            multipliers: ties.names,
+            multipliers: measured.names,
             ..Made::default()
         };
         made.add::<_, 7, _, _>(RIGID, -h0, rigid.dots, directors, "no body that moves");
         let none = "no joint that calls for one";
         made.add::<_, 7, _, _>(DIRECTIONS, -h0, joints.dots, ends, none);
         made.add::<_, 6, _, _>(POINTS, -h0, joints.points, ends, none);
+        let none = "no joint names a stiffness";
+        let of: Vec<&str> = measured.of.iter().map(String::as_str).collect();
+        made.add::<_, 13, _, _>(
+            COORDINATES,
+            -h0,
+            measured.angles,
+            ("stiffness of", &of),
+            none,
+        );
+        made.add::<_, 10, _, _>(
+            COORDINATES,
+            -h0,
+            measured.displacements,
+            ("stiffness of", &of),
+            none,
+        );
         let none = "no node is glued to a body that moves";
         made.add::<_, 6, _, _>(GLUE, -h0, ties.points, ("glued nodes of", &glued), none);
         made
+    }
+
+    /// Internal coordinates are those of their joints.
+    fn joint_coordinates(&mut self, out: &mut Measured) {
+        for (index, internal) in self.internals.list.iter().enumerate() {
+            let joint = &self.system.joints[internal.joint];
+            let value = here(self.vectors.index(self.internals.vector(index)));
+            let scalars = [out.names.len()];
+            out.names.push(internal.name.clone());
+            out.of.push(joint.name.clone());
+            let mut index = |v: MaterialVector| here(self.vectors.index(v));
+            match JointReading::new(joint, None, self.reference).measure {
+                JointCoordinate::Angle { vectors } => {
+                    let [a, b, c] = vectors.map(&mut index);
+                    out.angles.push(Element {
+                        energy: JointAngle,
+                        vectors: [a, b, c, value],
+                        scalars,
+                    });
+                }
+                JointCoordinate::Displacement { axis, span } => out.displacements.push(Element {
+                    energy: JointDisplacement,
+                    vectors: [index(axis), index(span), value],
+                    scalars,
+                }),
+                JointCoordinate::None => unreachable!("its joint has a coordinate"),
+            }
+        }
     }
 
     fn joint(&mut self, joint: &Joint, out: &mut Constraints) {
@@ -192,6 +246,15 @@ impl Builder<'_> {
             }
         }
     }
+}
+
+/// Constraints of joint coordinates, with the names of their multipliers and joints.
+#[derive(Default)]
+struct Measured {
+    angles: Vec<Element<JointAngle, 4, 1>>,
+    displacements: Vec<Element<JointDisplacement, 3, 1>>,
+    names: Vec<String>,
+    of: Vec<String>,
 }
 
 /// Constraints collected for groups; multipliers are numbered in the order of the names.

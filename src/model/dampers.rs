@@ -79,7 +79,7 @@ impl Damper<'_> {
     }
 
     fn on_coordinate(&self, coordinate: usize, terms: &mut Terms<'_>) {
-        let vector = terms.vector(MaterialVector::joint(coordinate));
+        let vector = terms.vector(MaterialVector::coordinate(coordinate));
         let damper = |coefficient| CoordinateDamper { coefficient };
         self.add::<_, 6, 7, 2>(damper, [mid(vector), rate(vector)], terms);
     }

@@ -140,7 +140,7 @@ impl Graph {
 
     /// Poses at joint coordinates (by joint), along the spanning tree.
     pub fn poses(&self, system: &System, reference: &[Pose], joints: &[f64]) -> Vec<Pose> {
-        let motion = CoordinateMap::articulated(self.tree(system, reference, &[]), &[], &[], 0);
+        let motion = CoordinateMap::articulated(self.tree(system, reference, &[]), &[], &[], 0, 0);
         let instant = motion.placed(&self.coordinates(system, joints));
         motion.poses(&instant, system.bodies.len())
     }
@@ -169,7 +169,7 @@ impl Graph {
             })
             .collect();
         let motion =
-            CoordinateMap::articulated(self.tree(system, reference, &vectors), &vectors, &[], 0);
+            CoordinateMap::articulated(self.tree(system, reference, &vectors), &vectors, &[], 0, 0);
         let mut instant = motion.placed(&self.coordinates(system, joints));
         instant.l.copy_from_slice(&self.coordinates(system, rates));
         motion.along(&mut instant);
@@ -196,7 +196,7 @@ impl Graph {
     }
 
     /// Number of coordinates of the tree: those of its joints, then six for each free part.
-    fn coordinate_count(&self, system: &System) -> usize {
+    pub(super) fn coordinate_count(&self, system: &System) -> usize {
         let joints = (0..system.joints.len()).map(|j| self.freedoms(system, j));
         joints.sum::<usize>() + 6 * self.free.len()
     }

@@ -7,7 +7,7 @@ use crate::math::DisjointSets;
 use crate::model::analysis::Analysis;
 use crate::model::constant::Constant;
 use crate::model::field_extent;
-use crate::model::system::System;
+use crate::model::system::{Joint, System};
 
 /// Parts of a scene that rest all the time.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -76,6 +76,9 @@ pub(super) fn immobile(system: &System, question: &Analysis) -> Immobile {
             moved.extend(bodies);
         }
     }
+    let is_loaded = |joint: &&Joint| joint.spring.is_some_and(|spring| spring.rest != 0.0);
+    let loaded = system.joints.iter().filter(is_loaded);
+    moved.extend(loaded.flat_map(|joint| joint.parent.into_iter().chain([joint.child])));
     let bodies = (0..of_bodies).filter(|b| weighs || stirred.bodies.contains(b));
     moved.extend(bodies);
     for (s, solid) in system.solids.iter().enumerate() {

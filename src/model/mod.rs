@@ -17,6 +17,8 @@ mod field_extent;
 mod floating;
 mod graph;
 mod immobile;
+mod internal;
+mod joint_springs;
 mod joints;
 mod measures;
 #[expect(clippy::module_inception, reason = "the file of the type of that name")]

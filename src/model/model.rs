@@ -8,6 +8,7 @@ use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::constant::Parameter;
 use crate::model::floating::{self, Floating};
 use crate::model::graph::Graph;
+use crate::model::internal::Internal;
 use crate::model::joints::JointReading;
 use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::Presolved;
@@ -58,6 +59,8 @@ pub struct Model {
     pub(super) nodes: Vec<NodePlace>,
     /// Block and node of the mesh of each node with coordinates.
     pub node_names: Vec<(usize, usize)>,
+    /// Internal coordinates.
+    pub(super) internals: Vec<Internal>,
 }
 
 impl Model {
@@ -86,15 +89,16 @@ impl Model {
                 z
             }
             Coordinates::Redundant => {
-                let joints = self.presolved.by_joint(joints);
                 let system = &self.presolved.system;
-                self.coordinates_of(&self.graph.poses(system, &self.reference, &joints))
+                let of_joints = self.presolved.by_joint(joints);
+                let poses = self.graph.poses(system, &self.reference, &of_joints);
+                self.coordinates_of(&poses, joints)
             }
         }
     }
 
-    /// Director coordinates of given poses; multipliers zero.
-    pub(super) fn coordinates_of(&self, poses: &[Pose]) -> Vec<f64> {
+    /// Director coordinates of given poses, with joint coordinates (by joint of the scene) that count whole turns; multipliers zero.
+    pub(super) fn coordinates_of(&self, poses: &[Pose], joints: &[f64]) -> Vec<f64> {
         let mut z = vec![0.0; self.action.motion.unknowns()];
         for (body, pose) in poses.iter().enumerate() {
             let q = &mut z[12 * body..12 * body + 12];
@@ -102,7 +106,26 @@ impl Model {
             q[3..].copy_from_slice(pose.directors.as_slice());
         }
         self.place_nodes(&mut z);
+        self.place_internals(&mut z, joints);
         z
+    }
+
+    /// Gives internal coordinates their values at joint coordinates or their rates (by joint of the scene).
+    fn place_internals(&self, z: &mut [f64], joints: &[f64]) {
+        let internals = z[self.action.motion.internal()].iter_mut();
+        for (value, internal) in internals.zip(&self.internals) {
+            *value = joints[self.presolved.joints[internal.joint]];
+        }
+    }
+
+    /// Rates of all coordinates from those of the bodies and of the joints (by joint of the scene); nodes have those of a start.
+    pub fn rates_of_all(&self, bodies: &[f64], joints: &[f64]) -> Vec<f64> {
+        let zeros = || vec![0.0; self.coordinate_count()];
+        let mut rates = self.node_rates().unwrap_or_else(zeros);
+        let count = bodies.len().min(self.action.motion.of_bodies);
+        rates[..count].copy_from_slice(&bodies[..count]);
+        self.place_internals(&mut rates, joints);
+        rates
     }
 
     /// Puts the nodes at their reference places.
@@ -161,7 +184,14 @@ impl Model {
                 .iter()
                 .map(|g| g.coordinate.map_or(0.0, |c| instant.z[c]))
                 .collect(),
-            Coordinates::Redundant => self.read_joints(&self.poses(instant), near),
+            Coordinates::Redundant => {
+                let mut joints = self.read_joints(&self.poses(instant), near);
+                let internals = instant.z[self.action.motion.internal()].iter();
+                for (value, internal) in internals.zip(&self.internals) {
+                    joints[self.presolved.joints[internal.joint]] = *value;
+                }
+                joints
+            }
         }
     }
 

@@ -4,6 +4,7 @@ use crate::coordinates::CoordinateMap;
 use crate::math::Vector;
 use crate::model::analysis::Coordinates;
 use crate::model::graph::Graph;
+use crate::model::internal::Internal;
 use crate::model::joints::Screw;
 use crate::model::model::Model;
 use crate::model::solid_block::SolidBlock;
@@ -21,11 +22,16 @@ pub(super) struct Named<'a> {
     /// Block and node of the mesh of each node with coordinates.
     pub(super) nodes: &'a [(usize, usize)],
     pub(super) solids: &'a [SolidBlock],
+    pub(super) internals: &'a [Internal],
 }
 
 impl Named<'_> {
     /// Coordinate `i` of an instant.
     pub(super) fn coordinate(&self, i: usize) -> Variable {
+        let internal = i.checked_sub(self.motion.internal().start);
+        if let Some(Internal { name, size, .. }) = internal.map(|index| &self.internals[index]) {
+            return Variable::of(Role::Coordinate, name.clone(), *size);
+        }
         let (name, size) = match i.checked_sub(self.motion.of_bodies) {
             Some(place) => {
                 let (node, axis) = self.motion.of_nodes[place];

@@ -5,7 +5,7 @@
 pub(super) const GRAVITY: &str = "gravity";
 
 /// Names of the terms of the library, in the order of the sum; those of other crates follow.
-pub const TERMS: [&str; 19] = [
+pub const TERMS: [&str; 21] = [
     "body inertia",
     "muscle inertia",
     "block inertia",
@@ -15,6 +15,7 @@ pub const TERMS: [&str; 19] = [
     "block electroelasticity",
     "muscle elasticity",
     "muscle electroelasticity",
+    "joint elasticity",
     "spring elasticity",
     "tendon elasticity",
     "block viscosity",
@@ -24,6 +25,7 @@ pub const TERMS: [&str; 19] = [
     "rigid bodies",
     "joint directions",
     "joint points",
+    "joint coordinates",
     "glue",
 ];
 

@@ -83,7 +83,7 @@ impl Model {
         let poses = self.presolved.condense(poses, &self.reference);
         let motion = &self.action.motion;
         match &motion.tree {
-            None => self.coordinates_of(&poses),
+            None => self.coordinates_of(&poses, joints),
             Some(_) => {
                 let mut instant = motion.placed(&z);
                 motion.follow(&poses, &mut instant);

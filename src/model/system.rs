@@ -114,7 +114,7 @@ impl System {
 }
 
 /// A joint at a point of the reference configuration.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Joint {
     /// Unique name.
     pub name: String,
@@ -128,10 +128,21 @@ pub struct Joint {
     pub at: Vector3<f64>,
     /// Damping of the joint coordinate: N mm ms for an angle, N ms/mm for a displacement; `None` leaves no trace.
     pub damping: Option<f64>,
+    /// Spring of the joint coordinate; `None` leaves no trace.
+    pub spring: Option<JointSpring>,
+}
+
+/// A linear spring of a joint coordinate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointSpring {
+    /// Stiffness: N mm/rad for an angle, N/mm for a displacement.
+    pub stiffness: f64,
+    /// Coordinate without force in rad or mm; zero is the reference configuration.
+    pub rest: f64,
 }
 
 /// Motion that a joint permits.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum JointKind {
     /// Rotation about a unit axis.
     Revolute {
@@ -148,6 +159,7 @@ pub enum JointKind {
     /// Anything: the child is as free as without the joint.
     Floating,
     /// Nothing.
+    #[default]
     Fixed,
 }
 

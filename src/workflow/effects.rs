@@ -255,7 +255,7 @@ impl<'a> Coupled<'a> {
 /// Direction of a coordinate that moves along one; `None` for a joint's.
 fn axis(motion: &CoordinateMap, i: usize) -> Option<usize> {
     match i.checked_sub(motion.of_bodies) {
-        Some(of_node) => Some(motion.of_nodes[of_node].1),
+        Some(of_node) => motion.of_nodes.get(of_node).map(|&(_, axis)| axis),
         None => motion.tree.is_none().then_some(i % 3),
     }
 }

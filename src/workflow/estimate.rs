@@ -44,14 +44,13 @@ impl ErrorSample {
     pub fn of_motion(model: &Model, history: &DiscreteTrajectory) -> Self {
         let motion = Trajectory::from_history(model, history);
         let length = model.length();
-        let of_bodies = model.action.motion.of_bodies;
         let places = |k: usize| -> Vec<Vector3<f64>> {
             if !model.markers.is_empty() {
                 return motion.marks[k].iter().map(|x| x / length).collect();
             }
             let mut places: Vec<_> = motion.poses[k].iter().map(|p| p.centre / length).collect();
             let bodies = places.len();
-            let coordinates = history.z[k][of_bodies..].iter();
+            let coordinates = history.z[k][model.action.motion.nodes()].iter();
             for (value, &(node, axis)) in coordinates.zip(&model.action.motion.of_nodes) {
                 let least = bodies + node + 1;
                 places.resize(least.max(places.len()), Vector3::zeros());
@@ -75,7 +74,7 @@ impl ErrorSample {
         let poses = &motion.poses[last];
         let directors = poses.iter().flat_map(|p| p.directors.iter().copied());
         let centres = poses.iter().flat_map(|p| p.centre.iter());
-        let nodes = &history.z[last][of_bodies..model.coordinate_count()];
+        let nodes = &history.z[last][model.action.motion.nodes()];
         let lengths = centres.chain(nodes).map(|x| x / length);
         Self {
             path: (0..=last).map(places).collect(),

@@ -1,6 +1,6 @@
 //! A list of control problems that together call for every effect, joint, limit, goal and objective.
 
-use super::systems::{GRAVITY, ball, blocks, branched, satellite, tied};
+use super::systems::{GRAVITY, ball, blocks, branched, satellite, sprung, tied};
 use super::tracked::{energies, tracked};
 use super::trunk;
 use nalgebra::Vector3;
@@ -269,6 +269,16 @@ pub fn cases() -> Vec<Case> {
             &|_| {},
         ),
         case("branched tree", branched(), &|_| {}),
+        case("branched tree with joint springs", sprung(), &|_| {}),
+        case(
+            "branched tree with joint springs, free time",
+            sprung(),
+            &|c| {
+                c.duration = free;
+                c.objective = every_objective();
+                c.goal = joints(&[(1, 2.0)]);
+            },
+        ),
         case("blocks", blocks(), &|c| c.goal = corner_goal()),
         case("blocks, marker at rest, free time", blocks(), &|c| {
             c.duration = free;

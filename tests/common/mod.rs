@@ -96,7 +96,7 @@ pub(crate) fn trunk(segments: usize) -> System {
             parent,
             child: i,
             at,
-            damping: None,
+            ..Joint::default()
         });
         for (m, sign) in [(1, 1.0), (2, -1.0)] {
             let offset = side * (15.0 * sign);
@@ -163,7 +163,7 @@ pub(crate) fn joint(
         parent,
         child,
         at,
-        damping: None,
+        ..Joint::default()
     }
 }
 

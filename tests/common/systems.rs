@@ -6,8 +6,8 @@ use proboscis::mesh::grid::Grid;
 use proboscis::model::components::{Spring, Tendon};
 use proboscis::model::system::{
     Attachment, Body, Discretisation, ElectricConstants, Electrode, ElementKind, Fidelity, Glue,
-    Joint, JointKind, Marker, Material, Muscle, Potential, Shape, Solid, Support, System,
-    VACUUM_PERMITTIVITY,
+    Joint, JointKind, JointSpring, Marker, Material, Muscle, Potential, Shape, Solid, Support,
+    System, VACUUM_PERMITTIVITY,
 };
 
 /// Gravity along −y in mm/ms².
@@ -57,6 +57,15 @@ pub fn tied(mut system: System) -> System {
     system
 }
 
+/// The branched tree with springs of its first hinge, beyond a half turn, and of its slider.
+pub fn sprung() -> System {
+    let mut system = branched();
+    for (joint, stiffness, rest) in [(0, 90.0, 4.0), (1, 0.3, -2.0)] {
+        system.joints[joint].spring = Some(JointSpring { stiffness, rest });
+    }
+    system
+}
+
 /// A branched tree: a revolute joint about an oblique axis, on it a damped slider and a damped hinge written from child
 /// to parent, and a body fixed on the slider; four muscles, of which one is passive and one has no mass and no viscosity.
 pub fn branched() -> System {
@@ -83,6 +92,7 @@ pub fn branched() -> System {
         child,
         at: Vector3::from(at),
         damping,
+        ..Joint::default()
     };
     let at = |body, at: [f64; 3]| Attachment {
         body,

@@ -71,7 +71,7 @@ pub(crate) fn system(count: usize) -> System {
                 parent: below(i),
                 child: i,
                 at: Vector3::y() * (LENGTH * i as f64),
-                damping: None,
+                ..Joint::default()
             })
             .collect(),
         muscles: (0..2 * count).map(muscle).collect(),

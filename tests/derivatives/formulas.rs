@@ -10,9 +10,10 @@ use crate::naive_formulas::Formula;
 use nalgebra::{SMatrix, SVector};
 use num_dual::{Dual64, HyperDual};
 use proboscis::energy::{
-    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, DielectricCell, ElasticCell,
-    Energy, Gravity, LinearDamper, LinearSpring, Orthogonality, OutsideBox, PositionComponent,
-    Projection, SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
+    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
+    DielectricCell, ElasticCell, Energy, Gravity, JointAngle, JointDisplacement, LinearDamper,
+    LinearSpring, Orthogonality, OutsideBox, PositionComponent, Projection, SectionInertia,
+    SpanDamper, SquaredDistance, SquaredField, ViscousCell,
 };
 use proboscis::math::{Jet, Vector};
 
@@ -252,6 +253,13 @@ fn energies_have_the_derivatives_of_naive_formulas() {
         0.2,
         1.1,
     );
+    let spring = CoordinateSpring {
+        stiffness: 0.7,
+        rest: 0.4,
+    };
+    law("coordinate spring", &spring, 0.2, 1.1);
+    law("joint angle", &JointAngle, 0.3, 1.1);
+    law("joint displacement", &JointDisplacement, 0.2, 1.1);
     law(
         "linear damper",
         &LinearDamper { coefficient: 0.7 },

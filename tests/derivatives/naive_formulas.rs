@@ -2,9 +2,10 @@
 
 use num_dual::{Dual, DualNum};
 use proboscis::energy::{
-    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, DielectricCell, ElasticCell,
-    Energy, Gravity, LinearDamper, LinearSpring, Orthogonality, OutsideBox, PositionComponent,
-    Projection, SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
+    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
+    DielectricCell, ElasticCell, Energy, Gravity, JointAngle, JointDisplacement, LinearDamper,
+    LinearSpring, Orthogonality, OutsideBox, PositionComponent, Projection, SectionInertia,
+    SpanDamper, SquaredDistance, SquaredField, ViscousCell,
 };
 
 /// The naive formula of an energy.
@@ -138,6 +139,29 @@ impl Formula<27> for AngularDamper {
 impl Formula<6> for CoordinateDamper {
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
         -polarised(three(p, 3), three(p, 0)) * self.coefficient
+    }
+}
+
+impl Formula<3> for CoordinateSpring {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 3]) -> D {
+        let twice = p[0] * (p[0] - 2.0 * self.rest) + self.rest.powi(2);
+        twice * self.stiffness / 2.0
+    }
+}
+
+impl Formula<13> for JointAngle {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 13]) -> D {
+        // |c| sin(φ − θ) in the plane (a, b), by the angle itself.
+        let cosine = polarised(three(p, 0), three(p, 6));
+        let sine = polarised(three(p, 3), three(p, 6));
+        let angle = half_angle(std::array::from_fn(|i| p[i]));
+        (sine.powi(2) + cosine.powi(2)).sqrt() * (angle - p[9]).sin() * p[12]
+    }
+}
+
+impl Formula<10> for JointDisplacement {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 10]) -> D {
+        polarised(three(p, 0), three(p, 3)) * p[9] - p[6] * p[9]
     }
 }
 

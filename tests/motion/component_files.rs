@@ -15,7 +15,7 @@ const SCENE: &str = r#"{
   "tendons": [ { "name": "t", "through": [ { "body": "ground", "at": [0, 0, 0] }, { "body": "b", "at": ["30 mm", 0, 0] } ], "stiffness": "2 N/mm" } ]
 }"#;
 
-fn read(text: &str) -> Result<System, String> {
+pub(crate) fn read(text: &str) -> Result<System, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.json");
     std::fs::write(&path, text).unwrap();

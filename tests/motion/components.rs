@@ -40,7 +40,7 @@ fn slide(name: &str, child: usize, x: f64) -> Joint {
         parent: None,
         child,
         at: Vector3::new(x, 0.0, 0.0),
-        damping: None,
+        ..Joint::default()
     }
 }
 

@@ -11,6 +11,7 @@ mod dissipation;
 mod exchange;
 mod free_robots;
 mod integrators;
+mod joint_springs;
 mod observe;
 mod order;
 mod reductions;

@@ -36,7 +36,7 @@ fn single(shear_modulus: f64, electric: ElectricConstants) -> System {
             parent: None,
             child: 0,
             at: axis * LENGTH,
-            damping: None,
+            ..Joint::default()
         }],
         muscles: vec![Muscle {
             name: "muscle".into(),

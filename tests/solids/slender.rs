@@ -31,7 +31,7 @@ fn sledge(slenderness: usize, fidelity: Fidelity) -> System {
             parent: None,
             child: 0,
             at: end,
-            damping: None,
+            ..Joint::default()
         }],
         muscles: vec![Muscle {
             name: "muscle".into(),

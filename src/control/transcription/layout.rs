@@ -53,7 +53,7 @@ impl Layout {
         }
         let rests = |i: usize| match boundary.goal.rests {
             Rests::Everything => true,
-            Rests::Bodies => i < motion.of_bodies || is_held[i],
+            Rests::Bodies => !motion.nodes().contains(&i) || is_held[i],
             Rests::Nothing => false,
         };
         let is_balanced = |k: usize, i: usize| k < intervals || rests(i);

@@ -204,7 +204,7 @@ impl Tree {
                     });
                 }
                 Carrier::Ground => constant += term.at(&Pose::GROUND),
-                Carrier::Node(_) | Carrier::Joint(_) => {
+                Carrier::Node(_) | Carrier::Coordinate(_) => {
                     unreachable!("vectors on the tree are of bodies")
                 }
             }

@@ -8,16 +8,16 @@ use crate::files::scene::body::{body, unit_axis};
 use crate::files::scene::components::{spring, tendon};
 use crate::files::scene::expand::expanded;
 use crate::files::scene::graph::check_connected;
+use crate::files::scene::joint::joint;
 use crate::files::scene::marker::marker;
 use crate::files::scene::material::materials;
 use crate::files::scene::muscle::{MOST_ELEMENTS, fidelity, layer, muscle, positive_sides};
-use crate::files::scene::names::{find_body, find_material, names};
+use crate::files::scene::names::{find_material, names};
 use crate::files::scene::point::vector;
 use crate::files::scene::solid::solid;
-use crate::files::scene::spec::{AxisSpec, ChainSpec, JointSpec, SceneSpec};
-use crate::files::units::quantity::{Damping, RotationalDamping};
+use crate::files::scene::spec::{ChainSpec, SceneSpec};
 use crate::model::components::Components;
-use crate::model::system::{Joint, JointKind, Material, System, number_sources};
+use crate::model::system::{Material, System, number_sources};
 
 /// Longest chain that the shorthand writes out.
 pub(crate) const LONGEST_CHAIN: usize = 1000;
@@ -199,90 +199,4 @@ fn check_chain(
         layer(&pair.layer_thickness, rest_length, &scope)?;
     }
     Ok(())
-}
-
-fn joint(spec: &JointSpec, bodies: &[String], scope: &Scope<'_>) -> Result<Joint, SceneError> {
-    let kind = scope.exactly_one([
-        (
-            "revolute",
-            spec.revolute.as_ref().map(|_| JointKey::Revolute),
-        ),
-        (
-            "prismatic",
-            spec.prismatic.as_ref().map(|_| JointKey::Prismatic),
-        ),
-        (
-            "spherical",
-            spec.spherical.as_ref().map(|_| JointKey::Spherical),
-        ),
-        (
-            "floating",
-            spec.floating.as_ref().map(|_| JointKey::Floating),
-        ),
-        ("fixed", spec.fixed.as_ref().map(|_| JointKey::Fixed)),
-    ])?;
-    let axis = |key: &str, spec: &Option<AxisSpec>| {
-        let axis = spec.as_ref().map_or([0.0; 3], |spec| spec.axis);
-        unit_axis(&axis, &scope.key(key).key("axis"))
-    };
-    let place = scope.key("damping");
-    let (kind, damping_kind) = match kind {
-        JointKey::Revolute => {
-            let axis = axis("revolute", &spec.revolute)?;
-            (
-                JointKind::Revolute { axis },
-                Some(RotationalDamping::kind()),
-            )
-        }
-        JointKey::Prismatic => {
-            let axis = axis("prismatic", &spec.prismatic)?;
-            (JointKind::Prismatic { axis }, Some(Damping::kind()))
-        }
-        JointKey::Spherical => (JointKind::Spherical, None),
-        JointKey::Floating => (JointKind::Floating, None),
-        JointKey::Fixed => (JointKind::Fixed, None),
-    };
-    let damping = match (&spec.damping, damping_kind) {
-        (None, _) => None,
-        (Some(damping), None) => {
-            let expected = "no damping, as the joint is neither revolute nor prismatic";
-            return Err(place.wrong(damping.to_string(), expected));
-        }
-        (Some(damping), Some(kind)) => {
-            let value = damping.value_as(&kind);
-            let value = value.map_err(|found| place.wrong(found, kind.expected()))?;
-            if value < 0.0 {
-                let expected = format!("zero or a positive value: {}", kind.expected());
-                return Err(place.wrong(damping.to_string(), expected));
-            }
-            Some(value).filter(|&value| value > 0.0)
-        }
-    };
-    let (kind, damping) = match spec.locked {
-        true => (JointKind::Fixed, None),
-        false => (kind, damping),
-    };
-    let parent = find_body(&spec.parent, bodies, &scope.key("parent"))?;
-    let place = scope.key("child");
-    let child = place.find(&spec.child, bodies, "the name of a body")?;
-    if parent == Some(child) {
-        let found = format!("{:?}, which is the parent too", spec.child);
-        return Err(place.wrong(found, "another body than the parent"));
-    }
-    Ok(Joint {
-        name: spec.name.clone(),
-        kind,
-        parent,
-        child,
-        at: vector(&spec.at),
-        damping,
-    })
-}
-
-enum JointKey {
-    Revolute,
-    Prismatic,
-    Spherical,
-    Floating,
-    Fixed,
 }

@@ -97,6 +97,9 @@ impl Link {
             at: point(&self.at),
             locked: false,
             damping: None,
+            stiffness: None,
+            rest_angle: None,
+            rest_displacement: None,
         }
     }
 

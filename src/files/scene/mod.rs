@@ -12,6 +12,7 @@ pub(crate) mod constants;
 pub(crate) mod electrodes;
 pub(crate) mod expand;
 pub(crate) mod graph;
+mod joint;
 pub(crate) mod marker;
 pub(crate) mod material;
 pub(crate) mod mesh;

@@ -8,8 +8,8 @@ use crate::files::scene::components::{SpringSpec, TendonSpec};
 use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec_solids::{ElementSpec, SolidSpec};
 use crate::files::units::quantity::{
-    Acceleration, Density, JointDamping, Length, Mass, MomentOfInertia, Permittivity, Quantity,
-    Stress, Viscosity,
+    Acceleration, Angle, Density, JointDamping, JointStiffness, Length, Mass, MomentOfInertia,
+    Permittivity, Quantity, Stress, Viscosity,
 };
 
 /// Scene. Positions and axes are given in the reference configuration, in the ground frame; parts that are not written do not exist.
@@ -185,6 +185,16 @@ pub struct JointSpec {
     /// Damping of the joint coordinate, SI unit N m s/rad (revolute) or N s/m (prismatic).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<Quantity<JointDamping>>,
+    /// Stiffness of a spring of the joint coordinate, SI unit N m/rad (revolute) or N/m (prismatic).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness: Option<Quantity<JointStiffness>>,
+    /// Angle of a revolute joint at which its spring exerts no torque, SI unit rad; 0 where absent: the reference configuration. It counts whole
+    /// turns.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest_angle: Option<Quantity<Angle>>,
+    /// Displacement of a prismatic joint at which its spring exerts no force, SI unit m; 0 where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rest_displacement: Option<Quantity<Length>>,
 }
 
 /// An axis.

@@ -104,6 +104,8 @@ measures! {
     MomentOfInertia: si::moment_of_inertia::Dimension, [0], "a moment of inertia", "\"9.25e-6 kg m^2\"";
     /// Damping of a rotation: N m s/rad, N mm ms inside.
     RotationalDamping: si::angular_momentum::Dimension, [0, -1], "a rotational damping", "\"1e-4 N m s/rad\"";
+    /// Stiffness of a rotation: N m/rad, N mm/rad inside.
+    RotationalStiffness: si::energy::Dimension, [0, -1], "a rotational stiffness", "\"0.2 N m/rad\"";
     /// Damping of a translation: N s/m, N ms/mm inside.
     Damping: si::mass_rate::Dimension, [0], "a damping", "\"0.5 N s/m\"";
     /// Stiffness of a spring: N/m, N/mm inside.
@@ -144,6 +146,8 @@ joint_measures! {
     JointRate: AngularVelocity | Velocity;
     /// Damping of a joint coordinate: rotational, or linear of a prismatic joint.
     JointDamping: RotationalDamping | Damping;
+    /// Stiffness of a joint coordinate: rotational, or linear of a prismatic joint.
+    JointStiffness: RotationalStiffness | Stiffness;
 }
 
 /// A constant that an optimisation seeks, of the kind of its place in the scene.

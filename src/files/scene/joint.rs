@@ -1,0 +1,176 @@
+//! Conversion of a joint of a scene file: its kind, axis, damper and spring.
+
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::scene::body::unit_axis;
+use crate::files::scene::names::find_body;
+use crate::files::scene::point::vector;
+use crate::files::scene::spec::{AxisSpec, JointSpec};
+use crate::files::units::quantity::{
+    Damping, Kind, PhysicalQuantity, Quantity, RotationalDamping, RotationalStiffness, Stiffness,
+};
+use crate::model::system::{Joint, JointKind, JointSpring};
+
+/// Kinds of a joint, with the one key that names each.
+#[derive(Clone, Copy, PartialEq)]
+enum JointKey {
+    Revolute,
+    Prismatic,
+    Spherical,
+    Floating,
+    Fixed,
+}
+
+pub(super) fn joint(
+    spec: &JointSpec,
+    bodies: &[String],
+    scope: &Scope<'_>,
+) -> Result<Joint, SceneError> {
+    let key = key(spec, scope)?;
+    let kind = kind(spec, key, scope)?;
+    let damping = constant(
+        spec.damping.as_ref(),
+        of_coordinate(key, RotationalDamping::kind(), Damping::kind()),
+        &scope.key("damping"),
+    )?;
+    let spring = spring(spec, key, scope)?;
+    let parent = find_body(&spec.parent, bodies, &scope.key("parent"))?;
+    let place = scope.key("child");
+    let child = place.find(&spec.child, bodies, "the name of a body")?;
+    if parent == Some(child) {
+        let found = format!("{:?}, which is the parent too", spec.child);
+        return Err(place.wrong(found, "another body than the parent"));
+    }
+    let joint = Joint {
+        name: spec.name.clone(),
+        kind,
+        parent,
+        child,
+        at: vector(&spec.at),
+        damping,
+        spring,
+    };
+    Ok(match spec.locked {
+        true => Joint {
+            kind: JointKind::Fixed,
+            damping: None,
+            spring: None,
+            ..joint
+        },
+        false => joint,
+    })
+}
+
+fn key(spec: &JointSpec, scope: &Scope<'_>) -> Result<JointKey, SceneError> {
+    scope.exactly_one([
+        (
+            "revolute",
+            spec.revolute.as_ref().map(|_| JointKey::Revolute),
+        ),
+        (
+            "prismatic",
+            spec.prismatic.as_ref().map(|_| JointKey::Prismatic),
+        ),
+        (
+            "spherical",
+            spec.spherical.as_ref().map(|_| JointKey::Spherical),
+        ),
+        (
+            "floating",
+            spec.floating.as_ref().map(|_| JointKey::Floating),
+        ),
+        ("fixed", spec.fixed.as_ref().map(|_| JointKey::Fixed)),
+    ])
+}
+
+fn kind(spec: &JointSpec, key: JointKey, scope: &Scope<'_>) -> Result<JointKind, SceneError> {
+    let axis = |key: &str, spec: &Option<AxisSpec>| {
+        let axis = spec.as_ref().map_or([0.0; 3], |spec| spec.axis);
+        unit_axis(&axis, &scope.key(key).key("axis"))
+    };
+    Ok(match key {
+        JointKey::Revolute => JointKind::Revolute {
+            axis: axis("revolute", &spec.revolute)?,
+        },
+        JointKey::Prismatic => JointKind::Prismatic {
+            axis: axis("prismatic", &spec.prismatic)?,
+        },
+        JointKey::Spherical => JointKind::Spherical,
+        JointKey::Floating => JointKind::Floating,
+        JointKey::Fixed => JointKind::Fixed,
+    })
+}
+
+/// The kind of a constant of the joint coordinate; `None` where a joint has not exactly one.
+fn of_coordinate(key: JointKey, angular: Kind, linear: Kind) -> Option<Kind> {
+    match key {
+        JointKey::Revolute => Some(angular),
+        JointKey::Prismatic => Some(linear),
+        JointKey::Spherical | JointKey::Floating | JointKey::Fixed => None,
+    }
+}
+
+/// A constant that is not negative, of the kind of the joint; zero is absent.
+fn constant<M: PhysicalQuantity>(
+    written: Option<&Quantity<M>>,
+    kind: Option<Kind>,
+    place: &Scope<'_>,
+) -> Result<Option<f64>, SceneError> {
+    let Some(written) = written else {
+        return Ok(None);
+    };
+    let Some(kind) = kind else {
+        let expected = "no such constant, as the joint is neither revolute nor prismatic";
+        return Err(place.wrong(written.to_string(), expected));
+    };
+    let value = written.value_as(&kind);
+    let value = value.map_err(|found| place.wrong(found, kind.expected()))?;
+    if value < 0.0 {
+        let expected = format!("zero or a positive value: {}", kind.expected());
+        return Err(place.wrong(written.to_string(), expected));
+    }
+    Ok(Some(value).filter(|&value| value > 0.0))
+}
+
+fn spring(
+    spec: &JointSpec,
+    key: JointKey,
+    scope: &Scope<'_>,
+) -> Result<Option<JointSpring>, SceneError> {
+    let stiffness = constant(
+        spec.stiffness.as_ref(),
+        of_coordinate(key, RotationalStiffness::kind(), Stiffness::kind()),
+        &scope.key("stiffness"),
+    )?;
+    let (angle, displacement) = (&spec.rest_angle, &spec.rest_displacement);
+    let rests = [
+        (
+            "rest_angle",
+            angle.as_ref().map(|rest| (rest.to_string(), rest.value())),
+            JointKey::Revolute,
+            "a revolute joint with a \"stiffness\"",
+        ),
+        (
+            "rest_displacement",
+            displacement
+                .as_ref()
+                .map(|rest| (rest.to_string(), rest.value())),
+            JointKey::Prismatic,
+            "a prismatic joint with a \"stiffness\"",
+        ),
+    ];
+    let mut at_rest = 0.0;
+    for (name, rest, of, expected) in rests {
+        let Some((written, value)) = rest else {
+            continue;
+        };
+        if key != of || spec.stiffness.is_none() {
+            return Err(scope.key(name).wrong(written, expected));
+        }
+        at_rest = value;
+    }
+    Ok(stiffness.map(|stiffness| JointSpring {
+        stiffness,
+        rest: at_rest,
+    }))
+}
