@@ -13,7 +13,7 @@ MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight
 FUZZ_SECONDS := 600
 ADVERSARY_SECONDS := 600
 
-.PHONY: help trunk blocks gallery build test test-python test-browser wheel docs fuzz adversary check audit bench studies install-deps try-fresh clean
+.PHONY: help trunk blocks gallery build test test-python test-other-ipopt test-browser wheel docs fuzz adversary check audit bench studies install-deps try-fresh clean
 
 help:
 	@echo 'make trunk         solve the elephant trunk, let it swing under constant voltages, and say where the pictures are'
@@ -21,6 +21,7 @@ help:
 	@echo 'make gallery       rewrite the results that the README shows, $(GALLERY)'
 	@echo 'make test          run the tests'
 	@echo 'make test-python   build and test the Python package, in an environment of its own (Python 3.10 or later with venv)'
+	@echo 'make test-other-ipopt  the solvers with Ipopt 3.14 out of a Python package, beside that of the system'
 	@echo 'make test-browser  pages in a real Chromium; pictures of them in target/browser'
 	@echo 'make wheel         build the wheel that needs no package of the system, in target/wheels'
 	@echo 'make docs          pages of the Python package, in target/python/docs'
@@ -56,6 +57,13 @@ test: install-deps
 
 test-python: install-deps
 	@python/test
+
+# The dependencies are those of other tests, and a library without the lines of its sources is kept apart from theirs.
+# Cargo before 1.91 does not know the first variable, and builds the dependencies too.
+test-other-ipopt: install-deps
+	@PKG_CONFIG_PATH=$$(.ci/other-ipopt) && export PKG_CONFIG_PATH && target=$${CARGO_TARGET_DIR:-target} && \
+	  CARGO_BUILD_BUILD_DIR=$$target CARGO_TARGET_DIR=$$target/other-ipopt/build \
+	  $(CARGO) test --locked --config 'profile.dev.package.proboscis.debug=false' --test solver
 
 test-browser:
 	@.ci/install --browser

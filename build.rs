@@ -1,6 +1,7 @@
 //! Finds Ipopt, the MUMPS it was linked with and the code of pages, holds the declarations of `src/ipopt/declarations.rs` against the header of Ipopt,
 //! compiles what knows the structure of MUMPS, and notes the versions that results name.
 
+use std::collections::BTreeSet;
 use std::env;
 use std::fs;
 use std::io::Write;
@@ -66,26 +67,29 @@ fn libraries() -> Result<(), String> {
     let told = ipopt.libs.iter().find(|name| name.contains("mumps"));
     let told = told.map_or(MUMPS, String::as_str);
     let mut needed = library.needs.clone();
-    if !library.has_mumps {
+    let mumps = if library.has_mumps {
+        library
+    } else {
         let mut folders = ipopt.link_paths;
         folders.extend(library.path.parent().map(Path::to_owned));
         let name = library.mumps().unwrap_or(told);
         let mumps = Library::find(name, &folders);
         let mumps = mumps.ok_or_else(|| format!("{INSTALL_MUMPS} (no library {name})"))?;
         mumps.link();
-        needed.extend(mumps.needs);
-    }
+        needed.extend(mumps.needs.clone());
+        mumps
+    };
     if needed.iter().any(|file| is_mpi(file)) {
         println!("cargo::rustc-cfg=mpi");
     }
-    compile_instance(ipopt.include_paths)
+    compile_instance(ipopt.include_paths, &mumps)
 }
 
 /// A shared library that is linked.
 struct Library {
     name: String,
     path: PathBuf,
-    /// True if the linker finds it by itself.
+    /// True if it is the one that the linker finds by itself.
     is_found: bool,
     /// Files of the libraries that it needs.
     needs: Vec<String>,
@@ -97,13 +101,12 @@ impl Library {
     /// In one of these folders, or where the linker finds it by itself.
     fn find(name: &str, folders: &[PathBuf]) -> Option<Self> {
         let known = linker_finds(name);
-        let is_found = known.is_some();
         let near = folders
             .iter()
             .flat_map(|folder| shared(name).map(|file| folder.join(file)))
             .find(|path| path.exists());
-        let is_found = is_found && near.is_none();
-        let path = near.or(known)?;
+        let path = near.or_else(|| known.clone())?;
+        let is_found = known.is_some_and(|known| is_one_file(&known, &path));
         let bytes = fs::read(&path).unwrap_or_default();
         let (needs, has_mumps) = read(&bytes).unwrap_or_default();
         let name = name.to_owned();
@@ -116,14 +119,25 @@ impl Library {
         })
     }
 
-    /// Tells cargo.
+    /// Tells cargo. The loader looks where the linker does, and does not know another folder unless the program names it.
     fn link(&self) {
         if let (Some(folder), false) = (self.path.parent(), self.is_found) {
+            let folder = fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
             println!("cargo::rustc-link-search=native={}", folder.display());
+            println!("cargo::rustc-link-arg=-Wl,-rpath,{}", folder.display());
         }
         println!("cargo::rustc-link-lib=dylib={}", self.name);
         // Another version may have another header.
         println!("cargo::rerun-if-changed={}", self.path.display());
+    }
+
+    /// Folders of headers of the same installation.
+    fn headers(&self) -> Vec<PathBuf> {
+        let include = self.path.parent().map(|folder| folder.join("../include"));
+        let include = include.filter(|_| !self.is_found);
+        let below = ["", "mumps", "mumps_seq", "coin-or/mumps", "MUMPS"];
+        let place = |include: PathBuf| below.map(|folder| include.join(folder));
+        include.into_iter().flat_map(place).collect()
     }
 
     /// The MUMPS that it needs: `dmumps` of `libdmumps-5.7.so`, `coinmumps` of `libcoinmumps.so.3`.
@@ -187,18 +201,54 @@ fn check_declarations(ipopt: &pkg_config::Library) -> Result<(), String> {
     }
 }
 
-/// Compiles the functions that know the structure of MUMPS.
-fn compile_instance(mut folders: Vec<PathBuf>) -> Result<(), String> {
+/// Compiles the functions that know the structure of MUMPS, with the header of the one that is linked.
+fn compile_instance(mut folders: Vec<PathBuf>, mumps: &Library) -> Result<(), String> {
     const INSTANCE: &str = "src/sparse/mumps/instance.c";
     println!("cargo::rerun-if-changed={INSTANCE}");
     let beside: Vec<PathBuf> = folders.iter().map(|folder| folder.join("mumps")).collect();
     folders.extend(beside);
+    folders.extend(mumps.headers());
     folders.extend(MUMPS_HEADERS.map(PathBuf::from));
-    let compiled = cc::Build::new()
-        .file(INSTANCE)
-        .includes(folders)
-        .try_compile("proboscis_mumps");
-    compiled.map_err(|error| format!("{INSTALL_MUMPS} ({error})"))
+    let mut build = cc::Build::new();
+    build.file(INSTANCE).includes(folders);
+    let compiled = build.try_compile("proboscis_mumps");
+    compiled.map_err(|error| format!("{INSTALL_MUMPS} ({error})"))?;
+    let expanded = build.cargo_metadata(false).try_expand();
+    let expanded = expanded.map_err(|error| format!("{INSTALL_MUMPS} ({error})"))?;
+    check_version(&expanded, mumps)
+}
+
+/// Compares the version of `dmumps_c.h` in the preprocessed functions with those that the library names; the program compares again when it
+/// runs, with what MUMPS then says of itself, so that a library which names none passes here.
+fn check_version(expanded: &[u8], mumps: &Library) -> Result<(), String> {
+    let header = series(expanded);
+    let library = series(&fs::read(&mumps.path).unwrap_or_default());
+    if library.is_empty() || header.iter().any(|version| library.contains(version)) {
+        return Ok(());
+    }
+    let [header, library] = [header, library].map(|versions| Vec::from_iter(versions).join(", "));
+    Err(format!(
+        "dmumps_c.h is the header of MUMPS {header}, but {} is MUMPS {library}: \
+        a folder that `pkg-config --cflags ipopt` names, or `mumps` in it, has to hold the header of that MUMPS",
+        mumps.path.display()
+    ))
+}
+
+/// Versions of MUMPS in these bytes, such as `5.8` of a text `5.8.2`.
+fn series(bytes: &[u8]) -> BTreeSet<String> {
+    let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'.';
+    let version = |word: &[u8]| {
+        let text = str::from_utf8(word).ok()?;
+        let mut numbers = text.split('.');
+        let [major, minor, patch] = [numbers.next()?, numbers.next()?, numbers.next()?];
+        let is_number = |text: &str| matches!(text.parse::<u8>(), Ok(0..=99));
+        let is_one = major == "5" && is_number(minor) && is_number(patch);
+        (is_one && numbers.next().is_none()).then(|| format!("{major}.{minor}"))
+    };
+    bytes
+        .split(|byte| !is_part(byte))
+        .filter_map(version)
+        .collect()
 }
 
 /// Packs the code of pages for `src/report/page/code.rs`.
@@ -224,6 +274,11 @@ fn pack_code() {
         let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
         fs::write(out.join(name).with_extension("js.gz"), packed).expect("OUT_DIR can be written");
     }
+}
+
+/// Returns true if both paths lead to the same file.
+fn is_one_file(one: &Path, other: &Path) -> bool {
+    fs::canonicalize(one).ok() == fs::canonicalize(other).ok()
 }
 
 /// Names of the files of a shared library.

@@ -39,6 +39,9 @@ pub enum IpoptError {
     /// OpenBLAS, which MUMPS calls, would wait for memory for ever.
     #[error("{}", mumps::NO_ROOM)]
     NoRoom,
+    /// MPI, which a parallel MUMPS needs, would end the process.
+    #[error("{}", mumps::NO_THREADS)]
+    NoThreads,
 }
 
 fn hint(nearest: Option<&str>) -> String {

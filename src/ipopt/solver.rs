@@ -240,6 +240,9 @@ impl<N: Nlp> Solver<N> {
         if !is_along && !mumps::has_room() {
             return Err(IpoptError::NoRoom);
         }
+        if !is_along && !mumps::has_threads() {
+            return Err(IpoptError::NoThreads);
+        }
         let KnownBounds {
             variables,
             constraints,

@@ -40,7 +40,7 @@ impl Backend {
             (Self::Dense, _) => Box::new(Dense::new(pattern)),
             (Self::Faer, Symmetry::Symmetric) => {
                 // Nested dissection leaves less fill than the minimum degree of faer.
-                Box::new(FaerLdlt::new(pattern, &mumps::order(pattern)))
+                Box::new(FaerLdlt::new(pattern, mumps::order(pattern).as_deref()))
             }
             (Self::Faer, Symmetry::Unsymmetric) => Box::new(FaerLu::new(pattern)),
             (Self::Mumps, _) => Box::new(Mumps::new(pattern)),

@@ -99,7 +99,9 @@ impl WorkflowError {
     pub(crate) fn ipopt(error: &IpoptError) -> Self {
         let place = match error {
             IpoptError::OptionRejected { .. } => "control.solver.ipopt",
-            IpoptError::NoStages(_) | IpoptError::NoRoom => "control.solver.linear_solver",
+            IpoptError::NoStages(_) | IpoptError::NoRoom | IpoptError::NoThreads => {
+                "control.solver.linear_solver"
+            }
             IpoptError::ProblemNotCreated { .. } => "control",
         };
         Self::Problem {

@@ -186,7 +186,7 @@ fn a_kink_and_a_limit_of_iterations_are_explained() {
         &[
             &change,
             "control.intervals=40",
-            "control.solver.max_iterations=120",
+            "control.solver.max_iterations=55",
         ],
         &out,
     );

@@ -15,6 +15,7 @@ mod kkt;
 mod linear_solver;
 mod matrices;
 mod mpi;
+mod one_mumps;
 mod precision;
 mod random_systems;
 mod recorded;

@@ -29,16 +29,17 @@ pub(crate) struct FaerLdlt {
 }
 
 impl FaerLdlt {
-    /// For the rows in an order of elimination.
-    pub(crate) fn new(pattern: &Arc<Pattern>, order: &[usize]) -> Self {
-        let mut places = vec![0; order.len()];
-        for (place, &row) in order.iter().enumerate() {
+    /// For the rows in this order of elimination, or in one of minimum degree.
+    pub(crate) fn new(pattern: &Arc<Pattern>, order: Option<&[usize]>) -> Self {
+        let mut places = vec![0; order.map_or(0, <[usize]>::len)];
+        for (place, &row) in order.into_iter().flatten().enumerate() {
             places[row] = place;
         }
+        let order = order.map(|order| PermRef::new_checked(order, &places, order.len()));
         let symbolic = cholesky::factorize_symbolic_cholesky(
             symbolic(pattern),
             Side::Lower,
-            SymmetricOrdering::Custom(PermRef::new_checked(order, &places, order.len())),
+            order.map_or(SymmetricOrdering::Amd, SymmetricOrdering::Custom),
             Default::default(),
         );
         let symbolic = symbolic.expect("memory for the symbolic factorisation");

@@ -15,10 +15,22 @@ use crate::sparse::{Factorisation, Singular, Symmetry};
 use ffi::{Instance, Job};
 pub(crate) use libraries::has_room;
 pub(crate) use lock::{Exclusive, exclusive};
+#[cfg(mpi)]
+pub(crate) use mpi::has_threads;
 
 /// Error message where [`has_room`] returns false.
 pub(crate) const NO_ROOM: &str =
     "MUMPS needs more address space than this process may have: OpenBLAS takes 128 MB at once";
+
+/// Error message where [`has_threads`] returns false.
+pub(crate) const NO_THREADS: &str =
+    "this MUMPS needs MPI, which starts threads, and this process can create none";
+
+/// Returns true: this MUMPS needs no threads.
+#[cfg(not(mpi))]
+pub(crate) fn has_threads() -> bool {
+    true
+}
 
 /// Ordering of the elimination, ICNTL(7), as measured by `benches/factorisation.rs`: SCOTCH.
 const ORDERING: i32 = 3;
@@ -43,6 +55,7 @@ pub(crate) struct Mumps {
 impl Mumps {
     /// Analyses a pattern that is not empty.
     pub(crate) fn new(pattern: &Pattern) -> Self {
+        assert!(has_threads(), "{NO_THREADS}");
         let index = |i: usize| i32::try_from(i + 1).expect("a size that MUMPS can count");
         let rows = pattern.rows.iter().map(|&row| index(row)).collect();
         let cols = (0..pattern.size)
@@ -76,13 +89,16 @@ impl Mumps {
     }
 }
 
-/// Rows in an order of elimination with little fill; the pattern is not empty.
-pub(crate) fn order(pattern: &Pattern) -> Vec<usize> {
+/// Rows in an order of elimination with little fill, if MUMPS can be called; the pattern is not empty.
+pub(crate) fn order(pattern: &Pattern) -> Option<Vec<usize>> {
+    if !has_threads() {
+        return None;
+    }
     let analysed = Mumps::new(pattern);
     let mut rows: Vec<usize> = (0..pattern.size).collect();
     let places = analysed.instance.places();
     rows.sort_unstable_by_key(|&row| places[row]);
-    rows
+    Some(rows)
 }
 
 impl Factorisation for Mumps {

@@ -12,6 +12,7 @@ use std::mem;
 use std::ptr::{NonNull, null_mut};
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 
 use crate::sparse::mumps::libraries::loaded;
 
@@ -35,6 +36,13 @@ static LAST: extern "C" fn() = {
     }
     note
 };
+
+/// Returns true if MPI runs or can be started: it starts threads, and ends the process where it gets none.
+pub(crate) fn has_threads() -> bool {
+    let is_needed = answer(c"PMPI_Initialized") == Some(false);
+    let made = || thread::Builder::new().spawn(|| ());
+    !is_needed || made().is_ok_and(|thread| thread.join().is_ok())
+}
 
 /// Starts MPI unless it runs. The lock of MUMPS keeps others out.
 pub(super) fn start() {
