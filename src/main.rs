@@ -14,6 +14,7 @@ use std::process::ExitCode;
 use arguments::{Arguments, Command, File, New, typed};
 use choices::run_in;
 use clap::{CommandFactory, Parser};
+use clap_complete::Shell;
 use proboscis::app::{self, CommandError, CommandInput, CommandOutput, Template};
 use proboscis::files::{lines, message, note, printable_json};
 use proboscis::ipopt::interrupt;
@@ -88,11 +89,6 @@ fn show_events(verbose: bool) {
 }
 
 fn answer(command: Command) -> Result<CommandOutput, CommandError> {
-    let text = |result: String| CommandOutput {
-        is_solved: true,
-        result,
-        notes: Vec::new(),
-    };
     match command {
         Command::Solve {
             problem,
@@ -145,32 +141,49 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
         }
         Command::Report { results, output } => app::compare(&typed(), &results, &output),
         Command::Expand { scene } => app::expand(&scene).map(text),
-        Command::Schema { file } => {
-            let (scene, problem) = app::schema();
-            Ok(text(match file {
-                File::Scene => scene,
-                File::Problem => problem,
-                File::Study => app::study_schema(),
-                File::Sweep => app::sweep_schema(),
-            }))
-        }
-        Command::New { what } => {
-            let (template, folder) = match what {
-                New::Trunk { segments, files } => (Template::Trunk { segments }, files.folder),
-                New::Arm(files) => (Template::Arm, files.folder),
-                New::Finger(files) => (Template::Finger, files.folder),
-                New::Gripper(files) => (Template::Gripper, files.folder),
-                New::Satellite(files) => (Template::Satellite, files.folder),
-            };
-            app::new_files(template, &folder)
-        }
-        Command::Completions { shell } => {
-            let mut script = Vec::new();
-            clap_complete::generate(shell, &mut Arguments::command(), NAME, &mut script);
-            Ok(text(String::from_utf8_lossy(&script).into_owned()))
-        }
+        Command::Schema { file } => Ok(text(schema(file))),
+        Command::New { what } => new_files(what),
+        Command::Completions { shell } => Ok(text(completions(shell))),
         Command::Man { folder } => manual(&folder).map(text),
     }
+}
+
+/// The output of a command that prints a text.
+fn text(result: String) -> CommandOutput {
+    CommandOutput {
+        is_solved: true,
+        result,
+        notes: Vec::new(),
+    }
+}
+
+/// JSON Schema of the files of a kind.
+fn schema(file: File) -> String {
+    match file {
+        File::Scene => app::schema().0,
+        File::Problem => app::schema().1,
+        File::Study => app::study_schema(),
+        File::Sweep => app::sweep_schema(),
+    }
+}
+
+/// Writes the files of a new robot.
+fn new_files(what: New) -> Result<CommandOutput, CommandError> {
+    let (template, folder) = match what {
+        New::Trunk { segments, files } => (Template::Trunk { segments }, files.folder),
+        New::Arm(files) => (Template::Arm, files.folder),
+        New::Finger(files) => (Template::Finger, files.folder),
+        New::Gripper(files) => (Template::Gripper, files.folder),
+        New::Satellite(files) => (Template::Satellite, files.folder),
+    };
+    app::new_files(template, &folder)
+}
+
+/// The script by which a shell completes commands.
+fn completions(shell: Shell) -> String {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Arguments::command(), NAME, &mut script);
+    String::from_utf8_lossy(&script).into_owned()
 }
 
 /// Runs a command that writes a folder of results, and prints its message or its summary.

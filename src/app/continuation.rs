@@ -10,8 +10,10 @@ use crate::app::request::CommandInput;
 use crate::app::solution_file;
 use crate::control::problem::{Simulation, Task};
 use crate::dynamics::DiscreteTrajectory;
-use crate::files::continuation::{Continuation, read};
+use crate::files::continuation::{Continuation, bytes, read};
 use crate::files::{Loaded, is_standard_input};
+use crate::report::atomic::{self, WriteError};
+use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::shell;
 use crate::workflow::integrate::grid;
@@ -94,6 +96,38 @@ pub(super) fn begun(
         )));
     }
     Ok(history)
+}
+
+/// Adds the state from which a motion of the problem `asked` can be resumed to the files of a result; none where it cannot be.
+pub(super) fn add(
+    files: &mut FileSet,
+    history: &DiscreteTrajectory,
+    asked: Option<&str>,
+) -> Result<(), WriteError> {
+    match asked {
+        Some(asked) => {
+            let path = files.folder().join(ENDED);
+            let bytes = bytes(history, asked).map_err(|cause| WriteError { path, cause })?;
+            files.add(ENDED, &bytes)
+        }
+        None => {
+            files.remove(ENDED);
+            Ok(())
+        }
+    }
+}
+
+/// Replaces the state of a motion that has not ended.
+pub(super) fn replace(
+    path: &Path,
+    history: &DiscreteTrajectory,
+    asked: &str,
+) -> Result<(), WriteError> {
+    let bytes = bytes(history, asked).map_err(|cause| WriteError {
+        path: path.to_owned(),
+        cause,
+    })?;
+    atomic::write(path, &bytes)
 }
 
 /// Returns the first difference of two problems, in words.

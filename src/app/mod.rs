@@ -10,7 +10,7 @@
 //! - `side_by_side`: several results on one page.
 //! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`, `moved_markers`: texts about a result.
 //! - `other_task`: messages where a problem asks for another command; `no_equilibrium`: the summary where there is no state of rest.
-//! - `page`, `solve_page`: texts of the page; `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `foreign`, `progress`, `ticker`, `request`, `error`: common parts of commands.
+//! - `page`, `forward_page`, `solve_page`: texts of the page; `solve_summary`, `rest_model`, `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `foreign`, `progress`, `ticker`, `request`, `error`: common parts of commands.
 
 mod accuracy_table;
 mod batch;
@@ -27,6 +27,7 @@ mod folder;
 mod followed;
 mod foreign;
 mod forward;
+mod forward_page;
 mod identity;
 mod inspect;
 mod linear_systems;
@@ -42,6 +43,7 @@ mod progress;
 mod record;
 mod request;
 mod rest;
+mod rest_model;
 mod rest_observed;
 mod rest_refused;
 mod rest_words;
@@ -50,6 +52,7 @@ mod side_by_side;
 mod solution_file;
 mod solve;
 mod solve_page;
+mod solve_summary;
 mod solve_words;
 mod sparsity;
 mod summary;

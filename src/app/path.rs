@@ -1,6 +1,7 @@
 //! The path of equilibria under growing voltages, followed by arc length past the points where stability is lost.
 
 use std::ops::RangeInclusive;
+use std::path::Path;
 use std::time::Instant;
 
 use crate::app::error::CommandError;
@@ -9,6 +10,7 @@ use crate::app::folder::make_folder;
 use crate::app::followed::Followed;
 use crate::app::page;
 use crate::app::request::{CommandInput, CommandOutput};
+use crate::app::rest_model::{model_at_rest, reference};
 use crate::app::rest_observed::at_rest;
 use crate::app::rest_refused::refused;
 use crate::app::summary::{MEASURED, Seconds, Summary};
@@ -21,17 +23,17 @@ use crate::dynamics::{
 };
 use crate::ipopt::{Status, interrupt};
 use crate::model::{Model, Role, System};
+use crate::report::atomic::WriteError;
 use crate::report::axes::{Axis, Extent};
 use crate::report::file_set::FileSet;
 use crate::report::lines::{LinePlot, Mark, Series};
+use crate::report::origin::Origin;
 use crate::report::skins::Skins;
 use crate::report::style::Dash;
-use crate::report::{Branch, Run, style, write_still};
-use crate::workflow::WorkflowError;
+use crate::report::{Branch, Run, Told, style, write_still};
 use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::phase::phase;
-use crate::workflow::remark::Remarks;
 
 /// Follows the path for `points` equilibria and writes `path.csv`, `path.svg`, the fields, and figure and page of the last
 /// equilibrium before stability is lost, or of the last one.
@@ -42,53 +44,55 @@ pub(super) fn follow(
     points: usize,
     began: Instant,
 ) -> Result<CommandOutput, CommandError> {
-    let wrong =
-        |error| CommandError::of(&request.input)(WorkflowError::boundary("equilibrium", &error));
-    let model = Model::answering(system.clone(), task.question(system))
-        .map_err(|error| wrong(error.into()))?;
+    let model = model_at_rest(request, system, task)?;
     let setup = began.elapsed().as_secs_f64();
     phase("following the path");
-    let start = model.coordinates_at(&vec![0.0; model.gauges.len()]);
-    let found = match continuation(&model, &start, &model.scalars(&task.voltages), points) {
+    let scalars = model.scalars(&task.voltages);
+    let found = match continuation(&model, &reference(&model), &scalars, points) {
         Ok(found) => found,
         Err(error) => return refused(request, &error, "no equilibrium to start from"),
     };
     let stopped = interrupt::stop();
-    let path = Followed::new(&found);
     let folder = request.folder();
     make_folder(&folder)?;
     let origin = request.origin(false);
-    let stops = Stop::all(&found);
-    // The first equilibrium stands at both ends of an interval of its own, so that each has its potentials.
-    let states = || stops.iter().map(|stop| stop.rest);
-    let history = DiscreteTrajectory {
-        times: std::iter::once(0.0)
-            .chain(stops.iter().map(|stop| stop.fraction))
-            .collect(),
-        z: std::iter::once(stops[0].rest)
-            .chain(states())
-            .map(|p| p.z.clone())
-            .collect(),
-        momenta: vec![vec![0.0; model.coordinate_count()]; stops.len() + 1],
-        scalars: states().map(|p| p.scalars.clone()).collect(),
-        ..DiscreteTrajectory::default()
-    };
-    let observed = observed(&model, &stops, &history);
-    let shown = stops.iter().position(|stop| stop.lost.is_some());
-    let shown = shown.unwrap_or(stops.len() - 1);
-    let shown_state = single_instant(&history, shown + 1);
-    let motion = Trajectory::from_history(&model, &shown_state);
-    let way = Trajectory::from_history(&model, &up_to(&history, shown + 1));
-    let rows = path.rows(stops[shown].fraction);
+    let path = EquilibriumPath::new(&model, &found);
     let writing = Instant::now();
     let mut files = FileSet::of(&folder);
-    let plot = figure(&model, &stops, &history);
+    let plot = path.figure();
     files.add("path.svg", plot.svg(&origin).as_bytes())?;
-    fields::write(&mut files, &model, &history, &origin)?;
-    let outside = domain::told(&out_of_domain(&model, &history));
-    let mut remarks = Remarks::default();
-    remarks.warn("outside_domain", domain::note(&outside, false));
-    let notes = path.lost.iter().map(|loss| {
+    fields::write(&mut files, &model, &path.history, &origin)?;
+    let word = stopped.map_or("path_followed", Status::word);
+    let mut summary = Summary::new(request, word, model.coordinates.name());
+    summary.plan = Plan::of(&model, None, MEASURED);
+    let followed = Followed::new(&found);
+    let rows = followed.rows(path.stops[path.shown()].fraction);
+    let told = told(&followed, found.points.len(), stopped, &folder);
+    summary.path = Some(followed);
+    summary.domain = domain::told(&out_of_domain(&model, &path.history));
+    let note = domain::note(&summary.domain, false);
+    summary.notes.warn("outside_domain", note);
+    summary.seconds = Seconds {
+        total: began.elapsed().as_secs_f64(),
+        setup,
+        ..Seconds::default()
+    };
+    let mut page = page::told("Path of equilibria", &summary, asked);
+    page.rows = rows;
+    page.plots.push(("Path".to_owned(), plot));
+    path.write(request, &page, &mut files, &origin)?;
+    summary.seconds.wrote(began, writing);
+    let notes = summary.notes.lines();
+    summary.write(files)?;
+    Ok(CommandOutput {
+        notes: told.notes.into_iter().chain(notes).collect(),
+        ..told
+    })
+}
+
+/// The answer of the command without its warnings.
+fn told(path: &Followed, points: usize, stopped: Option<Status>, folder: &Path) -> CommandOutput {
+    let losses = path.lost.iter().map(|loss| {
         format!(
             "{} at {:.6} % of the voltages",
             loss.words,
@@ -99,54 +103,15 @@ pub(super) fn follow(
         let why = status.word().replace('_', " ");
         format!("the path was not followed to its end ({why})")
     });
-    let told = CommandOutput {
+    CommandOutput {
         is_solved: stopped.is_none(),
         result: format!(
             "{}, {}",
-            counted(found.points.len(), "equilibrium").replace("equilibriums", "equilibria"),
+            counted(points, "equilibrium").replace("equilibriums", "equilibria"),
             folder.display()
         ),
-        notes: notes.chain(early).chain(remarks.lines()).collect(),
-    };
-    let word = stopped.map_or("path_followed", Status::word);
-    let mut summary = Summary::new(request, word, model.coordinates.name());
-    summary.plan = Plan::of(&model, None, MEASURED);
-    summary.path = Some(path);
-    summary.notes = remarks;
-    summary.domain = outside;
-    summary.seconds = Seconds {
-        total: began.elapsed().as_secs_f64(),
-        setup,
-        ..Seconds::default()
-    };
-    let mut said = page::told("Path of equilibria", &summary, asked);
-    said.rows = rows;
-    said.plots.push(("Path".to_owned(), plot));
-    let skins = Skins::new(&model, &shown_state);
-    let steps = DiscreteTrajectory {
-        times: (0..=stops.len()).map(|k| 1e3 * (k as f64 - 1.0)).collect(),
-        ..history.clone()
-    };
-    let fractions: Vec<f64> = stops.iter().map(|stop| stop.fraction).collect();
-    let branch = Branch {
-        trajectory: &Trajectory::from_history(&model, &steps),
-        skins: &Skins::new(&model, &steps),
-        fractions: &fractions,
-        shown,
-    };
-    let run = Run {
-        name: "rest",
-        held: Some(&motion.voltages[0]),
-        equilibria: Some(&way),
-        branch: Some(branch),
-        figures: request.figures,
-        told: request.page.of(&said),
-        ..Run::of(&model.system, &motion, &skins, &observed, &origin)
-    };
-    write_still(&mut files, "path.csv", &run)?;
-    summary.seconds.wrote(began, writing);
-    summary.write(files)?;
-    Ok(told)
+        notes: losses.chain(early).collect(),
+    }
 }
 
 /// An equilibrium of the path.
@@ -202,98 +167,187 @@ fn single_instant(history: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory 
     }
 }
 
-/// Fraction, voltages, markers, stretches, charges, energies and stability of each equilibrium, and a mark if stability is lost
-/// there.
-fn observed(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory) -> Observations {
-    let mut columns = Vec::new();
-    let mut add = |name: String, unit: &'static str, values: Vec<f64>| {
-        columns.push(Column { name, unit, values });
-    };
-    let each = |value: &dyn Fn(&Stop<'_>) -> f64| stops.iter().map(value).collect();
-    add("fraction".to_owned(), "", each(&|stop| stop.fraction));
-    let voltages = model.variables.with(Role::Voltage);
-    for (voltage, s) in voltages.iter().zip(model.variables.range(Role::Voltage)) {
-        let values = each(&|stop| stop.rest.scalars[s]);
-        add(voltage.name.clone(), "V", values);
-    }
-    for mut column in at_rest(observations(model, history)).columns {
-        column.values.remove(0);
-        add(column.name, column.unit, column.values);
-    }
-    let unstable = |stop: &Stop<'_>| stop.rest.unstable.map_or(f64::NAN, |n| n as f64);
-    add("unstable_directions".to_owned(), "", each(&unstable));
-    let lost = |stop: &Stop<'_>| f64::from(u8::from(stop.lost.is_some()));
-    add("stability_lost".to_owned(), "", each(&lost));
-    Observations { columns }
+/// A path of equilibria as a motion in which time is the fraction of the voltages.
+struct EquilibriumPath<'a> {
+    model: &'a Model,
+    stops: Vec<Stop<'a>>,
+    /// The first equilibrium stands at both ends of an interval of its own, so that each has its potentials.
+    history: DiscreteTrajectory,
 }
 
-/// Parts of a path along which equilibria are stable, or are not, or it is not known; each begins at the end of the one before.
-fn branches(stops: &[Stop<'_>]) -> Vec<(Option<bool>, RangeInclusive<usize>)> {
-    let is_stable = |k: usize| stops[k].rest.is_stable();
-    let mut found = Vec::new();
-    let mut from = 0;
-    for to in 1..=stops.len() {
-        if to == stops.len() || is_stable(to) != is_stable(to - 1) {
-            found.push((is_stable(to - 1), from..=to - 1));
-            from = to - 1;
-        }
-    }
-    found
-}
-
-/// `path.svg`: fraction of the voltages over the distance of each marker from rest, or of the coordinate that moves most; where stability is
-/// lost it is marked.
-fn figure(model: &Model, stops: &[Stop<'_>], history: &DiscreteTrajectory) -> LinePlot {
-    let marks = Trajectory::from_history(model, history).marks;
-    let reference = &model.coordinates_at(&vec![0.0; model.gauges.len()]);
-    let distance = |m: usize, k: usize| (marks[k + 1][m] - marks[0][m]).norm();
-    let mut series = Vec::new();
-    let mut curve = |name: &str, m: usize, distance: &dyn Fn(usize) -> f64| {
-        let place = |k: usize| [distance(k), stops[k].fraction];
-        let mut named = Vec::new();
-        for (is_stable, stretch) in branches(stops) {
-            let points = stretch.map(place).collect();
-            let (dash, name) = match is_stable {
-                Some(true) => (Dash::Solid, name.to_owned()),
-                Some(false) => (Dash::Dashed, format!("{name}, unstable")),
-                None => (Dash::Dashed, format!("{name}, stability not known")),
-            };
-            // The legend has each once.
-            let is_new = !named.contains(&is_stable);
-            named.push(is_stable);
-            let curve = Series::curve(
-                if is_new { name } else { String::new() },
-                points,
-                style::hue(m),
-            );
-            series.push(curve.marked(Mark::Disc).dashed(dash));
-        }
-        let lost = (0..stops.len()).filter(|&k| stops[k].lost.is_some());
-        let (points, labels): (Vec<_>, Vec<_>) = lost
-            .map(|k| {
-                let words = stops[k].lost.map_or("", Instability::words);
-                let label = format!("{words} at {:.2} %", 100.0 * stops[k].fraction);
-                (place(k), label)
-            })
-            .unzip();
-        if !points.is_empty() {
-            let mark = Series::curve("", points, style::INK).marked(Mark::Ring);
-            series.push(mark.unjoined().labelled(labels));
-        }
-    };
-    for (m, marker) in model.system.markers.iter().enumerate() {
-        curve(&marker.name, m, &|k| distance(m, k));
-    }
-    if model.system.markers.is_empty() {
-        let far = |k: usize| {
-            let z = stops[k].rest.z.iter().zip(reference);
-            z.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+impl<'a> EquilibriumPath<'a> {
+    fn new(model: &'a Model, found: &'a Continuation) -> Self {
+        let stops = Stop::all(found);
+        let first = std::iter::once(&stops[0]);
+        let history = DiscreteTrajectory {
+            times: std::iter::once(0.0)
+                .chain(stops.iter().map(|stop| stop.fraction))
+                .collect(),
+            z: first
+                .chain(&stops)
+                .map(|stop| stop.rest.z.clone())
+                .collect(),
+            momenta: vec![vec![0.0; model.coordinate_count()]; stops.len() + 1],
+            scalars: stops.iter().map(|stop| stop.rest.scalars.clone()).collect(),
+            ..DiscreteTrajectory::default()
         };
-        curve("largest change of a coordinate", 0, &far);
+        Self {
+            model,
+            stops,
+            history,
+        }
     }
-    LinePlot::new(
-        Axis::linear("distance from rest [mm]", Extent::FromZero),
-        Axis::linear("fraction of the voltages", Extent::FromZero),
-        series,
-    )
+
+    /// Index of the equilibrium that is shown: the last one before stability is lost, or the last one.
+    fn shown(&self) -> usize {
+        let lost = self.stops.iter().position(|stop| stop.lost.is_some());
+        lost.unwrap_or(self.stops.len() - 1)
+    }
+
+    /// Writes `path.csv`, and figure and page of the equilibrium that is shown.
+    fn write(
+        &self,
+        request: &CommandInput,
+        page: &Told,
+        files: &mut FileSet,
+        origin: &Origin,
+    ) -> Result<(), WriteError> {
+        let Self {
+            model,
+            stops,
+            history,
+        } = self;
+        let shown = self.shown();
+        let state = single_instant(history, shown + 1);
+        let motion = Trajectory::from_history(model, &state);
+        let way = Trajectory::from_history(model, &up_to(history, shown + 1));
+        let steps = DiscreteTrajectory {
+            times: (0..=stops.len()).map(|k| 1e3 * (k as f64 - 1.0)).collect(),
+            ..history.clone()
+        };
+        let fractions: Vec<f64> = stops.iter().map(|stop| stop.fraction).collect();
+        let branch = Branch {
+            trajectory: &Trajectory::from_history(model, &steps),
+            skins: &Skins::new(model, &steps),
+            fractions: &fractions,
+            shown,
+        };
+        let (skins, observed) = (Skins::new(model, &state), self.observed());
+        let run = Run {
+            name: "rest",
+            held: Some(&motion.voltages[0]),
+            equilibria: Some(&way),
+            branch: Some(branch),
+            figures: request.figures,
+            told: request.page.of(page),
+            ..Run::of(&model.system, &motion, &skins, &observed, origin)
+        };
+        write_still(files, "path.csv", &run)
+    }
+
+    /// Fraction, voltages, markers, stretches, charges, energies and stability of each equilibrium, and a mark if stability is lost
+    /// there.
+    fn observed(&self) -> Observations {
+        let Self {
+            model,
+            stops,
+            history,
+        } = self;
+        let mut columns = Vec::new();
+        let mut add = |name: String, unit: &'static str, values: Vec<f64>| {
+            columns.push(Column { name, unit, values });
+        };
+        let each = |value: &dyn Fn(&Stop<'_>) -> f64| stops.iter().map(value).collect();
+        add("fraction".to_owned(), "", each(&|stop| stop.fraction));
+        let voltages = model.variables.with(Role::Voltage);
+        for (voltage, s) in voltages.iter().zip(model.variables.range(Role::Voltage)) {
+            let values = each(&|stop| stop.rest.scalars[s]);
+            add(voltage.name.clone(), "V", values);
+        }
+        for mut column in at_rest(observations(model, history)).columns {
+            column.values.remove(0);
+            add(column.name, column.unit, column.values);
+        }
+        let unstable = |stop: &Stop<'_>| stop.rest.unstable.map_or(f64::NAN, |n| n as f64);
+        add("unstable_directions".to_owned(), "", each(&unstable));
+        let lost = |stop: &Stop<'_>| f64::from(u8::from(stop.lost.is_some()));
+        add("stability_lost".to_owned(), "", each(&lost));
+        Observations { columns }
+    }
+
+    /// Parts of a path along which equilibria are stable, or are not, or it is not known; each begins at the end of the one before.
+    fn branches(&self) -> Vec<(Option<bool>, RangeInclusive<usize>)> {
+        let is_stable = |k: usize| self.stops[k].rest.is_stable();
+        let mut found = Vec::new();
+        let mut from = 0;
+        for to in 1..=self.stops.len() {
+            if to == self.stops.len() || is_stable(to) != is_stable(to - 1) {
+                found.push((is_stable(to - 1), from..=to - 1));
+                from = to - 1;
+            }
+        }
+        found
+    }
+
+    /// `path.svg`: fraction of the voltages over the distance of each marker from rest, or of the coordinate that moves most; where stability is
+    /// lost it is marked.
+    fn figure(&self) -> LinePlot {
+        let Self {
+            model,
+            stops,
+            history,
+        } = self;
+        let marks = Trajectory::from_history(model, history).marks;
+        let reference = &reference(model);
+        let distance = |m: usize, k: usize| (marks[k + 1][m] - marks[0][m]).norm();
+        let mut series = Vec::new();
+        let mut curve = |name: &str, m: usize, distance: &dyn Fn(usize) -> f64| {
+            let place = |k: usize| [distance(k), stops[k].fraction];
+            let mut named = Vec::new();
+            for (is_stable, stretch) in self.branches() {
+                let points = stretch.map(place).collect();
+                let (dash, name) = match is_stable {
+                    Some(true) => (Dash::Solid, name.to_owned()),
+                    Some(false) => (Dash::Dashed, format!("{name}, unstable")),
+                    None => (Dash::Dashed, format!("{name}, stability not known")),
+                };
+                // The legend has each once.
+                let is_new = !named.contains(&is_stable);
+                named.push(is_stable);
+                let curve = Series::curve(
+                    if is_new { name } else { String::new() },
+                    points,
+                    style::hue(m),
+                );
+                series.push(curve.marked(Mark::Disc).dashed(dash));
+            }
+            let lost = (0..stops.len()).filter(|&k| stops[k].lost.is_some());
+            let (points, labels): (Vec<_>, Vec<_>) = lost
+                .map(|k| {
+                    let words = stops[k].lost.map_or("", Instability::words);
+                    let label = format!("{words} at {:.2} %", 100.0 * stops[k].fraction);
+                    (place(k), label)
+                })
+                .unzip();
+            if !points.is_empty() {
+                let mark = Series::curve("", points, style::INK).marked(Mark::Ring);
+                series.push(mark.unjoined().labelled(labels));
+            }
+        };
+        for (m, marker) in model.system.markers.iter().enumerate() {
+            curve(&marker.name, m, &|k| distance(m, k));
+        }
+        if model.system.markers.is_empty() {
+            let far = |k: usize| {
+                let z = stops[k].rest.z.iter().zip(reference);
+                z.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+            };
+            curve("largest change of a coordinate", 0, &far);
+        }
+        LinePlot::new(
+            Axis::linear("distance from rest [mm]", Extent::FromZero),
+            Axis::linear("fraction of the voltages", Extent::FromZero),
+            series,
+        )
+    }
 }

@@ -1,5 +1,6 @@
 //! A static equilibrium from file to folder.
 
+use std::path::Path;
 use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
@@ -13,14 +14,15 @@ use crate::app::page;
 use crate::app::path;
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
+use crate::app::rest_model::{model_at_rest, reference};
 use crate::app::rest_observed::at_rest;
 use crate::app::rest_refused::refused;
-use crate::app::rest_words::{describe, lost, rows, status, text};
+use crate::app::rest_words::{Rest, describe, lost, rows, status, text};
 use crate::app::summary::{MEASURED, Seconds, Summary};
 use crate::control::problem::{AtRest, Task};
-use crate::dynamics::trajectory::Trajectory;
+use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{
-    DiscreteTrajectory, EquilibriumError, StabilityLoss, observations, out_of_domain,
+    DiscreteTrajectory, Equilibrium, EquilibriumError, StabilityLoss, observations, out_of_domain,
     stable_equilibrium,
 };
 use crate::files::{driven_voltages, read_problem, read_system};
@@ -29,7 +31,6 @@ use crate::model::{Model, System};
 use crate::report::file_set::FileSet;
 use crate::report::skins::Skins;
 use crate::report::{Run, write_still};
-use crate::workflow::WorkflowError;
 use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::memory;
@@ -85,16 +86,72 @@ pub(super) fn at(
     if let Some(points) = task.path {
         return path::follow((request, asked), system, task, points, began);
     }
-    let wrong =
-        |error| CommandError::of(&request.input)(WorkflowError::boundary("equilibrium", &error));
     phase("building");
-    let model = Model::answering(system.clone(), task.question(system))
-        .map_err(|error| wrong(error.into()))?;
+    let model = model_at_rest(request, system, task)?;
     let setup = began.elapsed().as_secs_f64();
     phase("equilibrium");
-    let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
-    let (found, failure) = match stable_equilibrium(&model, &zero, &model.scalars(&task.voltages)) {
-        Ok(found) => (found, None),
+    let (found, loss) = match find(&model, &task.voltages) {
+        Ok(found) => found,
+        Err(error) => return refused(request, &error, "no equilibrium"),
+    };
+    drop(watch);
+    let still = Still::new(&model, &found, loss);
+    let folder = request.folder();
+    make_folder(&folder)?;
+    let writing = Instant::now();
+    let origin = request.origin(false);
+    let mut files = FileSet::of(&folder);
+    let written = fields::write(&mut files, &model, &still.state, &origin)?;
+    let status = loss.map_or("at_rest", status);
+    let mut summary = Summary::new(request, status, model.coordinates.name());
+    summary.message = loss.map(|loss| lost(&still.rest, loss, &folder));
+    summary.domain = domain::told(&out_of_domain(&model, &still.state));
+    summary.plan = Plan::of(&model, None, MEASURED);
+    summary.blocks = BlockSizes::of(&model).map(|b| b.after(&model, &still.observed, written));
+    summary.seconds = Seconds {
+        total: began.elapsed().as_secs_f64(),
+        setup,
+        ..Seconds::default()
+    };
+    let notes = &mut summary.notes;
+    notes.note("moved_marker", moved_markers(system));
+    notes.warn("outside_domain", domain::note(&summary.domain, false));
+    let told = told(&summary, &model, &still.rest, &folder);
+    let rows = rows(&still.rest, status);
+    summary.rest = Some(still.rest);
+    let title = match loss {
+        None => "Static equilibrium",
+        Some(_) => "The last equilibrium",
+    };
+    let mut page = page::told(title, &summary, asked);
+    page.rows = rows;
+    let skins = Skins::new(&model, &still.state);
+    let run = Run {
+        name: "rest",
+        held: Some(&still.motion.voltages[0]),
+        figures: request.figures,
+        told: request.page.of(&page),
+        ..Run::of(
+            &model.system,
+            &still.motion,
+            &skins,
+            &still.observed,
+            &origin,
+        )
+    };
+    write_still(&mut files, "equilibrium.csv", &run)?;
+    summary.seconds.wrote(began, writing);
+    summary.write(files)?;
+    Ok(told)
+}
+
+/// The equilibrium under voltages; where growing loads lose it, the last one with the way in which it is lost.
+fn find(
+    model: &Model,
+    voltages: &[f64],
+) -> Result<(Equilibrium, Option<StabilityLoss>), EquilibriumError> {
+    match stable_equilibrium(model, &reference(model), &model.scalars(voltages)) {
+        Ok(found) => Ok((found, None)),
         Err(EquilibriumError::LimitPoint {
             fraction,
             kind,
@@ -106,75 +163,52 @@ pub(super) fn at(
                 fraction,
                 kind,
             };
-            (*last, Some(loss))
+            Ok((*last, Some(loss)))
         }
-        Err(error) => return refused(request, &error, "no equilibrium"),
-    };
-    drop(watch);
-    let state = DiscreteTrajectory {
-        times: vec![0.0],
-        z: vec![found.z.clone()],
-        momenta: vec![vec![0.0; model.coordinate_count()]],
-        scalars: vec![found.scalars.clone()],
-        ..DiscreteTrajectory::default()
-    };
-    let motion = Trajectory::from_history(&model, &state);
-    let observed = at_rest(observations(&model, &state));
-    let mut rest = describe(&model, &state, &motion, &observed, &found, failure);
-    rest.largest_nominal_field = fields::largest_nominal_field(&model, &state, 0);
-    let folder = request.folder();
-    make_folder(&folder)?;
-    let origin = request.origin(false);
-    let writing = Instant::now();
-    let mut files = FileSet::of(&folder);
-    let written = fields::write(&mut files, &model, &state, &origin)?;
-    let status = failure.map_or("at_rest", status);
-    let mut summary = Summary::new(request, status, model.coordinates.name());
-    summary.message = failure.map(|loss| lost(&rest, loss, &folder));
-    summary.domain = domain::told(&out_of_domain(&model, &state));
-    summary.plan = Plan::of(&model, None, MEASURED);
-    summary.blocks = BlockSizes::of(&model).map(|b| b.after(&model, &observed, written));
-    summary.seconds = Seconds {
-        total: began.elapsed().as_secs_f64(),
-        setup,
-        ..Seconds::default()
-    };
-    summary.notes.note("moved_marker", moved_markers(system));
-    summary
-        .notes
-        .warn("outside_domain", domain::note(&summary.domain, false));
+        Err(error) => Err(error),
+    }
+}
+
+/// An equilibrium as a motion of one instant, with what is observed of it.
+struct Still {
+    state: DiscreteTrajectory,
+    motion: Trajectory,
+    observed: Observations,
+    rest: Rest,
+}
+
+impl Still {
+    fn new(model: &Model, found: &Equilibrium, loss: Option<StabilityLoss>) -> Self {
+        let state = DiscreteTrajectory {
+            times: vec![0.0],
+            z: vec![found.z.clone()],
+            momenta: vec![vec![0.0; model.coordinate_count()]],
+            scalars: vec![found.scalars.clone()],
+            ..DiscreteTrajectory::default()
+        };
+        let motion = Trajectory::from_history(model, &state);
+        let observed = at_rest(observations(model, &state));
+        let mut rest = describe(model, &state, &motion, &observed, found, loss);
+        rest.largest_nominal_field = fields::largest_nominal_field(model, &state, 0);
+        Self {
+            state,
+            motion,
+            observed,
+            rest,
+        }
+    }
+}
+
+/// The answer of the command; an equilibrium that was lost has a message.
+fn told(summary: &Summary, model: &Model, rest: &Rest, folder: &Path) -> CommandOutput {
     let message = summary.message.iter().cloned();
-    let notes = message.chain(summary.notes.lines()).collect();
-    let told = match &failure {
-        None => CommandOutput {
-            is_solved: true,
-            result: format!("{}, {}", text(&model, &rest), folder.display()),
-            notes,
+    let is_solved = summary.message.is_none();
+    CommandOutput {
+        is_solved,
+        result: match is_solved {
+            true => format!("{}, {}", text(model, rest), folder.display()),
+            false => "no equilibrium".to_owned(),
         },
-        Some(_) => CommandOutput {
-            is_solved: false,
-            result: "no equilibrium".to_owned(),
-            notes,
-        },
-    };
-    let rows = rows(&rest, status);
-    summary.rest = Some(rest);
-    let title = match failure {
-        None => "Static equilibrium",
-        Some(_) => "The last equilibrium",
-    };
-    let mut said = page::told(title, &summary, asked);
-    said.rows = rows;
-    let skins = Skins::new(&model, &state);
-    let run = Run {
-        name: "rest",
-        held: Some(&motion.voltages[0]),
-        figures: request.figures,
-        told: request.page.of(&said),
-        ..Run::of(&model.system, &motion, &skins, &observed, &origin)
-    };
-    write_still(&mut files, "equilibrium.csv", &run)?;
-    summary.seconds.wrote(began, writing);
-    summary.write(files)?;
-    Ok(told)
+        notes: message.chain(summary.notes.lines()).collect(),
+    }
 }

@@ -1,9 +1,11 @@
 //! Latest iterate of a long run, stored in case it is killed.
 
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use crate::app::folder::make_folder;
 use crate::app::{continuation, solution_file};
 use crate::report::atomic::WriteError;
 
@@ -14,24 +16,53 @@ const SHARE: u32 = 20;
 /// A point of no greater violation is as good as one that meets equations and limits.
 const MEETS: f64 = 1e-6;
 
-/// A file in the folder of the results, written anew now and then.
+/// The folder of the results while a run goes on, with a file of it that is written anew now and then.
 #[derive(Debug)]
 pub(super) struct Unfinished {
+    folder: PathBuf,
     path: PathBuf,
     /// Time from which on it may be written next.
     next: Instant,
     /// Violation of the point in the file.
     violation: f64,
+    /// Reason why the folder cannot be made.
+    unwritable: Option<WriteError>,
 }
 
 impl Unfinished {
     /// Nothing is written yet; the first time comes after two seconds.
-    pub(super) fn of(path: PathBuf) -> Self {
+    pub(super) fn of(folder: PathBuf, file: &str) -> Self {
         Self {
-            path,
+            path: folder.join(file),
+            folder,
             next: Instant::now() + PERIOD[0],
             violation: f64::INFINITY,
+            unwritable: None,
         }
+    }
+
+    /// Makes the folder at the first iterate: one that cannot be made is told before a long run, not after it.
+    pub(super) fn begin(&mut self) {
+        if self.unwritable.is_none() {
+            self.unwritable = make_folder(&self.folder).err();
+        }
+    }
+
+    /// Ends a run whose folder cannot be made.
+    pub(super) fn flow(&self) -> ControlFlow<()> {
+        match self.unwritable {
+            Some(_) => ControlFlow::Break(()),
+            None => ControlFlow::Continue(()),
+        }
+    }
+
+    /// The folder, once the run has ended.
+    pub(super) fn made(self) -> Result<PathBuf, WriteError> {
+        if let Some(error) = self.unwritable {
+            return Err(error);
+        }
+        make_folder(&self.folder)?;
+        Ok(self.folder)
     }
 
     /// Writes the iterate, when it is time and it is as good as the one written before: `violation` is that of its equations and

@@ -11,7 +11,7 @@ use crate::control::rest::rest_at;
 use crate::control::sought;
 use crate::control::transcription::count::overdetermined;
 use crate::control::transcription::layout::Layout;
-use crate::dynamics::{Start, muscle_without_length};
+use crate::dynamics::{Equilibrium, Start, muscle_without_length};
 use crate::functional::Order;
 use crate::model::{Analysis, Coordinates, Graph, Model, Presolved, Quantity, Role, System};
 
@@ -66,103 +66,28 @@ impl BoundaryConditions {
         let presolved = Presolved::new(system, &question);
         let coordinates = Model::choose(&presolved.system, control.coordinates)?;
         let redundant = coordinates == Coordinates::Redundant;
-        let mut limits = Limits::new(&control.limits, system, redundant);
-        let all_joints = all_joints_given(system, &control.goal);
-        match &control.goal {
-            BoundaryState::Markers {
-                places,
-                orientations,
-                rest,
-                ..
-            } => {
-                goal_rows::add_places(&mut limits, system, places, *rest == Rest::Bodies);
-                goal_rows::add_orientations(&mut limits, system, orientations);
-            }
-            BoundaryState::JointAngles { angles, .. } if redundant && !all_joints => {
-                for (&joint, &near) in angles {
-                    let name = format!("goal of {}", system.joints[joint].name);
-                    limits.add_goal(Quantity::Joint { joint, near }, near, name);
-                }
-            }
-            _ => {}
-        }
-        let mut quantities = limits.quantities();
-        let paid = &control.objective.quantities;
-        let curved = paid.iter().enumerate().filter(|(_, c)| c.is_curved());
+        let limits = limits_with_goal(system, control, redundant);
         let question = Analysis {
             coordinates: Some(coordinates),
-            curved: curved.map(|(i, _)| quantities.len() + i).collect(),
-            quantities: {
-                quantities.extend(paid.iter().map(|cost| cost.quantity));
-                let charged = sources(&control.objective.energies).into_iter();
-                quantities.extend(charged.map(|muscle| Quantity::Capacitance { muscle }));
-                quantities
-            },
-            ..question
+            ..with_quantities(question, &limits, control)
         };
         let mut model = Model::of_presolved(system.clone(), question, presolved)?;
-        let mut scalars = [None, None];
-        let start = match &control.start {
-            BoundaryState::RestAtVoltages(voltages, _) => {
-                let rest = rest_at(&model, voltages, "start")?;
-                scalars[0] = Some(rest.scalars);
-                at_rest(&model, rest.z)
-            }
-            state => resolve_start(&model, state, "start")?,
-        };
+        let (start, of_start) = start_of(&model, &control.start)?;
         goal_rows::leave_out_constant(&mut model, &limits, &start.z)?;
-        let n = model.coordinate_count();
-        let mut given = vec![None; n];
-        let mut at_goal = None;
-        match &control.goal {
-            BoundaryState::RestAtVoltages(voltages, of) => {
-                let rest = rest_at(&model, voltages, "goal")?;
-                scalars[1] = Some(rest.scalars.clone());
-                let reached = match of {
-                    Rest::Everything | Rest::Attainable => n,
-                    Rest::Bodies => model.action.motion.of_bodies.min(n),
-                };
-                for (given, value) in given.iter_mut().zip(&rest.z[..reached]) {
-                    *given = Some(*value);
-                }
-                at_goal = Some(rest);
-            }
-            BoundaryState::JointAngles { angles, .. } if redundant && all_joints => {
-                let joints: Vec<f64> = (0..system.joints.len())
-                    .map(|j| angles.get(&j).copied().unwrap_or(0.0))
-                    .collect();
-                let z = model.coordinates_at(&joints);
-                given = z[..n].iter().copied().map(Some).collect();
-            }
-            BoundaryState::JointAngles { angles, .. } if !redundant => {
-                for (&joint, &value) in angles {
-                    if let Some(c) = model.gauges[joint].coordinate {
-                        given[c] = Some(value);
-                    }
-                }
-            }
-            _ => {}
-        }
+        let (given, of_goal) = coordinates_at_goal(&model, &control.goal)?;
         if let Some(z) = given.iter().copied().collect::<Option<Vec<f64>>>() {
             check_muscles(&model, &z, "goal")?;
         }
+        let scalars = [of_start, of_goal.as_ref().map(|rest| rest.scalars.clone())];
         let rest = [&control.start, &control.goal].map(BoundaryState::voltages);
-        let rest = rest.map(|voltages| voltages.map(<[f64]>::to_vec));
         let boundary = Self {
             start,
             goal: TerminalState {
                 coordinates: given,
-                rests: match &control.goal {
-                    BoundaryState::Free => Rests::Nothing,
-                    BoundaryState::Markers {
-                        rest: Rest::Bodies, ..
-                    }
-                    | BoundaryState::RestAtVoltages(_, Rest::Bodies) => Rests::Bodies,
-                    _ => Rests::Everything,
-                },
-                rest: at_goal,
+                rests: rests_at(&control.goal),
+                rest: of_goal,
             },
-            rest,
+            rest: rest.map(|voltages| voltages.map(<[f64]>::to_vec)),
             limits,
             notes: Vec::new(),
         };
@@ -171,6 +96,113 @@ impl BoundaryConditions {
         sought::check(&model, control, ends)?;
         ends::check(&model, &boundary, control, scalars)?;
         Ok((model, boundary))
+    }
+}
+
+/// The path limits of a problem, and the parts of its goal that are equations of measures.
+fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limits {
+    let mut limits = Limits::new(&control.limits, system, redundant);
+    match &control.goal {
+        BoundaryState::Markers {
+            places,
+            orientations,
+            rest,
+            ..
+        } => {
+            goal_rows::add_places(&mut limits, system, places, *rest == Rest::Bodies);
+            goal_rows::add_orientations(&mut limits, system, orientations);
+        }
+        goal @ BoundaryState::JointAngles { angles, .. }
+            if redundant && !all_joints_given(system, goal) =>
+        {
+            for (&joint, &near) in angles {
+                let name = format!("goal of {}", system.joints[joint].name);
+                limits.add_goal(Quantity::Joint { joint, near }, near, name);
+            }
+        }
+        _ => {}
+    }
+    limits
+}
+
+/// The analysis with the quantities of limits, goal and costs.
+fn with_quantities(question: Analysis, limits: &Limits, control: &Control) -> Analysis {
+    let mut quantities = limits.quantities();
+    let paid = &control.objective.quantities;
+    let curved = paid.iter().enumerate().filter(|(_, c)| c.is_curved());
+    let curved = curved.map(|(i, _)| quantities.len() + i).collect();
+    quantities.extend(paid.iter().map(|cost| cost.quantity));
+    let charged = sources(&control.objective.energies).into_iter();
+    quantities.extend(charged.map(|muscle| Quantity::Capacitance { muscle }));
+    Analysis {
+        curved,
+        quantities,
+        ..question
+    }
+}
+
+/// The start, and the scalars of an interval there, where it is a state of rest under voltages.
+fn start_of(
+    model: &Model,
+    start: &BoundaryState,
+) -> Result<(Start, Option<Vec<f64>>), BoundaryError> {
+    match start {
+        BoundaryState::RestAtVoltages(voltages, _) => {
+            let rest = rest_at(model, voltages, "start")?;
+            Ok((at_rest(model, rest.z), Some(rest.scalars)))
+        }
+        state => Ok((resolve_start(model, state, "start")?, None)),
+    }
+}
+
+/// Coordinates that a goal gives, and its equilibrium, where it is one.
+fn coordinates_at_goal(
+    model: &Model,
+    goal: &BoundaryState,
+) -> Result<(Vec<Option<f64>>, Option<Equilibrium>), BoundaryError> {
+    let n = model.coordinate_count();
+    let redundant = model.coordinates == Coordinates::Redundant;
+    let mut given = vec![None; n];
+    match goal {
+        BoundaryState::RestAtVoltages(voltages, of) => {
+            let rest = rest_at(model, voltages, "goal")?;
+            let reached = match of {
+                Rest::Everything | Rest::Attainable => n,
+                Rest::Bodies => model.action.motion.of_bodies.min(n),
+            };
+            for (given, value) in given.iter_mut().zip(&rest.z[..reached]) {
+                *given = Some(*value);
+            }
+            return Ok((given, Some(rest)));
+        }
+        BoundaryState::JointAngles { angles, .. } if !redundant => {
+            for (&joint, &value) in angles {
+                if let Some(c) = model.gauges[joint].coordinate {
+                    given[c] = Some(value);
+                }
+            }
+        }
+        BoundaryState::JointAngles { angles, .. } if all_joints_given(&model.system, goal) => {
+            let joints: Vec<f64> = (0..model.system.joints.len())
+                .map(|j| angles.get(&j).copied().unwrap_or(0.0))
+                .collect();
+            let z = model.coordinates_at(&joints);
+            given = z[..n].iter().copied().map(Some).collect();
+        }
+        _ => {}
+    }
+    Ok((given, None))
+}
+
+/// Part of the system that rests at a goal.
+fn rests_at(goal: &BoundaryState) -> Rests {
+    match goal {
+        BoundaryState::Free => Rests::Nothing,
+        BoundaryState::Markers {
+            rest: Rest::Bodies, ..
+        }
+        | BoundaryState::RestAtVoltages(_, Rest::Bodies) => Rests::Bodies,
+        _ => Rests::Everything,
     }
 }
 

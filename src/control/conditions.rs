@@ -45,4 +45,13 @@ impl TerminalState {
     pub fn charts(&self, unknowns: usize) -> &[f64] {
         self.rest.as_ref().map_or(&[], |rest| &rest.z[unknowns..])
     }
+
+    /// Sets what the state gives in the coordinates of an instant, whose charts stand behind this number of unknowns.
+    pub(super) fn give(&self, z: &mut [f64], unknowns: usize) {
+        for (value, given) in z.iter_mut().zip(&self.coordinates) {
+            *value = given.unwrap_or(*value);
+        }
+        let charts = z[unknowns..].iter_mut().zip(self.charts(unknowns));
+        charts.for_each(|(value, chart)| *value = *chart);
+    }
 }

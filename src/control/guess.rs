@@ -221,7 +221,29 @@ fn from_solution(
             carried,
         };
     }
-    let along_joints = |k: usize| {
+    let z = match has_same_coordinates {
+        true => resample::coordinates(solved, grids, motion, model.multiplier_time),
+        false => along_joints(model, solved, intervals),
+    };
+    let history = DiscreteTrajectory {
+        times: (0..=intervals).map(|k| k as f64 * h).collect(),
+        z,
+        scalars: scalars(model, solved, grids, intervals),
+        ..DiscreteTrajectory::default()
+    };
+    InitialGuess {
+        history,
+        h,
+        costates: has_same_coordinates
+            .then(|| resample::costates(model, boundary, control, solved, grids))
+            .flatten(),
+        carried,
+    }
+}
+
+/// Coordinates at the instants of another grid by joint coordinates and poses of a solution, from which the model takes its own.
+fn along_joints(model: &Model, solved: &Solution, intervals: usize) -> Vec<Vec<f64>> {
+    let at = |k: usize| {
         let s = k as f64 / intervals as f64 * solved.intervals() as f64;
         let i = (s.floor() as usize).min(solved.intervals() - 1);
         let f = s - i as f64;
@@ -232,16 +254,17 @@ fn from_solution(
             _ => model.coordinates_at(&joints),
         }
     };
-    let z = match has_same_coordinates {
-        true => resample::coordinates(solved, grids, motion, model.multiplier_time),
-        false => (0..=intervals).map(along_joints).collect(),
-    };
+    (0..=intervals).map(at).collect()
+}
+
+/// Scalars of the intervals of another grid: voltages, parameters within their bounds, and potentials where the solution has them.
+fn scalars(model: &Model, solved: &Solution, grids: Grids, intervals: usize) -> Vec<Vec<f64>> {
     // Gauss's laws are linear in potentials: from zero they are solved at once.
     let potentials = model.variables.range(Role::Potential);
     let mut rows = solved.potentials.iter();
     let has_potentials =
         !solved.potentials.is_empty() && rows.all(|row| row.len() == potentials.len());
-    let scalars = |k: usize| {
+    let at = |k: usize| {
         let mut scalars = model
             .variables
             .scalars(&model.scalars(&grids.mean(&solved.voltages, k)));
@@ -257,20 +280,7 @@ fn from_solution(
         }
         scalars
     };
-    let history = DiscreteTrajectory {
-        times: (0..=intervals).map(|k| k as f64 * h).collect(),
-        z,
-        scalars: (0..intervals).map(scalars).collect(),
-        ..DiscreteTrajectory::default()
-    };
-    InitialGuess {
-        history,
-        h,
-        costates: has_same_coordinates
-            .then(|| resample::costates(model, boundary, control, solved, grids))
-            .flatten(),
-        carried,
-    }
+    (0..intervals).map(at).collect()
 }
 
 #[cfg(test)]

@@ -47,121 +47,108 @@ impl Limits {
     /// The path limits of a problem. Joint limits become measures only where `measure_joints`; in joint coordinates
     /// they are bounds of variables.
     pub fn new(limits: &[PathConstraint], system: &System, measure_joints: bool) -> Self {
-        let mut list = Vec::new();
+        let mut out = Self::default();
         for limit in limits {
-            let mut add = |quantity, lower, upper, name| {
-                list.push(BoundedQuantity {
-                    quantity,
-                    lower,
-                    upper,
-                    when: When::Everywhere,
-                    name,
-                });
-            };
             match *limit {
                 PathConstraint::JointAngle { joint, min, max } => {
                     if measure_joints {
-                        let near = match (min.is_finite(), max.is_finite()) {
-                            (true, true) => 0.5 * (min + max),
-                            _ => 0.0,
-                        };
-                        let name = format!("limit of {}", system.joints[joint].name);
-                        add(Quantity::Joint { joint, near }, min, max, name);
+                        out.add_joint(joint, [min, max], system);
                     }
                 }
                 PathConstraint::Stretch { muscle, min, max } => {
                     let name = format!("stretch of {}", system.muscles[muscle].name);
-                    add(
-                        Quantity::SquaredStretch { muscle },
-                        min * min,
-                        max * max,
-                        name,
-                    );
+                    let quantity = Quantity::SquaredStretch { muscle };
+                    out.add(quantity, [min * min, max * max], name);
                 }
                 PathConstraint::ElectricField { muscle, max } => {
-                    let place = FieldPlace::Muscle(muscle);
-                    for at in TIMES {
-                        let limit = max;
-                        let quantity = Quantity::SquaredField { place, limit, at };
-                        let name = format!("electric field of {}", system.muscles[muscle].name);
-                        add(quantity, f64::NEG_INFINITY, 1.0, name);
-                    }
+                    let name = format!("electric field of {}", system.muscles[muscle].name);
+                    out.add_field(FieldPlace::Muscle(muscle), max, &name);
                 }
                 PathConstraint::BlockField { block, region, max } => {
-                    let name = system.block_name(block);
-                    for (element, point) in system.field_points(block, region) {
-                        let where_ = match point {
-                            None => "the centre".to_owned(),
-                            Some(point) => format!("Gauss point {}", point + 1),
-                        };
-                        let place = FieldPlace::Element {
-                            block,
-                            element,
-                            point,
-                        };
-                        for at in TIMES {
-                            let limit = max;
-                            let quantity = Quantity::SquaredField { place, limit, at };
-                            let name = format!(
-                                "electric field of {name} at {where_} of element {element}"
-                            );
-                            add(quantity, f64::NEG_INFINITY, 1.0, name);
-                        }
-                    }
+                    out.add_block_field(block, region, max, system);
                 }
                 PathConstraint::Marker {
                     marker,
                     region,
                     side,
-                } => {
-                    let name = &system.markers[marker].name;
-                    match (region, side) {
-                        (Region::Box { min, max }, Side::Inside) => {
-                            for axis in 0..3 {
-                                let name = format!(
-                                    "{} of marker {name} inside its box",
-                                    ["x", "y", "z"][axis]
-                                );
-                                add(
-                                    Quantity::MarkerPlace { marker, axis },
-                                    min[axis],
-                                    max[axis],
-                                    name,
-                                );
-                            }
-                        }
-                        (Region::Box { .. }, Side::Outside) => {
-                            let name = format!("marker {name} outside its box");
-                            add(
-                                Quantity::MarkerRegion { marker, region },
-                                OUTSIDE_BOX,
-                                f64::INFINITY,
-                                name,
-                            );
-                        }
-                        (Region::Sphere { .. }, Side::Inside) => {
-                            let name = format!("marker {name} inside its sphere");
-                            add(
-                                Quantity::MarkerRegion { marker, region },
-                                f64::NEG_INFINITY,
-                                1.0,
-                                name,
-                            );
-                        }
-                        (Region::Sphere { .. }, Side::Outside) => {
-                            let name = format!("marker {name} outside its sphere");
-                            add(
-                                Quantity::MarkerRegion { marker, region },
-                                1.0,
-                                f64::INFINITY,
-                                name,
-                            );
-                        }
-                    }
-                }
+                } => out.add_region(marker, region, side, system),
             }
         }
-        Self { list }
+        out
+    }
+
+    /// Adds a limit.
+    fn add(&mut self, quantity: Quantity, [lower, upper]: [f64; 2], name: String) {
+        self.list.push(BoundedQuantity {
+            quantity,
+            lower,
+            upper,
+            when: When::Everywhere,
+            name,
+        });
+    }
+
+    /// Adds a limit of a joint that is measured.
+    fn add_joint(&mut self, joint: usize, [min, max]: [f64; 2], system: &System) {
+        let near = match (min.is_finite(), max.is_finite()) {
+            (true, true) => 0.5 * (min + max),
+            _ => 0.0,
+        };
+        let name = format!("limit of {}", system.joints[joint].name);
+        self.add(Quantity::Joint { joint, near }, [min, max], name);
+    }
+
+    /// Adds a limit of a field at all times at which it is bounded.
+    fn add_field(&mut self, place: FieldPlace, limit: f64, name: &str) {
+        for at in TIMES {
+            let quantity = Quantity::SquaredField { place, limit, at };
+            self.add(quantity, [f64::NEG_INFINITY, 1.0], name.to_owned());
+        }
+    }
+
+    /// Adds the limits of the field of a block at the points of its elements.
+    fn add_block_field(&mut self, block: usize, region: Option<usize>, max: f64, system: &System) {
+        let name = system.block_name(block);
+        for (element, point) in system.field_points(block, region) {
+            let where_ = match point {
+                None => "the centre".to_owned(),
+                Some(point) => format!("Gauss point {}", point + 1),
+            };
+            let place = FieldPlace::Element {
+                block,
+                element,
+                point,
+            };
+            let name = format!("electric field of {name} at {where_} of element {element}");
+            self.add_field(place, max, &name);
+        }
+    }
+
+    /// Adds the limits that keep a marker inside or outside a region.
+    fn add_region(&mut self, marker: usize, region: Region, side: Side, system: &System) {
+        let name = &system.markers[marker].name;
+        let in_region = Quantity::MarkerRegion { marker, region };
+        match (region, side) {
+            (Region::Box { min, max }, Side::Inside) => {
+                for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+                    let name = format!("{letter} of marker {name} inside its box");
+                    let quantity = Quantity::MarkerPlace { marker, axis };
+                    self.add(quantity, [min[axis], max[axis]], name);
+                }
+            }
+            (Region::Box { .. }, Side::Outside) => {
+                let name = format!("marker {name} outside its box");
+                self.add(in_region, [OUTSIDE_BOX, f64::INFINITY], name);
+            }
+            (Region::Sphere { .. }, Side::Inside) => {
+                let name = format!("marker {name} inside its sphere");
+                self.add(in_region, [f64::NEG_INFINITY, 1.0], name);
+            }
+            (Region::Sphere { .. }, Side::Outside) => {
+                let name = format!("marker {name} outside its sphere");
+                self.add(in_region, [1.0, f64::INFINITY], name);
+            }
+        }
     }
 
     /// Adds an equality at the final instant.

@@ -1,7 +1,7 @@
 //! Construction of the model of a system: presolve, coordinates, terms and constraints, measures.
 
 use crate::coordinates::{CoordinateMap, Reduced};
-use crate::functional::Functional;
+use crate::functional::{Functional, Term};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::components::{body, muscle};
@@ -12,10 +12,11 @@ use crate::model::joints::JointReading;
 use crate::model::measures::{self, Measures};
 use crate::model::model::Model;
 use crate::model::named::Named;
+use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::Presolved;
 use crate::model::quantity::Quantity;
 use crate::model::solids::Solids;
-use crate::model::system::{Attachment, Body, Muscle, System};
+use crate::model::system::{Attachment, Body, Marker, Muscle, Source, System};
 use crate::model::terms::{Carriers, Terms};
 use crate::model::variables::{Role, Size, Time, Variable, Variables};
 use crate::model::{blocks, constraints, dampers, field_extent, joint_springs, plan};
@@ -70,132 +71,43 @@ impl Model {
         let coordinates = Self::choose(rest, question.coordinates)?;
         let graph = Graph::new(rest);
         let reference: Vec<Pose> = rest.bodies.iter().map(Body::pose).collect();
-        let mut vectors = Vectors::default();
         let sources = system.sources();
-        let mut variables = Variables::default();
-        for source in voltages {
-            variables.add(Variable::voltage(source, sources[source].name.clone()));
-        }
-        for parameter in &question.parameters {
-            variables.add(Variable::parameter(parameter.name.clone()));
-        }
-        let ties = coordinates == Coordinates::Redundant;
-        let scene = system.solids.len();
-        let continua = Solids::new(
+        let mut vectors = Vectors::default();
+        let mut variables = interval_variables(&voltages, &sources, &question);
+        let blocks = Solids::new(
             solids,
-            scene,
+            system.solids.len(),
             &reference,
-            ties,
+            coordinates == Coordinates::Redundant,
             &mut variables,
             &mut vectors,
         )?;
-        let of_bodies = match coordinates {
-            Coordinates::Reduced => graph.coordinate_count(rest),
-            Coordinates::Redundant => 12 * rest.bodies.len(),
+        let internals = Internals::new(rest, coordinates, graph.coordinate_count(rest), &blocks);
+        let construction = Construction {
+            system: &system,
+            presolved: &condensed,
+            analysis: &question,
+            coordinates,
+            reference: &reference,
+            blocks: &blocks,
+            internals: &internals,
         };
-        let of_nodes = continua.nodes.iter().flat_map(|node| node.free);
-        let mut internals = Internals::behind(of_bodies + of_nodes.filter(|&free| free).count());
-        let (intervals, mut present, mut left_out, spans) = {
-            let carriers = (0..system.bodies.len()).map(|body| condensed.carrier(Some(body)));
-            let bodies = Carriers {
-                of: carriers.collect(),
-                reference: &reference,
-            };
-            let called = (question.of_motion, &question.parameters[..]);
-            let mut terms = Terms::new(bodies, system.gravity, called, &variables, &mut vectors);
-            let span = |m: &Muscle, terms: &mut Terms<'_>| {
-                let span = MaterialVector::span(&terms.point(&m.from), &terms.point(&m.to));
-                terms.vector(span)
-            };
-            let muscles = &system.muscles;
-            let spans: Vec<usize> = muscles.iter().map(|m| span(m, &mut terms)).collect();
-            body::build(&rest.bodies, &reference, &mut terms);
-            muscle::build(muscles, &spans, &mut terms);
-            continua.build(&mut terms);
-            let no_weight = match system.gravity {
-                None => "the scene names no gravity",
-                Some(_) => "nothing that moves has a mass",
-            };
-            terms.without(plan::GRAVITY, no_weight);
-            dampers::build(&condensed, &reference, coordinates, &mut terms);
-            joint_springs::build(&condensed, coordinates, &mut internals, &mut terms);
-            system.components.build(&mut terms);
-            let (intervals, present, left_out) = terms.finish();
-            (intervals, present, left_out, spans)
-        };
-        let made = match coordinates {
-            Coordinates::Reduced => constraints::Made::none(),
-            Coordinates::Redundant => constraints::Builder {
-                system: rest,
-                reference: &reference,
-                vectors: &mut vectors,
-                continua: &continua,
-                internals: &internals,
-            }
-            .constraints(question.interval),
-        };
-        let (instants, constraints) = (made.terms, made.multipliers);
+        let spans = construction.spans(&mut vectors);
+        let (intervals, mut present, mut left_out) =
+            construction.terms(&spans, &variables, &mut vectors);
+        let made = construction.constraints(&mut vectors);
         present.extend(made.present);
         left_out.extend(made.left_out);
         plan::settle(&present, &mut left_out);
-        let point = |a: &Attachment| MaterialVector::point(a.body, &a.at, &reference);
-        let markers = rest
-            .markers
-            .iter()
-            .map(|m| match m.solid {
-                Some(solid) => continua.list[solid].nearest(&m.point.at),
-                None => vectors.index(point(&m.point)),
-            })
-            .collect::<Vec<_>>();
-        let measures = {
-            let known = measures::Known {
-                condensed: &condensed,
-                reference: &reference,
-                variables: &variables,
-                markers: &markers,
-                continua: &continua.list,
-            };
-            Measures::new(&question, &known, &mut vectors)
-        };
+        let markers = construction.markers(&mut vectors);
+        let measures = construction.measures(&variables, &markers, &mut vectors);
         let list = vectors.list();
-        let multipliers = constraints.len();
-        let motion = match coordinates {
-            Coordinates::Reduced => {
-                let tree = graph.tree(rest, &reference, list);
-                CoordinateMap::articulated(
-                    tree,
-                    list,
-                    &continua.nodes,
-                    internals.list.len(),
-                    multipliers,
-                )
-            }
-            Coordinates::Redundant => {
-                let (bodies, internal) = (rest.bodies.len(), internals.list.len());
-                CoordinateMap::redundant(bodies, list, &continua.nodes, internal, multipliers)
-            }
-        };
-        let intervals = {
-            let scalars = variables.of(Time::Interval).len();
-            Functional::new(intervals, measures.intervals, list.len(), scalars)
-        };
-        let instants = Functional::new(instants, measures.instants, list.len(), multipliers);
-        {
-            let named = Named {
-                coordinates,
-                system: rest,
-                graph: &graph,
-                motion: &motion,
-                nodes: &continua.names,
-                solids: &continua.list,
-                internals: &internals.list,
-            };
-            (0..motion.coordinates).for_each(|i| _ = variables.add(named.coordinate(i)));
-            let multiplier = |name| Variable::of(Role::Multiplier, name, Size::Unknown);
-            constraints
-                .into_iter()
-                .for_each(|name| _ = variables.add(multiplier(name)));
-        }
+        let multipliers = made.multipliers.len();
+        let motion = construction.coordinate_map(&graph, list, multipliers);
+        let scalars = variables.of(Time::Interval).len();
+        let intervals = Functional::new(intervals, measures.intervals, list.len(), scalars);
+        let instants = Functional::new(made.terms, measures.instants, list.len(), multipliers);
+        construction.name_unknowns(&graph, &motion, made.multipliers, &mut variables);
         Ok(Self {
             coordinates,
             action: Reduced::new(motion, intervals, instants),
@@ -203,9 +115,9 @@ impl Model {
             variables,
             reached,
             sources,
-            solids: continua.list,
-            nodes: continua.nodes,
-            node_names: continua.names,
+            solids: blocks.list,
+            nodes: blocks.nodes,
+            node_names: blocks.names,
             internals: internals.list,
             spans,
             markers,
@@ -247,5 +159,164 @@ impl Model {
             (None, Some(_)) => Ok(Coordinates::Redundant),
             (None, None) => Ok(Coordinates::Reduced),
         }
+    }
+}
+
+/// Voltages and parameters, the first scalars of an interval.
+fn interval_variables(voltages: &[usize], sources: &[Source], analysis: &Analysis) -> Variables {
+    let mut variables = Variables::default();
+    for &source in voltages {
+        variables.add(Variable::voltage(source, sources[source].name.clone()));
+    }
+    for parameter in &analysis.parameters {
+        variables.add(Variable::parameter(parameter.name.clone()));
+    }
+    variables
+}
+
+/// A scene with what remains of it, from which the parts of a model are constructed.
+struct Construction<'a> {
+    system: &'a System,
+    presolved: &'a Presolved,
+    analysis: &'a Analysis,
+    coordinates: Coordinates,
+    /// Poses of the bodies that remain.
+    reference: &'a [Pose],
+    blocks: &'a Solids,
+    internals: &'a Internals,
+}
+
+impl Construction<'_> {
+    /// Carriers of the bodies of the scene.
+    fn carriers(&self) -> Carriers<'_> {
+        let bodies = 0..self.system.bodies.len();
+        let carriers = bodies.map(|body| self.presolved.carrier(Some(body)));
+        Carriers {
+            of: carriers.collect(),
+            reference: self.reference,
+        }
+    }
+
+    /// Vector of the span of each muscle.
+    fn spans(&self, vectors: &mut Vectors) -> Vec<usize> {
+        let carriers = self.carriers();
+        let span = |m: &Muscle| {
+            let [from, to] = [&m.from, &m.to].map(|end| carriers.point(end));
+            vectors.index(MaterialVector::span(&from, &to))
+        };
+        self.system.muscles.iter().map(span).collect()
+    }
+
+    /// Terms of an interval in the order of the plan, and the reasons for those that are present and for those that are not.
+    fn terms(
+        &self,
+        spans: &[usize],
+        variables: &Variables,
+        vectors: &mut Vectors,
+    ) -> (Vec<Box<dyn Term>>, Vec<Present>, Vec<LeftOut>) {
+        let system = self.system;
+        let called = (self.analysis.of_motion, &self.analysis.parameters[..]);
+        let mut terms = Terms::new(self.carriers(), system.gravity, called, variables, vectors);
+        body::build(&self.presolved.system.bodies, self.reference, &mut terms);
+        muscle::build(&system.muscles, spans, &mut terms);
+        self.blocks.build(&mut terms);
+        let no_weight = match system.gravity {
+            None => "the scene names no gravity",
+            Some(_) => "nothing that moves has a mass",
+        };
+        terms.without(plan::GRAVITY, no_weight);
+        dampers::build(self.presolved, self.reference, self.coordinates, &mut terms);
+        joint_springs::build(&self.presolved.system, self.internals, &mut terms);
+        system.components.build(&mut terms);
+        terms.finish()
+    }
+
+    /// Constraints of an instant.
+    fn constraints(&self, vectors: &mut Vectors) -> constraints::Made {
+        match self.coordinates {
+            Coordinates::Reduced => constraints::Made::none(),
+            Coordinates::Redundant => constraints::Builder {
+                system: &self.presolved.system,
+                reference: self.reference,
+                vectors,
+                continua: self.blocks,
+                internals: self.internals,
+            }
+            .constraints(self.analysis.interval),
+        }
+    }
+
+    /// Vector of each marker.
+    fn markers(&self, vectors: &mut Vectors) -> Vec<usize> {
+        let mut vector = |marker: &Marker| match marker.solid {
+            Some(solid) => self.blocks.list[solid].nearest(&marker.point.at),
+            None => {
+                let Attachment { body, at } = &marker.point;
+                vectors.index(MaterialVector::point(*body, at, self.reference))
+            }
+        };
+        let markers = self.presolved.system.markers.iter();
+        markers.map(&mut vector).collect()
+    }
+
+    /// Measures of the quantities of the analysis.
+    fn measures(
+        &self,
+        variables: &Variables,
+        markers: &[usize],
+        vectors: &mut Vectors,
+    ) -> Measures {
+        let known = measures::Known {
+            condensed: self.presolved,
+            reference: self.reference,
+            variables,
+            markers,
+            continua: &self.blocks.list,
+        };
+        Measures::new(self.analysis, &known, vectors)
+    }
+
+    /// The map from coordinates to material vectors.
+    fn coordinate_map(
+        &self,
+        graph: &Graph,
+        vectors: &[MaterialVector],
+        multipliers: usize,
+    ) -> CoordinateMap {
+        let (rest, nodes) = (&self.presolved.system, &self.blocks.nodes);
+        let internal = self.internals.list.len();
+        match self.coordinates {
+            Coordinates::Reduced => {
+                let tree = graph.tree(rest, self.reference, vectors);
+                CoordinateMap::articulated(tree, vectors, nodes, internal, multipliers)
+            }
+            Coordinates::Redundant => {
+                CoordinateMap::redundant(rest.bodies.len(), vectors, nodes, internal, multipliers)
+            }
+        }
+    }
+
+    /// Adds the unknowns of an instant to the variables: coordinates, then multipliers.
+    fn name_unknowns(
+        &self,
+        graph: &Graph,
+        motion: &CoordinateMap,
+        multipliers: Vec<String>,
+        variables: &mut Variables,
+    ) {
+        let named = Named {
+            coordinates: self.coordinates,
+            system: &self.presolved.system,
+            graph,
+            motion,
+            nodes: &self.blocks.names,
+            solids: &self.blocks.list,
+            internals: &self.internals.list,
+        };
+        (0..motion.coordinates).for_each(|i| _ = variables.add(named.coordinate(i)));
+        let multiplier = |name| Variable::of(Role::Multiplier, name, Size::Unknown);
+        multipliers
+            .into_iter()
+            .for_each(|name| _ = variables.add(multiplier(name)));
     }
 }

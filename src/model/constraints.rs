@@ -159,9 +159,12 @@ impl Builder<'_> {
 
     /// Internal coordinates are those of their joints.
     fn joint_coordinates(&mut self, out: &mut Measured) {
-        for (index, internal) in self.internals.list.iter().enumerate() {
+        for internal in &self.internals.list {
             let joint = &self.system.joints[internal.joint];
-            let value = here(self.vectors.index(self.internals.vector(index)));
+            let Some(value) = self.internals.joint(internal.joint) else {
+                continue;
+            };
+            let value = here(self.vectors.index(value));
             let scalars = [out.names.len()];
             out.names.push(internal.name.clone());
             out.of.push(joint.name.clone());

@@ -4,7 +4,8 @@
 //! forces. Joints, muscles and glue connect bodies. Two parts fixed to the ground are not thereby connected.
 
 use crate::math::DisjointSets;
-use crate::model::analysis::Analysis;
+use crate::model::analysis::{Analysis, InitiallyMoving};
+use crate::model::component::Component;
 use crate::model::constant::Constant;
 use crate::model::field_extent;
 use crate::model::system::{Joint, System};
@@ -22,91 +23,125 @@ pub struct Immobile {
 
 /// Returns the immobile parts of a system whose sources at zero voltage drive nothing any more.
 pub(super) fn immobile(system: &System, question: &Analysis) -> Immobile {
-    let counts = [
-        system.bodies.len(),
-        system.solids.len(),
-        system.muscles.len(),
-    ];
-    let [of_bodies, of_solids, of_muscles] = counts;
+    let parts = Parts {
+        bodies: system.bodies.len(),
+        solids: system.solids.len(),
+        muscles: system.muscles.len(),
+    };
     let Some(stirred) = &question.stirred else {
-        return Immobile {
-            bodies: vec![false; of_bodies],
-            solids: vec![false; of_solids],
-            muscles: vec![false; of_muscles],
-        };
+        return parts.resting(|_| false);
     };
-    let (first_solid, first_muscle) = (of_bodies, of_bodies + of_solids);
-    let count = counts.iter().sum();
-    let mut parts = DisjointSets::new(count);
-    // The ground, which is no part, hangs together with nothing.
-    let mut join = |a: Option<usize>, b: usize| {
-        if let Some(a) = a {
-            parts.join(a, b);
-        }
-    };
-    for joint in &system.joints {
-        join(joint.parent, joint.child);
-    }
-    for (m, muscle) in system.muscles.iter().enumerate() {
-        for end in [&muscle.from, &muscle.to] {
-            join(end.body, first_muscle + m);
-        }
-    }
-    for (s, solid) in system.solids.iter().enumerate() {
-        for glue in &solid.glued {
-            join(glue.body, first_solid + s);
-        }
-    }
-    let weighs = system.gravity.is_some();
-    let mut moved: Vec<usize> = Vec::new();
-    let is_sought = |spring: usize| {
-        let constants = question.parameters.iter().flat_map(|p| &p.constants);
-        constants
-            .into_iter()
-            .any(|c| c.constant == Constant::SpringLength(spring))
-    };
-    for (index, component) in system.components.iter().enumerate() {
-        let points = component.points();
-        let bodies: Vec<usize> = points.iter().filter_map(|point| point.body).collect();
-        for pair in bodies.windows(2) {
-            join(Some(pair[0]), pair[1]);
-        }
-        // Springs come first.
-        if component.is_prestressed() || is_sought(index) {
-            moved.extend(bodies);
-        }
-    }
-    let is_loaded = |joint: &&Joint| joint.spring.is_some_and(|spring| spring.rest != 0.0);
-    let loaded = system.joints.iter().filter(is_loaded);
-    moved.extend(loaded.flat_map(|joint| joint.parent.into_iter().chain([joint.child])));
-    let bodies = (0..of_bodies).filter(|b| weighs || stirred.bodies.contains(b));
-    moved.extend(bodies);
-    for (s, solid) in system.solids.iter().enumerate() {
-        let is_heavy = weighs && solid.materials.iter().any(|m| m.density.is_some());
-        let starts = solid.velocities.iter().any(|v| v.norm() > 0.0);
-        if is_heavy
-            || starts
-            || stirred.solids.contains(&s)
-            || field_extent::dielectric(solid).contains(&true)
-        {
-            moved.push(first_solid + s);
-        }
-    }
-    for (m, muscle) in system.muscles.iter().enumerate() {
-        let is_heavy = weighs && muscle.material.density.is_some();
-        if muscle.material.electric.is_some() || is_heavy {
-            moved.push(first_muscle + m);
-        }
-    }
-    let set_of = parts.all();
-    let mut is_moved = vec![false; count];
-    for part in moved {
+    let set_of = parts.connected(system).all();
+    let mut is_moved = vec![false; parts.count()];
+    for part in parts.moved(system, stirred, question) {
         is_moved[set_of[part]] = true;
     }
-    let rests = |from: usize, count: usize| (from..from + count).map(|i| !is_moved[set_of[i]]);
-    Immobile {
-        bodies: rests(0, of_bodies).collect(),
-        solids: rests(first_solid, of_solids).collect(),
-        muscles: rests(first_muscle, of_muscles).collect(),
+    parts.resting(|part| !is_moved[set_of[part]])
+}
+
+/// Numbers of the parts of a system, which are counted through: bodies, blocks, muscles.
+#[derive(Clone, Copy)]
+struct Parts {
+    bodies: usize,
+    solids: usize,
+    muscles: usize,
+}
+
+impl Parts {
+    fn solid(self, s: usize) -> usize {
+        self.bodies + s
     }
+
+    fn muscle(self, m: usize) -> usize {
+        self.bodies + self.solids + m
+    }
+
+    fn count(self) -> usize {
+        self.muscle(self.muscles)
+    }
+
+    /// The parts for which `rests` holds.
+    fn resting(self, rests: impl Fn(usize) -> bool) -> Immobile {
+        Immobile {
+            bodies: (0..self.bodies).map(&rests).collect(),
+            solids: (0..self.solids).map(|s| rests(self.solid(s))).collect(),
+            muscles: (0..self.muscles).map(|m| rests(self.muscle(m))).collect(),
+        }
+    }
+
+    /// Sets of parts that joints, muscles, glue and components connect.
+    fn connected(self, system: &System) -> DisjointSets {
+        let mut sets = DisjointSets::new(self.count());
+        // The ground is no part, and connects nothing.
+        let mut join = |a: Option<usize>, b: usize| {
+            if let Some(a) = a {
+                sets.join(a, b);
+            }
+        };
+        for joint in &system.joints {
+            join(joint.parent, joint.child);
+        }
+        for (m, muscle) in system.muscles.iter().enumerate() {
+            for end in [&muscle.from, &muscle.to] {
+                join(end.body, self.muscle(m));
+            }
+        }
+        for (s, solid) in system.solids.iter().enumerate() {
+            for glue in &solid.glued {
+                join(glue.body, self.solid(s));
+            }
+        }
+        for component in system.components.iter() {
+            for pair in bodies_of(component).windows(2) {
+                join(Some(pair[0]), pair[1]);
+            }
+        }
+        sets
+    }
+
+    /// Parts that move by themselves: a force acts on them, or they are set in motion.
+    fn moved(self, system: &System, stirred: &InitiallyMoving, question: &Analysis) -> Vec<usize> {
+        let weighs = system.gravity.is_some();
+        let mut moved: Vec<usize> = Vec::new();
+        for (index, component) in system.components.iter().enumerate() {
+            // Springs come first.
+            if component.is_prestressed() || is_sought(index, question) {
+                moved.extend(bodies_of(component));
+            }
+        }
+        let is_loaded = |joint: &&Joint| joint.spring.is_some_and(|spring| spring.rest != 0.0);
+        let loaded = system.joints.iter().filter(is_loaded);
+        moved.extend(loaded.flat_map(|joint| joint.parent.into_iter().chain([joint.child])));
+        moved.extend((0..self.bodies).filter(|b| weighs || stirred.bodies.contains(b)));
+        for (s, solid) in system.solids.iter().enumerate() {
+            let is_heavy = weighs && solid.materials.iter().any(|m| m.density.is_some());
+            let starts = solid.velocities.iter().any(|v| v.norm() > 0.0);
+            if is_heavy
+                || starts
+                || stirred.solids.contains(&s)
+                || field_extent::dielectric(solid).contains(&true)
+            {
+                moved.push(self.solid(s));
+            }
+        }
+        for (m, muscle) in system.muscles.iter().enumerate() {
+            let is_heavy = weighs && muscle.material.density.is_some();
+            if muscle.material.electric.is_some() || is_heavy {
+                moved.push(self.muscle(m));
+            }
+        }
+        moved
+    }
+}
+
+/// Bodies to which a component is attached.
+fn bodies_of(component: &dyn Component) -> Vec<usize> {
+    let points = component.points();
+    points.iter().filter_map(|point| point.body).collect()
+}
+
+/// Returns true if the length of a spring is a free parameter.
+fn is_sought(spring: usize, question: &Analysis) -> bool {
+    let mut constants = question.parameters.iter().flat_map(|p| &p.constants);
+    constants.any(|c| c.constant == Constant::SpringLength(spring))
 }

@@ -68,19 +68,7 @@ impl Known<'_> {
     ) -> Option<Box<dyn Measure>> {
         let origin = Vector::zeros();
         Some(match *quantity {
-            Quantity::Joint { joint, near } => {
-                let joint = self.condensed.joint(joint)?;
-                let joint = &self.condensed.system.joints[joint];
-                match JointReading::new(joint, None, self.reference).measure {
-                    Gauge::Angle { vectors: v } => {
-                        instant(shape, Angle { near }, v.map(|x| vectors.index(x)))
-                    }
-                    Gauge::Displacement { axis, span } => {
-                        instant(shape, Projection, [axis, span].map(|x| vectors.index(x)))
-                    }
-                    Gauge::None => return None,
-                }
-            }
+            Quantity::Joint { joint, near } => return self.joint(joint, near, shape, vectors),
             Quantity::SquaredStretch { muscle } => {
                 let energy = SquaredDistance {
                     centre: origin,
@@ -109,17 +97,7 @@ impl Known<'_> {
                 instant(shape, component, [vectors.index(direction)])
             }
             Quantity::MarkerRegion { marker, region } => {
-                let vectors = [self.markers[marker]];
-                match region {
-                    Region::Sphere { centre, radius } => {
-                        let scale = radius;
-                        instant(shape, SquaredDistance { centre, scale }, vectors)
-                    }
-                    Region::Box { min, max } => {
-                        let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
-                        instant(shape, OutsideBox { centre, half }, vectors)
-                    }
-                }
+                region_measure(region, self.markers[marker], shape)
             }
             Quantity::MarkerStep { marker, axis } => {
                 let normal = Vector::ith(axis, 1.0);
@@ -128,38 +106,80 @@ impl Known<'_> {
             }
             Quantity::SquaredField { place, limit, at } => match place {
                 FieldPlace::Muscle(muscle) => {
-                    let scalar = self.variables.voltage(muscle)?;
-                    let of = &self.condensed.system.muscles[muscle];
-                    let energy = SquaredField {
-                        length: of.length(),
-                        voltage: of.layer_thickness * limit,
-                    };
-                    let span = (self.span(muscle, vectors), at);
-                    interval::<_, 4, 1, 1>(shape, energy, [span], [scalar])
+                    return self.muscle_field(muscle, (limit, at), shape, vectors);
                 }
                 FieldPlace::Element {
                     block,
                     element,
                     point,
-                } => {
-                    let continuum = &self.continua[block];
-                    if !continuum.is_dielectric[element] {
-                        return None;
-                    }
-                    let gradients = match point {
-                        Some(point) => continuum.shapes[element].gradients_at(point),
-                        None => continuum.central_gradients(element)?,
-                    };
-                    let field = ElementField {
-                        point: FieldPoint { gradients, limit },
-                        nodes: continuum.nodes(element),
-                        terminals: continuum.terminals(element),
-                        at,
-                    };
-                    shape.intervals::<ElementFields>(field)
-                }
+                } => return self.element_field(block, (element, point), (limit, at), shape),
             },
         })
+    }
+
+    /// Angle or displacement of a joint.
+    fn joint(
+        &self,
+        joint: usize,
+        near: f64,
+        shape: Shape,
+        vectors: &mut Vectors,
+    ) -> Option<Box<dyn Measure>> {
+        let joint = self.condensed.joint(joint)?;
+        let joint = &self.condensed.system.joints[joint];
+        match JointReading::new(joint, None, self.reference).measure {
+            Gauge::Angle { vectors: v } => {
+                let read = v.map(|x| vectors.index(x));
+                Some(instant(shape, Angle { near }, read))
+            }
+            Gauge::Displacement { axis, span } => {
+                let read = [axis, span].map(|x| vectors.index(x));
+                Some(instant(shape, Projection, read))
+            }
+            Gauge::None => None,
+        }
+    }
+
+    /// Squared field of a lumped muscle over the one of its `limit`.
+    fn muscle_field(
+        &self,
+        muscle: usize,
+        (limit, at): (f64, Stencil),
+        shape: Shape,
+        vectors: &mut Vectors,
+    ) -> Option<Box<dyn Measure>> {
+        let scalar = self.variables.voltage(muscle)?;
+        let of = &self.condensed.system.muscles[muscle];
+        let energy = SquaredField {
+            length: of.length(),
+            voltage: of.layer_thickness * limit,
+        };
+        let span = (self.span(muscle, vectors), at);
+        Some(interval::<_, 4, 1, 1>(shape, energy, [span], [scalar]))
+    }
+
+    /// Squared field of an element of a block, at its centre or at a Gauss point, over the one of its `limit`.
+    fn element_field(
+        &self,
+        block: usize,
+        (element, point): (usize, Option<usize>),
+        (limit, at): (f64, Stencil),
+        shape: Shape,
+    ) -> Option<Box<dyn Measure>> {
+        let block = &self.continua[block];
+        if !block.is_dielectric[element] {
+            return None;
+        }
+        let gradients = match point {
+            Some(point) => block.shapes[element].gradients_at(point),
+            None => block.central_gradients(element)?,
+        };
+        Some(shape.intervals::<ElementFields>(ElementField {
+            point: FieldPoint { gradients, limit },
+            nodes: block.nodes(element),
+            terminals: block.terminals(element),
+            at,
+        }))
     }
 
     /// Vector of the span of a muscle.
@@ -168,6 +188,20 @@ impl Known<'_> {
         let [from, to] = [&muscle.from, &muscle.to]
             .map(|a| MaterialVector::point(a.body, &a.at, self.reference));
         vectors.index(MaterialVector::span(&from, &to))
+    }
+}
+
+/// Place of a marker in a region: at most one inside a sphere, at least three only outside a box.
+fn region_measure(region: Region, marker: usize, shape: Shape) -> Box<dyn Measure> {
+    match region {
+        Region::Sphere { centre, radius } => {
+            let scale = radius;
+            instant(shape, SquaredDistance { centre, scale }, [marker])
+        }
+        Region::Box { min, max } => {
+            let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
+            instant(shape, OutsideBox { centre, half }, [marker])
+        }
     }
 }
 

@@ -29,6 +29,11 @@ impl Carriers<'_> {
     fn carrier(&self, body: Option<usize>) -> Option<usize> {
         self.of[body?]
     }
+
+    /// The point as a vector, whose body is the one that carries it.
+    pub(super) fn point(&self, point: &Attachment) -> MaterialVector {
+        MaterialVector::point(self.carrier(point.body), &point.at, self.reference)
+    }
 }
 
 /// Terms of components collected for the action.
@@ -152,8 +157,7 @@ impl<'a> Terms<'a> {
 
     /// The point as a vector, whose body is the one that carries it.
     pub fn point(&self, point: &Attachment) -> MaterialVector {
-        let body = self.bodies.carrier(point.body);
-        MaterialVector::point(body, &point.at, self.bodies.reference)
+        self.bodies.point(point)
     }
 
     /// Returns true if nothing moves the points.

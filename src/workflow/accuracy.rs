@@ -111,97 +111,140 @@ pub fn refine<R>(
     stop: impl Fn() -> Option<&'static str>,
     mut attempt: impl FnMut(usize, Option<&R>) -> Result<Attempt<R>, WorkflowError>,
 ) -> Result<Refined<R>, WorkflowError> {
-    let mut levels = Vec::new();
     let mut timed = |times: usize, before: Option<&R>| {
         let began = Instant::now();
         attempt(times, before).map(|attempt| (attempt, began.elapsed().as_secs_f64()))
     };
-    let (mut kept, seconds) = timed(1, None)?;
-    levels.push(GridLevel::new(&kept, seconds));
-    let mut times = 1;
-    let mut iterations = kept.iterations;
-    let mut convergence = Convergence::default();
-    convergence.add(None, &kept.sample);
-    let mut estimate = Measures::new();
-    let mut is_confirmed = false;
-    // The run on the first grid, where its error alone was asked for.
-    let mut own: Option<Attempt<R>> = None;
-    let mut stopped = None;
-    if !kept.is_complete {
-        stopped = Some(kept.status.to_owned());
-    }
-    while stopped.is_none() {
-        let finer = 2 * times;
-        stopped = match stop() {
-            Some(word) => Some(word.to_owned()),
-            None if finer > FINEST || 2 * kept.variables > VARIABLES => {
-                Some("too_large".to_owned())
-            }
-            None => None,
-        };
-        if stopped.is_some() {
+    let mut grids = Grids::new(timed(1, None)?, assumed);
+    while grids.stopped.is_none() {
+        let finer = 2 * grids.times;
+        grids.stopped = stop().map(str::to_owned).or_else(|| grids.limit(finer));
+        if grids.stopped.is_some() {
             break;
         }
-        let (fine, seconds) = match timed(finer, Some(&kept.run)) {
-            Ok(found) => found,
-            Err(error) => {
-                stopped = Some(error.to_string());
-                break;
+        match timed(finer, Some(&grids.kept.run)) {
+            Err(error) => grids.stopped = Some(error.to_string()),
+            Ok((fine, seconds)) if !fine.is_complete => {
+                grids.stopped = Some(fine.status.to_owned());
+                grids.levels.push(GridLevel::new(&fine, seconds));
             }
-        };
+            Ok(fine) => {
+                let is_last = match wanted {
+                    AccuracyTarget::Below(requested) => grids.replace(fine, requested),
+                    AccuracyTarget::Estimate => grids.compare(fine),
+                };
+                if is_last {
+                    break;
+                }
+            }
+        }
+    }
+    Ok(grids.finish(wanted))
+}
+
+/// The grids of a refinement so far.
+struct Grids<R> {
+    /// The run on the finest grid, and the factor by which its intervals exceed those of the first.
+    kept: Attempt<R>,
+    times: usize,
+    /// The run on the first grid, where its error alone was asked for.
+    own: Option<Attempt<R>>,
+    /// Iterations on the grids up to the one that is kept.
+    iterations: usize,
+    levels: Vec<GridLevel>,
+    convergence: Convergence,
+    assumed: f64,
+    estimate: Measures,
+    is_confirmed: bool,
+    /// Reason why there is no finer grid.
+    stopped: Option<String>,
+}
+
+impl<R> Grids<R> {
+    /// The first grid, with its seconds.
+    fn new((first, seconds): (Attempt<R>, f64), assumed: f64) -> Self {
+        let mut convergence = Convergence::default();
+        convergence.add(None, &first.sample);
+        Self {
+            times: 1,
+            own: None,
+            iterations: first.iterations,
+            levels: vec![GridLevel::new(&first, seconds)],
+            convergence,
+            assumed,
+            estimate: Measures::new(),
+            is_confirmed: false,
+            stopped: (!first.is_complete).then(|| first.status.to_owned()),
+            kept: first,
+        }
+    }
+
+    /// The word for a next grid that would be too fine.
+    fn limit(&self, finer: usize) -> Option<String> {
+        let is_too_large = finer > FINEST || 2 * self.kept.variables > VARIABLES;
+        is_too_large.then(|| "too_large".to_owned())
+    }
+
+    /// Estimates the errors of a finer grid.
+    fn estimate(&mut self, fine: &Attempt<R>) {
+        self.convergence.add(Some(&self.kept.sample), &fine.sample);
+        self.is_confirmed = self.convergence.is_confirmed();
+        self.estimate = self.convergence.errors(self.assumed);
+    }
+
+    /// Estimates the error of the first grid by a finer one. Returns true if that was the last grid.
+    fn compare(&mut self, (fine, seconds): (Attempt<R>, f64)) -> bool {
+        self.estimate(&fine);
+        // The first grid is as far from the finest one, and that from the limit.
+        let first = self.own.as_ref().unwrap_or(&self.kept);
+        self.estimate = first.sample.errors_from(&fine.sample, &self.estimate);
+        self.levels[0].estimate.clone_from(&self.estimate);
+        self.levels.push(GridLevel::new(&fine, seconds));
+        self.times *= 2;
+        let coarse = std::mem::replace(&mut self.kept, fine);
+        self.own.get_or_insert(coarse);
+        self.is_confirmed || self.times >= ESTIMATED
+    }
+
+    /// Keeps a finer grid in place of the one before. Returns true if its error is below the one requested.
+    fn replace(&mut self, (fine, seconds): (Attempt<R>, f64), requested: f64) -> bool {
+        self.estimate(&fine);
         let mut level = GridLevel::new(&fine, seconds);
-        if !fine.is_complete {
-            stopped = Some(fine.status.to_owned());
-            levels.push(level);
-            break;
-        }
-        convergence.add(Some(&kept.sample), &fine.sample);
-        is_confirmed = convergence.is_confirmed();
-        estimate = convergence.errors(assumed);
-        let AccuracyTarget::Below(requested) = wanted else {
-            // The first grid is as far from the finest one, and that from the limit.
-            let first = own.as_ref().unwrap_or(&kept);
-            estimate = first.sample.errors_from(&fine.sample, &estimate);
-            levels[0].estimate.clone_from(&estimate);
-            levels.push(level);
-            let is_last = is_confirmed || finer >= ESTIMATED;
-            own.get_or_insert(std::mem::replace(&mut kept, fine));
-            times = finer;
-            if is_last {
-                break;
-            }
-            continue;
+        level.estimate.clone_from(&self.estimate);
+        self.levels.push(level);
+        self.iterations += fine.iterations;
+        self.times *= 2;
+        self.kept = fine;
+        is_below(&self.estimate, requested) && self.is_confirmed
+    }
+
+    /// The run that is kept, with the error of its grid.
+    fn finish(self, wanted: AccuracyTarget) -> Refined<R> {
+        let (kept, times) = match self.own {
+            Some(own) => (own, 1),
+            None => (self.kept, self.times),
         };
-        level.estimate.clone_from(&estimate);
-        levels.push(level);
-        iterations += fine.iterations;
-        (kept, times) = (fine, finer);
-        if is_below(&estimate, requested) && is_confirmed {
-            break;
+        let requested = match wanted {
+            AccuracyTarget::Below(value) => Some(value),
+            AccuracyTarget::Estimate => None,
+        };
+        let is_below = |value| self.is_confirmed && is_below(&self.estimate, value);
+        Refined {
+            run: kept.run,
+            times,
+            iterations: self.iterations,
+            accuracy: Accuracy {
+                requested,
+                is_met: requested.map(is_below),
+                is_confirmed: self.is_confirmed,
+                order: self.convergence.orders(),
+                assumed_order: self.assumed,
+                estimate: self.estimate,
+                levels: self.levels,
+                stopped: self.stopped,
+            },
         }
     }
-    if let Some(own) = own {
-        (kept, times) = (own, 1);
-    }
-    let requested = match wanted {
-        AccuracyTarget::Below(value) => Some(value),
-        AccuracyTarget::Estimate => None,
-    };
-    Ok(Refined {
-        run: kept.run,
-        times,
-        iterations,
-        accuracy: Accuracy {
-            requested,
-            is_met: requested.map(|value| is_confirmed && is_below(&estimate, value)),
-            is_confirmed,
-            order: convergence.orders(),
-            assumed_order: assumed,
-            estimate,
-            levels,
-            stopped,
-        },
-    })
 }
 
 /// Returns true if there is an estimate, all of it below a value.

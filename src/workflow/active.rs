@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::control::problem::{Control, Duration, PathConstraint};
-use crate::control::{Column, Row, Transcription, When};
+use crate::control::{BoundedQuantity, Column, Row, Transcription, When};
 use crate::math::significant;
-use crate::model::{JointReading, Model, Role, joint_unit};
+use crate::model::{JointReading, Model, Parameter, Role, System, joint_unit};
 use crate::nlp::Nlp;
 
 /// A bound that is reached.
@@ -36,63 +36,20 @@ pub fn active(
     let mut seen = ActiveLimits::default();
     let bounds = program.variables().clone();
     for (i, &column) in program.unknowns().columns.iter().enumerate() {
-        let [low, high] = [bounds.lower[i], bounds.upper[i]];
-        let side = reached(x[i], low, high);
-        let variable = column.of(&model.variables);
-        match (column, variable.role) {
+        let side = reached(x[i], bounds.lower[i], bounds.upper[i]);
+        match (column, column.of(&model.variables).role) {
             (_, Role::Voltage) => {
-                let name = &variable.name;
-                for (index, is_reached) in side.into_iter().enumerate() {
-                    let volts = control.voltage_bounds[index];
-                    if volts.is_finite() && volts != 0.0 {
-                        let what = format!("{name} at its bound of {} V", significant(volts, 4));
-                        seen.add(what, is_reached, "interval", true);
-                    }
-                }
+                let name = &column.of(&model.variables).name;
+                seen.add_voltage(name, control.voltage_bounds, side);
             }
             (Column::Instant { i, .. }, Role::Coordinate) => {
-                let of = |gauge: &JointReading| gauge.coordinate == Some(i);
-                let Some(joint) = model.gauges.iter().position(of) else {
-                    continue;
-                };
-                for limit in &control.limits {
-                    let PathConstraint::JointAngle { joint: j, min, max } = *limit else {
-                        continue;
-                    };
-                    let (name, unit) = (
-                        &model.system.joints[joint].name,
-                        joint_unit(&model.system, joint),
-                    );
-                    for (bound, is_reached) in [min, max].into_iter().zip(side) {
-                        if j == joint && bound.is_finite() {
-                            let value = significant(bound, 4);
-                            let what = format!("{name} at its limit of {value} {unit}");
-                            seen.add(what, is_reached, "instant", false);
-                        }
-                    }
-                }
+                seen.add_coordinate(i, model, control, side);
             }
             (Column::Parameter { .. }, _) => {
                 let parameter = model.parameter(column.of(&model.variables));
-                let unit = parameter.unit(&model.system);
-                let bounds = [parameter.lower, parameter.upper];
-                for (bound, is_reached) in bounds.into_iter().zip(side) {
-                    let value = significant(bound * unit.factor, 4);
-                    let what =
-                        format!("{} at its bound of {value} {}", parameter.name, unit.symbol);
-                    seen.add(what.trim_end().to_owned(), is_reached, "", false);
-                }
+                seen.add_parameter(parameter, &model.system, side);
             }
-            (Column::Horizon, _) => {
-                let Duration::Free { min, max, .. } = control.duration else {
-                    continue;
-                };
-                for (bound, is_reached) in [min, max].into_iter().zip(side) {
-                    let seconds = significant(bound / 1e3, 4);
-                    let what = format!("the duration at its bound of {seconds} s");
-                    seen.add(what, is_reached, "", false);
-                }
-            }
+            (Column::Horizon, _) => seen.add_duration(control.duration, side),
             _ => {}
         }
     }
@@ -104,22 +61,9 @@ pub fn active(
             continue;
         };
         let bounded = program.limit(limit);
-        if bounded.when == When::Goal {
-            continue;
-        }
-        let noun = match bounded.quantity.is_of_intervals() {
-            true => "interval",
-            false => "instant",
-        };
-        let side = reached(values[r], bounds.lower[r], bounds.upper[r]);
-        for (bound, is_reached) in [bounded.lower, bounded.upper].into_iter().zip(side) {
-            if bound.is_finite() {
-                let (value, unit) = bounded.quantity.plain(bound, &model.system);
-                let space = if unit.is_empty() { "" } else { " " };
-                let value = significant(value, 4);
-                let what = format!("{} at its limit of {value}{space}{unit}", bounded.name);
-                seen.add(what, is_reached, noun, false);
-            }
+        if bounded.when == When::Everywhere {
+            let side = reached(values[r], bounds.lower[r], bounds.upper[r]);
+            seen.add_limit(bounded, &model.system, side);
         }
     }
     seen.list()
@@ -143,6 +87,80 @@ fn reached(value: f64, low: f64, high: f64) -> [bool; 2] {
 struct ActiveLimits(BTreeMap<String, Active>);
 
 impl ActiveLimits {
+    /// The bounds in V of a voltage in an interval.
+    fn add_voltage(&mut self, name: &str, bounds: [f64; 2], side: [bool; 2]) {
+        for (volts, is_reached) in bounds.into_iter().zip(side) {
+            if volts.is_finite() && volts != 0.0 {
+                let what = format!("{name} at its bound of {} V", significant(volts, 4));
+                self.add(what, is_reached, "interval", true);
+            }
+        }
+    }
+
+    /// The limits of the joint of a coordinate at an instant.
+    fn add_coordinate(&mut self, i: usize, model: &Model, control: &Control, side: [bool; 2]) {
+        let of = |gauge: &JointReading| gauge.coordinate == Some(i);
+        let Some(joint) = model.gauges.iter().position(of) else {
+            return;
+        };
+        for limit in &control.limits {
+            let PathConstraint::JointAngle { joint: j, min, max } = *limit else {
+                continue;
+            };
+            let (name, unit) = (
+                &model.system.joints[joint].name,
+                joint_unit(&model.system, joint),
+            );
+            for (bound, is_reached) in [min, max].into_iter().zip(side) {
+                if j == joint && bound.is_finite() {
+                    let value = significant(bound, 4);
+                    let what = format!("{name} at its limit of {value} {unit}");
+                    self.add(what, is_reached, "instant", false);
+                }
+            }
+        }
+    }
+
+    /// The bounds of a free parameter.
+    fn add_parameter(&mut self, parameter: &Parameter, system: &System, side: [bool; 2]) {
+        let unit = parameter.unit(system);
+        let bounds = [parameter.lower, parameter.upper];
+        for (bound, is_reached) in bounds.into_iter().zip(side) {
+            let value = significant(bound * unit.factor, 4);
+            let what = format!("{} at its bound of {value} {}", parameter.name, unit.symbol);
+            self.add(what.trim_end().to_owned(), is_reached, "", false);
+        }
+    }
+
+    /// The bounds of a free duration.
+    fn add_duration(&mut self, duration: Duration, side: [bool; 2]) {
+        let Duration::Free { min, max, .. } = duration else {
+            return;
+        };
+        for (bound, is_reached) in [min, max].into_iter().zip(side) {
+            let seconds = significant(bound / 1e3, 4);
+            let what = format!("the duration at its bound of {seconds} s");
+            self.add(what, is_reached, "", false);
+        }
+    }
+
+    /// The limits of a quantity at an instant or in an interval.
+    fn add_limit(&mut self, bounded: &BoundedQuantity, system: &System, side: [bool; 2]) {
+        let noun = match bounded.quantity.is_of_intervals() {
+            true => "interval",
+            false => "instant",
+        };
+        for (bound, is_reached) in [bounded.lower, bounded.upper].into_iter().zip(side) {
+            if bound.is_finite() {
+                let (value, unit) = bounded.quantity.plain(bound, system);
+                let space = if unit.is_empty() { "" } else { " " };
+                let value = significant(value, 4);
+                let what = format!("{} at its limit of {value}{space}{unit}", bounded.name);
+                self.add(what, is_reached, noun, false);
+            }
+        }
+    }
+
     fn add(&mut self, what: String, is_reached: bool, noun: &'static str, is_voltage: bool) {
         let entry = self.0.entry(what).or_insert_with_key(|what| Active {
             what: what.clone(),

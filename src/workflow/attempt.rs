@@ -4,13 +4,12 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::control::problem::Control;
-use crate::control::{Costates, Solution, Transcription};
-use crate::dynamics::reversed_muscle;
-use crate::ipopt::{Iteration, Options, Reached, Solver, Start, StartingPoint, interrupt};
-use crate::model::System;
+use crate::control::{BoundaryConditions, Costates, Solution, Transcription};
+use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
+use crate::ipopt::{Options, Solver, SolverResult, interrupt};
+use crate::model::{Model, System};
 use crate::nlp::Nlp;
-use crate::workflow::active::active;
-use crate::workflow::combined::one_of_both;
+use crate::workflow::active::{Active, active};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::gap;
 use crate::workflow::iterate::Iterate;
@@ -19,21 +18,15 @@ use crate::workflow::optimum::{Optimum, Shortest, SolveLimits};
 use crate::workflow::ordering::ordering;
 use crate::workflow::phase::phase;
 use crate::workflow::prepare::{Counted, Prepared, prepare};
-use crate::workflow::recentre::recentred;
-use crate::workflow::resimulate::resimulate;
+use crate::workflow::resimulate::{Resimulation, resimulate};
 use crate::workflow::resolve::{resolve, with_found};
-use crate::workflow::violations::violations;
+use crate::workflow::solves::Solves;
+use crate::workflow::violations::{Violation, violations};
 
 /// Maximum number of rows named when a problem has no solution.
 const NAMED: usize = 5;
 /// A row that the solver could not make smaller than this does not hold.
 const HOLDS: f64 = 1e-6;
-
-/// Maximum numbers of repeated solves with other charts of its rotations, and to a smaller tolerance.
-const CHARTS: usize = 4;
-const TIGHTENED: usize = 3;
-/// Iterations of a solve to a smaller tolerance.
-const AGAIN: usize = 100;
 
 /// Solves a control problem from one start: an `earlier` solution where one is given, or the guess of the problem; `observer` sees every iterate.
 ///
@@ -59,131 +52,41 @@ pub(crate) fn attempt(
     } = prepare(&model, &boundary, control, earlier, Counted::Yes)?;
     let setup = began.elapsed().as_secs_f64();
     let options = Options {
-        tolerance: control.solver.tolerance,
-        max_iterations: allowed.iterations.unwrap_or(control.solver.max_iterations),
-        max_seconds: allowed.seconds.map(|s| (s - setup).max(0.0)),
         start,
-        linear_solver: control.solver.linear_solver,
-        extra: ordering(&model, control),
+        max_seconds: allowed.seconds.map(|s| (s - setup).max(0.0)),
+        ..options(&model, control, allowed)
     };
     phase("ordering and first factorisation");
     tracing::info!(?start, variables = point.x.len(), "solve");
-    let mut solver = Solver::new(program, options.clone());
-    let mut solve = |solver: &mut Solver<Transcription<'_>>, point: &StartingPoint| {
-        let decoder = solver.program().decoder();
-        let mut observer = |report: &Iteration, reached: &Reached<'_>| {
-            let at = |report: &Iteration, x: &[f64], costates: Option<Costates>| Solution {
-                barrier: Some(report.mu),
-                ..solved(&model, &decoder.decode(x), costates)
-            };
-            let motion = || at(report, reached.x, None);
-            let before = reached.before.as_ref();
-            let earlier = before.map(|before| {
-                let costates = || decoder.costates(&before.multipliers());
-                move || at(before.report, before.x, Some(costates()))
-            });
-            let earlier = earlier
-                .as_ref()
-                .map(|motion| motion as &dyn Fn() -> Solution);
-            observer(&Iterate {
-                report,
-                model: &model,
-                motion: &motion,
-                before: before.map(|before| before.report).zip(earlier),
-            })
-        };
-        let found = solver.solve(point, &mut observer);
-        found.cloned().map_err(|error| WorkflowError::ipopt(&error))
+    let mut solves = Solves {
+        model: &model,
+        boundary: &boundary,
+        control,
+        solver: Solver::new(program, options.clone()),
+        options,
+        began,
+        seconds: allowed.seconds,
+        observer,
     };
-    let left = |limit: f64| (limit - began.elapsed().as_secs_f64()).max(0.0);
-    let mut solution = solve(&mut solver, &point)?;
-    for _ in 0..CHARTS {
-        let far = recentred(&model, &solver.program().decode(&solution.x));
-        let Some(initial) = far.filter(|_| interrupt::stop().is_none()) else {
-            break;
-        };
-        phase("solving again, from the state that the first solution reached");
-        // What cannot be built in the time that is left leaves the solution as it is.
-        let Ok(program) = Transcription::of_any(&model, &boundary, control, &initial) else {
-            break;
-        };
-        let options = Options {
-            max_seconds: allowed.seconds.map(left),
-            start: Start::PRIMAL,
-            ..options.clone()
-        };
-        let point = program.start(&initial);
-        solver = Solver::new(program, options);
-        solution = solve(&mut solver, &point)?;
-    }
-    let mut tolerance = options.tolerance;
-    for _ in 0..TIGHTENED {
-        let tighter = gap::tighter(solver.program(), &solution, tolerance);
-        let Some(tighter) = tighter.filter(|_| interrupt::stop().is_none()) else {
-            break;
-        };
-        phase("solving again, to a smaller tolerance");
-        tolerance = tighter;
-        let mu_init = solution.iterations.last().map_or(1e-9, |last| last.mu);
-        solver.set_options(Options {
-            tolerance,
-            max_iterations: options.max_iterations.min(AGAIN),
-            max_seconds: allowed.seconds.map(left),
-            start: Start::Resumed { mu_init },
-            ..options.clone()
-        });
-        let again = solve(&mut solver, &solution.to_point())?;
-        let failed = !again.status.is_solved();
-        solution = one_of_both(solution, again);
-        if failed {
-            break;
-        }
-    }
-    let is_solved = solution.status.is_solved();
-    let mut program = solver.into_program();
+    let solution = solves.solve(&point)?;
+    let solution = solves.recentre(solution)?;
+    let solution = solves.tighten(solution)?;
+    let mut program = solves.solver.into_program();
     drop(watch);
-    let gap = gap::gap(&program, &solution);
-    let wide = gap::warning(gap, &solution, program.objective_scale());
     let history = program.decode(&solution.x);
-    let motion = Solution {
-        hold: boundary.rest[1].clone(),
-        barrier: match is_solved {
-            true => None,
-            false => solution.iterations.last().map(|last| last.mu),
-        },
-        ..solved(&model, &history, Some(program.costates(&solution.costates)))
-    };
-    let (violated, active) = match is_solved {
-        true => (Vec::new(), Vec::new()),
-        false => (
-            violations(&mut program, &solution.x, HOLDS, NAMED),
-            active(&mut program, &solution.x, &model, control),
-        ),
-    };
-    let infeasibility = program.violation(&solution.x);
-    let constraints = program.constraints().lower.len();
-    let jacobian_nonzeros = program.jacobian_structure().rows.len();
-    let hessian_nonzeros = program.hessian_structure().rows.len();
+    let costates = program.costates(&solution.costates);
+    let motion = final_motion(&model, &boundary, (&history, costates), &solution);
+    let point = FinalPoint::new(&mut program, &solution, &model, control);
     drop(program);
-    let (model, boundary, sought) = match control.parameters.is_empty() {
-        true => (model, boundary, None),
-        false => {
-            let (found, boundary) = with_found(system, control, &model, &motion)?;
-            (found, boundary, Some(model))
-        }
+    let (model, boundary, sought) = of_motion(system, control, (model, boundary), &motion)?;
+    let Verification {
+        reversed,
+        resimulation,
+        tested,
+    } = match solution.status.is_solved() {
+        true => Verification::new(&model, &boundary, control, (&history, &motion)),
+        false => Verification::default(),
     };
-    let reversed = match is_solved {
-        true => reversed_muscle(&model, &history),
-        false => None,
-    };
-    let is_motion = is_solved && reversed.is_none();
-    if is_motion {
-        phase("simulating under the optimal voltages");
-    }
-    let solved = Instant::now();
-    let resimulation =
-        is_motion.then(|| resimulate(&model, &boundary.start, &motion, control.solver.tolerance));
-    let tested = solved.elapsed().as_secs_f64();
     Ok(Optimum {
         model,
         sought,
@@ -191,20 +94,139 @@ pub(crate) fn attempt(
         motion,
         solution,
         reversed,
-        violated,
-        infeasibility,
-        constraints,
-        jacobian_nonzeros,
-        hessian_nonzeros,
+        violated: point.violated,
+        infeasibility: point.infeasibility,
+        constraints: point.constraints,
+        jacobian_nonzeros: point.jacobian_nonzeros,
+        hessian_nonzeros: point.hessian_nonzeros,
         setup,
         carried,
         resimulation,
         tested,
         restarted: None,
         shortest: Shortest::Unknown,
-        active,
-        gap,
-        wide,
+        active: point.active,
+        gap: point.gap,
+        wide: point.wide,
         afterwards: None,
     })
+}
+
+/// Options of the solver for a problem, without those of its start and its time.
+fn options(model: &Model, control: &Control, allowed: SolveLimits) -> Options {
+    Options {
+        tolerance: control.solver.tolerance,
+        max_iterations: allowed.iterations.unwrap_or(control.solver.max_iterations),
+        linear_solver: control.solver.linear_solver,
+        extra: ordering(model, control),
+        ..Options::default()
+    }
+}
+
+/// The motion at the end of the last solve: a solution, or an iterate with its barrier parameter.
+fn final_motion(
+    model: &Model,
+    boundary: &BoundaryConditions,
+    (history, costates): (&DiscreteTrajectory, Costates),
+    solution: &SolverResult,
+) -> Solution {
+    Solution {
+        hold: boundary.rest[1].clone(),
+        barrier: match solution.status.is_solved() {
+            true => None,
+            false => solution.iterations.last().map(|last| last.mu),
+        },
+        ..solved(model, history, Some(costates))
+    }
+}
+
+/// Model and boundary of a motion, with its parameters put in, and the model of the program, where that has free parameters.
+fn of_motion(
+    system: &System,
+    control: &Control,
+    (model, boundary): (Model, BoundaryConditions),
+    motion: &Solution,
+) -> Result<(Model, BoundaryConditions, Option<Model>), WorkflowError> {
+    if control.parameters.is_empty() {
+        return Ok((model, boundary, None));
+    }
+    let (found, boundary) = with_found(system, control, &model, motion)?;
+    Ok((found, boundary, Some(model)))
+}
+
+/// The point of a program at which its last solve ended.
+struct FinalPoint {
+    violated: Vec<Violation>,
+    active: Vec<Active>,
+    infeasibility: f64,
+    constraints: usize,
+    jacobian_nonzeros: usize,
+    hessian_nonzeros: usize,
+    gap: f64,
+    wide: Option<String>,
+}
+
+impl FinalPoint {
+    fn new(
+        program: &mut Transcription<'_>,
+        solution: &SolverResult,
+        model: &Model,
+        control: &Control,
+    ) -> Self {
+        let x = &solution.x;
+        let (violated, active) = match solution.status.is_solved() {
+            true => (Vec::new(), Vec::new()),
+            false => (
+                violations(program, x, HOLDS, NAMED),
+                active(program, x, model, control),
+            ),
+        };
+        let gap = gap::gap(program, solution);
+        Self {
+            violated,
+            active,
+            infeasibility: program.violation(x),
+            constraints: program.constraints().lower.len(),
+            jacobian_nonzeros: program.jacobian_structure().rows.len(),
+            hessian_nonzeros: program.hessian_structure().rows.len(),
+            gap,
+            wide: gap::warning(gap, solution, program.objective_scale()),
+        }
+    }
+}
+
+/// The verification of a solution: muscles that turn around within an interval, and a simulation under its voltages.
+#[derive(Default)]
+struct Verification {
+    reversed: Option<(usize, usize)>,
+    /// The simulation, where no muscle turns around.
+    resimulation: Option<Resimulation>,
+    /// Seconds that it took.
+    tested: f64,
+}
+
+impl Verification {
+    fn new(
+        model: &Model,
+        boundary: &BoundaryConditions,
+        control: &Control,
+        (history, motion): (&DiscreteTrajectory, &Solution),
+    ) -> Self {
+        let reversed = reversed_muscle(model, history);
+        if reversed.is_some() {
+            return Self {
+                reversed,
+                ..Self::default()
+            };
+        }
+        phase("simulating under the optimal voltages");
+        let began = Instant::now();
+        let tolerance = control.solver.tolerance;
+        let resimulation = resimulate(model, &boundary.start, motion, tolerance);
+        Self {
+            reversed,
+            resimulation: Some(resimulation),
+            tested: began.elapsed().as_secs_f64(),
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Tasks in memory: simulate, optimise, refine, verify.
 //!
-//! - `integrate`, `optimise`: a simulation, a control problem, with its result, the `optimum`; each `attempt` from one start, `prepare`d; `error`: errors of tasks; `phase`: the present
+//! - `integrate`, `optimise`: a simulation, a control problem, with its result, the `optimum`; each `attempt` from one start, `prepare`d, by one of its `solves` or more; `error`: errors of tasks; `phase`: the present
 //!   phase of work; `remark`, `solve_remarks`: warnings and notes.
 //! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs.
 //! - `resimulate`: verification of an optimum, by the `distance` of motions; `cure`: finer grids where it fails; `gap`: duality gap of its
@@ -51,6 +51,7 @@ pub(crate) mod resolve;
 pub(crate) mod second_start;
 pub(crate) mod shortest;
 pub(crate) mod solve_remarks;
+mod solves;
 pub(crate) mod steps;
 pub(crate) mod stopwatch;
 pub(crate) mod tolerance;

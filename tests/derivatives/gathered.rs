@@ -52,6 +52,7 @@ pub(crate) fn jet_of<E: Formula<M>, const M: usize, const ORDER: usize>(
         1 => both::<E, M, 1>(&local),
         2 => both::<E, M, 2>(&local),
         3 => both::<E, M, 3>(&local),
+        4 => both::<E, M, 4>(&local),
         6 => both::<E, M, 6>(&local),
         9 => both::<E, M, 9>(&local),
         count => unreachable!("no formula of {count} vectors"),

@@ -8,6 +8,7 @@ mod circles;
 mod condensed;
 mod documents;
 mod floors;
+mod functions;
 mod heads;
 mod lengths;
 mod numbering;

@@ -21,7 +21,7 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::{read, refuse_replacing};
 use crate::app::words::key;
 use crate::control::problem::Task;
-use crate::files::is_standard_input;
+use crate::files::{Loaded, is_standard_input};
 use crate::workflow::resolve::resolve;
 use ended::{Ended, best, number_optima};
 use files::write;
@@ -58,49 +58,21 @@ pub fn solve_text_from_starts(
     wanted: RunIn,
 ) -> Result<CommandOutput, CommandError> {
     let began = Instant::now();
-    if !(1..MOST).contains(&starts) {
-        let reason = format!(
-            "expected a number of starting points from 1 to {}",
-            MOST - 1
-        );
-        return Err(CommandError::Option {
-            option: "--starts",
-            reason,
-        });
-    }
+    check_number(starts)?;
     let loaded = read(&request.input, text, &request.set)?;
-    let Task::Control(control) = &loaded.task else {
-        let task = key(&loaded.task);
-        return Err(CommandError::Option {
-            option: "--starts",
-            reason: format!(
-                "{} asks to {task}: only \"control\" has starting points",
-                request.input.display()
-            ),
-        });
-    };
-    refuse_replacing(request, &loaded.task)?;
-    let ends = resolve(&loaded.system, control).map_err(CommandError::of(&request.input));
-    no_equilibrium::kept(request, ends)?;
+    check_problem(request, &loaded)?;
     let run_in = wanted.of_tasks(task_runs_at_once(&loaded.task));
     if run_in == RunIn::Processes && is_standard_input(&request.input) {
-        return Err(CommandError::Option {
-            option: "--starts",
-            reason: "each process reads the problem anew, which standard input does not allow: give a file".to_owned(),
-        });
+        return Err(wrong_option(
+            "each process reads the problem anew, which standard input does not allow: give a file"
+                .to_owned(),
+        ));
     }
     let folder = request.folder();
     make_folder(&folder)?;
     remove_older(&folder.join(FOLDER));
     make_folder(&folder.join(FOLDER))?;
-
-    let seed_of = |start: usize| seed.wrapping_mul(MOST as u64).wrapping_add(start as u64);
-    let plan: Vec<Start> = (1..=starts)
-        .map(|number| Start {
-            number,
-            seed: (number > 1).then(|| seed_of(number)),
-        })
-        .collect();
+    let plan = plan(starts, seed);
     let runs: Vec<CommandInput> = plan
         .iter()
         .map(|start| start.run(request, &folder))
@@ -113,11 +85,66 @@ pub fn solve_text_from_starts(
         max_seconds: request.max_seconds,
         began,
     };
+    let mut ended = run_starts(request, &batch, &plan)?;
+    ended.sort_by_key(|one| one.start);
+    let distinct = number_optima(&mut ended);
+    write(request, &batch, &ended, distinct)
+}
+
+fn wrong_option(reason: String) -> CommandError {
+    CommandError::Option {
+        option: "--starts",
+        reason,
+    }
+}
+
+fn check_number(starts: usize) -> Result<(), CommandError> {
+    match (1..MOST).contains(&starts) {
+        true => Ok(()),
+        false => Err(wrong_option(format!(
+            "expected a number of starting points from 1 to {}",
+            MOST - 1
+        ))),
+    }
+}
+
+/// Checks that a problem has starting points, and that its start and goal exist.
+fn check_problem(request: &CommandInput, loaded: &Loaded) -> Result<(), CommandError> {
+    let Task::Control(control) = &loaded.task else {
+        let task = key(&loaded.task);
+        return Err(wrong_option(format!(
+            "{} asks to {task}: only \"control\" has starting points",
+            request.input.display()
+        )));
+    };
+    refuse_replacing(request, &loaded.task)?;
+    let ends = resolve(&loaded.system, control).map_err(CommandError::of(&request.input));
+    no_equilibrium::kept(request, ends)?;
+    Ok(())
+}
+
+/// The starts: the guess of the problem, then random ones.
+fn plan(starts: usize, seed: u64) -> Vec<Start> {
+    let seed_of = |start: usize| seed.wrapping_mul(MOST as u64).wrapping_add(start as u64);
+    (1..=starts)
+        .map(|number| Start {
+            number,
+            seed: (number > 1).then(|| seed_of(number)),
+        })
+        .collect()
+}
+
+/// Runs all starts, in the order in which they end.
+fn run_starts(
+    request: &CommandInput,
+    batch: &Batch<'_>,
+    plan: &[Start],
+) -> Result<Vec<Ended>, CommandError> {
     let progress = Progress::of_runs(request.progress, "start", plan.len());
     let mut ended: Vec<Ended> = Vec::new();
     let mut refused = None;
-    run_all(&batch, &mut |index, end| {
-        match Ended::of(plan[index], end, &folder) {
+    run_all(batch, &mut |index, end| {
+        match Ended::of(plan[index], end, batch.folder) {
             Ok(one) => ended.push(one),
             Err(error) => refused = refused.take().or(Some(error)),
         }
@@ -130,13 +157,10 @@ pub fn solve_text_from_starts(
             None => ControlFlow::Continue(()),
         }
     })?;
-    drop(progress);
-    if let Some(error) = refused {
-        return Err(error);
+    match refused {
+        Some(error) => Err(error),
+        None => Ok(ended),
     }
-    ended.sort_by_key(|one| one.start);
-    let distinct = number_optima(&mut ended);
-    write(request, &batch, &ended, distinct)
 }
 
 /// Starts of an earlier command.

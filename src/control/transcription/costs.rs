@@ -9,16 +9,16 @@ use crate::math::Vector;
 impl Transcription<'_> {
     /// The costs of quantities.
     pub(super) fn costs(&mut self) -> f64 {
-        if self.costs.is_empty() {
+        if self.objective.quantities.is_empty() {
             return 0.0;
         }
         self.place(Placed::Vectors);
         let mut sum = 0.0;
-        for cost in &self.costs {
+        for cost in &self.objective.quantities {
             let measure = cost.site.measure(self.model, cost.measure);
             for k in cost.at.clone() {
                 let value = measure.value(&self.sample(cost.site, k));
-                sum += cost.summand(value, k, self.h).value;
+                sum += cost.summand(value, k, self.workspace.h).value;
             }
         }
         sum
@@ -34,27 +34,27 @@ impl Transcription<'_> {
         self.place(Placed::Columns);
         let motion = &self.model.action.motion;
         let (stride, coordinates) = (self.stride(), motion.unknowns());
-        self.rows.fill(0.0);
+        self.workspace.rows.fill(0.0);
         let mut sum = 0.0;
-        let mut part = std::mem::take(&mut self.measured);
-        for cost in &self.costs {
+        let mut part = std::mem::take(&mut self.workspace.measured);
+        for cost in &self.objective.quantities {
             let measure = cost.site.measure(self.model, cost.measure);
             for k in cost.at.clone() {
                 let sample = self.sample(cost.site, k);
-                let summand = cost.summand(measure.value(&sample), k, self.h);
+                let summand = cost.summand(measure.value(&sample), k, self.workspace.h);
                 measure.gradient(&sample, &mut part.forces, &mut part.rows);
                 let factor = factor(&summand);
                 sum += by_horizon(&summand);
                 for side in (0..cost.site.sides()).filter(|&side| measure.reads(side)) {
                     for &vector in &cost.vectors {
                         let force = part.forces[side][vector] * factor;
-                        let rows = &mut self.rows[(k + side) * stride..][..coordinates];
-                        let columns = &self.instants[k + side].columns;
+                        let rows = &mut self.workspace.rows[(k + side) * stride..][..coordinates];
+                        let columns = &self.workspace.instants[k + side].columns;
                         motion.pull_back_one(vector, columns, &force, rows);
                     }
                 }
                 for &s in &cost.scalars {
-                    self.rows[k * stride + coordinates + s] += part.rows[s] * factor;
+                    self.workspace.rows[k * stride + coordinates + s] += part.rows[s] * factor;
                 }
                 for &vector in &cost.vectors {
                     for side in &mut part.forces {
@@ -64,18 +64,19 @@ impl Transcription<'_> {
                 part.rows.fill(0.0);
             }
         }
-        self.measured = part;
+        self.workspace.measured = part;
         sum
     }
 
     /// Adds the gradients in the rows to those by the variables.
     pub(super) fn gather_cost_gradient(&self, grad: &mut [f64]) {
         let (stride, coordinates) = (self.stride(), self.model.action.motion.unknowns());
-        let columns = self.unknowns.columns.iter().zip(&self.variable_scales);
+        let columns = self.layout.unknowns.columns.iter();
+        let columns = columns.zip(&self.variable_scales);
         for (sum, (column, scale)) in grad.iter_mut().zip(columns) {
             let row = match *column {
-                Column::Instant { k, i } => self.rows[k * stride + i],
-                Column::Interval { k, s } => self.rows[k * stride + coordinates + s],
+                Column::Instant { k, i } => self.workspace.rows[k * stride + i],
+                Column::Interval { k, s } => self.workspace.rows[k * stride + coordinates + s],
                 // No cost reads a parameter: limits and goals of what follows one are refused.
                 Column::Parameter { .. } | Column::Horizon => continue,
             };
@@ -85,40 +86,43 @@ impl Transcription<'_> {
 
     /// Adds σ times the derivatives of the costs with the interval length to the values.
     pub(super) fn cost_border(&mut self, sigma: f64) {
-        if self.costs.is_empty() {
+        if self.objective.quantities.is_empty() {
             return;
         }
         let square = self.cost_gradients(|s| sigma * s.by_value_and_h, |s| sigma * s.by_h_twice);
-        let layout = self.model.action.layout();
+        let pattern = self.model.action.layout();
         let (stride, coordinates) = (self.stride(), self.model.action.motion.unknowns());
-        for k in 0..=self.intervals {
-            let rows = &self.rows[k * stride..][..coordinates];
-            let values = &mut self.values[layout.horizon_at(k)..][..coordinates];
+        for k in 0..=self.layout.intervals {
+            let rows = &self.workspace.rows[k * stride..][..coordinates];
+            let values = &mut self.workspace.values[pattern.horizon_at(k)..][..coordinates];
             values.iter_mut().zip(rows).for_each(|(v, row)| *v += row);
-            if k == self.intervals {
+            if k == self.layout.intervals {
                 break;
             }
-            let rows = &self.rows[k * stride + coordinates..(k + 1) * stride];
-            let values = &mut self.values[layout.horizon_scalars_at(k)..][..rows.len()];
+            let rows = &self.workspace.rows[k * stride + coordinates..(k + 1) * stride];
+            let values = &mut self.workspace.values[pattern.horizon_scalars_at(k)..][..rows.len()];
             values.iter_mut().zip(rows).for_each(|(v, row)| *v += row);
         }
-        self.values[layout.horizon_square_at(self.intervals)] += square;
+        self.workspace.values[pattern.horizon_square_at(self.layout.intervals)] += square;
     }
 
     /// Places all instants at the present point as far as it is needed, the copy where stretches meet too.
     pub(super) fn place(&mut self, needed: Placed) {
         let motion = &self.model.action.motion;
-        if let Some(middle) = self.middle {
-            self.halo.z.copy_from_slice(&self.instants[middle].z);
+        let workspace = &mut self.workspace;
+        if let Some(middle) = self.layout.middle() {
+            let here = &workspace.instants[middle];
+            workspace.halo.z.copy_from_slice(&here.z);
         }
-        for instant in self.instants.iter_mut().chain([&mut self.halo]) {
-            if self.placed < Placed::Vectors {
+        let instants = workspace.instants.iter_mut();
+        for instant in instants.chain([&mut workspace.halo]) {
+            if workspace.placed < Placed::Vectors {
                 motion.vectors(instant);
             }
-            if self.placed < needed && needed == Placed::Columns {
+            if workspace.placed < needed && needed == Placed::Columns {
                 motion.tangent(instant);
             }
         }
-        self.placed = self.placed.max(needed);
+        workspace.placed = workspace.placed.max(needed);
     }
 }

@@ -7,11 +7,17 @@ use crate::control::limits::When;
 use crate::control::numbering::{Column, Numbering, Row};
 use crate::control::problem::{Control, Duration};
 use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};
+use crate::functional::Horizon;
 use crate::model::{Model, Role};
+
+/// Number of intervals from which on a horizon is evaluated in two stretches.
+const TWO_STRETCHES: usize = 16;
 
 /// Variables and rows of the program of a control problem on a number of intervals.
 #[derive(Clone, Debug)]
 pub(in crate::control) struct Layout {
+    pub(super) intervals: usize,
+    pub(super) horizon: Horizon,
     pub(in crate::control) unknowns: Numbering,
     pub(super) limits: Vec<LimitRow>,
     /// Limit, and instant or interval, of each row behind the equations.
@@ -67,10 +73,21 @@ impl Layout {
             }
         }
         Self {
+            intervals,
+            horizon: match control.duration {
+                Duration::Given(_) => Horizon::Given,
+                Duration::Free { .. } => Horizon::Free,
+            },
             unknowns,
             limits,
             limit_rows,
         }
+    }
+
+    /// Instant at which a long horizon is cut in two.
+    pub(super) fn middle(&self) -> Option<usize> {
+        let is_cut = self.horizon == Horizon::Given && self.intervals >= TWO_STRETCHES;
+        is_cut.then_some(self.intervals / 2)
     }
 
     /// Returns the site of a limit or goal, to carry costates from one grid to another.

@@ -23,20 +23,21 @@ impl Transcription<'_> {
         let BoundaryConditions {
             start, goal, rest, ..
         } = boundary;
-        self.instants[0].z.copy_from_slice(&start.z);
+        self.workspace.instants[0].z.copy_from_slice(&start.z);
         self.momentum.copy_from_slice(&start.momentum);
         let unknowns = self.model.action.motion.unknowns();
-        let last = &mut self.instants[self.intervals].z;
-        for (value, goal) in last.iter_mut().zip(&goal.coordinates) {
-            *value = goal.unwrap_or(*value);
-        }
-        let charts = last[unknowns..].iter_mut().zip(goal.charts(unknowns));
-        charts.for_each(|(value, chart)| *value = *chart);
-        for (limit, bounded) in self.limits.iter_mut().zip(measured(self.model, boundary)) {
+        let last = &mut self.workspace.instants[self.layout.intervals].z;
+        goal.give(last, unknowns);
+        for (limit, bounded) in self
+            .layout
+            .limits
+            .iter_mut()
+            .zip(measured(self.model, boundary))
+        {
             (limit.bounded.lower, limit.bounded.upper) = (bounded.lower, bounded.upper);
         }
         self.set_row_bounds();
-        for (kept, voltages) in self.cost.ends_mut().iter_mut().zip(rest) {
+        for (kept, voltages) in self.objective.cost.ends_mut().iter_mut().zip(rest) {
             let sources = self.model.variables.sources();
             let kilovolts = voltages
                 .as_ref()
@@ -46,11 +47,11 @@ impl Transcription<'_> {
                 (kept, new) => *kept = new.map(Iterator::collect),
             }
         }
-        for energy in &mut self.energies {
+        for energy in &mut self.objective.energies {
             energy.move_ends(rest);
         }
-        self.point.fill(f64::NAN);
-        self.placed = Placed::Nothing;
+        self.workspace.point.fill(f64::NAN);
+        self.workspace.placed = Placed::Nothing;
         Ok(())
     }
 
@@ -58,11 +59,17 @@ impl Transcription<'_> {
     fn check_ends(&self, boundary: &BoundaryConditions) -> Result<(), BoundaryError> {
         let other = |reason: String| Err(BoundaryError::OtherProgram { reason });
         let BoundaryConditions { start, goal, .. } = boundary;
-        if start.z.len() != self.instants[0].z.len() || start.momentum.len() != self.momentum.len()
+        if start.z.len() != self.workspace.instants[0].z.len()
+            || start.momentum.len() != self.momentum.len()
         {
             return other("the start belongs to another model".to_owned());
         }
-        let is_given = |i: usize| self.unknowns.unknown(self.intervals, i).is_none();
+        let is_given = |i: usize| {
+            self.layout
+                .unknowns
+                .unknown(self.layout.intervals, i)
+                .is_none()
+        };
         let given = goal.coordinates.iter().map(Option::is_some);
         if !given.eq((0..self.model.coordinate_count()).map(is_given)) {
             return other("the goal gives other coordinates".to_owned());
@@ -75,7 +82,7 @@ impl Transcription<'_> {
         }
         let is_equation = |one: &BoundedQuantity| one.lower == one.upper;
         let mut others = measured(self.model, boundary);
-        for LimitRow { bounded, .. } in &self.limits {
+        for LimitRow { bounded, .. } in &self.layout.limits {
             let is_same = others.next().is_some_and(|one| {
                 (one.quantity, one.when) == (bounded.quantity, bounded.when)
                     && is_equation(one) == is_equation(bounded)

@@ -1,9 +1,11 @@
 //! Conversion between motions and points of the program.
 
 use crate::control::guess::InitialGuess;
-use crate::control::numbering::Column;
+use crate::control::numbering::{Column, Row};
 use crate::control::solution::Costates;
-use crate::control::transcription::{KILOVOLT, Placed, Transcription};
+use crate::control::transcription::Transcription;
+use crate::control::transcription::placed::Placed;
+use crate::control::transcription::units::KILOVOLT;
 use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt;
@@ -55,14 +57,20 @@ impl Transcription<'_> {
             motion.take_charts(&instant.z, &mut z);
             z
         };
-        let z: Vec<_> = history.z.iter().zip(&self.instants).map(here).collect();
+        let z: Vec<_> = history
+            .z
+            .iter()
+            .zip(&self.workspace.instants)
+            .map(here)
+            .collect();
         let value = |column: &Column| match *column {
             Column::Instant { k, i } => z[k][i],
             Column::Interval { k, s } => history.scalars[k][s],
             Column::Parameter { s } => history.scalars[0][s],
             Column::Horizon => h,
         };
-        self.unknowns
+        self.layout
+            .unknowns
             .columns
             .iter()
             .zip(&self.variable_scales)
@@ -80,15 +88,16 @@ impl Transcription<'_> {
         let scalar_count = self.model.action.layout().interval_scalars;
         Decoder {
             z: self
+                .workspace
                 .instants
                 .iter()
                 .map(|instant| instant.z.clone())
                 .collect(),
-            scalars: (0..self.intervals)
-                .map(|k| self.scalars[k * scalar_count..(k + 1) * scalar_count].to_vec())
+            scalars: (0..self.layout.intervals)
+                .map(|k| self.workspace.scalars[k * scalar_count..(k + 1) * scalar_count].to_vec())
                 .collect(),
-            h: self.h,
-            columns: self.unknowns.columns.clone(),
+            h: self.workspace.h,
+            columns: self.layout.unknowns.columns.clone(),
             scales: self.variable_scales.clone(),
             row_scales: self.row_scales.clone(),
         }
@@ -98,7 +107,7 @@ impl Transcription<'_> {
     pub fn start(&self, initial: &InitialGuess) -> ipopt::StartingPoint {
         let x = self.encode(&initial.history, initial.h);
         let fits = |c: &&Costates| {
-            c.rows.len() == self.unknowns.rows.len()
+            c.rows.len() == self.layout.unknowns.rows.len()
                 && c.lower.len() == x.len()
                 && c.upper.len() == x.len()
         };
@@ -121,33 +130,52 @@ impl Transcription<'_> {
 
     /// Reads a point, unless it stands there already; a sweep places the instants.
     pub(super) fn load(&mut self, x: &[f64]) {
-        if self.point == x {
+        let workspace = &mut self.workspace;
+        if workspace.point == x {
             return;
         }
-        self.point.copy_from_slice(x);
-        let scalar_count = self.model.action.layout().interval_scalars;
-        for ((column, scale), value) in self
-            .unknowns
-            .columns
-            .iter()
-            .zip(&self.variable_scales)
-            .zip(x)
-        {
+        workspace.point.copy_from_slice(x);
+        let count = self.model.action.layout().interval_scalars;
+        let columns = self.layout.unknowns.columns.iter();
+        for ((column, scale), value) in columns.zip(&self.variable_scales).zip(x) {
             let value = scale * value;
             match *column {
-                Column::Instant { k, i } => self.instants[k].z[i] = value,
-                Column::Interval { k, s } => self.scalars[k * scalar_count + s] = value,
+                Column::Instant { k, i } => workspace.instants[k].z[i] = value,
+                Column::Interval { k, s } => workspace.scalars[k * count + s] = value,
                 Column::Parameter { s } => {
-                    let rows = self.scalars.chunks_exact_mut(scalar_count);
+                    let rows = workspace.scalars.chunks_exact_mut(count);
                     rows.for_each(|row| row[s] = value);
                 }
-                Column::Horizon => self.h = value,
+                Column::Horizon => workspace.h = value,
             }
         }
-        for &(column, place) in &self.unknowns.voltages {
-            self.kilovolts[place] = self.variable_scales[column] * x[column] / KILOVOLT;
+        for &(column, place) in &self.layout.unknowns.voltages {
+            workspace.kilovolts[place] = self.variable_scales[column] * x[column] / KILOVOLT;
         }
-        self.placed = Placed::Nothing;
+        workspace.placed = Placed::Nothing;
+    }
+
+    /// Reads the factor of the objective and the costates, along which derivatives are contracted.
+    pub(super) fn load_costates(&mut self, sigma: f64, costates: &[f64]) {
+        let workspace = &mut self.workspace;
+        for instant in &mut workspace.instants {
+            instant.l.fill(0.0);
+        }
+        workspace.rows.fill(0.0);
+        workspace.scalars_along.fill(0.0);
+        let (rows, limits) = (&self.layout.unknowns.rows, self.layout.limit_rows.len());
+        let count = self.model.action.layout().interval_scalars;
+        let total = workspace.rows.len() - limits;
+        let first = rows.len() - limits;
+        for (r, (row, y)) in rows.iter().zip(costates).enumerate() {
+            let y = y * self.row_scales[r];
+            match *row {
+                Row::Instant { k, i } => workspace.instants[k].l[i] = y,
+                Row::Interval { k, s } => workspace.scalars_along[k * count + s] = y,
+                Row::Limit { .. } => workspace.rows[total + r - first] = y,
+            }
+        }
+        workspace.sigma = sigma;
     }
 }
 

@@ -2,7 +2,10 @@
 
 use crate::control::limits::{BoundedQuantity, When};
 use crate::control::numbering::{Column, Row};
-use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
+use crate::control::transcription::Transcription;
+use crate::control::transcription::objective::Objective;
+use crate::control::transcription::units::{KILOVOLT, MILLISECOND};
+use crate::control::transcription::workspace::Workspace;
 use crate::functional::Order;
 use crate::model::Role;
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
@@ -17,40 +20,46 @@ impl Nlp for Transcription<'_> {
     }
 
     fn jacobian_structure(&self) -> Entries {
-        self.jacobian_entries.clone()
+        self.structure.jacobian.entries.clone()
     }
 
     fn hessian_structure(&self) -> Entries {
-        self.hessian_entries.clone()
+        self.structure.hessian.entries.clone()
     }
 
     fn objective(&mut self, x: &[f64]) -> f64 {
         self.load(x);
-        let of_voltages = self.cost.value(&self.kilovolts, self.h * MILLISECOND);
+        let Workspace { kilovolts, h, .. } = &self.workspace;
+        let of_voltages = self.objective.cost.value(kilovolts, h * MILLISECOND);
         of_voltages + self.costs() + self.energies()
     }
 
     fn objective_scale(&self) -> f64 {
-        self.objective_scale
+        self.objective.scale
     }
 
     fn gradient(&mut self, x: &[f64], grad: &mut [f64]) {
         self.load(x);
-        let mut by_horizon =
-            self.cost
-                .gradient(&self.kilovolts, self.h * MILLISECOND, &mut self.gradient);
+        let Workspace {
+            kilovolts,
+            h,
+            gradient,
+            ..
+        } = &mut self.workspace;
+        let cost = &self.objective.cost;
+        let mut by_horizon = cost.gradient(kilovolts, *h * MILLISECOND, gradient);
         by_horizon *= MILLISECOND;
         grad.fill(0.0);
-        if !self.costs.is_empty() || !self.energies.is_empty() {
+        if !self.objective.quantities.is_empty() || !self.objective.energies.is_empty() {
             by_horizon += self.cost_gradients(|s| s.outer.slope, |s| s.by_h);
             self.energy_gradients();
             self.gather_cost_gradient(grad);
         }
         let scales = &self.variable_scales;
-        for &(column, place) in &self.unknowns.voltages {
-            grad[column] += self.gradient[place] * scales[column] / KILOVOLT;
+        for &(column, place) in &self.layout.unknowns.voltages {
+            grad[column] += self.workspace.gradient[place] * scales[column] / KILOVOLT;
         }
-        if let Some(column) = self.unknowns.horizon() {
+        if let Some(column) = self.layout.unknowns.horizon() {
             grad[column] = by_horizon * scales[column];
         }
     }
@@ -62,7 +71,7 @@ impl Nlp for Transcription<'_> {
         let count = self.model.action.motion.unknowns();
         for (value, (row, scale)) in g
             .iter_mut()
-            .zip(self.unknowns.rows.iter().zip(&self.row_scales))
+            .zip(self.layout.unknowns.rows.iter().zip(&self.row_scales))
         {
             *value = scale
                 * match *row {
@@ -72,10 +81,10 @@ impl Nlp for Transcription<'_> {
                         } else {
                             0.0
                         };
-                        self.rows[k * stride + i] + start
+                        self.workspace.rows[k * stride + i] + start
                     }
-                    Row::Interval { k, s } => self.rows[k * stride + count + s],
-                    Row::Limit { limit, k } => self.limit_value(&self.limits[limit], k),
+                    Row::Interval { k, s } => self.workspace.rows[k * stride + count + s],
+                    Row::Limit { limit, k } => self.limit_value(&self.layout.limits[limit], k),
                 };
         }
     }
@@ -84,40 +93,25 @@ impl Nlp for Transcription<'_> {
         self.load(x);
         self.sweep(Order::Hessian);
         self.limit_gradients();
-        for (value, kept) in values.iter_mut().zip(&self.jacobian) {
-            *value = kept.scale * self.values[kept.place];
+        for (value, kept) in values.iter_mut().zip(&self.structure.jacobian.kept) {
+            *value = kept.scale * self.workspace.values[kept.place];
         }
     }
 
     fn hessian(&mut self, x: &[f64], sigma: f64, costates: &[f64], values: &mut [f64]) {
         self.load(x);
-        for instant in &mut self.instants {
-            instant.l.fill(0.0);
-        }
-        self.rows.fill(0.0);
-        self.scalars_along.fill(0.0);
-        let count = self.model.action.layout().interval_scalars;
-        let total = self.rows.len() - self.limit_rows.len();
-        let first = self.unknowns.rows.len() - self.limit_rows.len();
-        for (r, (row, y)) in self.unknowns.rows.iter().zip(costates).enumerate() {
-            let y = y * self.row_scales[r];
-            match *row {
-                Row::Instant { k, i } => self.instants[k].l[i] = y,
-                Row::Interval { k, s } => self.scalars_along[k * count + s] = y,
-                Row::Limit { .. } => self.rows[total + r - first] = y,
-            }
-        }
-        self.sigma = sigma;
+        self.load_costates(sigma, costates);
         self.sweep(Order::Third);
         self.objective_curvature(sigma);
         self.energy_curvature(sigma);
-        let tau = self.h * MILLISECOND;
-        let (own, coupling) = values.split_at_mut(self.hessian.len());
-        for (value, kept) in own.iter_mut().zip(&self.hessian) {
-            *value = kept.scale * self.values[kept.place];
+        let tau = self.workspace.h * MILLISECOND;
+        let (own, coupling) = values.split_at_mut(self.structure.hessian.kept.len());
+        for (value, kept) in own.iter_mut().zip(&self.structure.hessian.kept) {
+            *value = kept.scale * self.workspace.values[kept.place];
         }
-        let of_rate = sigma * self.cost.coupling(tau) * self.kilovolt * self.kilovolt;
-        for (value, &jump) in coupling.iter_mut().zip(&self.jumps) {
+        let Objective { cost, kilovolt, .. } = &self.objective;
+        let of_rate = sigma * cost.coupling(tau) * kilovolt * kilovolt;
+        for (value, &jump) in coupling.iter_mut().zip(&self.structure.jumps) {
             *value = of_rate + self.energy_coupling(jump, sigma);
         }
     }
@@ -140,11 +134,11 @@ impl Nlp for Transcription<'_> {
             Column::Interval { k, .. } => Stage::Of(2 * k as u32 + 1),
             Column::Parameter { .. } | Column::Horizon => Stage::Border,
         };
-        Some(self.unknowns.columns.iter().map(stage).collect())
+        Some(self.layout.unknowns.columns.iter().map(stage).collect())
     }
 
     fn variable_name(&self, i: usize) -> String {
-        let column = self.unknowns.columns[i];
+        let column = self.layout.unknowns.columns[i];
         let name = column.of(&self.model.variables);
         match column {
             Column::Instant { k, .. } => format!("{name} at instant {k}"),
@@ -154,7 +148,7 @@ impl Nlp for Transcription<'_> {
     }
 
     fn constraint_name(&self, i: usize) -> String {
-        let row = self.unknowns.rows[i];
+        let row = self.layout.unknowns.rows[i];
         let variable = row.of(&self.model.variables);
         let name = variable.map_or("", |variable| &variable.name);
         match (row, variable.map(|variable| variable.role)) {
@@ -173,7 +167,7 @@ impl Nlp for Transcription<'_> {
             (Row::Instant { k, .. }, Some(Role::Multiplier)) => {
                 format!("constraint {name} at instant {k}")
             }
-            (Row::Instant { k, .. }, _) if k == self.intervals => {
+            (Row::Instant { k, .. }, _) if k == self.layout.intervals => {
                 format!("rest at the goal, {name}")
             }
             (Row::Instant { k, .. }, _) => format!("motion at instant {k}, {name}"),

@@ -1,101 +1,95 @@
 //! Scales of rows and variables, and bounds.
 
-use crate::control::numbering::{Column, Row};
+use crate::control::numbering::{Column, Numbering, Row};
 use crate::control::problem::{Control, Duration, PathConstraint};
 use crate::control::transcription::Transcription;
+use crate::control::transcription::layout::Layout;
 use crate::dynamics::DiscreteTrajectory;
-use crate::model::{Coordinates, Role, Time};
+use crate::model::{Coordinates, Model, Role, Size, Time};
 use crate::nlp::{Bounds, Nlp};
 
 impl Transcription<'_> {
+    /// Scales of the variables by their units; multipliers have none yet.
+    pub(super) fn variable_scales(
+        model: &Model,
+        layout: &Layout,
+        control: &Control,
+        h: f64,
+    ) -> Vec<f64> {
+        let length = model.length();
+        let volts = control.voltage_unit(&model.system);
+        let scale = |column: &Column| {
+            let variable = column.of(&model.variables);
+            match variable.role {
+                Role::Coordinate if variable.size == Size::Length => length,
+                Role::Coordinate | Role::Multiplier => 1.0,
+                Role::Voltage | Role::Potential => volts / variable.unit,
+                Role::Parameter => model.parameter(variable).size(),
+                Role::Duration => h,
+            }
+        };
+        layout.unknowns.columns.iter().map(scale).collect()
+    }
+
     /// Scales rows and multipliers by the largest entries of the Jacobian at the guess, kind by kind.
     pub(super) fn set_scales(&mut self, history: &DiscreteTrajectory, h: f64) {
-        let variables = &self.model.variables;
-        let count = self.model.action.motion.unknowns();
         let x = self.encode(history, h);
-        let mut values = vec![0.0; self.jacobian.len()];
+        let mut values = vec![0.0; self.structure.jacobian.kept.len()];
         self.jacobian(&x, &mut values);
-        // Place of a multiplier in its instant.
-        let multiplier = |column: Column| match (column, column.of(variables).role) {
-            (Column::Instant { i, .. }, Role::Multiplier) => Some(i),
-            _ => None,
-        };
-        let kind = |row: Row| match row {
-            Row::Instant { i, .. } => Some(i),
-            Row::Interval { s, .. } => Some(count + s),
-            Row::Limit { .. } => None,
-        };
-        let mut largest = vec![0.0_f64; self.stride()];
-        let entries = || {
-            self.jacobian_entries
-                .rows
-                .iter()
-                .zip(&self.jacobian_entries.cols)
-                .zip(&values)
-        };
-        let scale = |col: u32| self.variable_scales[col as usize];
-        let is_of_horizon = |col: u32| {
-            self.unknowns.columns[col as usize]
-                .of(variables)
-                .role
-                .time()
-                == Time::Horizon
-        };
-        for ((&row, &col), value) in entries() {
-            if let (Some(i), None) = (
-                kind(self.unknowns.rows[row as usize]),
-                multiplier(self.unknowns.columns[col as usize]),
-            ) && !is_of_horizon(col)
-            {
-                largest[i] = largest[i].max((value * scale(col)).abs());
+        let of_kinds = self.scales_of_kinds(&values);
+        let of_multipliers = self.scales_of_multipliers(&values, &of_kinds);
+        let columns = self.layout.unknowns.columns.iter();
+        for (scale, &column) in self.variable_scales.iter_mut().zip(columns) {
+            if let Some(i) = multiplier(column, self.model) {
+                *scale = of_multipliers[i];
             }
         }
-        let inverse = |v: f64| {
-            if v.is_finite() && v > 0.0 {
-                1.0 / v
-            } else {
-                1.0
-            }
-        };
-        let row_scales: Vec<f64> = largest.iter().map(|&v| inverse(v)).collect();
-        let mut columns = vec![0.0_f64; count];
-        for ((&row, &col), value) in entries() {
-            let (row, column) = (
-                self.unknowns.rows[row as usize],
-                self.unknowns.columns[col as usize],
-            );
-            if let (Some(r), Some(i)) = (kind(row), multiplier(column)) {
-                columns[i] = columns[i].max((value * row_scales[r]).abs());
-            }
-        }
-        for (scale, &column) in self.variable_scales.iter_mut().zip(&self.unknowns.columns) {
-            if let Some(i) = multiplier(column) {
-                *scale = inverse(columns[i]);
-            }
-        }
-        for (scale, row) in self.row_scales.iter_mut().zip(&self.unknowns.rows) {
+        let count = self.model.action.motion.unknowns();
+        let rows = self.layout.unknowns.rows.iter();
+        for (scale, row) in self.row_scales.iter_mut().zip(rows) {
             *scale = match *row {
-                Row::Limit { limit, .. } => self.limits[limit].scale,
-                other => kind(other).map_or(1.0, |i| row_scales[i]),
+                Row::Limit { limit, .. } => self.layout.limits[limit].scale,
+                other => kind(other, count).map_or(1.0, |i| of_kinds[i]),
             };
         }
-        for ((kept, &row), &col) in self
-            .jacobian
-            .iter_mut()
-            .zip(&self.jacobian_entries.rows)
-            .zip(&self.jacobian_entries.cols)
-        {
-            kept.scale = self.row_scales[row as usize] * self.variable_scales[col as usize];
+        let (rows, columns) = (&self.row_scales, &self.variable_scales);
+        self.structure.jacobian.scale(rows, columns);
+        self.structure.hessian.scale(columns, columns);
+        self.workspace.point.fill(f64::NAN);
+    }
+
+    /// Scale of each kind of row but limits: one over the largest entry of these rows by variables of instants and intervals.
+    fn scales_of_kinds(&self, values: &[f64]) -> Vec<f64> {
+        let Numbering { rows, columns, .. } = &self.layout.unknowns;
+        let count = self.model.action.motion.unknowns();
+        let is_of_horizon = |column: Column| {
+            let variable = column.of(&self.model.variables);
+            variable.role.time() == Time::Horizon
+        };
+        let mut largest = vec![0.0_f64; self.stride()];
+        for (row, col, value) in self.structure.jacobian.with(values) {
+            let (kind, column) = (kind(rows[row], count), columns[col]);
+            if let (Some(i), None) = (kind, multiplier(column, self.model))
+                && !is_of_horizon(column)
+            {
+                largest[i] = largest[i].max((value * self.variable_scales[col]).abs());
+            }
         }
-        for ((kept, &row), &col) in self
-            .hessian
-            .iter_mut()
-            .zip(&self.hessian_entries.rows)
-            .zip(&self.hessian_entries.cols)
-        {
-            kept.scale = self.variable_scales[row as usize] * self.variable_scales[col as usize];
+        largest.into_iter().map(inverse).collect()
+    }
+
+    /// Scale of each multiplier of an instant: one over its largest entry in scaled rows.
+    fn scales_of_multipliers(&self, values: &[f64], of_kinds: &[f64]) -> Vec<f64> {
+        let Numbering { rows, columns, .. } = &self.layout.unknowns;
+        let count = self.model.action.motion.unknowns();
+        let mut largest = vec![0.0_f64; count];
+        for (row, col, value) in self.structure.jacobian.with(values) {
+            let of = (kind(rows[row], count), multiplier(columns[col], self.model));
+            if let (Some(r), Some(i)) = of {
+                largest[i] = largest[i].max((value * of_kinds[r]).abs());
+            }
         }
-        self.point.fill(f64::NAN);
+        largest.into_iter().map(inverse).collect()
     }
 
     pub(super) fn set_bounds(&mut self, control: &Control) {
@@ -121,15 +115,16 @@ impl Transcription<'_> {
                 }
                 (Column::Horizon, _) => match control.duration {
                     Duration::Free { min, max, .. } => {
-                        [min, max].map(|t| t / self.intervals as f64)
+                        [min, max].map(|t| t / self.layout.intervals as f64)
                     }
-                    Duration::Given(_) => [self.h; 2],
+                    Duration::Given(_) => [self.workspace.h; 2],
                 },
                 _ => [f64::NEG_INFINITY, f64::INFINITY],
             };
             (low / scale, high / scale)
         };
         let (lower, upper) = self
+            .layout
             .unknowns
             .columns
             .iter()
@@ -142,15 +137,41 @@ impl Transcription<'_> {
     /// Bounds of the rows: zero of equations of motion, those of limits and goals in their scale.
     pub(super) fn set_row_bounds(&mut self) {
         let Bounds { lower, upper } = &mut self.row_bounds;
-        let count = self.unknowns.rows.len();
+        let count = self.layout.unknowns.rows.len();
         lower.resize(count, 0.0);
         upper.resize(count, 0.0);
-        for (i, row) in self.unknowns.rows.iter().enumerate() {
+        for (i, row) in self.layout.unknowns.rows.iter().enumerate() {
             if let Row::Limit { limit, .. } = *row {
-                let limit = &self.limits[limit];
+                let limit = &self.layout.limits[limit];
                 lower[i] = limit.bounded.lower * limit.scale;
                 upper[i] = limit.bounded.upper * limit.scale;
             }
         }
+    }
+}
+
+/// Place of a multiplier in its instant.
+fn multiplier(column: Column, model: &Model) -> Option<usize> {
+    match (column, column.of(&model.variables).role) {
+        (Column::Instant { i, .. }, Role::Multiplier) => Some(i),
+        _ => None,
+    }
+}
+
+/// Kind of a row, the place in its step; `count` is the number of unknowns of an instant. Limits are of no kind.
+fn kind(row: Row, count: usize) -> Option<usize> {
+    match row {
+        Row::Instant { i, .. } => Some(i),
+        Row::Interval { s, .. } => Some(count + s),
+        Row::Limit { .. } => None,
+    }
+}
+
+/// One over a value; one where it is zero or infinite.
+fn inverse(value: f64) -> f64 {
+    if value.is_finite() && value > 0.0 {
+        1.0 / value
+    } else {
+        1.0
     }
 }

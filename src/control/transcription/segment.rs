@@ -40,7 +40,7 @@ pub(super) struct Shared<'a> {
 
 /// Storage of one thread.
 #[derive(Clone, Debug)]
-pub(super) struct Workspace {
+pub(super) struct SegmentWorkspace {
     pub(super) scratch: Scratch,
     /// Functions of the measures of instants and intervals.
     outer: [Vec<Outer>; 2],
@@ -54,7 +54,7 @@ pub(super) struct Segment<'a> {
     pub(super) instants: &'a mut [Configuration],
     /// The instant after the last interval.
     pub(super) end: &'a mut Configuration,
-    pub(super) bench: &'a mut Workspace,
+    pub(super) workspace: &'a mut SegmentWorkspace,
     /// Values of the steps from `first` on.
     pub(super) values: &'a mut [f64],
     /// Rows of the steps from `first` on.
@@ -69,7 +69,7 @@ pub(super) fn needed(order: Order) -> Placed {
     }
 }
 
-impl Workspace {
+impl SegmentWorkspace {
     pub(super) fn new(action: &Reduced) -> Self {
         let outer = |measures: usize| vec![Outer::default(); measures];
         Self {
@@ -86,7 +86,7 @@ impl Segment<'_> {
     /// Forces of the intervals, and second derivatives into the values; instants too, but the first where another
     /// stretch comes before. Returns ∂²/∂h² along the costates.
     pub(super) fn run(mut self) -> f64 {
-        self.bench.scratch.start();
+        self.workspace.scratch.start();
         self.prepare(0);
         let mut square = 0.0;
         for j in 0..self.instants.len() {
@@ -104,7 +104,7 @@ impl Segment<'_> {
                 self.shared,
                 instant,
                 [k, j],
-                self.bench,
+                self.workspace,
                 self.values,
                 self.rows,
             );
@@ -153,10 +153,10 @@ impl Segment<'_> {
         let k = self.first + j;
         let count = action.intervals.scalars;
         let of_step = k * count..(k + 1) * count;
-        let Workspace {
+        let SegmentWorkspace {
             scratch,
             outer: [_, outer],
-        } = &mut *self.bench;
+        } = &mut *self.workspace;
         let site = Site::Intervals;
         fill_limits(outer, self.shared.limits, site, k, self.shared.costates);
         let plain = Interval {
@@ -193,15 +193,15 @@ pub(super) fn instant_of(
     shared: Shared<'_>,
     instant: &mut Configuration,
     [k, j]: [usize; 2],
-    bench: &mut Workspace,
+    workspace: &mut SegmentWorkspace,
     values: &mut [f64],
     rows: &mut [f64],
 ) {
     let Shared { action, order, .. } = shared;
-    let Workspace {
+    let SegmentWorkspace {
         scratch,
         outer: [outer, _],
-    } = bench;
+    } = workspace;
     let site = Site::Instants;
     fill_limits(outer, shared.limits, site, k, shared.costates);
     if order == Order::Third {

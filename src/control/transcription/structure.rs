@@ -3,182 +3,238 @@
 use crate::control::BoundaryError;
 use crate::control::numbering::Row;
 use crate::control::transcription::energy_rows::Jump;
+use crate::control::transcription::layout::Layout;
 use crate::control::transcription::limit_rows::SCALAR;
-use crate::control::transcription::{Gather, Transcription};
+use crate::control::transcription::objective::Objective;
 use crate::ipopt::interrupt;
-use crate::model::Role;
+use crate::model::{Model, Role};
 use crate::nlp::Entries;
 
-impl Transcription<'_> {
-    fn jacobian_of(&self) -> Result<Vec<(usize, usize, usize)>, BoundaryError> {
-        let layout = self.model.action.layout();
-        let u = &self.unknowns;
-        let mut list = Vec::new();
-        for k in 0..=self.intervals {
-            go_on()?;
-            for (slot, (i, j)) in layout.same.entries().enumerate() {
-                list.push((u.row(k, i), u.unknown(k, j), layout.same_at(k) + slot));
-            }
-            for i in 0..layout.unknowns {
-                list.push((u.row(k, i), u.horizon(), layout.horizon_at(k) + i));
-            }
-            if k == self.intervals {
-                break;
-            }
-            for (slot, (i, j)) in layout.cross.entries().enumerate() {
-                list.push((u.row(k + 1, i), u.unknown(k, j), layout.lower_at(k) + slot));
-                list.push((u.row(k, i), u.unknown(k + 1, j), layout.upper_at(k) + slot));
-            }
-            for side in 0..2 {
-                for (slot, (i, s)) in layout.mixed.entries().enumerate() {
-                    list.push((
-                        u.row(k + side, i),
-                        u.scalar(k, s),
-                        layout.mixed_at(k, side) + slot,
-                    ));
-                    list.push((
-                        u.row_of_scalar(k, s),
-                        u.unknown(k + side, i),
-                        layout.mixed_at(k, side) + slot,
-                    ));
-                }
-            }
-            for (slot, (s, t)) in layout.scalars.entries().enumerate() {
-                let place = layout.scalars_at(k) + slot;
-                list.push((u.row_of_scalar(k, s), u.scalar(k, t), place));
-                if s != t {
-                    list.push((u.row_of_scalar(k, t), u.scalar(k, s), place));
-                }
-            }
-            for s in 0..layout.interval_scalars {
-                list.push((
-                    u.row_of_scalar(k, s),
-                    u.horizon(),
-                    layout.horizon_scalars_at(k) + s,
-                ));
-            }
-        }
-        let mut place = layout.values(self.intervals);
-        let first = self.unknowns.rows.len() - self.limit_rows.len();
-        for (r, &(limit, k)) in self.limit_rows.iter().enumerate() {
-            for &(side, i) in &self.limits[limit].entries {
-                let col = if side == SCALAR {
-                    u.scalar(k, i)
-                } else {
-                    u.unknown(k + side, i)
-                };
-                list.push((Some(first + r), col, place));
-                place += 1;
-            }
-        }
-        let list = list.into_iter();
-        let known = list.filter_map(|(row, col, place)| Some((row?, col?, place)));
-        Ok(known.collect())
+/// An entry of a matrix of the program: where its value is found, and its scale.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gather {
+    pub(super) place: usize,
+    pub(super) scale: f64,
+}
+
+/// A matrix of the program.
+#[derive(Debug, Default)]
+pub(super) struct Matrix {
+    pub(super) entries: Entries,
+    /// Its entries, in this order, but those of jumps.
+    pub(super) kept: Vec<Gather>,
+}
+
+/// Matrices of the program.
+#[derive(Debug)]
+pub(super) struct Structure {
+    pub(super) jacobian: Matrix,
+    /// Lower triangle of the Hessian; its last entries are those of the jumps.
+    pub(super) hessian: Matrix,
+    /// Voltages of neighbouring intervals that meet in the objective.
+    pub(super) jumps: Vec<Jump>,
+}
+
+/// Row, column and place among the values of an entry before those of given values are left out.
+type Candidate = (Option<usize>, Option<usize>, usize);
+
+impl Structure {
+    /// Lays out the matrices, with scales of one.
+    ///
+    /// # Errors
+    /// It is time to stop.
+    pub(super) fn new(
+        model: &Model,
+        layout: &Layout,
+        objective: &Objective,
+    ) -> Result<Self, BoundaryError> {
+        let jacobian = jacobian(model, layout)?;
+        let mut hessian = hessian(model, layout)?;
+        let jumps = jumps(layout, objective, &mut hessian.entries);
+        go_on()?;
+        Ok(Self {
+            jacobian,
+            hessian,
+            jumps,
+        })
+    }
+}
+
+impl Matrix {
+    fn add(&mut self, row: usize, col: usize, place: usize) {
+        self.entries.rows.push(row as u32);
+        self.entries.cols.push(col as u32);
+        self.kept.push(Gather { place, scale: 1.0 });
     }
 
-    pub(super) fn lay_jacobian(&mut self) -> Result<(), BoundaryError> {
-        // The horizon column has no entry in the rows of constraints, which are instantaneous.
-        let horizon = self.unknowns.horizon();
-        let lasts = |row: Row| {
-            let variable = row.of(&self.model.variables);
-            variable.is_some_and(|variable| variable.role != Role::Multiplier)
-        };
-        let exists = |&(row, col, _): &(usize, usize, usize)| {
-            Some(col) != horizon || lasts(self.unknowns.rows[row])
-        };
-        let list: Vec<_> = self.jacobian_of()?.into_iter().filter(exists).collect();
-        go_on()?;
-        for (row, col, place) in list {
-            self.jacobian_entries.rows.push(row as u32);
-            self.jacobian_entries.cols.push(col as u32);
-            self.jacobian.push(Gather { place, scale: 1.0 });
-        }
-        Ok(())
+    /// Row, column and value of each entry.
+    pub(super) fn with<'a>(
+        &'a self,
+        values: &'a [f64],
+    ) -> impl Iterator<Item = (usize, usize, f64)> {
+        let places = self.entries.rows.iter().zip(&self.entries.cols);
+        let entries = places.zip(values);
+        entries.map(|((&row, &col), &value)| (row as usize, col as usize, value))
     }
 
-    pub(super) fn lay_hessian(&mut self) -> Result<(), BoundaryError> {
-        let layout = self.model.action.layout();
-        let u = &self.unknowns;
-        let mut list: Vec<(Option<usize>, Option<usize>, usize)> = Vec::new();
-        for k in 0..=self.intervals {
-            go_on()?;
-            for (slot, (i, j)) in layout
-                .same
-                .entries()
-                .enumerate()
-                .filter(|(_, (i, j))| i >= j)
-            {
-                list.push((u.unknown(k, i), u.unknown(k, j), layout.same_at(k) + slot));
-            }
-            for i in 0..self.model.coordinate_count() {
-                list.push((u.horizon(), u.unknown(k, i), layout.horizon_at(k) + i));
-            }
-            if k == self.intervals {
-                break;
-            }
-            for (slot, (i, j)) in layout.cross.entries().enumerate() {
-                list.push((
-                    u.unknown(k + 1, i),
-                    u.unknown(k, j),
-                    layout.lower_at(k) + slot,
-                ));
-            }
-            for side in 0..2 {
-                for (slot, (i, s)) in layout.mixed.entries().enumerate() {
-                    list.push((
-                        u.scalar(k, s),
-                        u.unknown(k + side, i),
-                        layout.mixed_at(k, side) + slot,
-                    ));
-                }
-            }
-            for (slot, (s, t)) in layout.scalars.entries().enumerate() {
-                list.push((u.scalar(k, s), u.scalar(k, t), layout.scalars_at(k) + slot));
-            }
-            for s in 0..layout.interval_scalars {
-                list.push((
-                    u.horizon(),
-                    u.scalar(k, s),
-                    layout.horizon_scalars_at(k) + s,
-                ));
+    /// Scales the entries by their rows and columns.
+    pub(super) fn scale(&mut self, rows: &[f64], columns: &[f64]) {
+        let places = self.entries.rows.iter().zip(&self.entries.cols);
+        for (kept, (&row, &col)) in self.kept.iter_mut().zip(places) {
+            kept.scale = rows[row as usize] * columns[col as usize];
+        }
+    }
+}
+
+/// Entries of the Jacobian that the terms have, step by step, then those of the limits.
+fn jacobian_candidates(model: &Model, layout: &Layout) -> Result<Vec<Candidate>, BoundaryError> {
+    let (pattern, u) = (model.action.layout(), &layout.unknowns);
+    let mut list = Vec::new();
+    for k in 0..=layout.intervals {
+        go_on()?;
+        for (slot, (i, j)) in pattern.same.entries().enumerate() {
+            list.push((u.row(k, i), u.unknown(k, j), pattern.same_at(k) + slot));
+        }
+        for i in 0..pattern.unknowns {
+            list.push((u.row(k, i), u.horizon(), pattern.horizon_at(k) + i));
+        }
+        if k == layout.intervals {
+            break;
+        }
+        for (slot, (i, j)) in pattern.cross.entries().enumerate() {
+            let [lower, upper] = [pattern.lower_at(k), pattern.upper_at(k)];
+            list.push((u.row(k + 1, i), u.unknown(k, j), lower + slot));
+            list.push((u.row(k, i), u.unknown(k + 1, j), upper + slot));
+        }
+        for side in 0..2 {
+            for (slot, (i, s)) in pattern.mixed.entries().enumerate() {
+                let place = pattern.mixed_at(k, side) + slot;
+                list.push((u.row(k + side, i), u.scalar(k, s), place));
+                list.push((u.row_of_scalar(k, s), u.unknown(k + side, i), place));
             }
         }
-        list.push((
-            u.horizon(),
-            u.horizon(),
-            layout.horizon_square_at(self.intervals),
-        ));
-        go_on()?;
-        let mut entries = Entries::default();
-        for (row, col, place) in list {
-            let (Some(row), Some(col)) = (row, col) else {
-                continue;
+        for (slot, (s, t)) in pattern.scalars.entries().enumerate() {
+            let place = pattern.scalars_at(k) + slot;
+            list.push((u.row_of_scalar(k, s), u.scalar(k, t), place));
+            if s != t {
+                list.push((u.row_of_scalar(k, t), u.scalar(k, s), place));
+            }
+        }
+        for s in 0..pattern.interval_scalars {
+            let place = pattern.horizon_scalars_at(k) + s;
+            list.push((u.row_of_scalar(k, s), u.horizon(), place));
+        }
+    }
+    let first = u.rows.len() - layout.limit_rows.len();
+    let mut place = pattern.values(layout.intervals);
+    for (r, &(limit, k)) in layout.limit_rows.iter().enumerate() {
+        for &(side, i) in &layout.limits[limit].entries {
+            let col = match side {
+                SCALAR => u.scalar(k, i),
+                _ => u.unknown(k + side, i),
             };
-            entries.rows.push(row.max(col) as u32);
-            entries.cols.push(row.min(col) as u32);
-            let scale = self.variable_scales[row] * self.variable_scales[col];
-            self.hessian.push(Gather { place, scale });
+            list.push((Some(first + r), col, place));
+            place += 1;
         }
-        // Voltages that meet those of the interval before, with the energies that couple them.
-        let coupling = self.voltages.iter().filter_map(|&(s, _)| {
-            let mut rows = self.energies.iter();
-            let energy = rows.position(|row| row.scalar == s && row.couples_intervals());
-            let is_any = self.cost.couples_intervals() || energy.is_some();
-            is_any.then_some((s, energy))
-        });
-        let coupling: Vec<_> = coupling.collect();
-        for k in 1..self.intervals {
-            for &(s, energy) in &coupling {
-                if let (Some(row), Some(col)) = (u.scalar(k, s), u.scalar(k - 1, s)) {
-                    entries.rows.push(row as u32);
-                    entries.cols.push(col as u32);
-                    self.jumps.push(Jump { k, energy });
-                }
+    }
+    Ok(list)
+}
+
+fn jacobian(model: &Model, layout: &Layout) -> Result<Matrix, BoundaryError> {
+    let u = &layout.unknowns;
+    // The horizon column has no entry in the rows of constraints, which are instantaneous.
+    let horizon = u.horizon();
+    let lasts = |row: Row| {
+        let variable = row.of(&model.variables);
+        variable.is_some_and(|variable| variable.role != Role::Multiplier)
+    };
+    let candidates = jacobian_candidates(model, layout)?;
+    go_on()?;
+    let mut matrix = Matrix::default();
+    for (row, col, place) in candidates {
+        let (Some(row), Some(col)) = (row, col) else {
+            continue;
+        };
+        if Some(col) != horizon || lasts(u.rows[row]) {
+            matrix.add(row, col, place);
+        }
+    }
+    Ok(matrix)
+}
+
+/// Entries of the lower triangle of the Hessian that the terms have, step by step.
+fn hessian_candidates(model: &Model, layout: &Layout) -> Result<Vec<Candidate>, BoundaryError> {
+    let (pattern, u) = (model.action.layout(), &layout.unknowns);
+    let mut list = Vec::new();
+    for k in 0..=layout.intervals {
+        go_on()?;
+        let same = pattern.same.entries().enumerate();
+        for (slot, (i, j)) in same.filter(|(_, (i, j))| i >= j) {
+            list.push((u.unknown(k, i), u.unknown(k, j), pattern.same_at(k) + slot));
+        }
+        for i in 0..model.coordinate_count() {
+            list.push((u.horizon(), u.unknown(k, i), pattern.horizon_at(k) + i));
+        }
+        if k == layout.intervals {
+            break;
+        }
+        for (slot, (i, j)) in pattern.cross.entries().enumerate() {
+            let place = pattern.lower_at(k) + slot;
+            list.push((u.unknown(k + 1, i), u.unknown(k, j), place));
+        }
+        for side in 0..2 {
+            for (slot, (i, s)) in pattern.mixed.entries().enumerate() {
+                let place = pattern.mixed_at(k, side) + slot;
+                list.push((u.scalar(k, s), u.unknown(k + side, i), place));
             }
         }
-        self.hessian_entries = entries;
-        go_on()
+        for (slot, (s, t)) in pattern.scalars.entries().enumerate() {
+            let place = pattern.scalars_at(k) + slot;
+            list.push((u.scalar(k, s), u.scalar(k, t), place));
+        }
+        for s in 0..pattern.interval_scalars {
+            let place = pattern.horizon_scalars_at(k) + s;
+            list.push((u.horizon(), u.scalar(k, s), place));
+        }
     }
+    let square = pattern.horizon_square_at(layout.intervals);
+    list.push((u.horizon(), u.horizon(), square));
+    Ok(list)
+}
+
+fn hessian(model: &Model, layout: &Layout) -> Result<Matrix, BoundaryError> {
+    let candidates = hessian_candidates(model, layout)?;
+    go_on()?;
+    let mut matrix = Matrix::default();
+    for (row, col, place) in candidates {
+        if let (Some(row), Some(col)) = (row, col) {
+            matrix.add(row.max(col), row.min(col), place);
+        }
+    }
+    Ok(matrix)
+}
+
+/// Voltages that meet those of the interval before, with the energies that couple them; adds their entries.
+fn jumps(layout: &Layout, objective: &Objective, entries: &mut Entries) -> Vec<Jump> {
+    let u = &layout.unknowns;
+    let coupling = objective.voltages.iter().filter_map(|&(s, _)| {
+        let mut rows = objective.energies.iter();
+        let energy = rows.position(|row| row.scalar == s && row.couples_intervals());
+        let is_any = objective.cost.couples_intervals() || energy.is_some();
+        is_any.then_some((s, energy))
+    });
+    let coupling: Vec<_> = coupling.collect();
+    let mut jumps = Vec::new();
+    for k in 1..layout.intervals {
+        for &(s, energy) in &coupling {
+            if let (Some(row), Some(col)) = (u.scalar(k, s), u.scalar(k - 1, s)) {
+                entries.rows.push(row as u32);
+                entries.cols.push(col as u32);
+                jumps.push(Jump { k, energy });
+            }
+        }
+    }
+    jumps
 }
 
 /// Returns an error if it is time to stop.

@@ -1,9 +1,13 @@
 //! One sweep over the horizon: forces, and second derivatives into the values.
 
+use crate::control::transcription::Transcription;
 use crate::control::transcription::limit_rows::{LimitRow, Site};
 use crate::control::transcription::placed::Placed;
-use crate::control::transcription::segment::{Segment, Shared, instant_of, needed};
-use crate::control::transcription::{KILOVOLT, MILLISECOND, Transcription};
+use crate::control::transcription::segment::{
+    Segment, SegmentWorkspace, Shared, instant_of, needed,
+};
+use crate::control::transcription::units::{KILOVOLT, MILLISECOND};
+use crate::coordinates::{Configuration, Reduced};
 use crate::functional::{BlockMask, Horizon, Measure, Order, Sample};
 use crate::ipopt::interrupt;
 use crate::math::{Vector, both};
@@ -12,120 +16,159 @@ use crate::math::{Vector, both};
 /// costs to wake it and to read what it wrote.
 const MUCH: usize = 8_000;
 
+/// One pass over the horizon.
+struct Pass<'a> {
+    shared: Shared<'a>,
+    instants: &'a mut [Configuration],
+    halo: &'a mut Configuration,
+    stretches: &'a mut [SegmentWorkspace; 2],
+    values: &'a mut [f64],
+    rows: &'a mut [f64],
+}
+
+impl Pass<'_> {
+    /// All intervals at once. Returns ∂²/∂h² along the costates.
+    fn run(&mut self) -> f64 {
+        let (end, instants) = self
+            .instants
+            .split_last_mut()
+            .expect("a horizon has instants");
+        Segment {
+            shared: self.shared,
+            first: 0,
+            instants,
+            end,
+            workspace: &mut self.stretches[0],
+            values: self.values,
+            rows: self.rows,
+        }
+        .run()
+    }
+
+    /// The intervals before and after the middle, each by a thread, and the instant where they meet.
+    fn run_in_two(&mut self, middle: usize) {
+        let Shared { action, stride, .. } = self.shared;
+        let last = self.instants.len() - 1;
+        self.halo.z.copy_from_slice(&self.instants[middle].z);
+        self.halo.l.copy_from_slice(&self.instants[middle].l);
+        let [first, second] = &mut *self.stretches;
+        let (left, right) = self.instants.split_at_mut(middle);
+        let (end, right) = right.split_last_mut().expect("a stretch has an end");
+        let (values_left, values_right) = self.values.split_at_mut(action.layout().same_at(middle));
+        let (rows_left, rows_right) = self.rows.split_at_mut(middle * stride);
+        let left = Segment {
+            shared: self.shared,
+            first: 0,
+            instants: left,
+            end: self.halo,
+            workspace: first,
+            values: values_left,
+            rows: rows_left,
+        };
+        let right = Segment {
+            shared: self.shared,
+            first: middle,
+            instants: right,
+            end,
+            workspace: second,
+            values: values_right,
+            rows: rows_right,
+        };
+        let are_much = action.layout().values(last) >= MUCH;
+        both(are_much, || left.run(), || right.run());
+        let instant = &mut self.instants[middle];
+        let add = |sum: &mut [Vector], list: &[Vector]| {
+            sum.iter_mut().zip(list).for_each(|(s, v)| *s += v);
+        };
+        add(&mut instant.forces, &self.halo.forces);
+        add(&mut instant.contracted, &self.halo.contracted);
+        self.complete(middle, 0);
+    }
+
+    /// Adds the blocks that a stretch carries to its last instant, and evaluates that instant.
+    fn complete(&mut self, k: usize, stretch: usize) {
+        let Shared { action, order, .. } = self.shared;
+        let workspace = &mut self.stretches[stretch];
+        let instant = &mut self.instants[k];
+        action.pull_back_last(order, instant, k, &mut workspace.scratch, self.values);
+        instant_of(
+            self.shared,
+            instant,
+            [k, k],
+            workspace,
+            self.values,
+            self.rows,
+        );
+    }
+}
+
+/// Number of rows of a step: of an instant, then of the scalars of an interval.
+fn stride(action: &Reduced) -> usize {
+    action.motion.unknowns() + action.intervals.scalars
+}
+
 impl<'m> Transcription<'m> {
     /// Number of rows of a step: of an instant, then of the scalars of an interval.
     pub(super) fn stride(&self) -> usize {
-        self.model.action.motion.unknowns() + self.model.action.intervals.scalars
+        stride(&self.model.action)
     }
 
     /// Instant by instant and interval by interval, each while it is in the cache: forces, and second derivatives into
     /// the values. Contracted derivatives are taken along the costates in the instants.
     pub(super) fn sweep(&mut self, order: Order) {
-        let (action, last) = (&self.model.action, self.intervals);
-        let (layout, stride) = (action.layout(), self.stride());
-        let (rows, costates) = self.rows.split_at_mut((last + 1) * stride);
+        let Self {
+            model,
+            layout,
+            objective,
+            workspace,
+            ..
+        } = self;
+        let (action, last) = (&model.action, layout.intervals);
+        let stride = stride(action);
+        let (rows, costates) = workspace.rows.split_at_mut((last + 1) * stride);
         let limit = interrupt::limit();
-        let shared = Shared {
-            action,
-            limits: &self.limits,
-            costs: &self.costs,
-            energies: &self.energies,
-            sigma: self.sigma,
-            costates,
-            scalars: &self.scalars,
-            along: &self.scalars_along,
-            stride,
-            h: self.h,
-            horizon: self.horizon,
-            placed: self.placed,
-            order,
-            limit: limit.as_ref(),
-        };
-        let [bench, second] = &mut self.benches;
-        let values = &mut self.values;
-        let mut square = 0.0;
-        if let Some(middle) = self.middle {
-            let halo = &mut self.halo;
-            halo.z.copy_from_slice(&self.instants[middle].z);
-            halo.l.copy_from_slice(&self.instants[middle].l);
-            let (left, right) = self.instants.split_at_mut(middle);
-            let (end, right) = right.split_last_mut().expect("a stretch has an end");
-            let (values_left, values_right) = values.split_at_mut(layout.same_at(middle));
-            let (rows_left, rows_right) = rows.split_at_mut(middle * stride);
-            let left = Segment {
-                shared,
-                first: 0,
-                instants: left,
-                end: halo,
-                bench,
-                values: values_left,
-                rows: rows_left,
-            };
-            let right = Segment {
-                shared,
-                first: middle,
-                instants: right,
-                end,
-                bench: second,
-                values: values_right,
-                rows: rows_right,
-            };
-            let are_much = layout.values(last) >= MUCH;
-            both(are_much, || left.run(), || right.run());
-            let instant = &mut self.instants[middle];
-            let add = |sum: &mut [Vector], list: &[Vector]| {
-                sum.iter_mut().zip(list).for_each(|(s, v)| *s += v);
-            };
-            add(&mut instant.forces, &self.halo.forces);
-            add(&mut instant.contracted, &self.halo.contracted);
-            action.pull_back_last(order, instant, middle, &mut self.benches[0].scratch, values);
-            instant_of(
-                shared,
-                instant,
-                [middle; 2],
-                &mut self.benches[0],
-                values,
-                rows,
-            );
-        } else {
-            let (end, instants) = self
-                .instants
-                .split_last_mut()
-                .expect("a horizon has instants");
-            square = Segment {
-                shared,
-                first: 0,
-                instants,
-                end,
-                bench,
-                values,
-                rows,
-            }
-            .run();
-        }
-        let bench = &mut self.benches[usize::from(self.middle.is_some())];
-        action.pull_back_last(
-            order,
-            &self.instants[last],
-            last,
-            &mut bench.scratch,
-            values,
-        );
-        instant_of(
-            shared,
-            &mut self.instants[last],
-            [last; 2],
-            bench,
-            values,
+        let mut pass = Pass {
+            shared: Shared {
+                action,
+                limits: &layout.limits,
+                costs: &objective.quantities,
+                energies: &objective.energies,
+                sigma: workspace.sigma,
+                costates,
+                scalars: &workspace.scalars,
+                along: &workspace.scalars_along,
+                stride,
+                h: workspace.h,
+                horizon: layout.horizon,
+                placed: workspace.placed,
+                order,
+                limit: limit.as_ref(),
+            },
+            instants: &mut workspace.instants,
+            halo: &mut workspace.halo,
+            stretches: &mut workspace.stretches,
+            values: &mut workspace.values,
             rows,
-        );
-        if order == Order::Third && self.horizon == Horizon::Free {
-            values[layout.horizon_square_at(last)] = square;
+        };
+        let square = match layout.middle() {
+            Some(middle) => {
+                pass.run_in_two(middle);
+                pass.complete(last, 1);
+                0.0
+            }
+            None => {
+                let square = pass.run();
+                pass.complete(last, 0);
+                square
+            }
+        };
+        if order == Order::Third && layout.horizon == Horizon::Free {
+            workspace.values[action.layout().horizon_square_at(last)] = square;
         }
         // A sweep that was stopped has placed some instants only.
-        self.placed = match interrupt::stop() {
+        workspace.placed = match interrupt::stop() {
             Some(_) => Placed::Nothing,
-            None => self.placed.max(needed(order)),
+            None => workspace.placed.max(needed(order)),
         };
     }
 
@@ -133,16 +176,17 @@ impl<'m> Transcription<'m> {
     pub(super) fn sample(&self, site: Site, k: usize) -> Sample<'_> {
         let scalar_count = self.model.action.layout().interval_scalars;
         let next = k + site.sides() - 1;
+        let instants = [k, next].map(|k| &self.workspace.instants[k]);
         Sample {
-            vectors: [&self.instants[k].x, &self.instants[next].x],
-            along: [&self.instants[k].w, &self.instants[next].w],
+            vectors: instants.map(|instant| &instant.x[..]),
+            along: instants.map(|instant| &instant.w[..]),
             scalars: if site == Site::Intervals {
-                &self.scalars[k * scalar_count..(k + 1) * scalar_count]
+                &self.workspace.scalars[k * scalar_count..(k + 1) * scalar_count]
             } else {
                 &[]
             },
             scalars_along: &[],
-            h: self.h,
+            h: self.workspace.h,
             horizon: Horizon::Given,
             sides: BlockMask::ALL,
             outer: &[],
@@ -162,68 +206,68 @@ impl Transcription<'_> {
     /// Gradients of the limits, behind the periodic values.
     pub(super) fn limit_gradients(&mut self) {
         let motion = &self.model.action.motion;
-        let mut place = self.model.action.layout().values(self.intervals);
-        self.rows[..motion.unknowns()].fill(0.0);
-        for index in 0..self.limit_rows.len() {
-            let (limit, k) = self.limit_rows[index];
-            let measure = self.measure(&self.limits[limit]);
-            let site = self.limits[limit].site;
-            let mut part = std::mem::take(&mut self.measured);
+        let mut place = self.model.action.layout().values(self.layout.intervals);
+        self.workspace.rows[..motion.unknowns()].fill(0.0);
+        for &(limit, k) in &self.layout.limit_rows {
+            let limit = &self.layout.limits[limit];
+            let measure = self.measure(limit);
+            let site = limit.site;
+            let mut part = std::mem::take(&mut self.workspace.measured);
             measure.gradient(&self.sample(site, k), &mut part.forces, &mut part.rows);
             // Rows of the coordinates of one side at a time, in the storage of one instant's rows.
             let mut at = 0;
             for side in (0..site.sides()).filter(|&side| measure.reads(side)) {
-                for &vector in &self.limits[limit].vectors {
+                for &vector in &limit.vectors {
                     motion.pull_back_one(
                         vector,
-                        &self.instants[k + side].columns,
+                        &self.workspace.instants[k + side].columns,
                         &part.forces[side][vector],
-                        &mut self.rows,
+                        &mut self.workspace.rows,
                     );
                 }
-                while let Some(&(_, i)) = self.limits[limit]
-                    .entries
-                    .get(at)
-                    .filter(|(s, _)| *s == side)
-                {
-                    self.values[place] = std::mem::take(&mut self.rows[i]);
+                while let Some(&(_, i)) = limit.entries.get(at).filter(|(s, _)| *s == side) {
+                    self.workspace.values[place] = std::mem::take(&mut self.workspace.rows[i]);
                     (at, place) = (at + 1, place + 1);
                 }
             }
-            for &(_, s) in &self.limits[limit].entries[at..] {
-                self.values[place] = part.rows[s];
+            for &(_, s) in &limit.entries[at..] {
+                self.workspace.values[place] = part.rows[s];
                 place += 1;
             }
-            for &vector in &self.limits[limit].vectors {
+            for &vector in &limit.vectors {
                 for side in &mut part.forces {
                     side[vector] = Vector::zeros();
                 }
             }
             part.rows.fill(0.0);
-            self.measured = part;
+            self.workspace.measured = part;
         }
     }
 
     /// Adds σ∇²f to the values.
     pub(super) fn objective_curvature(&mut self, sigma: f64) {
-        let layout = self.model.action.layout();
-        let tau = self.h * MILLISECOND;
-        for k in 0..self.intervals {
-            let curvature = sigma * self.cost.curvature(k, tau) / (KILOVOLT * KILOVOLT);
-            for &(_, slot) in &self.voltages {
-                self.values[layout.scalars_at(k) + slot] += curvature;
+        let pattern = self.model.action.layout();
+        let tau = self.workspace.h * MILLISECOND;
+        for k in 0..self.layout.intervals {
+            let curvature = sigma * self.objective.cost.curvature(k, tau) / (KILOVOLT * KILOVOLT);
+            for &(_, slot) in &self.objective.voltages {
+                self.workspace.values[pattern.scalars_at(k) + slot] += curvature;
             }
         }
-        if self.horizon == Horizon::Free {
-            let square = self.cost.horizon(&self.kilovolts, tau, &mut self.gradient);
-            let mut gradient = self.gradient.iter();
-            for k in 0..self.intervals {
-                let at = layout.horizon_scalars_at(k);
-                for (&(s, _), slope) in self.voltages.iter().zip(&mut gradient) {
-                    self.values[at + s] += sigma * slope * MILLISECOND / KILOVOLT;
+        if self.layout.horizon == Horizon::Free {
+            let square = self.objective.cost.horizon(
+                &self.workspace.kilovolts,
+                tau,
+                &mut self.workspace.gradient,
+            );
+            let mut gradient = self.workspace.gradient.iter();
+            for k in 0..self.layout.intervals {
+                let at = pattern.horizon_scalars_at(k);
+                for (&(s, _), slope) in self.objective.voltages.iter().zip(&mut gradient) {
+                    self.workspace.values[at + s] += sigma * slope * MILLISECOND / KILOVOLT;
                 }
             }
-            self.values[layout.horizon_square_at(self.intervals)] +=
+            self.workspace.values[pattern.horizon_square_at(self.layout.intervals)] +=
                 sigma * square * MILLISECOND * MILLISECOND;
             self.cost_border(sigma);
         }

@@ -6,6 +6,7 @@ use crate::control::problem::{BoundaryState, Orientation, Place, Rest};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_states::{GoalSpec, OrientationSpec, RestGoalSpec};
+use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::problem::state::{by_joint, moving_marker, voltages};
 use crate::files::scene::body::unit_axis;
 use crate::files::scene::names::names;
@@ -21,77 +22,105 @@ pub(crate) fn goal_state(
 ) -> Result<BoundaryState, SceneError> {
     let spec = match spec {
         GoalSpec::Word(_) => return Ok(BoundaryState::Free),
-        GoalSpec::Rest(spec) => spec,
+        GoalSpec::Rest(spec) => spec.as_ref(),
     };
-    let RestGoalSpec {
-        rest_at_voltages,
-        joint_angles,
-        markers,
-        orientations,
-        rest,
-        hold,
-    } = spec.as_ref();
-    let of_places = match (markers, orientations) {
+    let key = given_key(spec, scope)?;
+    check_companions(spec, key, scope)?;
+    match (&spec.rest_at_voltages, &spec.joint_angles) {
+        (Some(map), _) => equilibrium(map, reached(spec), system, scope),
+        (None, Some(_)) => coordinates(spec, system, &scope.key(key)),
+        (None, None) => positions(spec, system, scope),
+    }
+}
+
+fn is_of_places(spec: &RestGoalSpec) -> bool {
+    spec.markers.is_some() || spec.orientations.is_some()
+}
+
+/// The key that says what a goal gives.
+fn given_key(spec: &RestGoalSpec, scope: &Scope<'_>) -> Result<&'static str, SceneError> {
+    let of_places = match (&spec.markers, &spec.orientations) {
         (None, Some(_)) => "orientations",
         _ => "markers",
     };
-    let is_of_places = markers.is_some() || orientations.is_some();
-    let key = scope.exactly_one([
-        (
-            "rest_at_voltages",
-            rest_at_voltages.as_ref().map(|_| "rest_at_voltages"),
-        ),
-        (
-            "joint_angles",
-            joint_angles.as_ref().map(|_| "joint_angles"),
-        ),
-        (of_places, is_of_places.then_some(of_places)),
-    ])?;
+    let is_given = [
+        ("rest_at_voltages", spec.rest_at_voltages.is_some()),
+        ("joint_angles", spec.joint_angles.is_some()),
+        (of_places, is_of_places(spec)),
+    ];
+    scope.exactly_one(is_given.map(|(key, is_given)| (key, is_given.then_some(key))))
+}
+
+/// Refuses `hold` and `rest` where they have no meaning next to `key`.
+fn check_companions(spec: &RestGoalSpec, key: &str, scope: &Scope<'_>) -> Result<(), SceneError> {
     let beside_places = "it beside \"markers\" or \"orientations\" only";
     let beside_rest = "it beside \"rest_at_voltages\", \"markers\" or \"orientations\" only";
-    let is_of_angles = joint_angles.is_some();
+    let is_of_angles = spec.joint_angles.is_some();
     for (name, is_ignored, expected) in [
-        ("hold", hold.is_some() && !is_of_places, beside_places),
-        ("rest", rest.is_some() && is_of_angles, beside_rest),
+        (
+            "hold",
+            spec.hold.is_some() && !is_of_places(spec),
+            beside_places,
+        ),
+        ("rest", spec.rest.is_some() && is_of_angles, beside_rest),
     ] {
         if is_ignored {
             let found = format!("{name:?} beside {key:?}");
             return Err(scope.key(name).wrong(found, expected));
         }
     }
-    let reached = rest.map_or(Rest::Attainable, Rest::from);
-    if let Some(map) = rest_at_voltages {
-        if reached == Rest::Bodies && system.bodies.is_empty() {
-            let expected = "a scene with bodies; goals of elastic blocks alone are \"markers\"";
-            return Err(scope.key("rest").wrong("a scene without bodies", expected));
-        }
-        let row = voltages(map, system, &scope.key(key))?;
-        return Ok(BoundaryState::RestAtVoltages(row, reached));
+    Ok(())
+}
+
+/// Part of the system that comes to rest.
+fn reached(spec: &RestGoalSpec) -> Rest {
+    spec.rest.map_or(Rest::Attainable, Rest::from)
+}
+
+/// A state of rest under voltages.
+fn equilibrium(
+    map: &VoltageMap,
+    rest: Rest,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BoundaryState, SceneError> {
+    if rest == Rest::Bodies && system.bodies.is_empty() {
+        let expected = "a scene with bodies; goals of elastic blocks alone are \"markers\"";
+        return Err(scope.key("rest").wrong("a scene without bodies", expected));
     }
-    if is_of_places {
-        let places = markers
-            .as_ref()
-            .map(|map| of_markers(map, system, &scope.key("markers")));
-        let turned = orientations
-            .as_ref()
-            .map(|map| of_bodies(map, system, &scope.key("orientations")));
-        let held = |map| voltages(map, system, &scope.key("hold"));
-        return Ok(BoundaryState::Markers {
-            places: places.transpose()?.unwrap_or_default(),
-            orientations: turned.transpose()?.unwrap_or_default(),
-            rest: reached,
-            hold: hold.as_ref().map(held).transpose()?,
-        });
-    }
-    let place = scope.key(key);
-    let angles = by_joint(
-        joint_angles,
-        &[Angle::kind(), Length::kind()],
-        system,
-        &place,
-    )?;
+    let row = voltages(map, system, &scope.key("rest_at_voltages"))?;
+    Ok(BoundaryState::RestAtVoltages(row, rest))
+}
+
+/// Positions of markers and orientations of bodies.
+fn positions(
+    spec: &RestGoalSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BoundaryState, SceneError> {
+    let places = spec.markers.as_ref();
+    let places = places.map(|map| of_markers(map, system, &scope.key("markers")));
+    let turned = spec.orientations.as_ref();
+    let turned = turned.map(|map| of_bodies(map, system, &scope.key("orientations")));
+    let held = |map| voltages(map, system, &scope.key("hold"));
+    Ok(BoundaryState::Markers {
+        places: places.transpose()?.unwrap_or_default(),
+        orientations: turned.transpose()?.unwrap_or_default(),
+        rest: reached(spec),
+        hold: spec.hold.as_ref().map(held).transpose()?,
+    })
+}
+
+/// Coordinates of joints; `scope` is that of the map.
+fn coordinates(
+    spec: &RestGoalSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BoundaryState, SceneError> {
+    let kinds = [Angle::kind(), Length::kind()];
+    let angles = by_joint(&spec.joint_angles, &kinds, system, scope)?;
     if angles.is_empty() {
-        return Err(place.wrong("no joint", "the coordinate of a joint or more"));
+        return Err(scope.wrong("no joint", "the coordinate of a joint or more"));
     }
     Ok(BoundaryState::JointAngles {
         angles,

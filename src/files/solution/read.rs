@@ -12,11 +12,16 @@ use crate::files::json::scan::Scanner;
 use crate::files::json::source::{NoBytes, check_json, of_file};
 use crate::files::solution::arrays::complete;
 use crate::files::solution::error::{Reason, SolutionError};
-use crate::files::solution::record::{Body, ConfigurationRecord, File, METRE, SECOND, unit};
+use crate::files::solution::record::{
+    Body, ConfigurationRecord, File, METRE, SECOND, StateRecord, unit,
+};
 use crate::kinematics::Pose;
 use crate::math::Matrix;
 use crate::model::system::{Joint, Source, System};
 use crate::model::{Coordinates, FoundParameter, Model};
+
+/// Values over time by name.
+type Columns = BTreeMap<String, Vec<f64>>;
 
 /// A `solution.json`, read once the model exists.
 #[derive(Clone, Debug)]
@@ -66,112 +71,32 @@ fn read_file(path: &Path) -> Result<File, Reason> {
     })
 }
 
+/// Reads the file and checks it against the scene of the model.
 fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
     let file = read_file(path)?;
-    let instants = file.time.len();
-    if instants < 2 || file.time.windows(2).any(|pair| pair[0] >= pair[1]) {
-        let reason = "\"time\" needs two instants or more, in increasing order";
-        return Err(Reason::Contradiction(reason.to_owned()));
-    }
-    let system = &model.system;
-    let by_joint = match (&file.configuration, &file.joints) {
-        (Some(configuration), _) => &configuration.joints,
-        (None, Some(joints)) => joints,
-        (None, None) => {
-            return Err(Reason::NoSolution {
-                place: "configuration".to_owned(),
-                found: "missing".to_owned(),
-            });
-        }
-    };
-    let named = |joint: &&Joint| joint.has_coordinate();
-    let joints = system.joints.iter().filter(named).map(|j| j.name.as_str());
-    same_names("joint", by_joint.keys().map(String::as_str), joints)?;
-    let sources = system.sources();
-    let driven = model.reached.iter().map(|&s| sources[s].name.as_str());
-    let by_source = file.voltages.ok_or_else(|| Reason::NoSolution {
-        place: ".".to_owned(),
-        found: "missing field `voltages`".to_owned(),
-    })?;
-    let named = by_source.keys().map(String::as_str);
-    same_names("muscle or electrode", named, driven)?;
-    let place_of = |name: &str, system: &System| {
-        let found = system.joints.iter().position(|joint| joint.name == name);
-        found.expect("the names were compared")
-    };
-    let mut joint_rows = vec![vec![0.0; system.joints.len()]; instants];
-    for (name, column) in by_joint {
-        same_length(name, column.len(), instants, "instants")?;
-        let j = place_of(name, system);
-        for (row, value) in joint_rows.iter_mut().zip(column) {
-            row[j] = value * unit(&system.joints[j]);
-        }
-    }
-    let mut voltages = vec![vec![0.0; sources.len()]; instants - 1];
-    for &s in &model.reached {
-        let name = &sources[s].name;
-        let column = &by_source[name];
-        same_length(name, column.len(), instants - 1, "intervals")?;
-        for (row, &value) in voltages.iter_mut().zip(column) {
-            row[s] = value;
-        }
-    }
-    let hold = match &file.hold {
-        None => None,
-        Some(held) => {
-            let driven = model.reached.iter().map(|&s| sources[s].name.as_str());
-            let named = held.keys().map(String::as_str);
-            same_names("muscle or electrode", named, driven)?;
-            let value = |source: &Source| held.get(&source.name).copied().unwrap_or(0.0);
-            Some(sources.iter().map(value).collect())
-        }
-    };
+    check_times(&file.time)?;
+    let (system, instants) = (&model.system, file.time.len());
+    let by_joint = joint_columns(&file, system)?;
+    let by_source = voltage_columns(file.voltages.as_ref(), model)?;
+    let joints = joint_rows(by_joint, system, instants)?;
+    let voltages = voltage_rows(by_source, model, instants - 1)?;
+    let hold = file.hold.as_ref().map(|held| hold(held, model));
+    let hold = hold.transpose()?;
     let poses = poses(file.configuration.as_ref(), system, instants)?;
-    let coordinates = match file.coordinates.as_deref() {
-        None => model.coordinates,
-        Some(word) => Coordinates::named(word).ok_or_else(|| Reason::NoSolution {
-            place: "coordinates".to_owned(),
-            found: format!("{word:?}, expected \"reduced\" or \"redundant\""),
-        })?,
-    };
-    let meshes = file.state.as_ref().map(|state| state.meshes_mm.clone());
-    let (times, multiplier_time, z, momentum) = match file.state {
-        Some(state) => {
-            same_length("state.times_ms", state.times_ms.len(), instants, "instants")?;
-            same_length("state.z", state.z.len(), instants, "instants")?;
-            let motion = &model.action.motion;
-            let is_wrong = |z: &Vec<f64>| !motion.has_unit_charts(z);
-            if let (true, Some(k)) = (
-                coordinates == model.coordinates,
-                state.z.iter().position(is_wrong),
-            ) {
-                return Err(Reason::NoSolution {
-                    place: format!("state.z[{k}]"),
-                    found: "a rotation whose quaternion does not have length one".to_owned(),
-                });
-            }
-            (
-                state.times_ms,
-                state.multiplier_time_ms,
-                state.z,
-                state.momentum,
-            )
-        }
-        None => {
-            let times = file.time.iter().map(|t| t * SECOND).collect();
-            let z = joint_rows.iter().map(|row| model.coordinates_at(row));
-            (times, model.multiplier_time, z.collect(), Vec::new())
-        }
+    let coordinates = coordinates(file.coordinates.as_deref(), model)?;
+    let state = match file.state {
+        Some(state) => checked_state(state, coordinates, model, instants)?,
+        None => state_of_joints(&file.time, &joints, model),
     };
     Ok(Solution {
         coordinates,
-        times,
-        joints: joint_rows,
+        times: state.times_ms,
+        joints,
         poses,
-        z,
-        momentum,
-        meshes: meshes.unwrap_or_default(),
-        multiplier_time,
+        z: state.z,
+        momentum: state.momentum,
+        meshes: state.meshes_mm,
+        multiplier_time: state.multiplier_time_ms,
         voltages,
         hold,
         potentials: file.potentials,
@@ -183,6 +108,130 @@ fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
         }),
         barrier: file.barrier.filter(|mu| mu.is_finite() && *mu > 0.0),
     })
+}
+
+fn check_times(times: &[f64]) -> Result<(), Reason> {
+    if times.len() < 2 || times.windows(2).any(|pair| pair[0] >= pair[1]) {
+        let reason = "\"time\" needs two instants or more, in increasing order";
+        return Err(Reason::Contradiction(reason.to_owned()));
+    }
+    Ok(())
+}
+
+/// Coordinates by joint, one column for each joint of the scene that has a coordinate.
+fn joint_columns<'f>(file: &'f File, system: &System) -> Result<&'f Columns, Reason> {
+    let columns = match (&file.configuration, &file.joints) {
+        (Some(configuration), _) => &configuration.joints,
+        (None, Some(joints)) => joints,
+        (None, None) => {
+            return Err(Reason::NoSolution {
+                place: "configuration".to_owned(),
+                found: "missing".to_owned(),
+            });
+        }
+    };
+    let named = |joint: &&Joint| joint.has_coordinate();
+    let joints = system.joints.iter().filter(named).map(|j| j.name.as_str());
+    same_names("joint", columns.keys().map(String::as_str), joints)?;
+    Ok(columns)
+}
+
+/// Voltages by muscle and electrode, one column for each source that the voltages of the scene reach.
+fn voltage_columns<'f>(columns: Option<&'f Columns>, model: &Model) -> Result<&'f Columns, Reason> {
+    let columns = columns.ok_or_else(|| Reason::NoSolution {
+        place: ".".to_owned(),
+        found: "missing field `voltages`".to_owned(),
+    })?;
+    same_sources(columns.keys(), model)?;
+    Ok(columns)
+}
+
+/// Coordinates by instant and joint, in the units inside.
+fn joint_rows(
+    columns: &Columns,
+    system: &System,
+    instants: usize,
+) -> Result<Vec<Vec<f64>>, Reason> {
+    let mut rows = vec![vec![0.0; system.joints.len()]; instants];
+    for (name, column) in columns {
+        same_length(name, column.len(), instants, "instants")?;
+        let found = system.joints.iter().position(|joint| joint.name == *name);
+        let j = found.expect("the names were compared");
+        for (row, value) in rows.iter_mut().zip(column) {
+            row[j] = value * unit(&system.joints[j]);
+        }
+    }
+    Ok(rows)
+}
+
+/// Voltages by interval and source.
+fn voltage_rows(
+    columns: &Columns,
+    model: &Model,
+    intervals: usize,
+) -> Result<Vec<Vec<f64>>, Reason> {
+    let sources = &model.sources;
+    let mut rows = vec![vec![0.0; sources.len()]; intervals];
+    for &s in &model.reached {
+        let name = &sources[s].name;
+        let column = &columns[name];
+        same_length(name, column.len(), intervals, "intervals")?;
+        for (row, &value) in rows.iter_mut().zip(column) {
+            row[s] = value;
+        }
+    }
+    Ok(rows)
+}
+
+/// Voltages by source that hold the goal.
+fn hold(held: &BTreeMap<String, f64>, model: &Model) -> Result<Vec<f64>, Reason> {
+    same_sources(held.keys(), model)?;
+    let value = |source: &Source| held.get(&source.name).copied().unwrap_or(0.0);
+    Ok(model.sources.iter().map(value).collect())
+}
+
+/// Coordinates that a file names, or those of the model.
+fn coordinates(word: Option<&str>, model: &Model) -> Result<Coordinates, Reason> {
+    match word {
+        None => Ok(model.coordinates),
+        Some(word) => Coordinates::named(word).ok_or_else(|| Reason::NoSolution {
+            place: "coordinates".to_owned(),
+            found: format!("{word:?}, expected \"reduced\" or \"redundant\""),
+        }),
+    }
+}
+
+/// A state of the file, with a value for each instant, and rotations where its coordinates are those of the model.
+fn checked_state(
+    state: StateRecord,
+    coordinates: Coordinates,
+    model: &Model,
+    instants: usize,
+) -> Result<StateRecord, Reason> {
+    same_length("state.times_ms", state.times_ms.len(), instants, "instants")?;
+    same_length("state.z", state.z.len(), instants, "instants")?;
+    let motion = &model.action.motion;
+    let is_wrong = |z: &Vec<f64>| !motion.has_unit_charts(z);
+    let wrong = state.z.iter().position(is_wrong);
+    match wrong.filter(|_| coordinates == model.coordinates) {
+        Some(k) => Err(Reason::NoSolution {
+            place: format!("state.z[{k}]"),
+            found: "a rotation whose quaternion does not have length one".to_owned(),
+        }),
+        None => Ok(state),
+    }
+}
+
+/// State at given joint coordinates, of a file that has none.
+fn state_of_joints(times: &[f64], joints: &[Vec<f64>], model: &Model) -> StateRecord {
+    let z = joints.iter().map(|row| model.coordinates_at(row));
+    StateRecord {
+        times_ms: times.iter().map(|t| t * SECOND).collect(),
+        multiplier_time_ms: model.multiplier_time,
+        z: z.collect(),
+        momentum: Vec::new(),
+        meshes_mm: BTreeMap::new(),
+    }
 }
 
 /// Values of those parameters of a file that a model seeks.
@@ -224,6 +273,16 @@ fn poses(
         }
     }
     Ok(poses)
+}
+
+/// Checks that names are those of the sources that the voltages of the scene reach.
+fn same_sources<'a>(
+    names: impl Iterator<Item = &'a String>,
+    model: &'a Model,
+) -> Result<(), Reason> {
+    let driven = model.reached.iter();
+    let driven = driven.map(|&s| model.sources[s].name.as_str());
+    same_names("muscle or electrode", names.map(String::as_str), driven)
 }
 
 fn same_names<'a>(

@@ -90,44 +90,10 @@ pub fn check_along(
         jacobian: nlp.jacobian_structure(),
     };
     let mut report = Report::default();
-    let mut is_over = || {
-        let is_over = stop();
-        report.left = if is_over { columns.len() } else { 0 };
-        is_over
+    let Some(mut derivatives) = Derivatives::at(nlp, &lagrangian, x, &mut stop) else {
+        report.left = columns.len();
+        return report;
     };
-    if is_over() {
-        return report;
-    }
-    let here = DirectionSample::at(nlp, &lagrangian, x);
-    if is_over() {
-        return report;
-    }
-    let mut hessian = vec![0.0; nlp.hessian_structure().rows.len()];
-    nlp.hessian(x, lagrangian.sigma, &lagrangian.costates, &mut hessian);
-
-    if is_over() {
-        return report;
-    }
-    let gradient_places = Entries {
-        rows: vec![0; n],
-        cols: (0..).take(n).collect(),
-    };
-    let mut gradient = Comparison::new(
-        &gradient_places,
-        &here.gradient,
-        vec![here.objective.abs()],
-        n,
-    );
-    gradient.add_linear_terms(x);
-    let terms = here.constraints.iter().map(|g| g.abs()).collect();
-    let mut jacobian = Comparison::new(&lagrangian.jacobian, &here.jacobian, terms, n);
-    jacobian.add_linear_terms(x);
-    if is_over() {
-        return report;
-    }
-    let terms = lagrangian.term_sizes(&here);
-    let mut hessian = Comparison::new(&nlp.hessian_structure(), &hessian, terms, n);
-
     let step = |j: usize| f64::EPSILON.cbrt() * sizes[j] * x[j].abs().max(1.0);
     for &j in columns {
         if stop() {
@@ -139,45 +105,96 @@ pub fn check_along(
             continue;
         };
         report.checked += 1;
-        gradient.compare(j, 0, |_| slope.objective());
-        jacobian.compare(j, 0, |i| slope.constraint(i));
-        hessian.compare(j, j, |i| slope.lagrangian(i));
+        derivatives.compare(j, &slope);
     }
-    let mut doubted: Vec<usize> = [&gradient, &jacobian, &hessian]
-        .into_iter()
-        .flat_map(Comparison::doubted)
-        .collect();
-    doubted.sort_unstable();
-    doubted.dedup();
-    for j in doubted {
+    for j in derivatives.doubted() {
         if let Some(slope) = Slope::along(nlp, &lagrangian, x, j, step(j) / SHORTER) {
-            gradient.compare_again(j, |_| slope.objective());
-            jacobian.compare_again(j, |i| slope.constraint(i));
-            hessian.compare_again(j, |i| slope.lagrangian(i));
+            derivatives.compare_again(j, &slope);
         }
     }
-
-    report.gradient = gradient.judge(
-        Matrix::Gradient,
-        |_| "objective".to_owned(),
-        nlp,
-        &mut report.wrong,
-    );
-    report.jacobian = jacobian.judge(
-        Matrix::Jacobian,
-        |i| nlp.constraint_name(i),
-        nlp,
-        &mut report.wrong,
-    );
-    report.hessian = hessian.judge(
-        Matrix::Hessian,
-        |i| nlp.variable_name(i),
-        nlp,
-        &mut report.wrong,
-    );
-    report.wrong.sort_by(|a, b| b.error.total_cmp(&a.error));
-    report.wrong.truncate(LISTED);
+    derivatives.judge(nlp, &mut report);
     report
+}
+
+/// The derivatives of a program at a point, compared with differences.
+struct Derivatives {
+    gradient: Comparison,
+    jacobian: Comparison,
+    hessian: Comparison,
+}
+
+impl Derivatives {
+    /// Evaluates them; `None` where `stop` says so before they are all there.
+    fn at(
+        nlp: &mut dyn Nlp,
+        lagrangian: &Lagrangian,
+        x: &[f64],
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Option<Self> {
+        let mut go_on = || (!stop()).then_some(());
+        go_on()?;
+        let here = DirectionSample::at(nlp, lagrangian, x);
+        go_on()?;
+        let mut hessian = vec![0.0; nlp.hessian_structure().rows.len()];
+        nlp.hessian(x, lagrangian.sigma, &lagrangian.costates, &mut hessian);
+        go_on()?;
+        let n = x.len();
+        let row = Entries {
+            rows: vec![0; n],
+            cols: (0..).take(n).collect(),
+        };
+        let terms = vec![here.objective.abs()];
+        let mut gradient = Comparison::new(&row, &here.gradient, terms, n);
+        gradient.add_linear_terms(x);
+        let terms = here.constraints.iter().map(|g| g.abs()).collect();
+        let mut jacobian = Comparison::new(&lagrangian.jacobian, &here.jacobian, terms, n);
+        jacobian.add_linear_terms(x);
+        go_on()?;
+        let terms = lagrangian.term_sizes(&here);
+        Some(Self {
+            gradient,
+            jacobian,
+            hessian: Comparison::new(&nlp.hessian_structure(), &hessian, terms, n),
+        })
+    }
+
+    /// Compares the entries of column j.
+    fn compare(&mut self, j: usize, slope: &Slope) {
+        self.gradient.compare(j, 0, |_| slope.objective());
+        self.jacobian.compare(j, 0, |i| slope.constraint(i));
+        self.hessian.compare(j, j, |i| slope.lagrangian(i));
+    }
+
+    /// Columns with an entry above the tolerance, ascending.
+    fn doubted(&self) -> Vec<usize> {
+        let all = [&self.gradient, &self.jacobian, &self.hessian];
+        let mut doubted: Vec<usize> = all.into_iter().flat_map(Comparison::doubted).collect();
+        doubted.sort_unstable();
+        doubted.dedup();
+        doubted
+    }
+
+    /// Compares the doubted entries of column j with a shorter step.
+    fn compare_again(&mut self, j: usize, slope: &Slope) {
+        self.gradient.compare_again(j, |_| slope.objective());
+        self.jacobian.compare_again(j, |i| slope.constraint(i));
+        self.hessian.compare_again(j, |i| slope.lagrangian(i));
+    }
+
+    /// Reports the greatest errors and the wrong entries.
+    fn judge(&self, nlp: &dyn Nlp, report: &mut Report) {
+        let wrong = &mut report.wrong;
+        let objective = |_| "objective".to_owned();
+        report.gradient = self.gradient.judge(Matrix::Gradient, objective, nlp, wrong);
+        let constraint = |i| nlp.constraint_name(i);
+        report.jacobian = self
+            .jacobian
+            .judge(Matrix::Jacobian, constraint, nlp, wrong);
+        let variable = |i| nlp.variable_name(i);
+        report.hessian = self.hessian.judge(Matrix::Hessian, variable, nlp, wrong);
+        wrong.sort_by(|a, b| b.error.total_cmp(&a.error));
+        wrong.truncate(LISTED);
+    }
 }
 
 /// σ f + Σ yᵢ gᵢ.

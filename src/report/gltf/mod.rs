@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::dynamics::trajectory::Trajectory;
 use crate::kinematics::Pose;
-use crate::model::system::{Shape, System};
+use crate::model::system::{Marker, Shape, System};
 use crate::report::drawing::{lumped, marker_colour};
 use crate::report::gltf::document::{Document, Mode, Moving, Placed};
 use crate::report::gltf::shapes::{METRE, body, cube, sphere, triangles};
@@ -43,74 +43,100 @@ pub fn text(
         return None;
     }
     let mut document = Document::new(&times);
-
-    let glass = document.material("body", style::BODY, GLASS);
-    for (b, part) in system.bodies.iter().enumerate() {
-        let shape = body(&part.shape);
-        let mesh = match part.shape {
-            Shape::None => None,
-            _ => Some(document.mesh(&part.name, &shape, glass)),
-        };
-        let poses = instants.iter().map(|&k| of_pose(&trajectory.poses[k][b]));
-        document.moving(&part.name, mesh, &poses.collect::<Vec<_>>(), Moving::Rigid);
-    }
-    let unit = cube();
-    for m in lumped(system) {
-        let name = &system.muscles[m].name;
-        let material = document.material(name, style::muscle(m).0, 1.0);
-        let mesh = document.mesh(name, &unit, material);
-        let prisms = instants.iter();
-        let prisms = prisms.map(|&k| of_prism(&Prism::muscle(system, trajectory, k, m)));
-        document.moving(
-            name,
-            Some(mesh),
-            &prisms.collect::<Vec<_>>(),
-            Moving::Stretched,
-        );
-    }
-    let ball = sphere(MARKER * METRE * size(trajectory, &instants));
-    for (m, marker) in system.markers.iter().enumerate() {
-        let colour = marker_colour(m, system.markers.len());
-        let material = document.material(&marker.name, colour, 1.0);
-        let mesh = document.mesh(&marker.name, &ball, material);
-        let places = instants.iter();
-        let places = places.map(|&k| Placed::at(trajectory.marks[k][m] * METRE));
-        document.moving(
-            &marker.name,
-            Some(mesh),
-            &places.collect::<Vec<_>>(),
-            Moving::Shifted,
-        );
-    }
-    for (s, skin) in skins.list.iter().enumerate() {
-        let (name, colour) = match skin.muscle {
-            Some(muscle) => (system.muscles[muscle].name.clone(), style::muscle(muscle).0),
-            None => (format!("block {}", s + 1), style::PASSIVE),
-        };
-        let material = document.material(&name, colour, 1.0);
-        let at = instants.iter().map(|&k| skins.position(k));
-        let places: Vec<_> = at.map(|i| metres(&skin.places[i])).collect();
-        document.deforming(
-            &name,
-            &places,
-            Mode::Triangles(triangles(&skin.quads)),
-            material,
-        );
-    }
-    let lines: Vec<_> = instants
-        .iter()
-        .map(|&k| ties::lines(system, trajectory, k))
-        .collect();
-    for (c, component) in system.components.iter().enumerate() {
-        let material = document.material(component.name(), style::TIE, 1.0);
-        let mut places: Vec<_> = lines.iter().map(|lines| metres(&lines[c])).collect();
-        // A coil that has no direction is a line of two points.
-        if places.iter().any(|points| points.len() != places[0].len()) {
-            places = places.iter().map(|p| vec![p[0], p[p.len() - 1]]).collect();
-        }
-        document.deforming(component.name(), &places, Mode::Line, material);
-    }
+    let motion = Motion {
+        system,
+        trajectory,
+        skins,
+        instants,
+    };
+    motion.add_bodies(&mut document);
+    motion.add_muscles(&mut document);
+    motion.add_markers(&mut document);
+    motion.add_surfaces(&mut document);
+    motion.add_ties(&mut document);
     Some(document.text(&system.name, origin))
+}
+
+/// A system at the instants that are shown.
+struct Motion<'a> {
+    system: &'a System,
+    trajectory: &'a Trajectory,
+    skins: &'a Skins,
+    instants: Vec<usize>,
+}
+
+impl Motion<'_> {
+    /// A value at each instant.
+    fn each<T>(&self, value: impl Fn(usize) -> T) -> Vec<T> {
+        self.instants.iter().map(|&k| value(k)).collect()
+    }
+
+    fn add_bodies(&self, document: &mut Document) {
+        let glass = document.material("body", style::BODY, GLASS);
+        for (b, part) in self.system.bodies.iter().enumerate() {
+            let shape = body(&part.shape);
+            let mesh = match part.shape {
+                Shape::None => None,
+                _ => Some(document.mesh(&part.name, &shape, glass)),
+            };
+            let poses = self.each(|k| of_pose(&self.trajectory.poses[k][b]));
+            document.moving(&part.name, mesh, &poses, Moving::Rigid);
+        }
+    }
+
+    /// Lumped muscles.
+    fn add_muscles(&self, document: &mut Document) {
+        let unit = cube();
+        for m in lumped(self.system) {
+            let name = &self.system.muscles[m].name;
+            let material = document.material(name, style::muscle(m).0, 1.0);
+            let mesh = document.mesh(name, &unit, material);
+            let prism = |k| of_prism(&Prism::muscle(self.system, self.trajectory, k, m));
+            document.moving(name, Some(mesh), &self.each(prism), Moving::Stretched);
+        }
+    }
+
+    fn add_markers(&self, document: &mut Document) {
+        let markers = &self.system.markers;
+        let ball = sphere(MARKER * METRE * size(self.trajectory, &self.instants));
+        for (m, Marker { name, .. }) in markers.iter().enumerate() {
+            let material = document.material(name, marker_colour(m, markers.len()), 1.0);
+            let mesh = document.mesh(name, &ball, material);
+            let places = self.each(|k| Placed::at(self.trajectory.marks[k][m] * METRE));
+            document.moving(name, Some(mesh), &places, Moving::Shifted);
+        }
+    }
+
+    /// Surfaces of elastic blocks.
+    fn add_surfaces(&self, document: &mut Document) {
+        for (s, skin) in self.skins.list.iter().enumerate() {
+            let (name, colour) = match skin.muscle {
+                Some(muscle) => {
+                    let name = self.system.muscles[muscle].name.clone();
+                    (name, style::muscle(muscle).0)
+                }
+                None => (format!("block {}", s + 1), style::PASSIVE),
+            };
+            let material = document.material(&name, colour, 1.0);
+            let places = self.each(|k| metres(&skin.places[self.skins.position(k)]));
+            let mode = Mode::Triangles(triangles(&skin.quads));
+            document.deforming(&name, &places, mode, material);
+        }
+    }
+
+    /// Springs and tendons.
+    fn add_ties(&self, document: &mut Document) {
+        let lines = self.each(|k| ties::lines(self.system, self.trajectory, k));
+        for (c, component) in self.system.components.iter().enumerate() {
+            let material = document.material(component.name(), style::TIE, 1.0);
+            let mut places: Vec<_> = lines.iter().map(|lines| metres(&lines[c])).collect();
+            // A coil that has no direction is a line of two points.
+            if places.iter().any(|points| points.len() != places[0].len()) {
+                places = places.iter().map(|p| vec![p[0], p[p.len() - 1]]).collect();
+            }
+            document.deforming(component.name(), &places, Mode::Line, material);
+        }
+    }
 }
 
 /// Instants at which all is finite, of those whose surfaces are known.

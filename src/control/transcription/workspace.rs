@@ -1,0 +1,116 @@
+//! The point of a transcription and what is evaluated there: all that changes from one evaluation to the next.
+
+use crate::control::conditions::BoundaryConditions;
+use crate::control::guess::InitialGuess;
+use crate::control::problem::Control;
+use crate::control::transcription::layout::Layout;
+use crate::control::transcription::placed::Placed;
+use crate::control::transcription::segment::SegmentWorkspace;
+use crate::control::transcription::units::KILOVOLT;
+use crate::coordinates::Configuration;
+use crate::functional::Part;
+use crate::model::{Model, Role, Time};
+
+/// Storage of the evaluations.
+#[derive(Debug)]
+pub(super) struct Workspace {
+    /// Values of the variables; NaN before the first point.
+    pub(super) point: Vec<f64>,
+    pub(super) instants: Vec<Configuration>,
+    pub(super) placed: Placed,
+    /// Scalars of all intervals.
+    pub(super) scalars: Vec<f64>,
+    /// Costates of their equations.
+    pub(super) scalars_along: Vec<f64>,
+    /// Voltages of all intervals in kV.
+    pub(super) kilovolts: Vec<f64>,
+    /// Length of an interval in ms.
+    pub(super) h: f64,
+    /// Storage of each stretch of a horizon.
+    pub(super) stretches: [SegmentWorkspace; 2],
+    /// Copy of the instant at which a long horizon is cut in two.
+    pub(super) halo: Configuration,
+    pub(super) measured: Part,
+    /// Factor of the objective in the Hessian.
+    pub(super) sigma: f64,
+    /// Step by step the rows of an instant and those of the scalars of an interval, then costates of the limits.
+    pub(super) rows: Vec<f64>,
+    /// Second derivatives step by step, then gradients of the limits.
+    pub(super) values: Vec<f64>,
+    /// Gradient by the voltages of all intervals.
+    pub(super) gradient: Vec<f64>,
+}
+
+impl Workspace {
+    /// Storage for a layout, with all values that are given.
+    pub(super) fn new(
+        model: &Model,
+        boundary: &BoundaryConditions,
+        control: &Control,
+        initial: &InitialGuess,
+        layout: &Layout,
+    ) -> Self {
+        let (action, intervals) = (&model.action, layout.intervals);
+        let motion = &action.motion;
+        let scalars = given_scalars(model, control, intervals);
+        let scalar_count = model.variables.of(Time::Interval).len();
+        let kilovolts = kilovolts(model, &scalars, scalar_count, intervals);
+        let stride = motion.unknowns() + scalar_count;
+        let limits = layout.limit_rows.iter();
+        let limit_entries: usize = limits.map(|&(l, _)| layout.limits[l].entries.len()).sum();
+        Self {
+            point: vec![f64::NAN; layout.unknowns.columns.len()],
+            instants: given_instants(model, boundary, initial, intervals),
+            placed: Placed::Nothing,
+            scalars_along: vec![0.0; scalars.len()],
+            scalars,
+            gradient: vec![0.0; kilovolts.len()],
+            kilovolts,
+            h: initial.h,
+            stretches: [SegmentWorkspace::new(action), SegmentWorkspace::new(action)],
+            halo: motion.instant(),
+            measured: Part::new(motion.vectors.len(), scalar_count, None),
+            sigma: 0.0,
+            rows: vec![0.0; (intervals + 1) * stride + layout.limit_rows.len()],
+            values: vec![0.0; action.layout().values(intervals) + limit_entries],
+        }
+    }
+}
+
+/// Instants with the charts of the guess, the start, and the coordinates that the goal gives.
+fn given_instants(
+    model: &Model,
+    boundary: &BoundaryConditions,
+    initial: &InitialGuess,
+    intervals: usize,
+) -> Vec<Configuration> {
+    let motion = &model.action.motion;
+    let unknowns = motion.unknowns();
+    let mut instants = vec![motion.instant(); intervals + 1];
+    for (instant, z) in instants.iter_mut().zip(&initial.history.z) {
+        instant.z[unknowns..].copy_from_slice(&z[unknowns..]);
+    }
+    instants[0].z.copy_from_slice(&boundary.start.z);
+    boundary.goal.give(&mut instants[intervals].z, unknowns);
+    instants
+}
+
+/// Scalars of all intervals; zero where they are unknowns.
+fn given_scalars(model: &Model, control: &Control, intervals: usize) -> Vec<f64> {
+    let given = |k: usize| {
+        let time = control.middle(k);
+        let scalars = model.variables.of(Time::Interval).iter();
+        scalars.map(move |variable| control.given(variable, time).unwrap_or(0.0))
+    };
+    (0..intervals).flat_map(given).collect()
+}
+
+/// Voltages of all intervals in kV, from `count` scalars of each.
+fn kilovolts(model: &Model, scalars: &[f64], count: usize, intervals: usize) -> Vec<f64> {
+    let voltages = model.variables.range(Role::Voltage);
+    let kilovolts = (0..intervals).flat_map(|k| {
+        let row = &scalars[k * count..(k + 1) * count];
+        row[voltages.clone()].iter().map(|v| v / KILOVOLT)
+    });
+    kilovolts.collect()
+}
