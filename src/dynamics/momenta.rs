@@ -153,7 +153,9 @@ pub(super) fn momentum_maps(
                 // A vector that terms read holds no more than one node, and nothing else beside it.
                 Carrier::Node(_) => (*x, momentum + impulse),
                 Carrier::Coordinate(coordinate) => {
-                    let [force, torque] = places.pulls[coordinate];
+                    let Some([force, torque]) = places.pulls.get(coordinate) else {
+                        continue;
+                    };
                     linear += force * impulse.x;
                     angular += torque * impulse.x;
                     continue;

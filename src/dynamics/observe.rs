@@ -17,7 +17,7 @@ use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Kind, Order};
 use crate::math::{Vector, has_pool};
-use crate::model::{Model, Role, SolidBlock};
+use crate::model::{Coordinates, Model, Role, SolidBlock};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -155,7 +155,11 @@ impl<'m> Observer<'m> {
             here: model.action.motion.instant(),
             scratch: model.action.scratch(Order::Gradient),
             at_instant: AtInstant::new(model),
-            pulls: model.presolved.system.joint_pulls(),
+            // Internal coordinates act on bodies by constraints, and pull at nothing.
+            pulls: match model.coordinates {
+                Coordinates::Reduced => model.presolved.system.joint_pulls(),
+                Coordinates::Redundant => Vec::new(),
+            },
         }
     }
 

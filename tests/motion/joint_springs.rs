@@ -4,7 +4,7 @@ use crate::common::{bare, motion};
 use crate::component_files::read;
 use crate::components::{body, column};
 use nalgebra::Vector3;
-use proboscis::dynamics::{Start, equilibrium};
+use proboscis::dynamics::{Start, stable_equilibrium};
 use proboscis::model::system::{Joint, JointKind, JointSpring, System};
 use proboscis::model::{Coordinates, Model};
 use std::f64::consts::TAU;
@@ -93,7 +93,7 @@ fn weight_and_a_spring_of_a_hinge_balance_in_both_coordinates() {
     assert!((low - rest).abs() > 0.01, "the weight does nothing: {low}");
     for coordinates in BOTH {
         let model = Model::new(system.clone(), Some(coordinates), 1.0, &[]).unwrap();
-        let found = equilibrium(&model, &model.coordinates_at(&[0.0]), &[]).unwrap();
+        let found = stable_equilibrium(&model, &model.coordinates_at(&[0.0]), &[]).unwrap();
         let instant = crate::common::placed(&model, &found.z);
         let angle = model.joints(&instant, &[0.0])[0];
         assert!(

@@ -5,6 +5,7 @@ mod common;
 
 mod again;
 mod checker;
+mod condensed;
 mod constrained;
 mod faults;
 mod hook;

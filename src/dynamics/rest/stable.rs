@@ -11,6 +11,7 @@ use crate::dynamics::error::EquilibriumError;
 use crate::dynamics::rest::arc::{LimitPoint, crossings, limit_point};
 use crate::dynamics::rest::equilibrium::{Equilibrium, Route, StabilityLoss};
 use crate::dynamics::rest::growth::{Grown, at_limit, begin, grow, unloaded};
+use crate::dynamics::rest::in_joints;
 use crate::dynamics::rest::instability::Load;
 use crate::dynamics::rest::minimum::minimise;
 use crate::dynamics::rest::ramp::Ramp;
@@ -39,6 +40,17 @@ pub fn stable_equilibrium(
     voltages: &[f64],
 ) -> Result<Equilibrium, EquilibriumError> {
     let mut statics = begin(model)?;
+    if let Some(twin) = in_joints::twin(model) {
+        let start = in_joints::carried(model, start, &twin);
+        let found = stable_equilibrium(&twin, &start, voltages);
+        if let Err(error @ EquilibriumError::Stopped(_)) = found {
+            return Err(error);
+        }
+        let confirm = |found| in_joints::confirmed(&mut statics, &twin, &found, voltages);
+        if let Some(found) = found.ok().map(confirm).transpose()?.flatten() {
+            return Ok(found);
+        }
+    }
     let none = vec![0.0; voltages.len()];
     let weighed = under_weight(&mut statics, start, &none);
     let is_driven = voltages.iter().any(|&v| v != 0.0);
