@@ -59,6 +59,7 @@ fn block(n: usize, viscosity: Option<f64>) -> System {
             permittivity: VACUUM_PERMITTIVITY,
         }),
         viscosity,
+        ..Material::default()
     };
     let solid = Solid {
         name: "block".into(),

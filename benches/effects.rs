@@ -338,6 +338,7 @@ fn block(driven: bool, change: impl Fn(&mut Material)) -> System {
             permittivity: VACUUM_PERMITTIVITY,
         }),
         viscosity: Some(1.0),
+        ..Material::default()
     };
     change(&mut material);
     System {

@@ -173,6 +173,7 @@ fn coordinates_at_goal(
             for (given, value) in given.iter_mut().zip(&rest.z[..reached]) {
                 *given = Some(*value);
             }
+            forget(model, &mut given);
             return Ok((given, Some(rest)));
         }
         BoundaryState::JointAngles { angles, .. } if !redundant => {
@@ -188,10 +189,20 @@ fn coordinates_at_goal(
                 .collect();
             let z = model.coordinates_at(&joints);
             given = z[..n].iter().copied().map(Some).collect();
+            forget(model, &mut given);
         }
         _ => {}
     }
     Ok((given, None))
+}
+
+/// Prescribes nothing of what muscles remember: no voltage sets that at once.
+fn forget(model: &Model, given: &mut [Option<f64>]) {
+    for (i, given) in given.iter_mut().enumerate() {
+        if model.is_memory(i) {
+            *given = None;
+        }
+    }
 }
 
 /// Part of the system that rests at a goal.

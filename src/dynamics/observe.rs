@@ -17,7 +17,7 @@ use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Kind, Order};
 use crate::math::{Vector, has_pool};
-use crate::model::{Coordinates, Model, Role, SolidBlock};
+use crate::model::{Model, Role, SolidBlock};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -155,11 +155,7 @@ impl<'m> Observer<'m> {
             here: model.action.motion.instant(),
             scratch: model.action.scratch(Order::Gradient),
             at_instant: AtInstant::new(model),
-            // Internal coordinates act on bodies by constraints, and pull at nothing.
-            pulls: match model.coordinates {
-                Coordinates::Reduced => model.presolved.system.joint_pulls(),
-                Coordinates::Redundant => Vec::new(),
-            },
+            pulls: model.pulls(),
         }
     }
 
@@ -262,6 +258,9 @@ impl<'m> Observer<'m> {
                 add(format!("{}_{quantity}", component.name()), unit);
             }
         }
+        for (name, _) in self.model.viscous_stretches() {
+            add(name, "");
+        }
         columns
     }
 
@@ -322,6 +321,8 @@ impl<'m> Observer<'m> {
                 row.extend(component.observe(&places.collect::<Vec<_>>()));
             }
         }
+        let viscous = model.viscous_stretches();
+        row.extend(viscous.map(|(_, coordinate)| self.here.z[coordinate].exp()));
         std::mem::swap(&mut self.before, &mut self.here);
         Row {
             values: row,

@@ -1,6 +1,6 @@
 //! Elastomers, built with defaults.
 
-use crate::model::system::{ElectricConstants, Material};
+use crate::model::system::{ElectricConstants, Material, MaxwellBranch, MaxwellBranches};
 
 impl Material {
     /// A neo-Hookean elastomer with a shear modulus in MPa, without density, permittivity or viscosity so far.
@@ -11,6 +11,7 @@ impl Material {
             lame_lambda: None,
             electric: None,
             viscosity: None,
+            maxwell: MaxwellBranches::default(),
         }
     }
 
@@ -37,6 +38,20 @@ impl Material {
     pub fn viscosity(self, viscosity: f64) -> Self {
         let viscosity = Some(viscosity);
         Self { viscosity, ..self }
+    }
+
+    /// One more Maxwell branch of lumped muscles: shear modulus μ₁ of its spring in MPa, relaxation time in ms.
+    ///
+    /// # Panics
+    /// It has five.
+    pub fn maxwell(self, shear_modulus: f64, relaxation_time: f64) -> Self {
+        let mut branches = self.maxwell.list().to_vec();
+        branches.push(MaxwellBranch {
+            shear_modulus,
+            relaxation_time,
+        });
+        let maxwell = MaxwellBranches::new(&branches).expect("five branches at most");
+        Self { maxwell, ..self }
     }
 
     /// Poisson ratio, which finite elements need: λ = 2 μ ν/(1 − 2 ν).

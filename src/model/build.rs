@@ -62,10 +62,7 @@ impl Model {
         mut condensed: Presolved,
     ) -> Result<Self, ModelError> {
         let voltages = field_extent::voltages(&condensed.system);
-        let reached = match question.zero_voltage.is_empty() {
-            true => voltages.clone(),
-            false => field_extent::voltages(&system),
-        };
+        let reached = reached(&system, &question, &voltages);
         let solids = blocks::blocks(&mut condensed);
         let rest = &condensed.system;
         let coordinates = Self::choose(rest, question.coordinates)?;
@@ -82,7 +79,12 @@ impl Model {
             &mut variables,
             &mut vectors,
         )?;
-        let internals = Internals::new(rest, coordinates, graph.coordinate_count(rest), &blocks);
+        let internals = Internals::new(
+            (&system, &condensed),
+            &question,
+            (coordinates, &graph),
+            &blocks,
+        );
         let construction = Construction {
             system: &system,
             presolved: &condensed,
@@ -162,6 +164,14 @@ impl Model {
     }
 }
 
+/// Sources that would drive something if none were at zero voltage all the time.
+fn reached(system: &System, analysis: &Analysis, voltages: &[usize]) -> Vec<usize> {
+    match analysis.zero_voltage.is_empty() {
+        true => voltages.to_vec(),
+        false => field_extent::voltages(system),
+    }
+}
+
 /// Voltages and parameters, the first scalars of an interval.
 fn interval_variables(voltages: &[usize], sources: &[Source], analysis: &Analysis) -> Variables {
     let mut variables = Variables::default();
@@ -218,7 +228,7 @@ impl Construction<'_> {
         let called = (self.analysis.of_motion, &self.analysis.parameters[..]);
         let mut terms = Terms::new(self.carriers(), system.gravity, called, variables, vectors);
         body::build(&self.presolved.system.bodies, self.reference, &mut terms);
-        muscle::build(&system.muscles, spans, &mut terms);
+        muscle::build(&system.muscles, spans, self.internals, &mut terms);
         self.blocks.build(&mut terms);
         let no_weight = match system.gravity {
             None => "the scene names no gravity",

@@ -1,6 +1,6 @@
 //! Validation of a system that is made by a program: the checks that a reader of files makes entry by entry.
 
-use crate::model::system::{Attachment, JointKind, System};
+use crate::model::system::{Attachment, JointKind, Material, System};
 use std::collections::BTreeSet;
 use thiserror::Error;
 
@@ -80,6 +80,7 @@ impl System {
             }
             for material in &solid.materials {
                 positive(&solid.name, "shear modulus", material.shear_modulus)?;
+                check_elastic(&solid.name, material)?;
                 require(
                     material.lame_lambda.is_some_and(f64::is_finite),
                     &solid.name,
@@ -210,7 +211,13 @@ impl System {
             for value in material.density.into_iter().chain(material.viscosity) {
                 positive(name, "density or viscosity", value)?;
             }
+            for branch in material.maxwell.list() {
+                let modulus = "shear modulus of a Maxwell branch";
+                positive(name, modulus, branch.shear_modulus)?;
+                positive(name, "relaxation time", branch.relaxation_time)?;
+            }
             if muscle.fidelity.elements() > 0 {
+                check_elastic(name, material)?;
                 require(
                     material.lame_lambda.is_some_and(f64::is_finite),
                     name,
@@ -242,4 +249,14 @@ impl System {
             "a finite place",
         )
     }
+}
+
+/// Finite elements have no Maxwell branches.
+fn check_elastic(name: &str, material: &Material) -> Result<(), SystemError> {
+    require(
+        material.maxwell.list().is_empty(),
+        name,
+        || "Maxwell branches of finite elements".to_owned(),
+        "none: only lumped muscles have them",
+    )
 }

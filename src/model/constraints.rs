@@ -4,7 +4,7 @@ use crate::energy::{Coincidence, Energy, JointAngle, JointDisplacement, Orthogon
 use crate::functional::{Element, Formulas, Group, Stencil, Term, VectorArg};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
-use crate::model::internal::Internals;
+use crate::model::internal::{InternalKind, Internals};
 use crate::model::joints::{JointCoordinate, JointReading, triad};
 use crate::model::plan::{self, LeftOut, Present};
 use crate::model::solids::Solids;
@@ -160,8 +160,11 @@ impl Builder<'_> {
     /// Internal coordinates are those of their joints.
     fn joint_coordinates(&mut self, out: &mut Measured) {
         for internal in &self.internals.list {
-            let joint = &self.system.joints[internal.joint];
-            let Some(value) = self.internals.joint(internal.joint) else {
+            let InternalKind::Joint(index) = internal.kind else {
+                continue;
+            };
+            let joint = &self.system.joints[index];
+            let Some(value) = self.internals.joint(index) else {
                 continue;
             };
             let value = here(self.vectors.index(value));

@@ -3,9 +3,11 @@
 //! They have no mass. Each has an equation: a force that depends on it, or a constraint.
 
 use crate::kinematics::MaterialVector;
-use crate::model::analysis::Coordinates;
+use crate::model::analysis::{Analysis, Coordinates};
+use crate::model::graph::Graph;
+use crate::model::presolved::Presolved;
 use crate::model::solids::Solids;
-use crate::model::system::{Joint, JointKind, System};
+use crate::model::system::{Fidelity, Joint, JointKind, System};
 use crate::model::variables::Size;
 
 /// An internal coordinate.
@@ -15,8 +17,22 @@ pub(super) struct Internal {
     pub(super) name: String,
     /// Typical size of its value.
     pub(super) size: Size,
-    /// Joint of the presolved system of which it is the coordinate.
-    pub(super) joint: usize,
+    /// Part of the scene to which it belongs.
+    pub(super) kind: InternalKind,
+}
+
+/// Meaning of an internal coordinate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum InternalKind {
+    /// The coordinate of a joint of the presolved system.
+    Joint(usize),
+    /// The logarithm of the viscous stretch of a Maxwell branch of a muscle: what the muscle remembers. A constant stretch relaxes it.
+    Branch {
+        /// The muscle.
+        muscle: usize,
+        /// Its branch.
+        branch: usize,
+    },
 }
 
 impl Internal {
@@ -27,7 +43,15 @@ impl Internal {
                 JointKind::Prismatic { .. } => Size::Length,
                 _ => Size::One,
             },
-            joint: index,
+            kind: InternalKind::Joint(index),
+        }
+    }
+
+    fn of_branch(name: &str, muscle: usize, branch: usize) -> Self {
+        Self {
+            name: format!("viscous stretch {} of {name}", branch + 1),
+            size: Size::One,
+            kind: InternalKind::Branch { muscle, branch },
         }
     }
 }
@@ -43,37 +67,51 @@ pub(super) struct Internals {
 }
 
 impl Internals {
-    /// Those of a presolved system, whose tree has `of_tree` coordinates: redundant coordinates lack those of joints with springs.
+    /// Those of a scene and its presolved system with its graph: redundant coordinates lack those of joints with
+    /// springs. Muscles at rest remember nothing.
     pub(super) fn new(
-        system: &System,
-        coordinates: Coordinates,
-        of_tree: usize,
+        (scene, presolved): (&System, &Presolved),
+        analysis: &Analysis,
+        (coordinates, graph): (Coordinates, &Graph),
         blocks: &Solids,
     ) -> Self {
+        let system = &presolved.system;
         let nodes = blocks.nodes.iter().flat_map(|node| node.free);
         let of_nodes = nodes.filter(|&is_free| is_free).count();
-        let joints = system.joints.iter().enumerate();
-        let sprung = joints.filter(|(_, joint)| joint.spring.is_some());
-        match coordinates {
-            Coordinates::Reduced => Self {
-                of_tree: system.joint_coordinates(),
-                first: of_tree + of_nodes,
-                list: Vec::new(),
-            },
-            Coordinates::Redundant => Self {
-                of_tree: vec![None; system.joints.len()],
-                first: 12 * system.bodies.len() + of_nodes,
-                list: sprung
-                    .map(|(j, joint)| Internal::of_joint(j, joint))
-                    .collect(),
-            },
+        let mut list = Vec::new();
+        if coordinates == Coordinates::Redundant {
+            let joints = system.joints.iter().enumerate();
+            let sprung = joints.filter(|(_, joint)| joint.spring.is_some());
+            list.extend(sprung.map(|(j, joint)| Internal::of_joint(j, joint)));
+        }
+        for (m, muscle) in scene.muscles.iter().enumerate() {
+            let mut ends = [muscle.from, muscle.to].into_iter();
+            let moves = ends.any(|end| presolved.carrier(end.body).is_some());
+            if analysis.of_motion && moves && muscle.fidelity == Fidelity::Lumped {
+                let branches = 0..muscle.material.maxwell.list().len();
+                list.extend(branches.map(|b| Internal::of_branch(&muscle.name, m, b)));
+            }
+        }
+        let (of_tree, of_bodies) = match coordinates {
+            Coordinates::Reduced => (system.joint_coordinates(), graph.coordinate_count(system)),
+            Coordinates::Redundant => (vec![None; system.joints.len()], 12 * system.bodies.len()),
+        };
+        Self {
+            of_tree,
+            first: of_bodies + of_nodes,
+            list,
         }
     }
 
     /// The vector that has the coordinate of a joint in its first component; `None` where nothing calls for it.
     pub(super) fn joint(&self, joint: usize) -> Option<MaterialVector> {
-        let own = || self.list.iter().position(|own| own.joint == joint);
-        let coordinate = self.of_tree[joint].or_else(|| Some(self.first + own()?));
-        coordinate.map(MaterialVector::coordinate)
+        let coordinate = self.of_tree[joint].map(MaterialVector::coordinate);
+        coordinate.or_else(|| self.vector(InternalKind::Joint(joint)))
+    }
+
+    /// The vector that has an internal coordinate in its first component.
+    pub(super) fn vector(&self, kind: InternalKind) -> Option<MaterialVector> {
+        let index = self.list.iter().position(|own| own.kind == kind)?;
+        Some(MaterialVector::coordinate(self.first + index))
     }
 }

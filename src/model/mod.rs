@@ -20,6 +20,7 @@ mod immobile;
 mod internal;
 mod joint_springs;
 mod joints;
+mod maxwell;
 mod measures;
 #[expect(clippy::module_inception, reason = "the file of the type of that name")]
 mod model;
@@ -49,6 +50,7 @@ pub use floating::Floating;
 pub use graph::Graph;
 pub use immobile::Immobile;
 pub use joints::{JointReading, Screw};
+pub use maxwell::{MOST_BRANCHES, MaxwellBranch, MaxwellBranches};
 pub use model::Model;
 pub use named::Freedom;
 pub use parameter::{NotSought, check as check_parameters, with_parameters};

@@ -8,7 +8,7 @@ use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::constant::Parameter;
 use crate::model::floating::{self, Floating};
 use crate::model::graph::Graph;
-use crate::model::internal::Internal;
+use crate::model::internal::{Internal, InternalKind};
 use crate::model::joints::JointReading;
 use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::Presolved;
@@ -86,6 +86,7 @@ impl Model {
                     }
                 }
                 self.place_nodes(&mut z);
+                self.place_internals(&mut z, joints);
                 z
             }
             Coordinates::Redundant => {
@@ -110,12 +111,52 @@ impl Model {
         z
     }
 
-    /// Gives internal coordinates their values at joint coordinates or their rates (by joint of the scene).
-    fn place_internals(&self, z: &mut [f64], joints: &[f64]) {
-        let internals = z[self.action.motion.internal()].iter_mut();
-        for (value, internal) in internals.zip(&self.internals) {
-            *value = joints[self.presolved.joints[internal.joint]];
+    /// Gives internal coordinates their values at joint coordinates (by joint of the scene); muscles have been held there for long.
+    pub(super) fn place_internals(&self, z: &mut [f64], joints: &[f64]) {
+        let internal = self.action.motion.internal();
+        let is_branch = |own: &Internal| matches!(own.kind, InternalKind::Branch { .. });
+        let placed = self.internals.iter().any(is_branch);
+        let placed = placed.then(|| self.action.motion.placed(z));
+        for (value, own) in z[internal].iter_mut().zip(&self.internals) {
+            *value = match (own.kind, &placed) {
+                (InternalKind::Joint(joint), _) => joints[self.presolved.joints[joint]],
+                (InternalKind::Branch { muscle, .. }, Some(instant)) => {
+                    let length = self.system.muscles[muscle].length();
+                    (instant.x[self.spans[muscle]].norm() / length).ln()
+                }
+                (InternalKind::Branch { .. }, None) => 0.0,
+            };
         }
+    }
+
+    /// [Effects](System::joint_pulls) of forces on coordinates that are no places: internal ones act by constraints, or within a muscle.
+    pub fn pulls(&self) -> Vec<[Vector; 2]> {
+        match self.coordinates {
+            Coordinates::Reduced => self.presolved.system.joint_pulls(),
+            Coordinates::Redundant => Vec::new(),
+        }
+    }
+
+    /// Viscous stretches of the Maxwell branches: name, and coordinate that is the logarithm.
+    pub fn viscous_stretches(&self) -> impl Iterator<Item = (String, usize)> + '_ {
+        let all = self.action.motion.internal().zip(&self.internals);
+        all.filter_map(|(coordinate, own)| match own.kind {
+            InternalKind::Branch { muscle, branch } => {
+                let muscle = &self.system.muscles[muscle].name;
+                Some((
+                    format!("{muscle}_viscous_stretch{}", branch + 1),
+                    coordinate,
+                ))
+            }
+            InternalKind::Joint(_) => None,
+        })
+    }
+
+    /// Returns true if coordinate `i` is what a muscle remembers: it has no momentum, and nothing brings it to rest but time.
+    pub fn is_memory(&self, i: usize) -> bool {
+        let internal = i.checked_sub(self.action.motion.internal().start);
+        let own = internal.and_then(|index| self.internals.get(index));
+        own.is_some_and(|own| matches!(own.kind, InternalKind::Branch { .. }))
     }
 
     /// Rates of all coordinates from those of the bodies and of the joints (by joint of the scene); nodes have those of a start.
@@ -124,7 +165,12 @@ impl Model {
         let mut rates = self.node_rates().unwrap_or_else(zeros);
         let count = bodies.len().min(self.action.motion.of_bodies);
         rates[..count].copy_from_slice(&bodies[..count]);
-        self.place_internals(&mut rates, joints);
+        let internal = self.action.motion.internal();
+        for (rate, own) in rates[internal].iter_mut().zip(&self.internals) {
+            if let InternalKind::Joint(joint) = own.kind {
+                *rate = joints[self.presolved.joints[joint]];
+            }
+        }
         rates
     }
 
@@ -188,7 +234,9 @@ impl Model {
                 let mut joints = self.read_joints(&self.poses(instant), near);
                 let internals = instant.z[self.action.motion.internal()].iter();
                 for (value, internal) in internals.zip(&self.internals) {
-                    joints[self.presolved.joints[internal.joint]] = *value;
+                    if let InternalKind::Joint(joint) = internal.kind {
+                        joints[self.presolved.joints[joint]] = *value;
+                    }
                 }
                 joints
             }

@@ -91,6 +91,11 @@ impl Constant {
                     "muscle \"{name}\" of finite elements reads it; of muscles, lumped ones alone can have sought constants"
                 ));
             }
+            if self.is_shape() && !muscle.material.maxwell.list().is_empty() {
+                return Some(format!(
+                    "the Maxwell branches of muscle \"{name}\" depend on it; sought shapes of muscles with branches are not offered"
+                ));
+            }
             if self.is_shape() && muscle.mass().is_some() {
                 return Some(format!(
                     "the mass of muscle \"{name}\" depends on it, as its material has a density; sought masses are not offered"

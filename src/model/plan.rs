@@ -5,7 +5,7 @@
 pub(super) const GRAVITY: &str = "gravity";
 
 /// Names of the terms of the library, in the order of the sum; those of other crates follow.
-pub const TERMS: [&str; 21] = [
+pub const TERMS: [&str; 23] = [
     "body inertia",
     "muscle inertia",
     "block inertia",
@@ -15,11 +15,13 @@ pub const TERMS: [&str; 21] = [
     "block electroelasticity",
     "muscle elasticity",
     "muscle electroelasticity",
+    "maxwell elasticity",
     "joint elasticity",
     "spring elasticity",
     "tendon elasticity",
     "block viscosity",
     "muscle viscosity",
+    "maxwell viscosity",
     "joint damping",
     "spring damping",
     "rigid bodies",

@@ -87,6 +87,7 @@ impl Model {
             Some(_) => {
                 let mut instant = motion.placed(&z);
                 motion.follow(&poses, &mut instant);
+                self.place_internals(&mut instant.z, joints);
                 instant.z
             }
         }

@@ -4,6 +4,7 @@ use crate::mesh::Mesh;
 pub use crate::model::attachment::Attachment;
 pub use crate::model::bodies::{Body, Shape, directors_along};
 use crate::model::components::Components;
+pub use crate::model::maxwell::{MaxwellBranch, MaxwellBranches};
 use nalgebra::Vector3;
 
 /// A mechanical system; `None` for a body index is the ground.
@@ -293,7 +294,7 @@ pub struct Glue {
 }
 
 /// A dielectric elastomer. What is `None` leaves no trace.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Material {
     /// Density in g/mm³.
     pub density: Option<f64>,
@@ -305,6 +306,8 @@ pub struct Material {
     pub electric: Option<ElectricConstants>,
     /// Viscosity η in MPa ms, σ_vis = η d.
     pub viscosity: Option<f64>,
+    /// Maxwell branches, which lumped muscles read.
+    pub maxwell: MaxwellBranches,
 }
 
 /// Constants of the electric energy c₁ E·E + c₂ C:(E⊗E) − ½ ε J C⁻¹:(E⊗E), in N/V².

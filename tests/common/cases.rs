@@ -1,6 +1,6 @@
 //! A list of control problems that together call for every effect, joint, limit, goal and objective.
 
-use super::systems::{GRAVITY, ball, blocks, branched, satellite, sprung, tied};
+use super::systems::{GRAVITY, ball, blocks, branched, remembering, satellite, sprung, tied};
 use super::tracked::{energies, tracked};
 use super::trunk;
 use nalgebra::Vector3;
@@ -270,6 +270,16 @@ pub fn cases() -> Vec<Case> {
         ),
         case("branched tree", branched(), &|_| {}),
         case("branched tree with joint springs", sprung(), &|_| {}),
+        case("branched tree that remembers", remembering(), &|_| {}),
+        case(
+            "branched tree that remembers, free time",
+            remembering(),
+            &|c| {
+                c.duration = free;
+                c.objective = every_objective();
+                c.goal = joints(&[(1, 2.0)]);
+            },
+        ),
         case(
             "branched tree with joint springs, free time",
             sprung(),

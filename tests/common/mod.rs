@@ -60,6 +60,7 @@ pub(crate) fn trunk(segments: usize) -> System {
             permittivity: VACUUM_PERMITTIVITY,
         }),
         viscosity: Some(1.0),
+        ..Material::default()
     };
     let mut system = System {
         components: Default::default(),

@@ -41,6 +41,7 @@ pub(crate) fn material(entry: &Value) -> Material {
             permittivity: number("eps0"),
         }),
         viscosity: Some(2.0 * number("eta") * 1e-3).filter(|&eta| eta > 0.0),
+        ..Material::default()
     }
 }
 
@@ -157,6 +158,7 @@ pub(crate) fn dielectric(
         lame_lambda: Some(lame_lambda),
         electric: Some(electric),
         viscosity: None,
+        ..Material::default()
     }
 }
 

@@ -6,8 +6,8 @@ use proboscis::mesh::grid::Grid;
 use proboscis::model::components::{Spring, Tendon};
 use proboscis::model::system::{
     Attachment, Body, Discretisation, ElectricConstants, Electrode, ElementKind, Fidelity, Glue,
-    Joint, JointKind, JointSpring, Marker, Material, Muscle, Potential, Shape, Solid, Support,
-    System, VACUUM_PERMITTIVITY,
+    Joint, JointKind, JointSpring, Marker, Material, MaxwellBranch, MaxwellBranches, Muscle,
+    Potential, Shape, Solid, Support, System, VACUUM_PERMITTIVITY,
 };
 
 /// Gravity along −y in mm/ms².
@@ -54,6 +54,19 @@ pub fn tied(mut system: System) -> System {
         rest_length: 80.0,
         smoothing: 0.0,
     }];
+    system
+}
+
+/// The branched tree with muscles of one and two Maxwell branches.
+pub fn remembering() -> System {
+    let mut system = branched();
+    let branch = |shear_modulus, relaxation_time| MaxwellBranch {
+        shear_modulus,
+        relaxation_time,
+    };
+    let [one, two] = [branch(0.04, 30.0), branch(0.02, 400.0)];
+    system.muscles[0].material.maxwell = MaxwellBranches::new(&[one]).unwrap();
+    system.muscles[2].material.maxwell = MaxwellBranches::new(&[one, two]).unwrap();
     system
 }
 
@@ -108,6 +121,7 @@ pub fn branched() -> System {
             permittivity: VACUUM_PERMITTIVITY,
         }),
         viscosity: Some(1.0),
+        ..Material::default()
     };
     let ideal = Material {
         electric: Some(ElectricConstants {

@@ -20,6 +20,7 @@ pub(crate) fn system(count: usize) -> System {
         lame_lambda: None,
         electric: None,
         viscosity: None,
+        ..Material::default()
     };
     let muscle = |i: usize| {
         let joint = i / 2;

@@ -12,8 +12,8 @@ use num_dual::{Dual64, HyperDual};
 use proboscis::energy::{
     Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
     DielectricCell, ElasticCell, Energy, Gravity, JointAngle, JointDisplacement, LinearDamper,
-    LinearSpring, Orthogonality, OutsideBox, PositionComponent, Projection, SectionInertia,
-    SpanDamper, SquaredDistance, SquaredField, ViscousCell,
+    LinearSpring, MaxwellCell, Orthogonality, OutsideBox, PositionComponent, Projection,
+    SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
 };
 use proboscis::math::{Jet, Vector};
 
@@ -258,6 +258,12 @@ fn energies_have_the_derivatives_of_naive_formulas() {
         rest: 0.4,
     };
     law("coordinate spring", &spring, 0.2, 1.1);
+    let branch = MaxwellCell {
+        length: 0.9,
+        volume: 1.3,
+        shear_modulus: 0.7,
+    };
+    law("maxwell", &branch, 0.4, 1.2);
     law("joint angle", &JointAngle, 0.3, 1.1);
     law("joint displacement", &JointDisplacement, 0.2, 1.1);
     law(

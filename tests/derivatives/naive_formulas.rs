@@ -4,8 +4,8 @@ use num_dual::{Dual, DualNum};
 use proboscis::energy::{
     Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
     DielectricCell, ElasticCell, Energy, Gravity, JointAngle, JointDisplacement, LinearDamper,
-    LinearSpring, Orthogonality, OutsideBox, PositionComponent, Projection, SectionInertia,
-    SpanDamper, SquaredDistance, SquaredField, ViscousCell,
+    LinearSpring, MaxwellCell, Orthogonality, OutsideBox, PositionComponent, Projection,
+    SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
 };
 
 /// The naive formula of an energy.
@@ -146,6 +146,13 @@ impl Formula<3> for CoordinateSpring {
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 3]) -> D {
         let twice = p[0] * (p[0] - 2.0 * self.rest) + self.rest.powi(2);
         twice * self.stiffness / 2.0
+    }
+}
+
+impl Formula<6> for MaxwellCell {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
+        let elastic = (stretch(three(p, 0), self.length).ln() - p[3]).exp();
+        (elastic.powi(2) + elastic.recip() * 2.0 - 3.0) * (0.5 * self.shear_modulus * self.volume)
     }
 }
 

@@ -50,6 +50,7 @@ fn single(shear_modulus: f64, electric: ElectricConstants) -> System {
                 lame_lambda: None,
                 electric: Some(electric),
                 viscosity: Some(1.0),
+                ..Material::default()
             },
             section_inertia: false,
             fidelity: Default::default(),

@@ -227,6 +227,7 @@ fn turning(newton: Newton) -> DiscreteTrajectory {
         lame_lambda: Some(0.4),
         electric: None,
         viscosity: Some(100.0),
+        ..Material::default()
     };
     let mut solid = block(mesh, soft);
     let turn = Vector3::new(0.02, 0.003, 0.04);
@@ -263,6 +264,7 @@ fn large(viscosity: Option<f64>, solving: Solving) -> DiscreteTrajectory {
         lame_lambda: Some(0.4),
         electric: None,
         viscosity,
+        ..Material::default()
     };
     let mut solid = block(mesh, rubber);
     let lift = |x: &Vector3<f64>| Vector3::new(1e-3 * x.z * x.z, 0.0, 0.01 * x.z);

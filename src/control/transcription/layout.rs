@@ -58,8 +58,8 @@ impl Layout {
             }
         }
         let rests = |i: usize| match boundary.goal.rests {
-            Rests::Everything => true,
-            Rests::Bodies => !motion.nodes().contains(&i) || is_held[i],
+            Rests::Everything => !model.is_memory(i),
+            Rests::Bodies => !motion.nodes().contains(&i) && !model.is_memory(i) || is_held[i],
             Rests::Nothing => false,
         };
         let is_balanced = |k: usize, i: usize| k < intervals || rests(i);

@@ -22,7 +22,8 @@ const ROUNDING: f64 = 1e-9;
 /// Returns true if the stiffness in joint coordinates is small enough for a full eigenvalue decomposition.
 fn is_small(model: &Model) -> bool {
     let motion = &model.action.motion;
-    let joints_alone = motion.tree.is_some() && motion.of_nodes.is_empty();
+    let joints_alone =
+        motion.tree.is_some() && motion.of_nodes.is_empty() && motion.of_internal == 0;
     motion.multipliers == 0 && joints_alone && (1..=EIGENVALUES).contains(&motion.unknowns())
 }
 

@@ -103,7 +103,6 @@ const TABLE: &[NotOffered] = &[
             "damage",
             "fatigue",
             "fracture",
-            "creep",
             "mullins",
         ],
         said: "materials are elastic and viscous; they neither yield nor break",
@@ -118,13 +117,14 @@ const TABLE: &[NotOffered] = &[
             "hyperelastic",
             "constitutive_law",
             "prony",
+            "creep",
             "maxwell",
             "relaxation_time",
             "youngs_modulus",
             "young_modulus",
             "elastic_modulus",
         ],
-        said: "materials are neo-Hookean, given by \"shear_modulus\" with \"lame_lambda\" or \"poisson_ratio\", and \"viscosity\" is of Kelvin–Voigt kind",
+        said: "materials are neo-Hookean, given by \"shear_modulus\" with \"lame_lambda\" or \"poisson_ratio\", \"viscosity\" is of Kelvin–Voigt kind, and \"maxwell\" lists Maxwell branches of lumped muscles",
     },
     NotOffered {
         words: &[

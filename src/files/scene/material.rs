@@ -4,9 +4,12 @@ use std::collections::BTreeMap;
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::scene::spec::{Dielectric, MaterialSpec};
+use crate::files::scene::spec::{Dielectric, MaterialSpec, MaxwellSpec};
 use crate::files::units::quantity::Quantity;
-use crate::model::system::{ElectricConstants, Material, VACUUM_PERMITTIVITY};
+use crate::model::MOST_BRANCHES;
+use crate::model::system::{
+    ElectricConstants, Material, MaxwellBranch, MaxwellBranches, VACUUM_PERMITTIVITY,
+};
 
 /// All materials with their names.
 pub(crate) fn materials(
@@ -30,6 +33,28 @@ fn material(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Material, SceneErr
         viscosity: scope
             .key("viscosity")
             .absent_or_positive(spec.viscosity.as_ref())?,
+        maxwell: maxwell(&spec.maxwell, &scope.key("maxwell"))?,
+    })
+}
+
+fn maxwell(specs: &[MaxwellSpec], scope: &Scope<'_>) -> Result<MaxwellBranches, SceneError> {
+    let branch = |(index, spec): (usize, &MaxwellSpec)| -> Result<_, SceneError> {
+        let place = scope.index(index);
+        Ok(MaxwellBranch {
+            shear_modulus: place.key("shear_modulus").positive(&spec.shear_modulus)?,
+            relaxation_time: place
+                .key("relaxation_time")
+                .positive(&spec.relaxation_time)?,
+        })
+    };
+    let branches: Vec<_> = specs
+        .iter()
+        .enumerate()
+        .map(branch)
+        .collect::<Result<_, _>>()?;
+    MaxwellBranches::new(&branches).ok_or_else(|| {
+        let found = format!("{} branches", branches.len());
+        scope.wrong(found, format!("{MOST_BRANCHES} branches at most"))
     })
 }
 

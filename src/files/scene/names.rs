@@ -28,6 +28,11 @@ pub(crate) fn find_compressible(
     scope: &Scope<'_>,
 ) -> Result<Material, SceneError> {
     let material = find_material(name, materials, scope)?;
+    if !material.maxwell.list().is_empty() {
+        let found = format!("{name:?}, which has \"maxwell\" branches");
+        let expected = "a material without them: only lumped muscles have Maxwell branches";
+        return Err(scope.wrong(found, expected));
+    }
     if material.lame_lambda.is_some() {
         return Ok(material);
     }

@@ -9,7 +9,7 @@ use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec_solids::{ElementSpec, SolidSpec};
 use crate::files::units::quantity::{
     Acceleration, Angle, Density, JointDamping, JointStiffness, Length, Mass, MomentOfInertia,
-    Permittivity, Quantity, Stress, Viscosity,
+    Permittivity, Quantity, Stress, Time, Viscosity,
 };
 
 /// Scene. Positions and axes are given in the reference configuration, in the ground frame; parts that are not written do not exist.
@@ -83,6 +83,19 @@ pub struct MaterialSpec {
     /// Viscosity η in σ = η d, SI unit Pa s; without it no viscous force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub viscosity: Option<Quantity<Viscosity>>,
+    /// Maxwell branches, five at most: springs in series with dampers, in which stress relaxes. Lumped muscles read them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub maxwell: Vec<MaxwellSpec>,
+}
+
+/// A Maxwell branch.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MaxwellSpec {
+    /// Shear modulus μ₁ of its spring, SI unit Pa.
+    pub shear_modulus: Quantity<Stress>,
+    /// Relaxation time τ in which small stresses fall to 1/e, SI unit s.
+    pub relaxation_time: Quantity<Time>,
 }
 
 /// Law by which the relative permittivity enters the energy.

@@ -1,9 +1,13 @@
 //! Terms of lumped muscles.
 
-use crate::energy::{Capacitance, DielectricCell, ElasticCell, SectionInertia, ViscousCell};
+use crate::energy::{
+    Capacitance, CoordinateDamper, DielectricCell, ElasticCell, MaxwellCell, SectionInertia,
+    ViscousCell,
+};
 use crate::functional::{Element, Mass};
 use crate::kinematics::MaterialVector;
 use crate::model::components::sought_muscle::SoughtMuscle;
+use crate::model::internal::{InternalKind, Internals};
 use crate::model::system::{ElectricConstants, Fidelity, Muscle};
 use crate::model::terms::{Terms, mid, rate};
 
@@ -12,13 +16,28 @@ const SECTION: &str = "section inertia";
 const ELASTICITY: &str = "muscle elasticity";
 const ELECTROELASTICITY: &str = "muscle electroelasticity";
 const VISCOSITY: &str = "muscle viscosity";
+const MAXWELL_ELASTICITY: &str = "maxwell elasticity";
+const MAXWELL_VISCOSITY: &str = "maxwell viscosity";
 
 /// Terms of the muscles of a scene, of which those of finite elements are blocks; `spans` are the vectors of their spans.
-pub(in crate::model) fn build(muscles: &[Muscle], spans: &[usize], terms: &mut Terms<'_>) {
+pub(in crate::model) fn build(
+    muscles: &[Muscle],
+    spans: &[usize],
+    internals: &Internals,
+    terms: &mut Terms<'_>,
+) {
     for (m, (muscle, &span)) in muscles.iter().zip(spans).enumerate() {
         if muscle.fidelity == Fidelity::Lumped {
             lumped(muscle, m, span, terms);
+            relaxation(muscle, m, span, internals, terms);
         }
+    }
+    let none = match terms.is_of_motion() {
+        true => "no lumped muscle that moves names a Maxwell branch",
+        false => "at rest Maxwell branches are relaxed",
+    };
+    for term in [MAXWELL_ELASTICITY, MAXWELL_VISCOSITY] {
+        terms.without(term, none);
     }
     // What no muscle has said.
     for term in [INERTIA, SECTION, ELASTICITY, ELECTROELASTICITY, VISCOSITY] {
@@ -169,5 +188,49 @@ fn viscosity(
                 terms.add(VISCOSITY, "viscosity of", &muscle.name, element);
             }
         }
+    }
+}
+
+/// Maxwell branches: a spring of the elastic stretch and a damper of the viscous one, whose logarithm is an internal coordinate.
+fn relaxation(
+    muscle: &Muscle,
+    index: usize,
+    span: usize,
+    internals: &Internals,
+    terms: &mut Terms<'_>,
+) {
+    for (branch, constants) in muscle.material.maxwell.list().iter().enumerate() {
+        let kind = InternalKind::Branch {
+            muscle: index,
+            branch,
+        };
+        let Some(viscous) = internals.vector(kind) else {
+            continue;
+        };
+        let viscous = terms.vector(viscous);
+        let energy = MaxwellCell {
+            length: muscle.length(),
+            volume: muscle.volume(),
+            shear_modulus: constants.shear_modulus,
+        };
+        let why = "Maxwell branches of";
+        let element = Element {
+            energy,
+            vectors: [mid(span), mid(viscous)],
+            scalars: [],
+        };
+        terms.add::<_, 6, 2, 0>(MAXWELL_ELASTICITY, why, &muscle.name, element);
+        let damper = CoordinateDamper {
+            coefficient: 3.0
+                * constants.relaxation_time
+                * constants.shear_modulus
+                * muscle.volume(),
+        };
+        let element = Element {
+            energy: damper,
+            vectors: [mid(viscous), rate(viscous)],
+            scalars: [],
+        };
+        terms.add::<_, 6, 2, 0>(MAXWELL_VISCOSITY, why, &muscle.name, element);
     }
 }
