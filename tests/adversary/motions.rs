@@ -191,7 +191,7 @@ fn every_method_has_its_order_under_ramps_and_sines() {
     let methods = [
         (Integrator::Midpoint, 2.0, 64),
         (Integrator::Galerkin { degree: 2 }, 4.0, 16),
-        (Integrator::Galerkin { degree: 3 }, 6.0, 5),
+        (Integrator::Galerkin { degree: 3 }, 6.0, 7),
         (
             Integrator::GeneralisedAlpha {
                 spectral_radius: 0.8,
@@ -215,7 +215,11 @@ fn every_method_has_its_order_under_ramps_and_sines() {
                 let run = integrate(&system, &task, |_, _| ControlFlow::Continue(())).unwrap();
                 assert_eq!(run.failure, None);
                 let last = |history: &DiscreteTrajectory| {
-                    history.z.last().unwrap()[..model.coordinate_count()].to_vec()
+                    let z = history.z.last().unwrap().iter().enumerate();
+                    let z = z.take(model.coordinate_count());
+                    // What muscles remember has a lower order with Galerkin's method.
+                    let places = z.filter(|&(i, _)| !model.is_memory(i));
+                    places.map(|(_, &z)| z).collect::<Vec<_>>()
                 };
                 let both = last(&run.history).into_iter().zip(last(&fine));
                 both.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)

@@ -177,5 +177,26 @@ pub(crate) fn robot(seed: u64, parts: Parts) -> Robot {
         .map(|name| (name, voltage(random)))
         .collect();
     scene["muscles"] = json!(muscles);
+    add_springs_and_branches(&mut scene, seed, parts);
     Robot { scene, voltages }
+}
+
+/// Springs of hinges and Maxwell branches of the material, by numbers of their own: the rest of a robot is what it is without them.
+fn add_springs_and_branches(scene: &mut Value, seed: u64, parts: Parts) {
+    let random = &mut Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    for joint in scene["joints"].as_array_mut().unwrap() {
+        if joint.get("revolute").is_some() && happens(random, 0.3) {
+            joint["stiffness"] = json!(random.between(0.02, 0.2));
+            joint["rest_angle"] = json!(random.between(-0.3, 0.3));
+        }
+    }
+    if parts.viscosity && happens(random, 0.4) {
+        let mut branch = |least: f64, most: f64| {
+            json!({
+                "shear_modulus": random.between(1e4, 6e4),
+                "relaxation_time": random.between(least, most),
+            })
+        };
+        scene["materials"]["m"]["maxwell"] = json!([branch(0.01, 0.05), branch(0.1, 1.0)]);
+    }
 }

@@ -4,12 +4,15 @@ use crate::common::{bare, motion, placed};
 use crate::component_files::read;
 use crate::components::{body, column};
 use nalgebra::Vector3;
-use proboscis::dynamics::{DiscreteTrajectory, Start, stable_equilibrium};
+use proboscis::dynamics::{
+    DiscreteTrajectory, Integrator, Solving, Start, simulate_by, stable_equilibrium,
+};
 use proboscis::model::system::{
     Attachment, ElectricConstants, Joint, JointKind, Material, MaxwellBranch, MaxwellBranches,
     Muscle, System,
 };
 use proboscis::model::{Analysis, Coordinates, Model, Role};
+use std::ops::ControlFlow;
 
 const BOTH: [Coordinates; 2] = [Coordinates::Reduced, Coordinates::Redundant];
 /// mm, mm², MPa.
@@ -271,5 +274,40 @@ fn files_list_branches() {
     ] {
         let refused = read(&text).expect_err(words);
         assert!(refused.contains(words), "{refused}");
+    }
+}
+
+/// Places have the order 2s of Galerkin's method of degree s, and what the muscle remembers, which has no mass, 2s − 2.
+#[test]
+fn galerkin_methods_have_their_order() {
+    let list = [[0.05, 8.0], [0.03, 60.0]];
+    let system = slider(20.0, branches(&list));
+    let exact = runge_kutta(20.0, &list, [6.0, 0.0, 0.0, 0.0], 40.0);
+    let exact = [exact[0], exact[2], exact[3]];
+    for degree in [2, 3] {
+        let errors = [2.0, 1.0].map(|h| {
+            let model = model(&system, Coordinates::Reduced, h);
+            let start = suddenly(&model, 6.0);
+            let solving = Solving {
+                integrator: Integrator::Galerkin { degree },
+                ..Solving::default()
+            };
+            let (steps, zero) = ((40.0 / h) as usize, model.scalars(&[0.0]));
+            let drive = |_: f64, _: f64| zero.clone();
+            let go_on = |_: &DiscreteTrajectory| ControlFlow::Continue(());
+            let (history, failure) = simulate_by(solving, &model, &start, h, steps, drive, go_on);
+            assert_eq!(failure, None);
+            let found = end(&model, &history);
+            let errors = found.iter().zip(exact).map(|(a, b)| (a - b).abs());
+            errors.collect::<Vec<f64>>()
+        });
+        let order = |i: usize| (errors[0][i] / errors[1][i]).log2();
+        assert!((order(0) - (2 * degree) as f64).abs() < 0.3, "{errors:?}");
+        for i in [1, 2] {
+            assert!(
+                (order(i) - (2 * degree - 2) as f64).abs() < 0.3,
+                "{errors:?}"
+            );
+        }
     }
 }
