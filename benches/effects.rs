@@ -149,8 +149,8 @@ fn simulation(voltages: &[f64], coordinates: Coordinates) -> Simulation {
 
 /// A motion of the trunk, of which only what scene and voltages call for is built.
 fn called(name: &str, system: System, voltages: &[f64], coordinates: Coordinates) -> Variant {
-    let question = simulation(voltages, coordinates).question(&system, trunk::STEP);
-    let model = Model::answering(system, question).expect("the model exists");
+    let analysis = simulation(voltages, coordinates).analysis(&system, trunk::STEP);
+    let model = Model::for_analysis(system, analysis).expect("the model exists");
     Variant::new(name, model, voltages, [trunk::STEP, STEPS as f64])
 }
 

@@ -85,7 +85,7 @@ impl BlockSizes {
 }
 
 impl BlockSize {
-    fn of(model: &Model, continuum: &SolidBlock) -> Self {
+    fn of(model: &Model, block: &SolidBlock) -> Self {
         let coordinates = |&vector: &usize| {
             let is_node = |carrier| matches!(carrier, Carrier::Node(_));
             let terms = &model.vectors[vector].terms;
@@ -94,14 +94,14 @@ impl BlockSize {
                 false => 0,
             }
         };
-        let scalars = continuum.terminals.iter().flatten();
+        let scalars = block.terminals.iter().flatten();
         let scalars = scalars.filter_map(|terminal| terminal.scalar.map(|(s, _)| s));
         let all = model.variables.range(Role::Potential);
         let potentials: BTreeSet<usize> = scalars.filter(|s| all.contains(s)).collect();
         Self {
-            nodes: continuum.solid.mesh.nodes.len(),
-            elements: continuum.shapes.len(),
-            unknowns: continuum.vectors.iter().map(coordinates).sum(),
+            nodes: block.solid.mesh.nodes.len(),
+            elements: block.shapes.len(),
+            unknowns: block.vectors.iter().map(coordinates).sum(),
             potentials: potentials.len(),
         }
     }

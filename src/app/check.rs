@@ -273,7 +273,7 @@ fn as_control(task: Task, system: &System) -> Control {
     match task {
         Task::Control(control) => *control,
         Task::Simulate(simulation) => {
-            let zero_voltage = simulation.question(system, simulation.step).zero_voltage;
+            let zero_voltage = simulation.analysis(system, simulation.step).zero_voltage;
             let Simulation {
                 step,
                 start,

@@ -53,14 +53,11 @@ pub(super) fn largest_nominal_field(
 ) -> Option<f64> {
     let mut states = SolidStates::new(model, history);
     let state = states.place(k);
-    let each = model.solids.iter().flat_map(|continuum| {
-        let (places, potentials) = (
-            continuum.places(&state.here.x),
-            continuum.potentials(state.scalars),
-        );
-        let elements = (0..continuum.shapes.len()).filter(|&e| continuum.is_dielectric[e]);
+    let each = model.solids.iter().flat_map(|block| {
+        let (places, potentials) = (block.places(&state.here.x), block.potentials(state.scalars));
+        let elements = (0..block.shapes.len()).filter(|&e| block.is_dielectric[e]);
         let field = move |e: usize| {
-            let fields = continuum.fields(e, &places, &potentials);
+            let fields = block.fields(e, &places, &potentials);
             fields.reference_electric_field.norm() * 1e3
         };
         elements.map(field).collect::<Vec<_>>()
@@ -141,12 +138,12 @@ struct Block<'m> {
 }
 
 impl<'m> Block<'m> {
-    fn new(number: usize, continuum: &'m SolidBlock, state: &SolidState<'_>) -> Self {
-        let mesh = &continuum.solid.mesh;
-        let places = continuum.places(&state.here.x);
-        let potentials = continuum.potentials(state.scalars);
+    fn new(number: usize, block: &'m SolidBlock, state: &SolidState<'_>) -> Self {
+        let mesh = &block.solid.mesh;
+        let places = block.places(&state.here.x);
+        let potentials = block.potentials(state.scalars);
         let velocities = state.there.map(|(there, time)| {
-            let others = continuum.places(&there.x);
+            let others = block.places(&there.x);
             let pairs = others.iter().zip(&places);
             pairs
                 .map(|(there, here)| (there - here) / time)
@@ -159,19 +156,13 @@ impl<'m> Block<'m> {
             let values = velocities.iter().flat_map(|v| components(v, 1.0));
             point_data.push(field("velocity [m/s]", 3, values));
         }
-        if continuum.terminals.iter().any(Option::is_some) {
-            let known = potentials.iter().zip(&continuum.terminals);
+        if block.terminals.iter().any(Option::is_some) {
+            let known = potentials.iter().zip(&block.terminals);
             let values = known.map(|(phi, terminal)| terminal.map_or(f64::NAN, |_| *phi));
             point_data.push(field("potential [V]", 1, values));
         }
-        let is_dielectric = continuum.is_dielectric.contains(&true);
-        let cell_data = cells(
-            number,
-            continuum,
-            &places,
-            &potentials,
-            velocities.as_deref(),
-        );
+        let is_dielectric = block.is_dielectric.contains(&true);
+        let cell_data = cells(number, block, &places, &potentials, velocities.as_deref());
         Self {
             hexahedra: &mesh.hexahedra,
             points: places.iter().map(|x| x * 1e-3).collect(),
@@ -196,23 +187,23 @@ impl<'m> Block<'m> {
 /// Quantities of the elements.
 fn cells(
     number: usize,
-    continuum: &SolidBlock,
+    block: &SolidBlock,
     places: &[Vector],
     potentials: &[f64],
     velocities: Option<&[Vector]>,
 ) -> Vec<Field<'static>> {
-    let count = continuum.shapes.len();
+    let count = block.shapes.len();
     let mut all: Vec<Fields> = (0..count)
-        .map(|e| continuum.fields(e, places, potentials))
+        .map(|e| block.fields(e, places, potentials))
         .collect();
     if let Some(velocities) = velocities {
         for (e, fields) in all.iter_mut().enumerate() {
-            let Some(viscosity) = continuum.material(e).viscosity else {
+            let Some(viscosity) = block.material(e).viscosity else {
                 continue;
             };
-            let nodes = continuum.solid.mesh.hexahedra[e];
+            let nodes = block.solid.mesh.hexahedra[e];
             let (x, v) = (nodes.map(|n| places[n]), nodes.map(|n| velocities[n]));
-            fields.stress += Viscosity { viscosity }.stress(&continuum.shapes[e], &x, &v);
+            fields.stress += Viscosity { viscosity }.stress(&block.shapes[e], &x, &v);
         }
     }
     let each = all.iter();
@@ -244,7 +235,7 @@ fn cells(
         field(
             "region",
             1,
-            continuum.solid.mesh.regions.iter().map(|&r| r as f64),
+            block.solid.mesh.regions.iter().map(|&r| r as f64),
         ),
         field("block", 1, (0..count).map(|_| number as f64)),
     ]

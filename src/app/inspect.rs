@@ -74,12 +74,12 @@ pub fn inspected(request: &CommandInput, text: Option<&str>) -> Result<Inspected
     let mut found = match &loaded.task {
         Task::Control(control) => of_control(request, system, control),
         Task::Simulate(task) => {
-            let model = Model::answering(system.clone(), task.question(system, task.step))
+            let model = Model::for_analysis(system.clone(), task.analysis(system, task.step))
                 .map_err(|error| wrong(error.into()))?;
             Ok(of_model(&model, None))
         }
         Task::Equilibrium(task) => {
-            let model = Model::answering(system.clone(), task.question(system))
+            let model = Model::for_analysis(system.clone(), task.analysis(system))
                 .map_err(|error| wrong(error.into()))?;
             Ok(of_model(&model, None))
         }

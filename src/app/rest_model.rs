@@ -15,7 +15,7 @@ pub(super) fn model_at_rest(
     system: &System,
     task: &AtRest,
 ) -> Result<Model, CommandError> {
-    let model = Model::answering(system.clone(), task.question(system));
+    let model = Model::for_analysis(system.clone(), task.analysis(system));
     model.map_err(|error| {
         let error = WorkflowError::boundary("equilibrium", &error.into());
         CommandError::of(&request.input)(error)
@@ -24,5 +24,5 @@ pub(super) fn model_at_rest(
 
 /// Coordinates of the reference configuration.
 pub(super) fn reference(model: &Model) -> Vec<f64> {
-    model.coordinates_at(&vec![0.0; model.gauges.len()])
+    model.coordinates_at(&vec![0.0; model.joint_readings.len()])
 }

@@ -62,16 +62,16 @@ impl BoundaryConditions {
         h0: f64,
     ) -> Result<(Model, Self), BoundaryError> {
         let system = &sought::at_guess(system, control)?;
-        let question = control.question(system, h0);
-        let presolved = Presolved::new(system, &question);
+        let analysis = control.analysis(system, h0);
+        let presolved = Presolved::new(system, &analysis);
         let coordinates = Model::choose(&presolved.system, control.coordinates)?;
         let redundant = coordinates == Coordinates::Redundant;
         let limits = limits_with_goal(system, control, redundant);
-        let question = Analysis {
+        let analysis = Analysis {
             coordinates: Some(coordinates),
-            ..with_quantities(question, &limits, control)
+            ..with_quantities(analysis, &limits, control)
         };
-        let mut model = Model::of_presolved(system.clone(), question, presolved)?;
+        let mut model = Model::of_presolved(system.clone(), analysis, presolved)?;
         let (start, of_start) = start_of(&model, &control.start)?;
         goal_rows::leave_out_constant(&mut model, &limits, &start.z)?;
         let (given, of_goal) = coordinates_at_goal(&model, &control.goal)?;
@@ -126,7 +126,7 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
 }
 
 /// The analysis with the quantities of limits, goal and costs.
-fn with_quantities(question: Analysis, limits: &Limits, control: &Control) -> Analysis {
+fn with_quantities(analysis: Analysis, limits: &Limits, control: &Control) -> Analysis {
     let mut quantities = limits.quantities();
     let paid = &control.objective.quantities;
     let curved = paid.iter().enumerate().filter(|(_, c)| c.is_curved());
@@ -137,7 +137,7 @@ fn with_quantities(question: Analysis, limits: &Limits, control: &Control) -> An
     Analysis {
         curved,
         quantities,
-        ..question
+        ..analysis
     }
 }
 
@@ -177,7 +177,7 @@ fn coordinates_at_goal(
         }
         BoundaryState::JointAngles { angles, .. } if !redundant => {
             for (&joint, &value) in angles {
-                if let Some(c) = model.gauges[joint].coordinate {
+                if let Some(c) = model.joint_readings[joint].coordinate {
                     given[c] = Some(value);
                 }
             }
@@ -247,7 +247,7 @@ pub fn resolve_start(
                 map.get(&j).copied().unwrap_or(0.0)
             };
             let joints = |map| {
-                (0..model.gauges.len())
+                (0..model.joint_readings.len())
                     .map(|j| value(map, j))
                     .collect::<Vec<f64>>()
             };

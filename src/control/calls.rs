@@ -10,15 +10,15 @@ use crate::model::system::{Attachment, System};
 use crate::model::{Analysis, InitiallyMoving};
 
 impl Simulation {
-    /// The question of a motion in steps of `step` ms.
-    pub fn question(&self, system: &System, step: f64) -> Analysis {
+    /// The analysis of a motion in steps of `step` ms.
+    pub fn analysis(&self, system: &System, step: f64) -> Analysis {
         let is_driven = |s: usize| self.voltages.drive(s);
         let mut named = Named::new(system);
         named.of_start(&self.start);
         Analysis {
             coordinates: self.coordinates,
             zero_voltage: zero_voltage(system, is_driven, [&self.start]),
-            stirred: Some(named.stirred),
+            initially_moving: Some(named.initially_moving),
             ..Analysis::of_motion(step)
         }
     }
@@ -27,7 +27,7 @@ impl Simulation {
 impl AtRest {
     /// The analysis of a state of rest. Its stability is computed too, that of unloaded parts included: nothing is taken to
     /// be still.
-    pub fn question(&self, system: &System) -> Analysis {
+    pub fn analysis(&self, system: &System) -> Analysis {
         Analysis {
             coordinates: self.coordinates,
             zero_voltage: zero_voltage(system, |s| self.voltages[s] != 0.0, []),
@@ -38,7 +38,7 @@ impl AtRest {
 
 impl Control {
     /// The analysis of a horizon of intervals of about `interval` ms, without the quantities that are measured.
-    pub fn question(&self, system: &System, interval: f64) -> Analysis {
+    pub fn analysis(&self, system: &System, interval: f64) -> Analysis {
         let is_driven = |s: usize| match &self.course {
             Some(course) => course.drive(s),
             None => self.given.get(&s).is_none_or(|signal| !signal.is_zero()),
@@ -50,7 +50,7 @@ impl Control {
         Analysis {
             coordinates: self.coordinates,
             zero_voltage: zero_voltage(system, is_driven, [&self.start, &self.goal]),
-            stirred: Some(named.stirred),
+            initially_moving: Some(named.initially_moving),
             parameters: self.parameters.clone(),
             ..Analysis::of_motion(interval)
         }
@@ -77,14 +77,14 @@ fn zero_voltage<const N: usize>(
 /// Bodies and blocks that are named.
 struct Named<'a> {
     system: &'a System,
-    stirred: InitiallyMoving,
+    initially_moving: InitiallyMoving,
 }
 
 impl<'a> Named<'a> {
     fn new(system: &'a System) -> Self {
         Self {
             system,
-            stirred: InitiallyMoving::default(),
+            initially_moving: InitiallyMoving::default(),
         }
     }
 
@@ -97,14 +97,18 @@ impl<'a> Named<'a> {
                 rates,
                 velocities,
             } => {
-                self.stirred.bodies.extend(velocities.keys());
+                self.initially_moving.bodies.extend(velocities.keys());
                 let all = angles.iter().chain(rates);
                 let moved = all.filter(|(_, value)| **value != 0.0);
                 moved.for_each(|(&joint, _)| self.of_joint(joint));
             }
             BoundaryState::EndOf(_) => {
-                self.stirred.bodies.extend(0..self.system.bodies.len());
-                self.stirred.solids.extend(0..self.system.solids.len());
+                self.initially_moving
+                    .bodies
+                    .extend(0..self.system.bodies.len());
+                self.initially_moving
+                    .solids
+                    .extend(0..self.system.solids.len());
             }
             BoundaryState::RestAtVoltages(..)
             | BoundaryState::Markers { .. }
@@ -124,7 +128,7 @@ impl<'a> Named<'a> {
                 ..
             } => {
                 places.keys().for_each(|&m| self.of_marker(m));
-                self.stirred.bodies.extend(orientations.keys());
+                self.initially_moving.bodies.extend(orientations.keys());
             }
         }
     }
@@ -146,16 +150,16 @@ impl<'a> Named<'a> {
     fn of_joint(&mut self, joint: usize) {
         let joint = &self.system.joints[joint];
         let bodies = joint.parent.into_iter().chain([joint.child]);
-        self.stirred.bodies.extend(bodies);
+        self.initially_moving.bodies.extend(bodies);
     }
 
     fn of_marker(&mut self, marker: usize) {
         let marker = &self.system.markers[marker];
-        self.stirred.solids.extend(marker.solid);
+        self.initially_moving.solids.extend(marker.solid);
         self.of_point(&marker.point);
     }
 
     fn of_point(&mut self, point: &Attachment) {
-        self.stirred.bodies.extend(point.body);
+        self.initially_moving.bodies.extend(point.body);
     }
 }

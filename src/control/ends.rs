@@ -86,7 +86,7 @@ impl<'a> End<'a> {
     ) -> Self {
         let count = model.coordinate_count();
         let mut instant = model.action.motion.instant();
-        let reference = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+        let reference = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
         let values = coordinates.iter().zip(reference);
         for (z, (value, reference)) in instant.z[..count].iter_mut().zip(values) {
             *z = value.unwrap_or(reference);
@@ -123,7 +123,7 @@ impl<'a> End<'a> {
         let joints = &self.model.system.joints;
         let of_gauge = || {
             if !self.known.iter().all(|known| *known) {
-                let coordinate = self.model.gauges[joint].coordinate?;
+                let coordinate = self.model.joint_readings[joint].coordinate?;
                 let is_known =
                     self.model.coordinates == Coordinates::Reduced && self.known[coordinate];
                 return is_known.then(|| self.instant.z[coordinate]);

@@ -165,7 +165,7 @@ fn joints_of(model: &Model, z: &[f64]) -> Option<Vec<f64>> {
     let mut instant = model.action.motion.instant();
     instant.z.copy_from_slice(z);
     model.action.motion.place(&mut instant);
-    Some(model.joints(&instant, &vec![0.0; model.gauges.len()]))
+    Some(model.joints(&instant, &vec![0.0; model.joint_readings.len()]))
 }
 
 /// Poses on the way from one list to another, at a part of it.

@@ -26,7 +26,7 @@ impl Trajectory {
     /// The motion of a model: poses, joint coordinates without jumps, and a voltage for every muscle.
     pub fn from_history(model: &Model, history: &DiscreteTrajectory) -> Self {
         let mut instant = model.action.motion.instant();
-        let mut near = vec![0.0; model.gauges.len()];
+        let mut near = vec![0.0; model.joint_readings.len()];
         let mut trajectory = Self {
             times: history.times.clone(),
             ..Self::default()

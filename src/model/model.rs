@@ -44,10 +44,10 @@ pub struct Model {
     pub spans: Vec<usize>,
     /// Vector of each marker.
     pub markers: Vec<usize>,
-    /// Index of each quantity of the question among the measures of its site; `None` where nothing of the model can change it.
+    /// Index of each quantity of the analysis among the measures of its site; `None` where nothing of the model can change it.
     pub measured: Vec<Option<usize>>,
     /// Readings of the coordinates of each joint from poses.
-    pub gauges: Vec<JointReading>,
+    pub joint_readings: Vec<JointReading>,
     /// Time that scales multipliers: the action holds −h₀ λ·g, in ms.
     pub multiplier_time: f64,
     pub(super) graph: Graph,
@@ -64,7 +64,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// Poses of the condensed bodies in the reference configuration.
+    /// Poses of the presolved bodies in the reference configuration.
     pub fn reference(&self) -> &[Pose] {
         &self.reference
     }
@@ -80,8 +80,8 @@ impl Model {
         match self.coordinates {
             Coordinates::Reduced => {
                 let mut z = self.action.motion.instant().z;
-                for (gauge, &value) in self.gauges.iter().zip(joints) {
-                    if let Some(c) = gauge.coordinate {
+                for (reading, &value) in self.joint_readings.iter().zip(joints) {
+                    if let Some(c) = reading.coordinate {
                         z[c] = value;
                     }
                 }
@@ -169,7 +169,7 @@ impl Model {
 
     /// Joint coordinates (rad or mm, zero where a joint has none) at poses, angles in the branch nearest to `near`.
     pub fn read_joints(&self, poses: &[Pose], near: &[f64]) -> Vec<f64> {
-        self.gauges
+        self.joint_readings
             .iter()
             .zip(near)
             .map(|(g, &near)| g.read(poses, near))
@@ -180,7 +180,7 @@ impl Model {
     pub fn joints(&self, instant: &Configuration, near: &[f64]) -> Vec<f64> {
         match self.coordinates {
             Coordinates::Reduced => self
-                .gauges
+                .joint_readings
                 .iter()
                 .map(|g| g.coordinate.map_or(0.0, |c| instant.z[c]))
                 .collect(),
@@ -201,7 +201,7 @@ impl Model {
         self.presolved.poses(&poses, &self.system.bodies)
     }
 
-    /// Poses of the condensed bodies at an instant, which carry the vectors.
+    /// Poses of the presolved bodies at an instant, which carry the vectors.
     pub fn condensed_poses(&self, instant: &Configuration) -> Vec<Pose> {
         let bodies = self.presolved.system.bodies.len();
         self.action.motion.poses(instant, bodies)

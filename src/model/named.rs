@@ -15,7 +15,7 @@ use crate::model::variables::{Role, Size, Variable};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Named<'a> {
     pub(super) coordinates: Coordinates,
-    /// The condensed system.
+    /// The presolved system.
     pub(super) system: &'a System,
     pub(super) graph: &'a Graph,
     pub(super) motion: &'a CoordinateMap,
@@ -97,7 +97,7 @@ pub struct Freedom<'m> {
     pub is_only: bool,
 }
 
-/// Joint coordinate `i` of a condensed system.
+/// Joint coordinate `i` of a presolved system.
 fn freedom<'m>(system: &'m System, graph: &Graph, i: usize) -> Freedom<'m> {
     let mut at = i;
     for joint in &system.joints {

@@ -239,12 +239,12 @@ fn rest(
         seconds: began.elapsed().as_secs_f64(),
         is_solved: false,
     };
-    let question = task.question(&system);
-    let model = match Model::answering(system, question) {
+    let analysis = task.analysis(&system);
+    let model = match Model::for_analysis(system, analysis) {
         Ok(model) => model,
         Err(error) => return (failed(REFUSED, error.to_string(), began), None),
     };
-    let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+    let zero = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
     let found = stable_equilibrium(&model, &zero, &model.scalars(&task.voltages));
     let seconds = began.elapsed().as_secs_f64();
     let found = match found {
@@ -291,7 +291,7 @@ impl Observed {
     /// Instants and places of a motion.
     fn of(model: &Model, motion: &Trajectory, names: &[String]) -> Self {
         let duration = motion.times[motion.intervals()];
-        let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+        let zero = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
         let list = markers(model, names);
         let of = |row: &Vec<Vector3<f64>>| list.iter().map(|&m| row[m]).collect();
         Self {

@@ -99,8 +99,8 @@ impl ActiveLimits {
 
     /// The limits of the joint of a coordinate at an instant.
     fn add_coordinate(&mut self, i: usize, model: &Model, control: &Control, side: [bool; 2]) {
-        let of = |gauge: &JointReading| gauge.coordinate == Some(i);
-        let Some(joint) = model.gauges.iter().position(of) else {
+        let of = |reading: &JointReading| reading.coordinate == Some(i);
+        let Some(joint) = model.joint_readings.iter().position(of) else {
             return;
         };
         for limit in &control.limits {

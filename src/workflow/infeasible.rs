@@ -117,7 +117,8 @@ fn distances(
         let words = format!("{name} comes within {} mm of its goal", significant(far, 3));
         (words, far / model.length())
     };
-    let joints = |instant: &Configuration| model.joints(instant, &vec![0.0; model.gauges.len()]);
+    let joints =
+        |instant: &Configuration| model.joints(instant, &vec![0.0; model.joint_readings.len()]);
     let of_joint = |joint: usize, value: f64, found: f64| {
         let unit = joint_unit(&model.system, joint);
         let far = (found - value).abs();

@@ -72,7 +72,7 @@ pub fn integrate_on(
     let (steps, h) = grid(task);
     let wrong = |error| WorkflowError::boundary("simulate", &error);
     phase("building");
-    let model = Model::answering(system.clone(), task.question(system, h))
+    let model = Model::for_analysis(system.clone(), task.analysis(system, h))
         .map_err(|error| wrong(error.into()))?;
     if task.tolerance.is_none() {
         memory::of_motion(&model, steps)?;

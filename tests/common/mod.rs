@@ -183,7 +183,7 @@ pub(crate) fn bare(bodies: Vec<Body>, joints: Vec<Joint>, gravity: Option<Vector
 
 /// Coordinates of the reference configuration.
 pub(crate) fn at_reference(model: &Model) -> Vec<f64> {
-    model.coordinates_at(&vec![0.0; model.gauges.len()])
+    model.coordinates_at(&vec![0.0; model.joint_readings.len()])
 }
 
 /// A placed instant.

@@ -107,7 +107,7 @@ impl Goals {
     /// The next goal; voltages without an equilibrium are drawn again.
     pub(crate) fn draw(&mut self, kind: Kind) -> Goal {
         let Self { random, model } = self;
-        let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+        let zero = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
         loop {
             // Whole volts, so that what is written is what is meant.
             let voltages: Vec<f64> = (0..model.sources.len())

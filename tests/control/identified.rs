@@ -58,7 +58,7 @@ fn voltages() -> Voltages {
 fn measured(system: &System) -> Vec<Signal> {
     let system = with_parameters(system, &material(system), &TRUE);
     let model = Model::new(system, None, H, &[]).unwrap();
-    let zero = vec![0.0; model.gauges.len()];
+    let zero = vec![0.0; model.joint_readings.len()];
     let start = Initial::at_rest(&model, model.coordinates_at(&zero));
     let scalars = |from: f64, to: f64| model.scalars(&voltages().at(0.5 * (from + to)));
     let (history, failure) = simulate(&model, &start, H, INTERVALS, scalars, |_| {

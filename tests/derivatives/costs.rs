@@ -58,7 +58,7 @@ fn deviation(system: &System, model: &Model, z: &[f64], cost: &QuantityCost, t: 
         }
         Quantity::Joint { joint, .. } => {
             let instant = model.action.motion.placed(z);
-            let value = model.joints(&instant, &vec![0.0; model.gauges.len()])[joint];
+            let value = model.joints(&instant, &vec![0.0; model.joint_readings.len()])[joint];
             let e = value - follow(reference, t);
             match cost.quantity.period(system) {
                 Some(_) => (e + PI).rem_euclid(TAU) - PI,

@@ -184,20 +184,20 @@ fn around_an_eye() -> System {
 #[test]
 fn a_tendon_ties_bodies_around_an_eye_of_the_ground() {
     // The far mass is thrown outwards: the near one follows, though no term has both without the eye.
-    let question = |body: Option<usize>| Analysis {
-        stirred: Some(InitiallyMoving {
+    let analysis = |body: Option<usize>| Analysis {
+        initially_moving: Some(InitiallyMoving {
             bodies: body.into_iter().collect(),
             ..InitiallyMoving::default()
         }),
         ..Analysis::of_motion(0.5)
     };
-    let model = Model::answering(around_an_eye(), question(Some(1))).unwrap();
+    let model = Model::for_analysis(around_an_eye(), analysis(Some(1))).unwrap();
     assert_eq!(model.coordinate_count(), 2);
     let start = Start::with_rates(&model, model.coordinates_at(&[0.0; 2]), &[0.0, 1.0]);
     let history = motion(&model, &start, 0.5, 60, &[]);
     assert!(history.z[60][0] > 1.0, "{:?}", history.z[60]);
     // Where nobody throws it nothing moves, and the tendon is no term.
-    let model = Model::answering(around_an_eye(), question(None)).unwrap();
+    let model = Model::for_analysis(around_an_eye(), analysis(None)).unwrap();
     assert_eq!(model.coordinate_count(), 0);
     assert!(model.present.is_empty());
     let why = model
@@ -208,7 +208,7 @@ fn a_tendon_ties_bodies_around_an_eye_of_the_ground() {
     // A prestressed one moves both by itself.
     let mut system = around_an_eye();
     system.components.tendons[0].rest_length = 39.0;
-    let model = Model::answering(system, question(None)).unwrap();
+    let model = Model::for_analysis(system, analysis(None)).unwrap();
     assert_eq!(model.coordinate_count(), 2);
     let tendons = model.present.iter().find(|p| p.term == "tendon elasticity");
     assert_eq!(tendons.unwrap().of, ["cord"]);

@@ -90,7 +90,7 @@ fn nothing_moves_when_charts_follow() {
         }
         // Poses tell the same configuration.
         let poses = model.poses(&before);
-        let values = model.read_joints(&poses, &vec![0.0; model.gauges.len()]);
+        let values = model.read_joints(&poses, &vec![0.0; model.joint_readings.len()]);
         let back = placed(&model, &model.coordinates_of_poses(&poses, &values));
         for (a, b) in poses.iter().zip(model.poses(&back)) {
             assert!((a.centre - b.centre).amax() < 1e-10);

@@ -33,9 +33,9 @@ fn a_step_is_stopped_between_its_iterations() {
     let Task::Simulate(task) = &loaded.task else {
         panic!("a simulation");
     };
-    let question = task.question(&loaded.system, 0.5);
-    let model = Model::answering(loaded.system.clone(), question).unwrap();
-    let z = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+    let analysis = task.analysis(&loaded.system, 0.5);
+    let model = Model::for_analysis(loaded.system.clone(), analysis).unwrap();
+    let z = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
     let start = Start::at_rest(&model, z);
     let voltages = |_: f64, _: f64| model.scalars(&[3e5]);
     let three = |_: &_| ControlFlow::Continue(());

@@ -31,7 +31,7 @@ pub(crate) fn model(system: System) -> Model {
 }
 
 pub(crate) fn reference(model: &Model) -> Vec<f64> {
-    model.coordinates_at(&vec![0.0; model.gauges.len()])
+    model.coordinates_at(&vec![0.0; model.joint_readings.len()])
 }
 
 fn found(model: &Model, voltages: &[f64]) -> Equilibrium {

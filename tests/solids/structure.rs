@@ -280,7 +280,7 @@ fn what_a_material_lacks_is_no_effect() {
 /// of the first `n` coordinates.
 fn numbers(model: &Model, n: usize) -> Vec<(usize, usize, f64)> {
     let mut random = Random(11);
-    let rest = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+    let rest = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
     let noise: Vec<f64> = (0..2 * n).map(|_| 0.02 * random.unit()).collect();
     let [mut a, mut b] = [0, 1].map(|side| {
         let mut z = rest.clone();

@@ -38,8 +38,8 @@ pub(crate) fn under(voltages: Vec<f64>, coordinates: Coordinates) -> Simulation 
 
 /// The model of a simulation and its motion.
 pub(crate) fn moved(system: &System, task: &Simulation) -> (Model, DiscreteTrajectory) {
-    let question = task.question(system, task.step);
-    let model = Model::answering(system.clone(), question).unwrap();
+    let analysis = task.analysis(system, task.step);
+    let model = Model::for_analysis(system.clone(), analysis).unwrap();
     let start = resolve_start(&model, &task.start, "start").unwrap();
     let Voltages::Constant(row) = &task.voltages else {
         panic!("constant voltages")
@@ -144,8 +144,8 @@ fn at_rest_there_is_neither_inertia_nor_friction() {
                 coordinates: Some(coordinates),
                 ..Analysis::of_motion(1.0)
             };
-            let still = Model::answering(system.clone(), task.question(&system)).unwrap();
-            let moving = Model::answering(system.clone(), of_motion).unwrap();
+            let still = Model::for_analysis(system.clone(), task.analysis(&system)).unwrap();
+            let moving = Model::for_analysis(system.clone(), of_motion).unwrap();
             let kinds = |model: &Model| -> Vec<Kind> {
                 let effects = model.action.intervals.terms.iter();
                 effects.map(|e| e.kind()).collect()
@@ -227,8 +227,8 @@ fn what_nothing_moves_is_not_solved_for() {
         let count = |change: &dyn Fn(&mut System, &mut Simulation)| {
             let (mut system, mut task) = (both.clone(), under(volts(10), coordinates));
             change(&mut system, &mut task);
-            let question = task.question(&system, task.step);
-            let model = Model::answering(system, question).unwrap();
+            let analysis = task.analysis(&system, task.step);
+            let model = Model::for_analysis(system, analysis).unwrap();
             model.presolved.system.joints.len()
         };
         assert_eq!(count(&|_, _| {}), 2);
@@ -268,8 +268,8 @@ fn a_free_body_at_rest_leaves_the_tree_reduced() {
     let mut system = trunk(2);
     let stone = cuboid("stone", 5.0, [4.0; 3], Vector3::new(300.0, 0.0, 0.0));
     system.bodies.push(stone);
-    let question = under(hold(2), Coordinates::Reduced).question(&system, 5.0);
-    let model = Model::answering(system.clone(), question).unwrap();
+    let analysis = under(hold(2), Coordinates::Reduced).analysis(&system, 5.0);
+    let model = Model::for_analysis(system.clone(), analysis).unwrap();
     assert_eq!(model.coordinate_count(), 2);
     // What a caller may set in motion is not taken for ground.
     let free = Model::new(system, None, 5.0, &[]).unwrap();

@@ -85,7 +85,7 @@ fn welded_and_fixed_bodies_have_no_unknown() {
         coordinates: Some(Coordinates::Redundant),
         ..Analysis::of_motion(1.0)
     };
-    let model = Model::answering(branched(), redundant.clone()).unwrap();
+    let model = Model::for_analysis(branched(), redundant.clone()).unwrap();
     assert_eq!(model.coordinate_count(), 3 * 12);
     assert_eq!(multipliers(&model), 3 * 6 + 3 * 5);
     assert!(matches!(

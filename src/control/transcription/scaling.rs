@@ -99,7 +99,7 @@ impl Transcription<'_> {
         if self.model.coordinates == Coordinates::Reduced {
             for limit in &control.limits {
                 if let PathConstraint::JointAngle { joint, min, max } = *limit
-                    && let Some(c) = self.model.gauges[joint].coordinate
+                    && let Some(c) = self.model.joint_readings[joint].coordinate
                 {
                     (lower[c], upper[c]) = (lower[c].max(min), upper[c].min(max));
                 }

@@ -18,14 +18,14 @@ pub(super) fn twin(model: &Model) -> Option<Model> {
         curved: Default::default(),
         ..model.analysis.clone()
     };
-    let twin = || Model::answering(model.system.clone(), analysis).ok();
+    let twin = || Model::for_analysis(model.system.clone(), analysis).ok();
     is_other.then(twin).flatten()
 }
 
 /// Coordinates of one model at a configuration of the other.
 pub(super) fn carried(from: &Model, z: &[f64], to: &Model) -> Vec<f64> {
     let instant = from.action.motion.placed(z);
-    let joints = from.joints(&instant, &vec![0.0; from.gauges.len()]);
+    let joints = from.joints(&instant, &vec![0.0; from.joint_readings.len()]);
     to.coordinates_of_poses(&from.poses(&instant), &joints)
 }
 
