@@ -90,7 +90,7 @@ impl BlockSize {
             let is_node = |carrier| matches!(carrier, Carrier::Node(_));
             let terms = &model.vectors[vector].terms;
             match terms.iter().any(|term| is_node(term.carrier)) {
-                true => model.action.motion.support(vector).len(),
+                true => model.action.map.support(vector).len(),
                 false => 0,
             }
         };

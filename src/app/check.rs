@@ -193,7 +193,7 @@ fn sizes(program: &Transcription<'_>, model: &Model) -> Vec<f64> {
         .map(Mesh::shortest_edge)
         .fold(f64::INFINITY, f64::min);
     let size = (edge / model.length()).min(1.0);
-    let nodes = model.action.motion.nodes();
+    let nodes = model.action.map.nodes();
     let of = |column: &Column| match *column {
         Column::Instant { i, .. } if nodes.contains(&i) => size,
         _ => 1.0,

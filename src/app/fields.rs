@@ -95,8 +95,8 @@ impl<'m> SolidStates<'m> {
         Self {
             model,
             history,
-            here: model.action.motion.instant(),
-            there: model.action.motion.instant(),
+            here: model.action.map.instant(),
+            there: model.action.map.instant(),
             none: vec![0.0; model.action.intervals.scalars],
         }
     }
@@ -110,7 +110,7 @@ impl<'m> SolidStates<'m> {
         };
         for (instant, k) in [(&mut self.here, k), (&mut self.there, other)] {
             instant.z.copy_from_slice(&history.z[k]);
-            model.action.motion.place(instant);
+            model.action.map.place(instant);
         }
         let time = history.times[other] - history.times[k];
         let scalars = history.scalars.get(k.saturating_sub(1));

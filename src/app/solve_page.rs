@@ -151,10 +151,10 @@ pub(super) fn goal(model: &Model, boundary: &BoundaryConditions) -> Option<Vec<P
             .copied()
             .collect::<Option<Vec<f64>>>()?,
     };
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     (z.len() == instant.z.len()).then(|| {
         instant.z.copy_from_slice(&z);
-        model.action.motion.place(&mut instant);
+        model.action.map.place(&mut instant);
         model.poses(&instant)
     })
 }

@@ -38,7 +38,7 @@ impl BoundaryConditions {
             return Ok((model, boundary));
         };
         let names_markers = matches!(goal, BoundaryState::Markers { .. });
-        if !names_markers && model.action.motion.of_bodies == 0 {
+        if !names_markers && model.action.map.of_bodies == 0 {
             return Err(error);
         }
         let eased = Control {
@@ -168,7 +168,7 @@ fn coordinates_at_goal(
             let rest = rest_at(model, voltages, "goal")?;
             let reached = match of {
                 Rest::Everything | Rest::Attainable => n,
-                Rest::Bodies => model.action.motion.of_bodies.min(n),
+                Rest::Bodies => model.action.map.of_bodies.min(n),
             };
             for (given, value) in given.iter_mut().zip(&rest.z[..reached]) {
                 *given = Some(*value);
@@ -287,10 +287,10 @@ fn check_muscles(model: &Model, z: &[f64], place: &'static str) -> Result<(), Bo
 
 /// Checks the constraints that the coordinates leave open.
 fn check_constraints(model: &Model, z: &[f64], place: &'static str) -> Result<(), BoundaryError> {
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     let mut scratch = model.action.scratch(Order::Gradient);
     instant.z.copy_from_slice(z);
-    model.action.motion.place(&mut instant);
+    model.action.map.place(&mut instant);
     model
         .action
         .evaluate_instant(Order::Gradient, &mut instant, &[], &mut scratch);

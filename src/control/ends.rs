@@ -31,7 +31,7 @@ pub(super) fn check(
     let start: Vec<_> = boundary.start.z.iter().copied().map(Some).collect();
     let goal = &boundary.goal.coordinates;
     let [at_start, at_goal] = scalars;
-    let first = model.action.motion.unknowns();
+    let first = model.action.map.unknowns();
     let charts = [&boundary.start.z[first..], boundary.goal.charts(first)];
     let ends = [
         ("start", &start, charts[0], at_start, &control.start),
@@ -85,18 +85,18 @@ impl<'a> End<'a> {
         scalars: Option<Vec<f64>>,
     ) -> Self {
         let count = model.coordinate_count();
-        let mut instant = model.action.motion.instant();
+        let mut instant = model.action.map.instant();
         let reference = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
         let values = coordinates.iter().zip(reference);
         for (z, (value, reference)) in instant.z[..count].iter_mut().zip(values) {
             *z = value.unwrap_or(reference);
         }
-        let first = model.action.motion.unknowns();
+        let first = model.action.map.unknowns();
         instant.z[first..]
             .iter_mut()
             .zip(charts)
             .for_each(|(value, chart)| *value = *chart);
-        model.action.motion.vectors(&mut instant);
+        model.action.map.vectors(&mut instant);
         Self {
             model,
             instant,
@@ -129,7 +129,7 @@ impl<'a> End<'a> {
                 return is_known.then(|| self.instant.z[coordinate]);
             }
             let mut instant = self.instant.clone();
-            self.model.action.motion.place(&mut instant);
+            self.model.action.map.place(&mut instant);
             let near = (0..joints.len()).map(|j| self.angles.get(&j).copied().unwrap_or(0.0));
             Some(self.model.joints(&instant, &near.collect::<Vec<_>>())[joint])
         };
@@ -155,11 +155,8 @@ impl<'a> End<'a> {
             _ => {}
         }
         let measure = Site::of(&bounded.quantity).measure(self.model, measure?);
-        let motion = &self.model.action.motion;
-        let mut reads = measure
-            .vectors()
-            .into_iter()
-            .flat_map(|v| motion.support(v));
+        let map = &self.model.action.map;
+        let mut reads = measure.vectors().into_iter().flat_map(|v| map.support(v));
         let is_known = reads.all(|i| self.known[i])
             && measure.scalars().iter().all(|&s| self.scalars[s].is_some());
         let scalars: Vec<f64> = self.scalars.iter().map(|s| s.unwrap_or(0.0)).collect();

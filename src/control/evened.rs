@@ -9,12 +9,9 @@ use crate::coordinates::CoordinateMap;
 const ROUNDING: f64 = 1e-6;
 
 /// The motion as it is where its steps are equal, otherwise at as many equal ones: coordinates along lines, voltages and
-/// potentials of the step that the middle of an interval is in; costates belong to other rows and are left out. `motion` is
+/// potentials of the step that the middle of an interval is in; costates belong to other rows and are left out. `map` is
 /// what the coordinates mean, where they are those of the model.
-pub(super) fn evened<'s>(
-    solved: &'s Solution,
-    motion: Option<&CoordinateMap>,
-) -> Cow<'s, Solution> {
+pub(super) fn evened<'s>(solved: &'s Solution, map: Option<&CoordinateMap>) -> Cow<'s, Solution> {
     let intervals = solved.intervals();
     let end = solved.times[intervals];
     let time = |k: f64| end * k / intervals as f64;
@@ -39,7 +36,7 @@ pub(super) fn evened<'s>(
     };
     let configurations = || {
         let mut z = along(&solved.z);
-        let Some(motion) = motion else {
+        let Some(map) = map else {
             return z;
         };
         for (k, z) in z.iter_mut().enumerate() {
@@ -47,7 +44,7 @@ pub(super) fn evened<'s>(
             let i = step_at(at);
             let part = (at - solved.times[i]) / (solved.times[i + 1] - solved.times[i]);
             let ends = [(1.0 - part, &*solved.z[i]), (part, &*solved.z[i + 1])];
-            motion.mean_of_charts(&ends, z);
+            map.mean_of_charts(&ends, z);
         }
         z
     };

@@ -118,7 +118,7 @@ fn interpolate(
             end
         }
     };
-    let motion = &model.action.motion;
+    let map = &model.action.map;
     let smooth = |s: f64| s * s * (3.0 - 2.0 * s);
     let ends = joints_of(model, start).zip(joints_of(model, &end));
     let z = (0..=intervals).map(|k| {
@@ -134,8 +134,8 @@ fn interpolate(
                 for i in 0..n {
                     z[i] += s * (end[i] - start[i]);
                 }
-                z[n..motion.unknowns()].fill(0.0);
-                motion.mean_of_charts(&[(1.0 - s, start), (s, &end)], &mut z);
+                z[n..map.unknowns()].fill(0.0);
+                map.mean_of_charts(&[(1.0 - s, start), (s, &end)], &mut z);
                 z
             }
         }
@@ -162,9 +162,9 @@ fn interpolate(
 fn joints_of(model: &Model, z: &[f64]) -> Option<Vec<f64>> {
     let tells_all = Graph::new(&model.system).has_one_coordinate_a_joint(&model.system);
     tells_all.then_some(())?;
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     instant.z.copy_from_slice(z);
-    model.action.motion.place(&mut instant);
+    model.action.map.place(&mut instant);
     Some(model.joints(&instant, &vec![0.0; model.joint_readings.len()]))
 }
 
@@ -193,11 +193,11 @@ fn from_solution(
     control: &Control,
     solved: &Solution,
 ) -> InitialGuess {
-    let motion = &model.action.motion;
+    let map = &model.action.map;
     let has_same_coordinates = solved.coordinates == model.coordinates
         && other_mesh(model, &solved.meshes).is_none()
         && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
-    let solved = &*evened(solved, has_same_coordinates.then_some(motion));
+    let solved = &*evened(solved, has_same_coordinates.then_some(map));
     let intervals = control.intervals;
     let before = solved.times[solved.intervals()];
     let duration = control.duration.nearest(before);
@@ -207,7 +207,7 @@ fn from_solution(
     let grids = Grids::new(solved.intervals(), intervals, stretch);
     let carried = Carried {
         stretched: is_stretched.then_some([before, duration]),
-        simulated: !has_same_coordinates && !motion.of_nodes.is_empty(),
+        simulated: !has_same_coordinates && !map.of_nodes.is_empty(),
     };
     if carried.simulated {
         let voltages = |time: f64| {
@@ -222,7 +222,7 @@ fn from_solution(
         };
     }
     let z = match has_same_coordinates {
-        true => resample::coordinates(solved, grids, motion, model.multiplier_time),
+        true => resample::coordinates(solved, grids, map, model.multiplier_time),
         false => along_joints(model, solved, intervals),
     };
     let history = DiscreteTrajectory {

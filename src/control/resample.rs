@@ -102,7 +102,7 @@ fn slope(rows: &[Vec<f64>], i: usize, s: usize) -> f64 {
 pub(super) fn coordinates(
     solved: &Solution,
     grids: Grids,
-    motion: &CoordinateMap,
+    map: &CoordinateMap,
     unit: f64,
 ) -> Vec<Vec<f64>> {
     let impulse = grids.ratio() * solved.multiplier_time / unit;
@@ -113,12 +113,12 @@ pub(super) fn coordinates(
                 *value += weight * old;
             }
         }
-        for multiplier in &mut z[motion.coordinates..motion.unknowns()] {
+        for multiplier in &mut z[map.coordinates..map.unknowns()] {
             *multiplier *= impulse;
         }
         let weights = grids.weights(k);
         let parts = weights.iter().map(|&(j, weight)| (weight, &*solved.z[j]));
-        motion.mean_of_charts(&parts.collect::<Vec<_>>(), &mut z);
+        map.mean_of_charts(&parts.collect::<Vec<_>>(), &mut z);
         z
     };
     (0..=grids.to).map(at).collect()

@@ -46,7 +46,7 @@ impl<'m> AtInstant<'m> {
         };
         let (mut a, mut b) = (here.clone(), here.clone());
         b.z.copy_from_slice(&history.z[1]);
-        model.action.motion.place(&mut b);
+        model.action.map.place(&mut b);
         a.forces.fill(Vector::zeros());
         model.action.evaluate_interval(
             Order::Gradient,
@@ -57,7 +57,7 @@ impl<'m> AtInstant<'m> {
         model
             .action
             .evaluate_instant(Order::Gradient, &mut a, &[], scratch);
-        let mut rows = vec![0.0; model.action.motion.unknowns()];
+        let mut rows = vec![0.0; model.action.map.unknowns()];
         model.action.rows(&mut a, scratch, &mut rows);
         rows[..n].iter().map(|row| -row).collect()
     }
@@ -75,7 +75,7 @@ impl<'m> AtInstant<'m> {
         if let (0, Some(known)) = (k, &history.rates) {
             return known.clone();
         }
-        let is_constrained = model.action.motion.multipliers > 0;
+        let is_constrained = model.action.map.multipliers > 0;
         if history.reading == Reading::Instants || is_constrained {
             let kinetic = self.kinetic.get_or_insert_with(|| Kinetic::new(model));
             if let Some(rates) = kinetic.rates(here, momentum) {

@@ -75,13 +75,13 @@ pub fn out_of_domain(model: &Model, history: &DiscreteTrajectory) -> Vec<OutOfDo
     if watched.is_empty() {
         return Vec::new();
     }
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     for (k, z) in history.z.iter().enumerate() {
         let Some(scalars) = history.scalars.get(k.saturating_sub(1)) else {
             continue;
         };
         instant.z.copy_from_slice(z);
-        model.action.motion.vectors(&mut instant);
+        model.action.map.vectors(&mut instant);
         for one in &mut watched {
             one.look(&instant.x, scalars, history.times[k]);
         }

@@ -146,8 +146,8 @@ fn switches(model: &Model, history: &DiscreteTrajectory) -> Vec<usize> {
 /// Points that show a motion, by instant, in mm: markers; of each body the centre and the ends of its directors at the radius
 /// of gyration; nodes.
 fn places(model: &Model, history: &DiscreteTrajectory, motion: &Trajectory) -> Vec<Vec<Vector>> {
-    let nodes = &model.action.motion.of_nodes;
-    let first = model.action.motion.of_bodies;
+    let nodes = &model.action.map.of_nodes;
+    let first = model.action.map.of_bodies;
     let radius: Vec<f64> = model
         .system
         .bodies

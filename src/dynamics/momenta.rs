@@ -90,7 +90,7 @@ fn iterated(model: &Model, instant: &mut Configuration, momentum: &[f64]) -> Vec
 pub fn last_momentum(model: &Model, history: &DiscreteTrajectory) -> Option<Vec<f64>> {
     let (scalars, k) = (history.scalars.last()?, history.intervals() - 1);
     let action = &model.action;
-    let mut ends = [k, k + 1].map(|k| action.motion.placed(&history.z[k]));
+    let mut ends = [k, k + 1].map(|k| action.map.placed(&history.z[k]));
     let mut scratch = action.scratch(Order::Gradient);
     let interval = Interval {
         sides: BlockMask::FORWARD,
@@ -98,11 +98,9 @@ pub fn last_momentum(model: &Model, history: &DiscreteTrajectory) -> Option<Vec<
     };
     let [here, next] = &mut ends;
     action.evaluate_interval(Order::Gradient, [here, next], &interval, &mut scratch);
-    let mut momentum = vec![0.0; action.motion.coordinates];
+    let mut momentum = vec![0.0; action.map.coordinates];
     let forces = &scratch.interval.plain.forces[1];
-    action
-        .motion
-        .pull_back(&next.columns, forces, &mut momentum);
+    action.map.pull_back(&next.columns, forces, &mut momentum);
     momentum.iter().all(|p| p.is_finite()).then_some(momentum)
 }
 
@@ -110,7 +108,7 @@ pub fn last_momentum(model: &Model, history: &DiscreteTrajectory) -> Option<Vec<
 pub(super) fn moving(model: &Model, instant: &mut Configuration, rates: &[f64]) -> Vec<Vector> {
     instant.l.fill(0.0);
     instant.l[..rates.len()].copy_from_slice(rates);
-    model.action.motion.along(instant);
+    model.action.map.along(instant);
     vector_momenta(model, &instant.x, &instant.w)
 }
 

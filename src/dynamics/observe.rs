@@ -151,8 +151,8 @@ impl<'m> Observer<'m> {
     fn new(model: &'m Model) -> Self {
         Self {
             model,
-            before: model.action.motion.instant(),
-            here: model.action.motion.instant(),
+            before: model.action.map.instant(),
+            here: model.action.map.instant(),
             scratch: model.action.scratch(Order::Gradient),
             at_instant: AtInstant::new(model),
             // Internal coordinates act on bodies by constraints, and pull at nothing.
@@ -167,7 +167,7 @@ impl<'m> Observer<'m> {
     fn begin(&mut self, history: &DiscreteTrajectory, k: usize) {
         if let Some(k) = k.checked_sub(1) {
             self.before.z.copy_from_slice(&history.z[k]);
-            self.model.action.motion.place(&mut self.before);
+            self.model.action.map.place(&mut self.before);
         }
     }
 
@@ -192,7 +192,7 @@ impl<'m> Observer<'m> {
         let (model, end) = (self.model, history.intervals());
         let scalars = &history.scalars[end - 1];
         self.here.z.copy_from_slice(&history.z[end]);
-        model.action.motion.place(&mut self.here);
+        model.action.map.place(&mut self.here);
         self.before.clone_from(&self.here);
         let potential = energies(model, &self.here, &self.here, scalars, 1.0).potential;
         let immobile = model.solids.iter();
@@ -271,7 +271,7 @@ impl<'m> Observer<'m> {
         let none = vec![0.0; model.action.intervals.scalars];
         let scalars = history.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
         self.here.z.copy_from_slice(&history.z[k]);
-        model.action.motion.place(&mut self.here);
+        model.action.map.place(&mut self.here);
         let is_at_instant = k == 0 || history.reading == Reading::Instants;
         let h = match is_at_instant {
             true => {

@@ -38,9 +38,9 @@ impl Start {
 
     /// With given rates of the coordinates.
     pub fn with_rates(model: &Model, z: Vec<f64>, rates: &[f64]) -> Self {
-        let mut instant = model.action.motion.instant();
+        let mut instant = model.action.map.instant();
         instant.z.copy_from_slice(&z);
-        model.action.motion.place(&mut instant);
+        model.action.map.place(&mut instant);
         let momentum = model.action.momentum(&mut instant, rates);
         Self {
             z,
@@ -51,7 +51,7 @@ impl Start {
 
     /// With the momentum of each coordinate.
     pub fn moving(model: &Model, z: Vec<f64>, momentum: Vec<f64>) -> Self {
-        let mut instant = model.action.motion.placed(&z);
+        let mut instant = model.action.map.placed(&z);
         let rates = rates(model, &mut instant, &momentum);
         Self {
             z,
@@ -63,8 +63,8 @@ impl Start {
     /// With a velocity of the centre of mass (mm/ms) and an angular velocity (rad/ms), both in the ground frame, of each body that is solved for;
     /// nodes rest. What the coordinates do not let move counts as an impulse on its supports.
     pub fn with_velocities(model: &Model, z: Vec<f64>, velocities: &[[Vector; 2]]) -> Self {
-        let motion = &model.action.motion;
-        let instant = motion.placed(&z);
+        let map = &model.action.map;
+        let instant = map.placed(&z);
         let poses = model.condensed_poses(&instant);
         let rate = |vector: &MaterialVector| {
             let terms = vector.terms.iter().map(|term| match term.carrier {
@@ -79,7 +79,7 @@ impl Start {
         let rates: Vec<Vector> = model.vectors.iter().map(rate).collect();
         let momenta = vector_momenta(model, &instant.x, &rates);
         let mut momentum = vec![0.0; model.coordinate_count()];
-        motion.pull_back(&instant.columns, &momenta, &mut momentum);
+        map.pull_back(&instant.columns, &momenta, &mut momentum);
         Self {
             z,
             momentum,
@@ -296,16 +296,16 @@ impl DiscreteTrajectory {
     /// Returns true if its lists have the lengths of a motion of this model.
     fn is_of(&self, model: &Model) -> bool {
         let (instants, intervals) = (self.times.len(), self.scalars.len());
-        let motion = &model.action.motion;
+        let map = &model.action.map;
         let have = |rows: &[Vec<f64>], length: usize| rows.iter().all(|row| row.len() == length);
-        let n = motion.coordinates;
+        let n = map.coordinates;
         instants == intervals + 1
             && [self.z.len(), self.momenta.len()] == [instants; 2]
-            && have(&self.z, motion.instant().z.len())
+            && have(&self.z, map.instant().z.len())
             && have(&self.momenta, n)
             && have(&self.scalars, model.action.intervals.scalars)
             && self.rates.as_ref().is_none_or(|rates| rates.len() == n)
-            && self.z.iter().all(|z| motion.has_unit_charts(z))
+            && self.z.iter().all(|z| map.has_unit_charts(z))
     }
 
     /// Takes in the step between two times in ms, with the voltages in its middle.

@@ -48,7 +48,7 @@ pub(super) fn shortest(model: &Model, at: &Configuration) -> Option<(usize, f64)
 
 /// The first lumped muscle whose ends meet at coordinates.
 pub fn muscle_without_length(model: &Model, coordinates: &[f64]) -> Option<usize> {
-    let instant = model.action.motion.placed(coordinates);
+    let instant = model.action.map.placed(coordinates);
     let (muscle, stretch) = shortest(model, &instant)?;
     (stretch < NOTHING).then_some(muscle)
 }
@@ -66,10 +66,10 @@ pub(super) fn is_inverted(model: &Model, at: &Configuration, scalars: &[f64]) ->
 
 /// The first interval of a motion in which the span of a lumped muscle turns by a right angle or more, and the muscle.
 pub fn reversed_muscle(model: &Model, history: &DiscreteTrajectory) -> Option<(usize, usize)> {
-    let motion = &model.action.motion;
+    let map = &model.action.map;
     let mut pairs = history.z.windows(2).enumerate();
     pairs.find_map(|(k, ends)| {
-        let muscle = reversed(model, &motion.placed(&ends[0]), &motion.placed(&ends[1]))?;
+        let muscle = reversed(model, &map.placed(&ends[0]), &map.placed(&ends[1]))?;
         Some((k, muscle))
     })
 }

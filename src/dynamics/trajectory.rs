@@ -25,7 +25,7 @@ pub struct Trajectory {
 impl Trajectory {
     /// The motion of a model: poses, joint coordinates without jumps, and a voltage for every muscle.
     pub fn from_history(model: &Model, history: &DiscreteTrajectory) -> Self {
-        let mut instant = model.action.motion.instant();
+        let mut instant = model.action.map.instant();
         let mut near = vec![0.0; model.joint_readings.len()];
         let mut trajectory = Self {
             times: history.times.clone(),
@@ -33,7 +33,7 @@ impl Trajectory {
         };
         for z in &history.z {
             instant.z.copy_from_slice(z);
-            model.action.motion.vectors(&mut instant);
+            model.action.map.vectors(&mut instant);
             near = model.joints(&instant, &near);
             let with_coordinate = near
                 .iter()

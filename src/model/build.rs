@@ -103,14 +103,14 @@ impl Model {
         let measures = construction.measures(&variables, &markers, &mut vectors);
         let list = vectors.list();
         let multipliers = made.multipliers.len();
-        let motion = construction.coordinate_map(&graph, list, multipliers);
+        let map = construction.coordinate_map(&graph, list, multipliers);
         let scalars = variables.of(Time::Interval).len();
         let intervals = Functional::new(intervals, measures.intervals, list.len(), scalars);
         let instants = Functional::new(made.terms, measures.instants, list.len(), multipliers);
-        construction.name_unknowns(&graph, &motion, made.multipliers, &mut variables);
+        construction.name_unknowns(&graph, &map, made.multipliers, &mut variables);
         Ok(Self {
             coordinates,
-            action: Reduced::new(motion, intervals, instants),
+            action: Reduced::new(map, intervals, instants),
             vectors: list.to_vec(),
             variables,
             reached,
@@ -300,7 +300,7 @@ impl Construction<'_> {
     fn name_unknowns(
         &self,
         graph: &Graph,
-        motion: &CoordinateMap,
+        map: &CoordinateMap,
         multipliers: Vec<String>,
         variables: &mut Variables,
     ) {
@@ -308,12 +308,12 @@ impl Construction<'_> {
             coordinates: self.coordinates,
             system: &self.presolved.system,
             graph,
-            motion,
+            map,
             nodes: &self.blocks.names,
             solids: &self.blocks.list,
             internals: &self.internals.list,
         };
-        (0..motion.coordinates).for_each(|i| _ = variables.add(named.coordinate(i)));
+        (0..map.coordinates).for_each(|i| _ = variables.add(named.coordinate(i)));
         let multiplier = |name| Variable::of(Role::Multiplier, name, Size::Unknown);
         multipliers
             .into_iter()

@@ -71,7 +71,7 @@ impl Model {
 
     /// Number of coordinates of an instant, without multipliers.
     pub fn coordinate_count(&self) -> usize {
-        self.action.motion.coordinates
+        self.action.map.coordinates
     }
 
     /// Coordinates of an instant at given joint coordinates (rad or mm, by joint; zero where a joint has none): other joints and
@@ -79,7 +79,7 @@ impl Model {
     pub fn coordinates_at(&self, joints: &[f64]) -> Vec<f64> {
         match self.coordinates {
             Coordinates::Reduced => {
-                let mut z = self.action.motion.instant().z;
+                let mut z = self.action.map.instant().z;
                 for (reading, &value) in self.joint_readings.iter().zip(joints) {
                     if let Some(c) = reading.coordinate {
                         z[c] = value;
@@ -99,7 +99,7 @@ impl Model {
 
     /// Director coordinates of given poses, with joint coordinates (by joint of the scene) that count whole turns; multipliers zero.
     pub(super) fn coordinates_of(&self, poses: &[Pose], joints: &[f64]) -> Vec<f64> {
-        let mut z = vec![0.0; self.action.motion.unknowns()];
+        let mut z = vec![0.0; self.action.map.unknowns()];
         for (body, pose) in poses.iter().enumerate() {
             let q = &mut z[12 * body..12 * body + 12];
             q[..3].copy_from_slice(pose.centre.as_slice());
@@ -112,7 +112,7 @@ impl Model {
 
     /// Gives internal coordinates their values at joint coordinates or their rates (by joint of the scene).
     fn place_internals(&self, z: &mut [f64], joints: &[f64]) {
-        let internals = z[self.action.motion.internal()].iter_mut();
+        let internals = z[self.action.map.internal()].iter_mut();
         for (value, internal) in internals.zip(&self.internals) {
             *value = joints[self.presolved.joints[internal.joint]];
         }
@@ -122,7 +122,7 @@ impl Model {
     pub fn rates_of_all(&self, bodies: &[f64], joints: &[f64]) -> Vec<f64> {
         let zeros = || vec![0.0; self.coordinate_count()];
         let mut rates = self.node_rates().unwrap_or_else(zeros);
-        let count = bodies.len().min(self.action.motion.of_bodies);
+        let count = bodies.len().min(self.action.map.of_bodies);
         rates[..count].copy_from_slice(&bodies[..count]);
         self.place_internals(&mut rates, joints);
         rates
@@ -130,18 +130,18 @@ impl Model {
 
     /// Puts the nodes at their reference places.
     fn place_nodes(&self, z: &mut [f64]) {
-        let motion = &self.action.motion;
-        for (value, &(node, axis)) in z[motion.of_bodies..].iter_mut().zip(&motion.of_nodes) {
+        let map = &self.action.map;
+        for (value, &(node, axis)) in z[map.of_bodies..].iter_mut().zip(&map.of_nodes) {
             *value = self.nodes[node].reference[axis];
         }
     }
 
     /// Rates of the coordinates of the nodes at the start, after zeros for those of the bodies; `None` at rest.
     pub fn node_rates(&self) -> Option<Vec<f64>> {
-        let motion = &self.action.motion;
-        let mut rates = vec![0.0; motion.coordinates];
+        let map = &self.action.map;
+        let mut rates = vec![0.0; map.coordinates];
         let mut moves = false;
-        for (rate, &(node, axis)) in rates[motion.of_bodies..].iter_mut().zip(&motion.of_nodes) {
+        for (rate, &(node, axis)) in rates[map.of_bodies..].iter_mut().zip(&map.of_nodes) {
             let (block, node) = self.node_names[node];
             if let Some(velocity) = self.solids[block].solid.velocities.get(node) {
                 *rate = velocity[axis];
@@ -153,10 +153,10 @@ impl Model {
 
     /// Returns the symmetry of the tangent of a step: symmetric if all coordinates are nodes', and every force has a potential.
     pub fn step_symmetry(&self) -> Symmetry {
-        let motion = &self.action.motion;
+        let map = &self.action.map;
         let terms = &self.action.intervals.terms;
         let has_potential = terms.iter().all(|e| e.kind() != Kind::VirtualWork);
-        match motion.of_bodies == 0 && motion.multipliers == 0 && has_potential {
+        match map.of_bodies == 0 && map.multipliers == 0 && has_potential {
             true => Symmetry::Symmetric,
             false => Symmetry::Unsymmetric,
         }
@@ -186,7 +186,7 @@ impl Model {
                 .collect(),
             Coordinates::Redundant => {
                 let mut joints = self.read_joints(&self.poses(instant), near);
-                let internals = instant.z[self.action.motion.internal()].iter();
+                let internals = instant.z[self.action.map.internal()].iter();
                 for (value, internal) in internals.zip(&self.internals) {
                     joints[self.presolved.joints[internal.joint]] = *value;
                 }
@@ -204,7 +204,7 @@ impl Model {
     /// Poses of the presolved bodies at an instant, which carry the vectors.
     pub fn condensed_poses(&self, instant: &Configuration) -> Vec<Pose> {
         let bodies = self.presolved.system.bodies.len();
-        self.action.motion.poses(instant, bodies)
+        self.action.map.poses(instant, bodies)
     }
 
     /// Inputs of an interval from one voltage a source; sought parameters are at their guesses.

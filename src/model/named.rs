@@ -18,7 +18,7 @@ pub(super) struct Named<'a> {
     /// The presolved system.
     pub(super) system: &'a System,
     pub(super) graph: &'a Graph,
-    pub(super) motion: &'a CoordinateMap,
+    pub(super) map: &'a CoordinateMap,
     /// Block and node of the mesh of each node with coordinates.
     pub(super) nodes: &'a [(usize, usize)],
     pub(super) solids: &'a [SolidBlock],
@@ -28,13 +28,13 @@ pub(super) struct Named<'a> {
 impl Named<'_> {
     /// Coordinate `i` of an instant.
     pub(super) fn coordinate(&self, i: usize) -> Variable {
-        let internal = i.checked_sub(self.motion.internal().start);
+        let internal = i.checked_sub(self.map.internal().start);
         if let Some(Internal { name, size, .. }) = internal.map(|index| &self.internals[index]) {
             return Variable::of(Role::Coordinate, name.clone(), *size);
         }
-        let (name, size) = match i.checked_sub(self.motion.of_bodies) {
+        let (name, size) = match i.checked_sub(self.map.of_bodies) {
             Some(place) => {
-                let (node, axis) = self.motion.of_nodes[place];
+                let (node, axis) = self.map.of_nodes[place];
                 let (block, node) = self.nodes[node];
                 let name = &self.solids[block].solid.name;
                 let axis = ["x", "y", "z"][axis];

@@ -6,9 +6,9 @@ impl Model {
     /// Reference place in mm of each unknown of a step: that of its node for a coordinate of a node and a potential of one node, none
     /// for others.
     pub fn unknown_places(&self) -> Vec<Option<[f64; 3]>> {
-        let motion = &self.action.motion;
+        let map = &self.action.map;
         let mut places = vec![None; self.variables.unknown_count()];
-        for (place, &(node, _)) in places[motion.of_bodies..].iter_mut().zip(&motion.of_nodes) {
+        for (place, &(node, _)) in places[map.of_bodies..].iter_mut().zip(&map.of_nodes) {
             *place = Some(self.nodes[node].reference.into());
         }
         let mut readers = vec![0; places.len()];

@@ -88,10 +88,10 @@ impl Skins {
         let places = parts.iter().map(|(skin, _)| skin.reference.len()).sum();
         let instants = shown(&history.times, places);
         let none = vec![0.0; model.action.intervals.scalars];
-        let mut instant = model.action.motion.instant();
+        let mut instant = model.action.map.instant();
         for &k in &instants {
             instant.z.copy_from_slice(&history.z[k]);
-            model.action.motion.vectors(&mut instant);
+            model.action.map.vectors(&mut instant);
             let scalars = history.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
             for (block, (skin, nodes)) in model.solids.iter().zip(&mut parts) {
                 let vectors = nodes.iter().map(|&n| instant.x[block.vectors[n]]);

@@ -312,7 +312,7 @@ fn markers(model: &Model, names: &[String]) -> Vec<usize> {
 
 /// Places of the markers with these names at coordinates z.
 fn marks(model: &Model, z: &[f64], names: &[String]) -> Vec<Vector3<f64>> {
-    let instant = model.action.motion.placed(z);
+    let instant = model.action.map.placed(z);
     let all: Vec<_> = model.markers.iter().map(|&v| instant.x[v]).collect();
     markers(model, names).into_iter().map(|m| all[m]).collect()
 }

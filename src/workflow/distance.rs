@@ -143,7 +143,7 @@ fn each(
             next(Kind::Angle, 2.0 * half.min(1.0).asin());
         }
     }
-    let nodes = model.action.motion.nodes();
+    let nodes = model.action.map.nodes();
     for (a, b) in motion.z[k][nodes.clone()].iter().zip(&other.z[l][nodes]) {
         next(Kind::Length, (a - b).abs() / 1e3);
     }

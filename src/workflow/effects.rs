@@ -143,37 +143,37 @@ pub fn coupling(model: &Model, i: usize, j: usize) -> Vec<String> {
 fn each(model: &Model) -> impl Iterator<Item = Coupled<'_>> {
     let sums = [&model.action.intervals, &model.action.instants];
     let effects = sums.into_iter().flat_map(|sum| &sum.terms);
-    effects.map(|effect| Coupled::new(effect.as_ref(), &model.action.motion))
+    effects.map(|effect| Coupled::new(effect.as_ref(), &model.action.map))
 }
 
 impl<'a> Coupled<'a> {
-    fn new(effect: &'a dyn Term, motion: &CoordinateMap) -> Self {
+    fn new(effect: &'a dyn Term, map: &CoordinateMap) -> Self {
         let mut couplings = Couplings::default();
         effect.couple(&mut couplings, &mut Vec::new());
-        let scalar = |s: usize| motion.coordinates + s;
+        let scalar = |s: usize| map.coordinates + s;
         let mut pairs: Vec<[u32; 2]> = Vec::new();
         let mut add = |a: usize, b: usize| pairs.push([a.min(b) as u32, a.max(b) as u32]);
         // Pairs of vectors come in both orders.
         for &(a, b) in couplings.full.iter().filter(|(a, b)| a <= b) {
-            let others = motion.support(b);
-            for i in motion.support(a) {
+            let others = map.support(b);
+            for i in map.support(a) {
                 others.iter().for_each(|&j| add(i, j));
             }
         }
         for &(a, b) in couplings.isotropic.iter().filter(|(a, b)| a <= b) {
             // Directors and nodes couple component by component, joint coordinates all with all.
-            let meets = |i, j| match (axis(motion, i), axis(motion, j)) {
+            let meets = |i, j| match (axis(map, i), axis(map, j)) {
                 (Some(a), Some(b)) => a == b,
                 _ => true,
             };
-            let others = motion.support(b);
-            for i in motion.support(a) {
+            let others = map.support(b);
+            for i in map.support(a) {
                 let others = others.iter().filter(|&&j| meets(i, j));
                 others.for_each(|&j| add(i, j));
             }
         }
         for &(a, s) in &couplings.mixed {
-            let support = motion.support(a).into_iter();
+            let support = map.support(a).into_iter();
             support.for_each(|i| add(i, scalar(s)));
         }
         for &(s, t) in &couplings.scalars {
@@ -253,9 +253,9 @@ impl<'a> Coupled<'a> {
 }
 
 /// Direction of a coordinate that moves along one; `None` for a joint's.
-fn axis(motion: &CoordinateMap, i: usize) -> Option<usize> {
-    match i.checked_sub(motion.of_bodies) {
-        Some(of_node) => motion.of_nodes.get(of_node).map(|&(_, axis)| axis),
-        None => motion.tree.is_none().then_some(i % 3),
+fn axis(map: &CoordinateMap, i: usize) -> Option<usize> {
+    match i.checked_sub(map.of_bodies) {
+        Some(of_node) => map.of_nodes.get(of_node).map(|&(_, axis)| axis),
+        None => map.tree.is_none().then_some(i % 3),
     }
 }

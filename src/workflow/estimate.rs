@@ -50,8 +50,8 @@ impl ErrorSample {
             }
             let mut places: Vec<_> = motion.poses[k].iter().map(|p| p.centre / length).collect();
             let bodies = places.len();
-            let coordinates = history.z[k][model.action.motion.nodes()].iter();
-            for (value, &(node, axis)) in coordinates.zip(&model.action.motion.of_nodes) {
+            let coordinates = history.z[k][model.action.map.nodes()].iter();
+            for (value, &(node, axis)) in coordinates.zip(&model.action.map.of_nodes) {
                 let least = bodies + node + 1;
                 places.resize(least.max(places.len()), Vector3::zeros());
                 places[least - 1][axis] = value / length;
@@ -74,7 +74,7 @@ impl ErrorSample {
         let poses = &motion.poses[last];
         let directors = poses.iter().flat_map(|p| p.directors.iter().copied());
         let centres = poses.iter().flat_map(|p| p.centre.iter());
-        let nodes = &history.z[last][model.action.motion.nodes()];
+        let nodes = &history.z[last][model.action.map.nodes()];
         let lengths = centres.chain(nodes).map(|x| x / length);
         Self {
             path: (0..=last).map(places).collect(),

@@ -125,7 +125,7 @@ pub fn integrate_to(
                 },
                 intervals: run.history.intervals(),
                 iterations: run.history.report.iterations,
-                variables: steps * run.model.action.motion.unknowns(),
+                variables: steps * run.model.action.map.unknowns(),
                 status,
                 is_complete,
                 run,

@@ -83,9 +83,9 @@ fn miss(control: &Control, optimum: &Optimum) -> Option<String> {
         return None;
     }
     let placed = |z: &[f64]| {
-        let mut instant = model.action.motion.instant();
+        let mut instant = model.action.map.instant();
         instant.z[..z.len()].copy_from_slice(z);
-        model.action.motion.place(&mut instant);
+        model.action.map.place(&mut instant);
         instant
     };
     let [end, before] = [n, n - 1].map(|k| placed(&history.z[k]));
@@ -143,9 +143,9 @@ fn distances(
             let Some(rest) = &boundary.goal.rest else {
                 return Vec::new();
             };
-            let mut there = model.action.motion.instant();
+            let mut there = model.action.map.instant();
             there.z.copy_from_slice(&rest.z);
-            model.action.motion.place(&mut there);
+            model.action.map.place(&mut there);
             let markers = 0..model.markers.len();
             let places = markers.map(|m| of_marker(m, &there.x[model.markers[m]].into()));
             let (asked, found) = (joints(&there), joints(end));
@@ -181,7 +181,7 @@ fn changes(control: &Control, optimum: &Optimum) -> Vec<String> {
     if optimum.active.iter().any(|active| active.is_voltage) {
         lines.push("change: wider voltage_bounds, if the muscles withstand them".to_owned());
     }
-    let has_nodes = !model.action.motion.of_nodes.is_empty();
+    let has_nodes = !model.action.map.of_nodes.is_empty();
     if has_nodes && optimum.boundary.goal.rests == Rests::Everything {
         let few = "a few voltages cannot bring every node of an elastic block to rest";
         lines.push(format!("change: \"rest\": \"bodies\" in the goal; {few}"));

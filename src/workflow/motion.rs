@@ -99,10 +99,10 @@ pub fn trajectory(model: &Model, solved: &Solution) -> Trajectory {
 
 /// Places of the markers at instants with coordinates z.
 fn marks(model: &Model, z: &[Vec<f64>]) -> Vec<Vec<Vector>> {
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     let mut at = |z: &Vec<f64>| {
         instant.z.copy_from_slice(z);
-        model.action.motion.vectors(&mut instant);
+        model.action.map.vectors(&mut instant);
         model.markers.iter().map(|&v| instant.x[v]).collect()
     };
     z.iter().map(&mut at).collect()

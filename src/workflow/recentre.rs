@@ -9,12 +9,12 @@ const FAR: f64 = std::f64::consts::FRAC_PI_3;
 
 /// The motion with charts where its bodies are, where it ends far from those that it has.
 pub(crate) fn recentred(model: &Model, history: &DiscreteTrajectory) -> Option<InitialGuess> {
-    let motion = &model.action.motion;
-    let is_far = |z: &Vec<f64>| motion.angle_from_charts(z) > FAR;
+    let map = &model.action.map;
+    let is_far = |z: &Vec<f64>| map.angle_from_charts(z) > FAR;
     history.z.iter().any(is_far).then(|| {
         let z = history.z.iter().map(|z| {
-            let mut instant = motion.placed(z);
-            motion.recentre(&mut instant);
+            let mut instant = map.placed(z);
+            map.recentre(&mut instant);
             instant.z
         });
         InitialGuess {

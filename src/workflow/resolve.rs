@@ -37,7 +37,7 @@ pub(crate) fn with_found(
     };
     let system = with_parameters(system, &control.parameters, &values);
     let (model, boundary) = resolve(&system, &given)?;
-    if model.action.motion.unknowns() != sought.action.motion.unknowns() {
+    if model.action.map.unknowns() != sought.action.map.unknowns() {
         return Err(WorkflowError::Problem {
             place: "control.free".to_owned(),
             reason: "with the values found other parts of the system move than with the guesses; take other guesses"

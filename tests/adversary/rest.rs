@@ -22,7 +22,7 @@ fn rest(robot: &Robot, h: f64, coordinates: Option<Coordinates>) -> Places {
     if found.is_stable() != Some(true) {
         return Err("unstable".to_owned());
     }
-    let poses = model.poses(&model.action.motion.placed(&found.z));
+    let poses = model.poses(&model.action.map.placed(&found.z));
     let bodies = model.system.bodies.iter().zip(poses);
     Ok(bodies
         .map(|(b, pose)| (b.name.clone(), pose.centre))

@@ -188,9 +188,9 @@ pub(crate) fn at_reference(model: &Model) -> Vec<f64> {
 
 /// A placed instant.
 pub(crate) fn placed(model: &Model, z: &[f64]) -> Configuration {
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     instant.z.copy_from_slice(z);
-    model.action.motion.place(&mut instant);
+    model.action.map.place(&mut instant);
     instant
 }
 

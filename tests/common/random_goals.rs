@@ -116,9 +116,9 @@ impl Goals {
             let Ok(rest) = equilibrium(model, &zero, &model.scalars(&voltages)) else {
                 continue;
             };
-            let mut instant = model.action.motion.instant();
+            let mut instant = model.action.map.instant();
             instant.z.copy_from_slice(&rest.z);
-            model.action.motion.place(&mut instant);
+            model.action.map.place(&mut instant);
             let tip = instant.x[model.markers[0]];
             let json = match kind {
                 Kind::Rest => {

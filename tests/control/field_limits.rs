@@ -33,9 +33,9 @@ fn largest_field(ran: &Ran) -> [f64; 2] {
     // Ends of each muscle, from the poses of the bodies.
     let span = |k: usize, muscle: &proboscis::model::system::Muscle| {
         let values: Vec<f64> = joints.iter().map(|list| list[k]).collect();
-        let mut instant = model.action.motion.instant();
+        let mut instant = model.action.map.instant();
         instant.z.copy_from_slice(&model.coordinates_at(&values));
-        model.action.motion.place(&mut instant);
+        model.action.map.place(&mut instant);
         let poses = model.poses(&instant);
         let end = |a: &proboscis::model::system::Attachment| match a.body {
             None => a.at,
@@ -227,9 +227,9 @@ fn solved_field(problem: &Value) -> (f64, f64) {
         .z
         .iter()
         .map(|z| {
-            let mut instant = model.action.motion.instant();
+            let mut instant = model.action.map.instant();
             instant.z.copy_from_slice(z);
-            model.action.motion.vectors(&mut instant);
+            model.action.map.vectors(&mut instant);
             model.solids[0].places(&instant.x)
         })
         .collect();

@@ -50,9 +50,9 @@ fn solve(goal: &Goal, kind: Kind) -> bool {
         ControlFlow::Continue(())
     });
     assert_eq!(failure, None);
-    let mut end = model.action.motion.instant();
+    let mut end = model.action.map.instant();
     end.z.copy_from_slice(&history.z[steps]);
-    model.action.motion.place(&mut end);
+    model.action.map.place(&mut end);
     let far = (end.x[model.markers[0]] - goal.tip).norm();
     assert!(far < 1e-4, "{far} mm from {}", goal.json);
     let momentum = history.momenta[steps]

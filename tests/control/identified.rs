@@ -68,7 +68,7 @@ fn measured(system: &System) -> Vec<Signal> {
     let joints: Vec<Vec<f64>> = history
         .z
         .iter()
-        .map(|z| model.joints(&model.action.motion.placed(z), &zero))
+        .map(|z| model.joints(&model.action.map.placed(z), &zero))
         .collect();
     let signal = |joint: usize| Signal::Table {
         times: history.times.clone(),

@@ -111,9 +111,9 @@ impl Interval {
         let mut random = Random(21);
         let vectors = [0.1, 0.4].map(|size| {
             let joints: Vec<f64> = (0..4).map(|_| size * random.unit()).collect();
-            let mut instant = model.action.motion.instant();
+            let mut instant = model.action.map.instant();
             instant.z = model.coordinates_at(&joints);
-            model.action.motion.place(&mut instant);
+            model.action.map.place(&mut instant);
             instant.x
         });
         let scalars = model.scalars(&BRANCHED_VOLTAGES);

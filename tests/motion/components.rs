@@ -260,9 +260,9 @@ fn forces_of_a_path_are_those_of_its_length() {
         .evaluate_interval(Order::Gradient, ends, &interval, &mut scratch);
     let mut forces = [0.0; 3];
     for instant in [&mut a, &mut b] {
-        model.action.motion.tangent(instant);
+        model.action.map.tangent(instant);
         let mut rows = [0.0; 3];
-        model.action.motion.rows(instant, &mut rows);
+        model.action.map.rows(instant, &mut rows);
         forces.iter_mut().zip(rows).for_each(|(f, row)| *f += row);
     }
     for i in 0..3 {

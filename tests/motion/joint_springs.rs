@@ -115,7 +115,7 @@ fn a_joint_without_a_spring_has_no_unknown_and_no_term_of_one() {
         let (with, without) = (of(&with), of(&without));
         let [a, b] = [&with, &without].map(|m| m.coordinate_count());
         assert_eq!(a, b + more);
-        let [a, b] = [&with, &without].map(|m| m.action.motion.multipliers);
+        let [a, b] = [&with, &without].map(|m| m.action.map.multipliers);
         assert_eq!(a, b + more);
         let names = |model: &Model, term: &str| model.present.iter().any(|p| p.term == term);
         assert!(names(&with, "joint elasticity") && !names(&without, "joint elasticity"));

@@ -72,8 +72,8 @@ fn nothing_moves_when_charts_follow() {
         let z = anywhere(&model, &mut random);
         let before = placed(&model, &z);
         let mut after = before.clone();
-        assert!(model.action.motion.recentre(&mut after));
-        let charted = model.action.motion.charted();
+        assert!(model.action.map.recentre(&mut after));
+        let charted = model.action.map.charted();
         assert!(
             charted
                 .iter()
@@ -166,26 +166,26 @@ fn velocities_of_bodies_are_rates_of_coordinates() {
 fn charts_are_exchanged_and_the_configuration_stays() {
     for system in [ball(), satellite()] {
         let model = Model::new(system, None, 1.0, &[]).unwrap();
-        let motion = &model.action.motion;
+        let map = &model.action.map;
         let mut random = Random(3);
         let (z, other) = (anywhere(&model, &mut random), anywhere(&model, &mut random));
         let mut taken = z.clone();
-        motion.take_charts(&other, &mut taken);
+        map.take_charts(&other, &mut taken);
         let mut wrong = taken.clone();
         wrong[model.coordinate_count()] += 0.1;
-        assert!(motion.has_unit_charts(&taken) && !motion.has_unit_charts(&wrong));
+        assert!(map.has_unit_charts(&taken) && !map.has_unit_charts(&wrong));
         assert_eq!(
             taken[model.coordinate_count()..],
             other[model.coordinate_count()..]
         );
-        assert!(motion.angle_from_charts(&taken) > 1.0);
+        assert!(map.angle_from_charts(&taken) > 1.0);
         let (a, b) = (placed(&model, &z), placed(&model, &taken));
         for (a, b) in a.x.iter().zip(&b.x) {
             assert!((a - b).amax() < 1e-12 * 300.0);
         }
         // Half way between two configurations the rotation has half of the angle.
         let mut mean = z.clone();
-        motion.mean_of_charts(&[(0.5, &z), (0.5, &other)], &mut mean);
+        map.mean_of_charts(&[(0.5, &z), (0.5, &other)], &mut mean);
         let [from, half, to] = [&z, &mean, &other].map(|z| {
             let body = model.system.bodies.len() - 1;
             let joint = model.poses(&placed(&model, z));

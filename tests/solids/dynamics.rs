@@ -32,9 +32,9 @@ fn run(system: System, h: f64, steps: usize, voltages: &[f64]) -> (Model, Discre
 
 /// Places of the nodes of the first block at instant k.
 fn places(model: &Model, history: &DiscreteTrajectory, k: usize) -> Vec<Vector3<f64>> {
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     instant.z.copy_from_slice(&history.z[k]);
-    model.action.motion.place(&mut instant);
+    model.action.map.place(&mut instant);
     model.solids[0].places(&instant.x)
 }
 
@@ -128,12 +128,12 @@ fn gauss_holds_in_every_interval_and_the_balance_closes() {
     let entry = entries.iter().find(viscous).unwrap();
     let h = 0.5;
     let (model, history) = run(stack(entry), h, 60, &[3e5]);
-    let (mut a, mut b) = (model.action.motion.instant(), model.action.motion.instant());
+    let (mut a, mut b) = (model.action.map.instant(), model.action.map.instant());
     let mut scratch = model.action.scratch(Order::Gradient);
     for k in 0..60 {
         for (instant, z) in [(&mut a, &history.z[k]), (&mut b, &history.z[k + 1])] {
             instant.z.copy_from_slice(z);
-            model.action.motion.place(instant);
+            model.action.map.place(instant);
         }
         let interval = Interval::given(&history.scalars[k], h);
         model

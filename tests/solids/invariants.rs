@@ -142,7 +142,7 @@ fn the_balance_of_energy_closes_in_every_step() {
     let free: Vec<usize> = (0..solid.mesh.nodes.len())
         .filter(|n| !solid.supports[0].nodes.contains(n))
         .collect();
-    let of_nodes = &model.action.motion.of_nodes;
+    let of_nodes = &model.action.map.of_nodes;
     assert_eq!(of_nodes.len(), 3 * free.len());
     let mass = mass(&solid.mesh, 1e-3)
         .select_rows(&free)

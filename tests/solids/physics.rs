@@ -129,12 +129,12 @@ fn a_bar_contracts_by_the_tables() {
 #[test]
 fn the_energy_of_the_bar_keeps_to_its_interval() {
     let (model, history) = contraction(None, 1e4);
-    let [mut a, mut b] = [(); 2].map(|()| model.action.motion.instant());
+    let [mut a, mut b] = [(); 2].map(|()| model.action.map.instant());
     let (mut low, mut high, mut kinetic) = (f64::INFINITY, 0.0_f64, 0.0_f64);
     for n in 1..99 {
         for (instant, k) in [(&mut a, n), (&mut b, n + 1)] {
             instant.z.copy_from_slice(&history.z[k]);
-            model.action.motion.place(instant);
+            model.action.map.place(instant);
         }
         let energy = energies(&model, &a, &b, &history.scalars[n], STEP);
         kinetic = kinetic.max(energy.kinetic);
@@ -150,10 +150,10 @@ fn the_energy_of_the_bar_keeps_to_its_interval() {
 fn the_bar_has_its_frequency_and_damping() {
     let model = Model::new(bar(Some(0.25)), None, STEP, &[]).unwrap();
     // The first mode of equal elements is a sine at their nodes.
-    let (z, motion) = (model.coordinates_at(&[]), &model.action.motion);
+    let (z, map) = (model.coordinates_at(&[]), &model.action.map);
     let sine = |z: &f64| 1e-6 * (std::f64::consts::FRAC_PI_2 * z / LENGTH).sin();
     let rates: Vec<f64> = z.iter().map(sine).collect();
-    assert!(motion.of_nodes.iter().all(|&(_, axis)| axis == 2));
+    assert!(map.of_nodes.iter().all(|&(_, axis)| axis == 2));
     let start = Start::with_rates(&model, z, &rates);
     let (history, failure) = simulate(
         &model,

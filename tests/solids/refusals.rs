@@ -195,7 +195,7 @@ fn steps(
 ) -> (Model, DiscreteTrajectory, Option<StepError>) {
     let model = Model::new(stack(), None, h, &[]).unwrap();
     let z = model.coordinates_at(&[]);
-    let of_nodes = &model.action.motion.of_nodes;
+    let of_nodes = &model.action.map.of_nodes;
     let rate = |(&(_, axis), z): (&(usize, usize), &f64)| match axis {
         2 => -speed * z / 40.0,
         _ => 0.0,
@@ -350,7 +350,7 @@ fn a_column_buckles_while_it_may_stay_straight() {
         // What inertia says is what a push aside does.
         let rates: Vec<f64> = model
             .action
-            .motion
+            .map
             .of_nodes
             .iter()
             .map(|&(_, axis)| {

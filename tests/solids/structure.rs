@@ -308,7 +308,7 @@ fn numbers(model: &Model, n: usize) -> Vec<(usize, usize, f64)> {
     for (side, instant) in [&a, &b].into_iter().enumerate() {
         let mut rows = vec![0.0; model.coordinate_count()];
         action
-            .motion
+            .map
             .pull_back(&instant.columns, &instant.forces, &mut rows);
         out.extend(rows[..n].iter().enumerate().map(|(i, &row)| (i, side, row)));
         for (slot, (i, s)) in layout.mixed.entries().enumerate() {

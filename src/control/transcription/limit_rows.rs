@@ -43,7 +43,7 @@ pub(super) fn limit_rows(
     intervals: usize,
     unknowns: &Numbering,
 ) -> Vec<LimitRow> {
-    let motion = &model.action.motion;
+    let map = &model.action.map;
     let mut first = 0;
     let row = |(bounded, measure): (&BoundedQuantity, &Option<usize>)| {
         let measure = (*measure)?;
@@ -52,7 +52,7 @@ pub(super) fn limit_rows(
         let mut support: Vec<usize> = reads
             .vectors()
             .iter()
-            .flat_map(|&v| motion.support(v))
+            .flat_map(|&v| map.support(v))
             .collect();
         support.sort_unstable();
         support.dedup();

@@ -25,7 +25,7 @@ impl Transcription<'_> {
         } = boundary;
         self.workspace.instants[0].z.copy_from_slice(&start.z);
         self.momentum.copy_from_slice(&start.momentum);
-        let unknowns = self.model.action.motion.unknowns();
+        let unknowns = self.model.action.map.unknowns();
         let last = &mut self.workspace.instants[self.layout.intervals].z;
         goal.give(last, unknowns);
         for (limit, bounded) in self

@@ -51,10 +51,10 @@ impl Decoder {
 impl Transcription<'_> {
     /// The variables of a motion with interval length h (ms).
     pub fn encode(&self, history: &DiscreteTrajectory, h: f64) -> Vec<f64> {
-        let motion = &self.model.action.motion;
+        let map = &self.model.action.map;
         let here = |(z, instant): (&Vec<f64>, &Configuration)| {
             let mut z = z.clone();
-            motion.take_charts(&instant.z, &mut z);
+            map.take_charts(&instant.z, &mut z);
             z
         };
         let z: Vec<_> = history

@@ -44,7 +44,7 @@ impl Transcription<'_> {
                 *scale = of_multipliers[i];
             }
         }
-        let count = self.model.action.motion.unknowns();
+        let count = self.model.action.map.unknowns();
         let rows = self.layout.unknowns.rows.iter();
         for (scale, row) in self.row_scales.iter_mut().zip(rows) {
             *scale = match *row {
@@ -61,7 +61,7 @@ impl Transcription<'_> {
     /// Scale of each kind of row but limits: one over the largest entry of these rows by variables of instants and intervals.
     fn scales_of_kinds(&self, values: &[f64]) -> Vec<f64> {
         let Numbering { rows, columns, .. } = &self.layout.unknowns;
-        let count = self.model.action.motion.unknowns();
+        let count = self.model.action.map.unknowns();
         let is_of_horizon = |column: Column| {
             let variable = column.of(&self.model.variables);
             variable.role.time() == Time::Horizon
@@ -81,7 +81,7 @@ impl Transcription<'_> {
     /// Scale of each multiplier of an instant: one over its largest entry in scaled rows.
     fn scales_of_multipliers(&self, values: &[f64], of_kinds: &[f64]) -> Vec<f64> {
         let Numbering { rows, columns, .. } = &self.layout.unknowns;
-        let count = self.model.action.motion.unknowns();
+        let count = self.model.action.map.unknowns();
         let mut largest = vec![0.0_f64; count];
         for (row, col, value) in self.structure.jacobian.with(values) {
             let of = (kind(rows[row], count), multiplier(columns[col], self.model));

@@ -104,7 +104,7 @@ impl Pass<'_> {
 
 /// Number of rows of a step: of an instant, then of the scalars of an interval.
 fn stride(action: &Reduced) -> usize {
-    action.motion.unknowns() + action.intervals.scalars
+    action.map.unknowns() + action.intervals.scalars
 }
 
 impl<'m> Transcription<'m> {
@@ -205,9 +205,9 @@ impl<'m> Transcription<'m> {
 impl Transcription<'_> {
     /// Gradients of the limits, behind the periodic values.
     pub(super) fn limit_gradients(&mut self) {
-        let motion = &self.model.action.motion;
+        let map = &self.model.action.map;
         let mut place = self.model.action.layout().values(self.layout.intervals);
-        self.workspace.rows[..motion.unknowns()].fill(0.0);
+        self.workspace.rows[..map.unknowns()].fill(0.0);
         for &(limit, k) in &self.layout.limit_rows {
             let limit = &self.layout.limits[limit];
             let measure = self.measure(limit);
@@ -218,7 +218,7 @@ impl Transcription<'_> {
             let mut at = 0;
             for side in (0..site.sides()).filter(|&side| measure.reads(side)) {
                 for &vector in &limit.vectors {
-                    motion.pull_back_one(
+                    map.pull_back_one(
                         vector,
                         &self.workspace.instants[k + side].columns,
                         &part.forces[side][vector],

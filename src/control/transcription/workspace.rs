@@ -51,11 +51,11 @@ impl Workspace {
         layout: &Layout,
     ) -> Self {
         let (action, intervals) = (&model.action, layout.intervals);
-        let motion = &action.motion;
+        let map = &action.map;
         let scalars = given_scalars(model, control, intervals);
         let scalar_count = model.variables.of(Time::Interval).len();
         let kilovolts = kilovolts(model, &scalars, scalar_count, intervals);
-        let stride = motion.unknowns() + scalar_count;
+        let stride = map.unknowns() + scalar_count;
         let limits = layout.limit_rows.iter();
         let limit_entries: usize = limits.map(|&(l, _)| layout.limits[l].entries.len()).sum();
         Self {
@@ -68,8 +68,8 @@ impl Workspace {
             kilovolts,
             h: initial.h,
             stretches: [SegmentWorkspace::new(action), SegmentWorkspace::new(action)],
-            halo: motion.instant(),
-            measured: Part::new(motion.vectors.len(), scalar_count, None),
+            halo: map.instant(),
+            measured: Part::new(map.vectors.len(), scalar_count, None),
             sigma: 0.0,
             rows: vec![0.0; (intervals + 1) * stride + layout.limit_rows.len()],
             values: vec![0.0; action.layout().values(intervals) + limit_entries],
@@ -84,9 +84,9 @@ fn given_instants(
     initial: &InitialGuess,
     intervals: usize,
 ) -> Vec<Configuration> {
-    let motion = &model.action.motion;
-    let unknowns = motion.unknowns();
-    let mut instants = vec![motion.instant(); intervals + 1];
+    let map = &model.action.map;
+    let unknowns = map.unknowns();
+    let mut instants = vec![map.instant(); intervals + 1];
     for (instant, z) in instants.iter_mut().zip(&initial.history.z) {
         instant.z[unknowns..].copy_from_slice(&z[unknowns..]);
     }

@@ -36,14 +36,14 @@ impl Mixed {
         slot: usize,
         vector: usize,
         s: usize,
-        motion: &CoordinateMap,
+        map: &CoordinateMap,
         layout: &mut StepPattern,
         site: Site,
     ) {
-        match &motion.vectors[vector] {
+        match &map.vectors[vector] {
             Dependence::Articulated(packed) => {
                 for (i, &row) in packed.support.iter().enumerate() {
-                    for place in site.mixed(layout, motion, row, s) {
+                    for place in site.mixed(layout, map, row, s) {
                         self.list.push(Entry::Articulated {
                             slot: counted(slot),
                             column: counted(packed.first + i),
@@ -55,7 +55,7 @@ impl Mixed {
             }
             Dependence::Linear { parts, .. } => {
                 for part in parts {
-                    for place in site.mixed(layout, motion, part.coordinate, s) {
+                    for place in site.mixed(layout, map, part.coordinate, s) {
                         self.list.push(Entry::Linear {
                             slot: counted(slot),
                             factor: part.factor,

@@ -279,7 +279,7 @@ pub(super) fn crossings(
         }
         here = next;
         let z = path.statics.configuration(&here.state);
-        let placed = path.statics.model.action.motion.placed(&z);
+        let placed = path.statics.model.action.map.placed(&z);
         let is_short = shortest(path.statics.model, &placed).is_some_and(|(_, s)| s < SHORTEST);
         if is_short || !(-0.5..=2.0).contains(&here.fraction) {
             break;

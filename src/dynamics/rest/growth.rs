@@ -92,7 +92,7 @@ pub(super) fn grow(
     mut state: RestState,
     ramp: Ramp<'_>,
 ) -> Result<Grown, EquilibriumError> {
-    let m = statics.model.action.motion.unknowns();
+    let m = statics.model.action.map.unknowns();
     let is_there = match ramp.load {
         // All of the weight acts already where nothing else holds the system.
         Load::Weight => statics.has_weight() && statics.weight < 1.0,

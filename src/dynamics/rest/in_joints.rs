@@ -24,7 +24,7 @@ pub(super) fn twin(model: &Model) -> Option<Model> {
 
 /// Coordinates of one model at a configuration of the other.
 pub(super) fn carried(from: &Model, z: &[f64], to: &Model) -> Vec<f64> {
-    let instant = from.action.motion.placed(z);
+    let instant = from.action.map.placed(z);
     let joints = from.joints(&instant, &vec![0.0; from.joint_readings.len()]);
     to.coordinates_of_poses(&from.poses(&instant), &joints)
 }

@@ -29,7 +29,7 @@ pub(super) fn minimise(
 ) -> Option<RestState> {
     statics.weight = 1.0;
     let model = statics.model;
-    let n = model.action.motion.coordinates;
+    let n = model.action.map.coordinates;
     let mut state = from.to_vec();
     statics.settle(&mut state, voltages)?;
     let mut energy = statics.energy(&state, voltages);
@@ -37,7 +37,7 @@ pub(super) fn minimise(
         return None;
     }
     let mut placed = statics.instant().clone();
-    let steps = STEPS[usize::from(!model.action.motion.of_nodes.is_empty())];
+    let steps = STEPS[usize::from(!model.action.map.of_nodes.is_empty())];
     let mut sigma = 0.0;
     for _ in 0..steps {
         if interrupt::stop().is_some() {

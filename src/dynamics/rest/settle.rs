@@ -12,12 +12,12 @@ impl Statics<'_> {
     /// Potential energy in N mm of a state under voltages, all weights acting; the instant stays placed there.
     pub(super) fn energy(&mut self, state: &[f64], voltages: &[f64]) -> f64 {
         let action = &self.model.action;
-        let m = action.motion.unknowns();
+        let m = action.map.unknowns();
         let variables = &self.model.variables;
         self.scalars[variables.inputs()].copy_from_slice(voltages);
         self.scalars[variables.algebraic()].copy_from_slice(&state[m..]);
         self.a.z[..m].copy_from_slice(&state[..m]);
-        action.motion.place(&mut self.a);
+        action.map.place(&mut self.a);
         let interval = Interval::given(&self.scalars, 1.0);
         let sample = interval.sample([&self.a, &self.a]);
         let terms = action.intervals.terms.iter();
@@ -32,12 +32,12 @@ impl Statics<'_> {
 
     /// Brings coordinates onto the constraints by the shortest way, and potentials to Gauss's law; `None` where that fails.
     pub(super) fn settle(&mut self, state: &mut RestState, voltages: &[f64]) -> Option<()> {
-        let motion = &self.model.action.motion;
-        if motion.multipliers > 0 {
+        let map = &self.model.action.map;
+        if map.multipliers > 0 {
             self.meet_constraints(state)?;
         }
         if self.electric.is_some() {
-            let m = motion.unknowns();
+            let m = map.unknowns();
             self.evaluate(state, voltages);
             let tangent = self.electric.as_mut()?;
             tangent.factor(&self.values).ok()?;
@@ -53,13 +53,13 @@ impl Statics<'_> {
     /// Newton on the constraints alone, in the metric of the scales.
     fn meet_constraints(&mut self, state: &mut RestState) -> Option<()> {
         let action = &self.model.action;
-        let (n, m) = (action.motion.coordinates, action.motion.unknowns());
+        let (n, m) = (action.map.coordinates, action.map.unknowns());
         for _ in 0..ITERATIONS {
             let a = &mut self.a;
             a.z[..n].copy_from_slice(&state[..n]);
             // The gradients of the constraints alone: no multiplier bends them.
             a.z[n..m].fill(0.0);
-            action.motion.place(a);
+            action.map.place(a);
             a.forces.fill(Vector::zeros());
             self.values.fill(0.0);
             action.evaluate_instant(Order::Hessian, a, &[], &mut self.scratch);

@@ -21,9 +21,9 @@ const ROUNDING: f64 = 1e-9;
 
 /// Returns true if the stiffness in joint coordinates is small enough for a full eigenvalue decomposition.
 fn is_small(model: &Model) -> bool {
-    let motion = &model.action.motion;
-    let joints_alone = motion.tree.is_some() && motion.of_nodes.is_empty();
-    motion.multipliers == 0 && joints_alone && (1..=EIGENVALUES).contains(&motion.unknowns())
+    let map = &model.action.map;
+    let joints_alone = map.tree.is_some() && map.of_nodes.is_empty();
+    map.multipliers == 0 && joints_alone && (1..=EIGENVALUES).contains(&map.unknowns())
 }
 
 /// Eigenvalues and vectors of the stiffness of a small system in joint coordinates, at the state evaluated and factorised last;
@@ -33,7 +33,7 @@ fn eigenpairs(statics: &Statics<'_>) -> Option<(Vec<f64>, Vec<f64>)> {
     if !is_small(model) {
         return None;
     }
-    let n = model.action.motion.coordinates;
+    let n = model.action.map.coordinates;
     let mut matrix = DMatrix::<f64>::zeros(n, n);
     for ((row, col), value) in statics.entries() {
         matrix[(row, col)] -= value / model.multiplier_time;
@@ -120,7 +120,7 @@ fn softening(
     voltages: &[f64],
     direction: &[f64],
 ) -> Option<Softening> {
-    let m = statics.model.action.motion.unknowns();
+    let m = statics.model.action.map.unknowns();
     let mut bare = state.to_vec();
     bare[m..].fill(0.0);
     let none = vec![0.0; voltages.len()];
@@ -148,12 +148,12 @@ fn softening(
 
 /// Names the parts that move along a direction.
 fn moves(model: &Model, z: &[f64], direction: &[f64]) -> String {
-    let motion = &model.action.motion;
-    let mut instant = motion.placed(z);
+    let map = &model.action.map;
+    let mut instant = map.placed(z);
     instant.l[..direction.len()].copy_from_slice(direction);
-    motion.along(&mut instant);
+    map.along(&mut instant);
     let mut words = Vec::new();
-    let bodies = &direction[..motion.of_bodies];
+    let bodies = &direction[..map.of_bodies];
     let mut list: Vec<(String, f64)> = match model.coordinates {
         Coordinates::Reduced => {
             let mut moved: Vec<(String, f64)> = Vec::new();
@@ -188,7 +188,7 @@ fn moves(model: &Model, z: &[f64], direction: &[f64]) -> String {
         let named = list.iter().filter(|(_, v)| *v >= NAMED * largest);
         words.extend(named.take(LISTED).map(|(name, _)| name.clone()));
     }
-    let nodes = motion.of_nodes.iter().zip(&direction[motion.of_bodies..]);
+    let nodes = map.of_nodes.iter().zip(&direction[map.of_bodies..]);
     let furthest = nodes.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     if let Some((&(node, _), _)) = furthest.filter(|_| words.is_empty()) {
         let (block, node) = model.node_names[node];

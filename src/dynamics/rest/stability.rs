@@ -37,7 +37,7 @@ impl Equilibrium {
         voltages: &[f64],
         route: Route,
     ) -> Self {
-        let m = statics.model.action.motion.unknowns();
+        let m = statics.model.action.map.unknowns();
         statics.evaluate(state, voltages);
         let is_known = statics.factor().is_ok();
         Self {

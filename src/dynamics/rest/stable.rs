@@ -141,7 +141,7 @@ fn without_stiffness(
         return None;
     }
     let mut aside = statics.state_without_field(start);
-    let turns = aside[..model.action.motion.of_bodies].iter_mut();
+    let turns = aside[..model.action.map.of_bodies].iter_mut();
     turns.for_each(|value| *value += PUSH);
     statics.weight = 1.0;
     statics.evaluate(&aside, none);
@@ -153,7 +153,7 @@ fn without_stiffness(
         }
     }
     let all = largest.iter().copied().fold(0.0, f64::max);
-    let slack = (0..model.action.motion.of_bodies).filter(|&c| largest[c] <= ROUND_OFF * all);
+    let slack = (0..model.action.map.of_bodies).filter(|&c| largest[c] <= ROUND_OFF * all);
     let mut names: Vec<String> = slack.map(|c| model.freedom(c).of.to_owned()).collect();
     names.dedup();
     (!names.is_empty()).then_some(EquilibriumError::NoStiffness(names))
@@ -183,7 +183,7 @@ fn under(
         fraction: limit.as_ref().map_or(at, |l| l.fraction),
         kind: limit.as_ref().map(|l| l.kind),
     };
-    let steps = STEPS[usize::from(!statics.model.action.motion.of_nodes.is_empty())];
+    let steps = STEPS[usize::from(!statics.model.action.map.of_nodes.is_empty())];
     let (from, directions): (_, &[f64]) = match (&limit, is_reached) {
         (_, true) => ((state.clone(), 1.0), &[1.0, -1.0]),
         (_, false) => ((state.clone(), fraction), &[1.0]),
@@ -204,7 +204,7 @@ fn under(
     }
     met.extend(limit.map(|LimitPoint { state, .. }| state));
     // Blocks are large, and have no states of rest far from their path.
-    if statics.model.action.motion.of_nodes.is_empty() {
+    if statics.model.action.map.of_nodes.is_empty() {
         met.extend([before, rest]);
     }
     ramp.apply(statics, 1.0);

@@ -69,9 +69,9 @@ pub(super) struct Statics<'m> {
 
 impl<'m> Statics<'m> {
     pub(super) fn new(model: &'m Model) -> Self {
-        let motion = &model.action.motion;
+        let map = &model.action.map;
         let layout = model.action.layout();
-        let (n, m) = (motion.coordinates, motion.unknowns());
+        let (n, m) = (map.coordinates, map.unknowns());
         let mut entries = EntryList::default();
         for (slot, entry) in layout.same.entries().enumerate() {
             entries.add(layout.same_at(0) + slot, entry);
@@ -96,8 +96,8 @@ impl<'m> Statics<'m> {
         });
         Self {
             model,
-            a: motion.instant(),
-            b: motion.instant(),
+            a: map.instant(),
+            b: map.instant(),
             scratch: model.action.scratch(Order::Hessian),
             values: vec![0.0; added + n + (size - m)],
             scalars: vec![0.0; layout.interval_scalars],
@@ -121,7 +121,7 @@ impl<'m> Statics<'m> {
     /// The state at a configuration with scalars that have an equation; all states are meant with the charts of the configuration
     /// taken last.
     pub(super) fn state(&mut self, z: &[f64], scalars: &[f64]) -> RestState {
-        let (unknowns, charts) = z.split_at(self.model.action.motion.unknowns());
+        let (unknowns, charts) = z.split_at(self.model.action.map.unknowns());
         for instant in [&mut self.a, &mut self.b] {
             instant.z[unknowns.len()..].copy_from_slice(charts);
         }
@@ -130,16 +130,16 @@ impl<'m> Statics<'m> {
 
     /// Coordinates, multipliers and charts of a state.
     pub(super) fn configuration(&self, state: &[f64]) -> Vec<f64> {
-        let m = self.model.action.motion.unknowns();
+        let m = self.model.action.map.unknowns();
         [&state[..m], &self.a.z[m..]].concat()
     }
 
     /// The state with charts where its bodies are.
     pub(super) fn recentred(&mut self, state: &[f64]) -> RestState {
-        let motion = &self.model.action.motion;
-        let (m, z) = (motion.unknowns(), self.configuration(state));
-        let mut instant = motion.placed(&z);
-        match motion.recentre(&mut instant) {
+        let map = &self.model.action.map;
+        let (m, z) = (map.unknowns(), self.configuration(state));
+        let mut instant = map.placed(&z);
+        match map.recentre(&mut instant) {
             true => self.state(&instant.z, &state[m..]),
             false => state.to_vec(),
         }
@@ -148,7 +148,7 @@ impl<'m> Statics<'m> {
     /// Rows and second derivatives at a state under voltages.
     pub(super) fn evaluate(&mut self, state: &[f64], voltages: &[f64]) {
         let action = &self.model.action;
-        let m = action.motion.unknowns();
+        let m = action.map.unknowns();
         let variables = &self.model.variables;
         let Self {
             a,
@@ -166,7 +166,7 @@ impl<'m> Statics<'m> {
         values.fill(0.0);
         for instant in [&mut *a, &mut *b] {
             instant.z[..m].copy_from_slice(&state[..m]);
-            action.motion.place(instant);
+            action.map.place(instant);
             instant.forces.fill(Vector::zeros());
         }
         let interval = Interval::given(scalars, self.model.multiplier_time);
@@ -196,7 +196,7 @@ impl<'m> Statics<'m> {
     /// Factorises the tangent of the state evaluated last with a stiffness σ in N mm for each rad, and each length of the
     /// system.
     pub(super) fn factor_with(&mut self, sigma: f64) -> Result<(), Singular> {
-        let n = self.model.action.motion.coordinates;
+        let n = self.model.action.map.coordinates;
         let h = self.model.multiplier_time;
         for (value, scale) in self.values[self.added..].iter_mut().zip(&self.scales[..n]) {
             *value = -h * sigma / (scale * scale);
@@ -257,9 +257,9 @@ impl<'m> Statics<'m> {
 
     /// Adds the derivative of the rows by the part of the weights that acts, at the state evaluated last.
     pub(super) fn add_weight(&self, rows: &mut [f64]) {
-        let motion = &self.model.action.motion;
-        let rows = &mut rows[..motion.coordinates];
-        motion.pull_back(&self.a.columns, &self.gravity, rows);
+        let map = &self.model.action.map;
+        let rows = &mut rows[..map.coordinates];
+        map.pull_back(&self.a.columns, &self.gravity, rows);
     }
 
     /// Adds the derivative of the rows along a change of the voltages, at the state evaluated last.
@@ -346,17 +346,17 @@ impl<'m> Statics<'m> {
         let electric = match &mut self.electric {
             Some(tangent) => {
                 tangent.factor(&self.values).ok()?;
-                let scalars = self.residual.len() - self.model.action.motion.unknowns();
+                let scalars = self.residual.len() - self.model.action.map.unknowns();
                 scalars - tangent.negative_pivots()?
             }
             None => 0,
         };
-        negative.checked_sub(self.model.action.motion.multipliers + electric)
+        negative.checked_sub(self.model.action.map.multipliers + electric)
     }
 
     /// Scales of coordinates: 1 rad, and the length of the system.
     pub(super) fn scales(&self) -> &[f64] {
-        &self.scales[..self.model.action.motion.coordinates]
+        &self.scales[..self.model.action.map.coordinates]
     }
 
     /// Weights of the squares of a state's entries in the length of a path.
@@ -374,8 +374,8 @@ impl<'m> Statics<'m> {
 
 /// Weights on the vectors over the time of the multipliers, as rows of rest read them.
 fn weights(model: &Model) -> Vec<Vector> {
-    let motion = &model.action.motion;
-    let instant = motion.placed(&vec![0.0; motion.unknowns()]);
+    let map = &model.action.map;
+    let instant = map.placed(&vec![0.0; map.unknowns()]);
     let scalars = vec![0.0; model.action.layout().interval_scalars];
     let interval = Interval::given(&scalars, model.multiplier_time);
     let sample = interval.sample([&instant, &instant]);

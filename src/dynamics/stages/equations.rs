@@ -25,7 +25,7 @@ impl Equations for Stages<'_> {
     fn guess(&mut self, h: f64) {
         let times: Vec<f64> = self.trail.iter().map(|(time, _)| *time).collect();
         let points = self.rule.points();
-        let m = self.model.action.motion.unknowns();
+        let m = self.model.action.map.unknowns();
         let (start, others) = self.points.split_at_mut(1);
         for (point, at) in others.iter_mut().zip(points.into_iter().skip(1)) {
             point.z[..m].fill(0.0);
@@ -48,8 +48,8 @@ impl Equations for Stages<'_> {
         self.sample(order, h);
         let model = self.model;
         let action = &model.action;
-        let motion = &action.motion;
-        let (n, m) = (motion.coordinates, motion.unknowns());
+        let map = &action.map;
+        let (n, m) = (map.coordinates, map.unknowns());
         residual.fill(0.0);
         if order >= Order::Hessian {
             self.values.fill(0.0);
@@ -80,7 +80,7 @@ impl Equations for Stages<'_> {
                 rows.copy_from_slice(&self.momentum);
             }
             let instant = &self.points[at];
-            motion.pull_back(&instant.columns, &instant.forces, rows);
+            map.pull_back(&instant.columns, &instant.forces, rows);
         }
         let algebraic = model.variables.algebraic();
         let of_samples = residual[last * m..].chunks_mut(algebraic.len().max(1));
@@ -100,8 +100,8 @@ impl Equations for Stages<'_> {
     }
 
     fn update(&mut self, update: &[f64]) {
-        let motion = &self.model.action.motion;
-        let (n, m) = (motion.coordinates, motion.unknowns());
+        let map = &self.model.action.map;
+        let (n, m) = (map.coordinates, map.unknowns());
         let points = self.points[1..].iter_mut().zip(&mut self.multipliers);
         for ((point, multipliers), update) in points.zip(update.chunks(m.max(1))) {
             for (z, update) in point.z[..n].iter_mut().zip(update) {
@@ -135,7 +135,7 @@ impl Equations for Stages<'_> {
 
     fn place_end(&mut self) {
         if let Some(end) = self.points.last_mut() {
-            self.model.action.motion.place(end);
+            self.model.action.map.place(end);
         }
     }
 
@@ -168,7 +168,7 @@ impl Equations for Stages<'_> {
     }
 
     fn take_state(&mut self) {
-        self.model.action.motion.place(&mut self.points[0]);
+        self.model.action.map.place(&mut self.points[0]);
     }
 
     fn accept(&mut self, h: f64) -> bool {
@@ -212,15 +212,15 @@ impl Equations for Stages<'_> {
                 vector_momenta(model, end, alpha.rates())
             }
         };
-        let motion = &model.action.motion;
+        let map = &model.action.map;
         self.remember(h);
-        if motion.recentre(&mut self.points[last]) {
+        if map.recentre(&mut self.points[last]) {
             self.follow_charts();
         }
         self.momentum.fill(0.0);
-        motion.pull_back(&self.points[last].columns, &momenta, &mut self.momentum);
+        map.pull_back(&self.points[last].columns, &momenta, &mut self.momentum);
         if let Rule::Galerkin(_) = self.rule {
-            let (n, m) = (motion.coordinates, motion.unknowns());
+            let (n, m) = (map.coordinates, map.unknowns());
             let multipliers = &self.multipliers[last - 1];
             self.points[last].z[n..m].copy_from_slice(multipliers);
         }

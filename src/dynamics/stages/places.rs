@@ -21,7 +21,7 @@ impl Places {
     /// Lays the segments down, and the entries of the matrix that take them.
     pub(super) fn new(model: &Model, rows: &[usize], samples: usize) -> (Self, EntryList) {
         let layout = model.action.layout();
-        let motion = &model.action.motion;
+        let map = &model.action.map;
         let has_scalars = !model.variables.algebraic().is_empty();
         let [same, cross] = [&layout.same, &layout.cross].map(|p| p.entries().len());
         let [mixed, scalars] = match has_scalars {
@@ -39,7 +39,7 @@ impl Places {
             values: 0,
         };
         places.values = places.scalars(samples);
-        let (n, m) = (motion.coordinates, motion.unknowns());
+        let (n, m) = (map.coordinates, map.unknowns());
         let mut entries = EntryList::default();
         let block = |point: usize| (point - 1) * m;
         for row in 1..=degree {
@@ -75,7 +75,7 @@ impl Places {
     /// Scalars with an equation of each sample against the points, and against each other.
     fn add_scalars(&self, model: &Model, samples: usize, entries: &mut EntryList) {
         let layout = model.action.layout();
-        let m = model.action.motion.unknowns();
+        let m = model.action.map.unknowns();
         for sample in 0..samples {
             let place = |s: usize| model.variables.place_of(self.rows.len(), sample, s);
             for point in 1..=self.rows.len() {

@@ -90,11 +90,11 @@ impl<'m> Steps<Stages<'m>> {
 
     fn with(model: &'m Model, start: &Start, rule: Rule, solving: Solving) -> Self {
         let action = &model.action;
-        let motion = &action.motion;
+        let map = &action.map;
         let degree = rule.degree();
-        let mut points = vec![motion.instant(); degree + 1];
+        let mut points = vec![map.instant(); degree + 1];
         points[0].z.copy_from_slice(&start.z);
-        motion.place(&mut points[0]);
+        map.place(&mut points[0]);
         let sample = |weights: Weights| StagePoint {
             x: [points[0].x.clone(), points[0].x.clone()],
             out: action.intervals.output(Order::Hessian),
@@ -105,8 +105,8 @@ impl<'m> Steps<Stages<'m>> {
         let rows: Vec<usize> = (1..=degree).map(|point| rule.row(point)).collect();
         let (places, entries) = Places::new(model, &rows, samples.len());
         let combined = action.intervals.output(Order::Hessian).plain;
-        let n = motion.coordinates;
-        let multipliers = vec![start.z[n..motion.unknowns()].to_vec(); degree];
+        let n = map.coordinates;
+        let multipliers = vec![start.z[n..map.unknowns()].to_vec(); degree];
         let algebraic = model.variables.algebraic();
         let mut terms = action.intervals.terms.iter();
         let equations = Stages {
@@ -132,7 +132,7 @@ impl<'m> Steps<Stages<'m>> {
             combined,
         };
         let sizes = model.sizes();
-        let (of_points, of_samples) = sizes.split_at(motion.unknowns());
+        let (of_points, of_samples) = sizes.split_at(map.unknowns());
         let mut scales = of_points.repeat(degree);
         scales.extend(of_samples.repeat(equations.samples.len()));
         let tangent = entries.tangent(scales.len(), Symmetry::Unsymmetric, solving.backend);
@@ -142,13 +142,13 @@ impl<'m> Steps<Stages<'m>> {
 
 /// Rates and momenta of all vectors at the start.
 fn moving(model: &Model, start: &Start) -> (Vec<Vector>, Vec<Vector>) {
-    let motion = &model.action.motion;
-    let mut instant = motion.placed(&start.z);
+    let map = &model.action.map;
+    let mut instant = map.placed(&start.z);
     let known = start.rates.clone();
     let rates = known.unwrap_or_else(|| rates(model, &mut instant, &start.momentum));
     instant.l.fill(0.0);
     instant.l[..rates.len()].copy_from_slice(&rates);
-    motion.along(&mut instant);
+    map.along(&mut instant);
     let momenta = vector_momenta(model, &instant.x, &instant.w);
     (instant.w, momenta)
 }
@@ -179,7 +179,7 @@ impl Stages<'_> {
         } = self;
         let action = &model.action;
         for point in &mut points[1..] {
-            action.motion.place(point);
+            action.map.place(point);
         }
         for point in samples {
             for (side, x) in point.x.iter_mut().enumerate() {
@@ -255,7 +255,7 @@ impl Stages<'_> {
         let Some((_, end)) = self.trail.last().cloned() else {
             return;
         };
-        for turn in self.model.action.motion.charted().into_iter().flatten() {
+        for turn in self.model.action.map.charted().into_iter().flatten() {
             for (_, u) in &mut self.trail {
                 u[turn] -= end[turn];
             }
@@ -276,7 +276,7 @@ impl Stages<'_> {
 
     /// Keeps the coordinates of the points for the next guess: those of the last step, three at least.
     pub(super) fn remember(&mut self, h: f64) {
-        let n = self.model.action.motion.coordinates;
+        let n = self.model.action.map.coordinates;
         let most = self.most_points();
         let times = self.rule.points();
         for (point, at) in self.points.iter().zip(times).skip(1) {
