@@ -19,10 +19,14 @@ pub(super) fn lines(system: &System) -> String {
     if all.0.x > all.1.x {
         return String::new();
     }
-    let mut text = format!("extent of the robot: {}\n", told(all));
+    let mut text = format!("extent of the robot: {}\n", dimensions(all));
     for solid in &system.solids {
         let corners = around(solid.mesh.nodes.iter().copied());
-        text.push_str(&format!("extent of {}: {}\n", solid.name, told(corners)));
+        text.push_str(&format!(
+            "extent of {}: {}\n",
+            solid.name,
+            dimensions(corners)
+        ));
     }
     let largest = (all.1 - all.0).max();
     if !(TINY..=HUGE).contains(&largest) {
@@ -37,7 +41,7 @@ pub(super) fn lines(system: &System) -> String {
     text
 }
 
-fn told((lower, upper): Corners) -> String {
+fn dimensions((lower, upper): Corners) -> String {
     let [x, y, z] = [0, 1, 2].map(|axis| rounded(upper[axis] - lower[axis]));
     let [a, b, c] = [0, 1, 2].map(|axis| rounded(lower[axis]));
     format!("{x} × {y} × {z} mm from ({a}, {b}, {c}) mm")

@@ -83,7 +83,7 @@ pub(super) fn simulation(
     summary.seconds.wrote(began, writing);
     summary.write(files)?;
     unfinished::done(&ended.folder);
-    Ok(told(&run, &ended, &summary))
+    Ok(command_output(&run, &ended, &summary))
 }
 
 /// Refuses an estimate by halved steps of a motion whose steps follow a tolerance.
@@ -278,7 +278,7 @@ fn summarise(run: &Run<'_>, ended: &Ended, observed: &Observed, summary: &mut Su
         task,
         observed.neglected,
     ));
-    summary.domain = domain::told(&observed.outside);
+    summary.domain = domain::records(&observed.outside);
     summary.blocks.clone_from(&observed.blocks);
     summary.seconds = Seconds {
         total: run.began.elapsed().as_secs_f64(),
@@ -293,7 +293,7 @@ fn summarise(run: &Run<'_>, ended: &Ended, observed: &Observed, summary: &mut Su
     remarks.note("voltages_end", afterwards(task));
     remarks.note("step_divided", steps::divided(task));
     remarks.warn("outside_domain", domain::note(&summary.domain, true));
-    let coarse = steps::told(observed.neglected, history, task);
+    let coarse = steps::warning(observed.neglected, history, task);
     remarks.warn("coarse_steps", coarse);
     remarks.warn("tolerance_exceeded", steps::beyond(ended.error, task));
     remarks.warn("energy_balance", steps::unbalanced(history));
@@ -324,22 +324,22 @@ fn write_pictures(
     let shown = Shown::of(motion, &run.loaded.output, true, files)?;
     summary.notes.note("shown", shown.notes.iter().cloned());
     summary.shown = shown.part;
-    let mut told = page::told("Simulation", summary, asked);
-    told.rows = rows(summary, task, (model, history), observed.neglected);
+    let mut content = page::content("Simulation", summary, asked);
+    content.rows = rows(summary, task, (model, history), observed.neglected);
     let earlier = earlier.map(|earlier| shown.beside(earlier));
     let pictures = report::Run {
         name: "simulation",
         comparison: earlier.as_ref().map(|e| ("the solution", e)),
         held: held(task, ended.reached()),
         figures: request.figures,
-        told: request.page.of(&told),
+        page: request.page.of(&content),
         ..shown.run(system, origin)
     };
     write_run(files, &pictures)
 }
 
 /// The answer of the command.
-fn told(run: &Run<'_>, ended: &Ended, summary: &Summary) -> CommandOutput {
+fn command_output(run: &Run<'_>, ended: &Ended, summary: &Summary) -> CommandOutput {
     let mut notes: Vec<String> = summary.message.iter().cloned().collect();
     notes.extend(summary.comparison.iter().flat_map(Comparison::notes));
     notes.extend(summary.notes.lines());

@@ -30,7 +30,7 @@ use crate::report::lines::{LinePlot, Mark, Series};
 use crate::report::origin::Origin;
 use crate::report::skins::Skins;
 use crate::report::style::Dash;
-use crate::report::{Branch, Run, Told, style, write_still};
+use crate::report::{Branch, PageContent, Run, style, write_still};
 use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::phase::phase;
@@ -67,9 +67,9 @@ pub(super) fn follow(
     summary.plan = Plan::of(&model, None, MEASURED);
     let followed = Followed::new(&found);
     let rows = followed.rows(path.stops[path.shown()].fraction);
-    let told = told(&followed, found.points.len(), stopped, &folder);
+    let output = command_output(&followed, found.points.len(), stopped, &folder);
     summary.path = Some(followed);
-    summary.domain = domain::told(&out_of_domain(&model, &path.history));
+    summary.domain = domain::records(&out_of_domain(&model, &path.history));
     let note = domain::note(&summary.domain, false);
     summary.notes.warn("outside_domain", note);
     summary.seconds = Seconds {
@@ -77,7 +77,7 @@ pub(super) fn follow(
         setup,
         ..Seconds::default()
     };
-    let mut page = page::told("Path of equilibria", &summary, asked);
+    let mut page = page::content("Path of equilibria", &summary, asked);
     page.rows = rows;
     page.plots.push(("Path".to_owned(), plot));
     path.write(request, &page, &mut files, &origin)?;
@@ -85,13 +85,18 @@ pub(super) fn follow(
     let notes = summary.notes.lines();
     summary.write(files)?;
     Ok(CommandOutput {
-        notes: told.notes.into_iter().chain(notes).collect(),
-        ..told
+        notes: output.notes.into_iter().chain(notes).collect(),
+        ..output
     })
 }
 
 /// The answer of the command without its warnings.
-fn told(path: &Followed, points: usize, stopped: Option<Status>, folder: &Path) -> CommandOutput {
+fn command_output(
+    path: &Followed,
+    points: usize,
+    stopped: Option<Status>,
+    folder: &Path,
+) -> CommandOutput {
     let losses = path.lost.iter().map(|loss| {
         format!(
             "{} at {:.6} % of the voltages",
@@ -208,7 +213,7 @@ impl<'a> EquilibriumPath<'a> {
     fn write(
         &self,
         request: &CommandInput,
-        page: &Told,
+        page: &PageContent,
         files: &mut FileSet,
         origin: &Origin,
     ) -> Result<(), WriteError> {
@@ -239,7 +244,7 @@ impl<'a> EquilibriumPath<'a> {
             equilibria: Some(&way),
             branch: Some(branch),
             figures: request.figures,
-            told: request.page.of(page),
+            page: request.page.of(page),
             ..Run::of(&model.system, &motion, &skins, &observed, origin)
         };
         write_still(files, "path.csv", &run)

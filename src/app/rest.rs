@@ -105,7 +105,7 @@ pub(super) fn at(
     let status = loss.map_or("at_rest", status);
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = loss.map(|loss| lost(&still.rest, loss, &folder));
-    summary.domain = domain::told(&out_of_domain(&model, &still.state));
+    summary.domain = domain::records(&out_of_domain(&model, &still.state));
     summary.plan = Plan::of(&model, None, MEASURED);
     summary.blocks = BlockSizes::of(&model).map(|b| b.after(&model, &still.observed, written));
     summary.seconds = Seconds {
@@ -116,21 +116,21 @@ pub(super) fn at(
     let notes = &mut summary.notes;
     notes.note("moved_marker", moved_markers(system));
     notes.warn("outside_domain", domain::note(&summary.domain, false));
-    let told = told(&summary, &model, &still.rest, &folder);
+    let output = command_output(&summary, &model, &still.rest, &folder);
     let rows = rows(&still.rest, status);
     summary.rest = Some(still.rest);
     let title = match loss {
         None => "Static equilibrium",
         Some(_) => "The last equilibrium",
     };
-    let mut page = page::told(title, &summary, asked);
+    let mut page = page::content(title, &summary, asked);
     page.rows = rows;
     let skins = Skins::new(&model, &still.state);
     let run = Run {
         name: "rest",
         held: Some(&still.motion.voltages[0]),
         figures: request.figures,
-        told: request.page.of(&page),
+        page: request.page.of(&page),
         ..Run::of(
             &model.system,
             &still.motion,
@@ -142,7 +142,7 @@ pub(super) fn at(
     write_still(&mut files, "equilibrium.csv", &run)?;
     summary.seconds.wrote(began, writing);
     summary.write(files)?;
-    Ok(told)
+    Ok(output)
 }
 
 /// The equilibrium under voltages; where growing loads lose it, the last one with the way in which it is lost.
@@ -200,7 +200,7 @@ impl Still {
 }
 
 /// The answer of the command; an equilibrium that was lost has a message.
-fn told(summary: &Summary, model: &Model, rest: &Rest, folder: &Path) -> CommandOutput {
+fn command_output(summary: &Summary, model: &Model, rest: &Rest, folder: &Path) -> CommandOutput {
     let message = summary.message.iter().cloned();
     let is_solved = summary.message.is_none();
     CommandOutput {

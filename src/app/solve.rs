@@ -15,7 +15,7 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::shown::{Motion, Shown};
 use crate::app::solution_file;
 use crate::app::solve_page::{convergence, goal, rows, targets};
-use crate::app::solve_summary::{Verdict, add_notes, program, seconds, told};
+use crate::app::solve_summary::{Verdict, add_notes, command_output, program, seconds};
 use crate::app::solve_words::ends;
 use crate::app::summary::{MEASURED, Summary};
 use crate::app::tracking_words;
@@ -84,12 +84,13 @@ pub(super) fn control(
         began,
     )?;
     unfinished::done(&folder);
-    let mut told = told(&summary, control.is_refined, &optimum.violated, &folder);
+    let mut output = command_output(&summary, control.is_refined, &optimum.violated, &folder);
     if STOPPED.contains(&verdict.word) {
-        told.notes
+        output
+            .notes
             .extend(continuation::command(request, &loaded.task));
     }
-    Ok(told)
+    Ok(output)
 }
 
 /// Solves a control problem whose files were `read` in some seconds, and keeps its iterates in the folder of the results until it has ended.
@@ -229,7 +230,7 @@ fn add_observed(
     let Optimum {
         model, boundary, ..
     } = optimum;
-    summary.domain = domain::told(&out_of_domain(model, history));
+    summary.domain = domain::records(&out_of_domain(model, history));
     let held = boundary.rest.each_ref().map(Option::as_deref);
     let exchange = EnergyExchange::new(&model.system, motion, held);
     summary.energies = Exchanged::new(&exchange);
@@ -237,7 +238,7 @@ fn add_observed(
     summary.final_values = final_values(&model.system, control, motion);
     let notes = &mut summary.notes;
     notes.warn("outside_domain", domain::note(&summary.domain, true));
-    notes.note("tracking", tracking_words::told(&summary.tracking));
+    notes.note("tracking", tracking_words::notes(&summary.tracking));
     notes.note("final_value", ends(&summary.final_values));
     exchange
 }
@@ -261,9 +262,11 @@ fn write_pictures(
         .map(|(history, _)| trajectory(model, &solved(model, &history, None)))
         .map(|other| shown.beside(other));
     let goal = goal(model, boundary);
-    let mut told = page::told("Optimal control", summary, asked);
-    told.rows = rows(summary);
-    told.plots.push(convergence(&optimum.solution.iterations));
+    let mut content = page::content("Optimal control", summary, asked);
+    content.rows = rows(summary);
+    content
+        .plots
+        .push(convergence(&optimum.solution.iterations));
     let run = Run {
         name: match summary.status.as_str() {
             _ if is_solved => "optimal voltages",
@@ -276,7 +279,7 @@ fn write_pictures(
         tracked: &shown.tracked(&summary.tracking),
         goal: goal.as_deref(),
         targets: &targets(control, motion.trajectory),
-        told: request.page.of(&told),
+        page: request.page.of(&content),
         ..shown.run(&model.system, origin)
     };
     write_run(files, &run)

@@ -27,7 +27,7 @@ pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
         row("duration", format!("{:.6} s", program.duration));
         row("intervals", program.intervals.to_string());
         for parameter in &program.parameters {
-            row(&parameter.name, parameter.told());
+            row(&parameter.name, parameter.text());
         }
         row(
             "coordinates",

@@ -37,7 +37,7 @@ impl Verdict {
             model, boundary, ..
         } = optimum;
         let refuted = optimum.reversed.map(|(k, m)| unresolved(model, k, m));
-        let refuted = refuted.or_else(|| optimum.cause().map(Cause::told));
+        let refuted = refuted.or_else(|| optimum.cause().map(Cause::message));
         let tested = optimum.resimulation.as_ref();
         let not_kept = holding::warning(control, model, boundary, tested);
         let mut is_solved = optimum.is_solved();
@@ -145,7 +145,7 @@ pub(super) fn seconds(optimum: &Optimum, read: f64, began: Instant) -> Seconds {
 }
 
 /// The answer of the command.
-pub(super) fn told(
+pub(super) fn command_output(
     summary: &Summary,
     is_refined: bool,
     violated: &[Violation],
@@ -163,7 +163,7 @@ pub(super) fn told(
     notes.extend(violated.iter().map(describe));
     notes.extend(summary.notes.lines());
     let parameters = program.iter().flat_map(|program| &program.parameters);
-    notes.extend(parameters.map(|found| format!("{}: {}", found.name, found.told())));
+    notes.extend(parameters.map(|found| format!("{}: {}", found.name, found.text())));
     if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
         notes.extend(accuracy.notes());
         (word, is_solved) = accuracy.outcome(&word);

@@ -147,7 +147,7 @@ impl SoughtValue {
     }
 
     /// In words.
-    pub(super) fn told(&self) -> String {
+    pub(super) fn text(&self) -> String {
         let value = format!("{} {}", significant(self.value, 8), self.unit);
         match self.at_bound {
             true => format!("{}, at its bound", value.trim_end()),

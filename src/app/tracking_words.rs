@@ -24,7 +24,7 @@ pub(super) fn row(of: &Tracked) -> (String, String) {
 }
 
 /// Lines about the tracking errors of a motion; of many joints the worst.
-pub(super) fn told(tracked: &[Tracked]) -> Vec<String> {
+pub(super) fn notes(tracked: &[Tracked]) -> Vec<String> {
     let joints = tracked.iter().filter(|one| one.kind == "joint");
     let count = joints.clone().count();
     let worst = joints.max_by(|a, b| a.error.maximum.total_cmp(&b.error.maximum));

@@ -198,13 +198,13 @@ impl Control {
         })?;
         found.hold(&control);
         let model = &found.model;
-        let outside = domain::told(&out_of_domain(model, &history(model, &found.motion)));
+        let outside = domain::records(&out_of_domain(model, &history(model, &found.motion)));
         let message = match found.is_solved() {
             true => None,
             false => Some(
                 found
                     .cause()
-                    .map_or_else(|| found.word().replace('_', " "), Cause::told),
+                    .map_or_else(|| found.word().replace('_', " "), Cause::message),
             ),
         };
         let mut remarks = Remarks::default();

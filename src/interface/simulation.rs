@@ -147,9 +147,9 @@ fn motion(run: &Simulated, task: &problem::Simulation) -> Motion {
     let trajectory = Trajectory::from_history(&run.model, &run.history);
     let order = task.solving.integrator.order();
     let error = local_error_of(&run.model, (&run.history, &trajectory), order);
-    let outside = domain::told(&out_of_domain(&run.model, &run.history));
+    let outside = domain::records(&out_of_domain(&run.model, &run.history));
     let mut remarks = Remarks::default();
-    remarks.warn("coarse_steps", steps::told(error, &run.history, task));
+    remarks.warn("coarse_steps", steps::warning(error, &run.history, task));
     remarks.warn("energy_balance", steps::unbalanced(&run.history));
     remarks.warn("outside_domain", domain::note(&outside, true));
     let system = run.model.system.clone();

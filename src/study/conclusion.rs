@@ -5,7 +5,7 @@ use crate::math::significant;
 use crate::study::compare::Judged;
 use crate::study::limit::How;
 use crate::study::measure::{StudyMeasure, Unit};
-use crate::study::price::{Price, prices, surely, told};
+use crate::study::price::{Price, error_text, prices, surely};
 use crate::study::read::{Study, StudyPoint};
 use crate::study::record::of_reference;
 use crate::study::schedule::{Done, Results};
@@ -72,9 +72,9 @@ fn cost(study: &Study, results: &Results<'_>, judged: &Judged) -> Option<String>
             let (m, error) = least(judged)?;
             let found = format!(
                 "{} is not reached{}: the least error is {}",
-                told(unit, price.error),
+                error_text(unit, price.error),
                 if several(study) { " by any method" } else { "" },
-                told(unit, error)
+                error_text(unit, error)
             );
             let by = format!(" by {}", name(study, m));
             parts.push(found + if several(study) { &by } else { "" });
@@ -93,7 +93,7 @@ fn cost(study: &Study, results: &Results<'_>, judged: &Judged) -> Option<String>
 
 /// Describes the cost of one accuracy by the cheapest method, and by the next.
 fn paid(study: &Study, price: &Price, cheapest: usize, unit: Unit) -> String {
-    let error = told(unit, price.error);
+    let error = error_text(unit, price.error);
     let [_, median, upper] = price.costs[cheapest].unwrap_or([f64::NAN; 3]);
     let mut others: Vec<(usize, [f64; 3])> = (price.costs.iter().enumerate())
         .filter(|(m, _)| *m != cheapest)
@@ -227,7 +227,7 @@ fn risen(judged: &Judged, known: &[(&str, [f64; 2])]) -> Option<String> {
         return None;
     };
     let unit = judged.measure.unit();
-    let (less, more) = (told(unit, *less), told(unit, *more));
+    let (less, more) = (error_text(unit, *less), error_text(unit, *more));
     let again = match risen.len() {
         1 => String::new(),
         count => format!(", and so {count} times"),

@@ -92,7 +92,7 @@ fn control(
     let none = || "the solver found no solution".to_owned();
     let ended = RunOutcome {
         status: optimum.word(),
-        message: (!is_solved).then(|| optimum.cause().map_or_else(none, Cause::told)),
+        message: (!is_solved).then(|| optimum.cause().map_or_else(none, Cause::message)),
         // Verifying voltages is no part of finding them.
         seconds: seconds - optimum.tested,
         is_solved,

@@ -103,15 +103,19 @@ fn prices(study: &Study, results: &Results<'_>, judged: &[Judged]) -> Option<Str
             });
             let cells: Vec<_> = cells.collect();
             let unit = judged.measure.unit();
-            let told = match unit {
+            let text = match unit {
                 Unit::Length => {
-                    format!("{:.0e}, {}", price.accuracy, price::told(unit, price.error))
+                    format!(
+                        "{:.0e}, {}",
+                        price.accuracy,
+                        price::error_text(unit, price.error)
+                    )
                 }
-                Unit::Relative => price::told(unit, price.error),
+                Unit::Relative => price::error_text(unit, price.error),
             };
             writeln!(
                 rows,
-                "| {} | {told} | {} |",
+                "| {} | {text} | {} |",
                 judged.measure.label(),
                 cells.join(" | ")
             )

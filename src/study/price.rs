@@ -77,7 +77,7 @@ fn cost(
 }
 
 /// An error in the unit that suits it.
-pub fn told(unit: Unit, error: f64) -> String {
+pub fn error_text(unit: Unit, error: f64) -> String {
     match unit {
         Unit::Length => length(error),
         Unit::Relative => format!("{error:.1e}").replace(".0e", "e"),

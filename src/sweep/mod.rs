@@ -79,7 +79,14 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
         })
         .collect();
     write(request, &sweep, &ends, &folder)?;
-    Ok(told(request.shard, &sweep, &ends, before, &folder, began))
+    Ok(command_output(
+        request.shard,
+        &sweep,
+        &ends,
+        before,
+        &folder,
+        began,
+    ))
 }
 
 /// Records that the folders of the variants held before.
@@ -183,7 +190,7 @@ fn write(
 }
 
 /// Returns the numbers of variants by their ends.
-fn told(
+fn command_output(
     shard: Shard,
     sweep: &Sweep,
     ends: &[Kept],
@@ -199,15 +206,15 @@ fn told(
     let words = words.iter().map(|(word, count)| format!("{count} {word}"));
     let words: Vec<String> = words.collect();
     let mut messages = BTreeSet::new();
-    let mut told = Vec::new();
+    let mut first_messages = Vec::new();
     for (variant, end) in sweep.variants.iter().zip(ends) {
         let message = end.message.as_ref();
         if let Some(message) = message.filter(|message| messages.insert(message.as_str())) {
-            told.push(format!("{}: {message}", variant.set.join(", ")));
+            first_messages.push(format!("{}: {message}", variant.set.join(", ")));
         }
     }
     let mut notes = first(before.deviations);
-    notes.extend(first(told));
+    notes.extend(first(first_messages));
     let own = ends.iter().enumerate();
     let mut own = own.filter(|(index, _)| shard.has(*index));
     let is_complete = own.all(|(_, end)| !end.is_unfinished());

@@ -183,7 +183,7 @@ impl ActiveLimits {
 
 impl Active {
     /// In words, such as `m1b at its bound of 500 V in 43 of 60 intervals`.
-    pub fn told(&self) -> String {
+    pub fn message(&self) -> String {
         let Self {
             what,
             count,

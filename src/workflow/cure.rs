@@ -67,7 +67,7 @@ pub(crate) fn reproduced(
             note: None,
         });
     };
-    let of_problem = format!("on {} intervals: {}", control.intervals, cause.told());
+    let of_problem = format!("on {} intervals: {}", control.intervals, cause.message());
     let mut before = None;
     let mut finest = None;
     'grids: for times in TIMES {

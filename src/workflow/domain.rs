@@ -23,7 +23,7 @@ pub(crate) struct Outside {
 }
 
 /// As `summary.json` has it.
-pub(crate) fn told(list: &[OutOfDomain]) -> Vec<Outside> {
+pub(crate) fn records(list: &[OutOfDomain]) -> Vec<Outside> {
     let outside = |one: &OutOfDomain| Outside {
         name: one.name.clone(),
         stretch: one.stretch,

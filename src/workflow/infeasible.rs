@@ -23,7 +23,13 @@ const SLOW: f64 = 1e-4;
 /// Explains a problem whose solve found no motion, line by line.
 pub(crate) fn explain(control: &Control, optimum: &Optimum) -> Vec<String> {
     let mut lines: Vec<String> = miss(control, optimum).into_iter().collect();
-    lines.extend(optimum.active.iter().take(TOLD).map(|active| active.told()));
+    lines.extend(
+        optimum
+            .active
+            .iter()
+            .take(TOLD)
+            .map(|active| active.message()),
+    );
     lines.extend(changes(control, optimum));
     lines.extend(kinks(optimum));
     lines

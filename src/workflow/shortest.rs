@@ -65,7 +65,7 @@ pub(crate) fn shortest(
             break;
         };
         put_after(&mut first.solution, &found.solution);
-        said = told(&found, given);
+        said = outcome(&found, given);
         if matches!(said, Shortest::AsGiven | Shortest::Longer(_)) {
             return (said, Some(found.motion));
         }
@@ -74,7 +74,7 @@ pub(crate) fn shortest(
 }
 
 /// Reads the end of a solve with a free duration for a given one.
-fn told(found: &Optimum, given: f64) -> Shortest {
+fn outcome(found: &Optimum, given: f64) -> Shortest {
     let duration = found.motion.times[found.motion.intervals()];
     match found.solution.status {
         Status::Solved if duration <= given * (1.0 + ON_BOUND) => Shortest::AsGiven,

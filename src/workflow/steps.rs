@@ -42,7 +42,7 @@ pub fn divided(task: &Simulation) -> Option<String> {
 }
 
 /// A warning where the steps do not resolve the motion well, or are too few for an estimate.
-pub(crate) fn told(
+pub(crate) fn warning(
     error: Option<LocalError>,
     history: &DiscreteTrajectory,
     task: &Simulation,

@@ -1,6 +1,6 @@
 //! A guess changes nothing that is asked.
 
-use crate::verdicts::{control, kept, read, told};
+use crate::verdicts::{control, kept, output_of, read};
 use proboscis::control::problem::{Control, Duration, Guess, Task};
 use proboscis::control::{BoundaryConditions, InitialGuess, Solution, guess};
 use proboscis::files::read_problem;
@@ -120,13 +120,13 @@ fn a_duration_that_is_given_stays_and_the_stretched_guess_is_told() {
     let folder = tempdir().unwrap();
     let [first, second] = ["p", "q"].map(|name| folder.path().join(name));
     let pair = kept("pair");
-    assert!(told(&pair, &[], &first).is_solved);
+    assert!(output_of(&pair, &[], &first).is_solved);
     let solution = first.join("solution.json");
     let from = format!(
         "control.guess={{\"solution\":{:?}}}",
         solution.display().to_string()
     );
-    let answer = told(&pair, &["control.duration=0.4 s", &from], &second);
+    let answer = output_of(&pair, &["control.duration=0.4 s", &from], &second);
     assert!(answer.is_solved, "{answer:?}");
     let line = "the guess lasts 0.2 s; it was stretched in time to 0.4 s";
     assert!(
@@ -144,7 +144,7 @@ fn a_duration_that_is_given_stays_and_the_stretched_guess_is_told() {
     let time = &read(&second.join("solution.json"))["time"];
     assert_eq!(time.as_array().unwrap().last().unwrap(), 0.4);
     // One of the same length is taken as it is, in silence.
-    let again = told(&pair, &[&from], &second);
+    let again = output_of(&pair, &[&from], &second);
     assert!(
         again.notes.iter().all(|note| !note.contains("stretched")),
         "{again:?}"

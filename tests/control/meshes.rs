@@ -3,7 +3,7 @@
 use crate::common::cases::rest_to_rest;
 use crate::common::trunk;
 use crate::guesses::{optimum, start};
-use crate::verdicts::{control, kept, read, told};
+use crate::verdicts::{control, kept, output_of, read};
 use proboscis::control::problem::{Afterwards, Control, Guess, Voltages};
 use proboscis::control::{BoundaryConditions, guess};
 use proboscis::model::System;
@@ -72,7 +72,7 @@ fn a_file_of_a_coarse_mesh_starts_a_finer_one() {
         let mut set = changes(elements).to_vec();
         set.push(format!("control.guess={guess}"));
         let set: Vec<&str> = set.iter().map(String::as_str).collect();
-        let answer = told(&problem, &set, &folder.path().join(name));
+        let answer = output_of(&problem, &set, &folder.path().join(name));
         assert!(answer.is_solved, "{answer:?}");
         read(&folder.path().join(name).join("summary.json"))
     };

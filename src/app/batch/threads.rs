@@ -25,7 +25,7 @@ pub(super) fn run_all(
         };
         let began = Instant::now();
         let said = match task::run_observed(&command, batch.text, &mut |_| {}) {
-            Ok(told) if told.is_solved => Said::Solved,
+            Ok(output) if output.is_solved => Said::Solved,
             Ok(_) => Said::Unsolved(String::new()),
             Err(error) => said(&error),
         };
@@ -46,12 +46,12 @@ pub(super) fn run_all(
 }
 
 fn said(error: &CommandError) -> Said {
-    let told = match error.excerpt() {
+    let text = match error.excerpt() {
         Some(excerpt) => format!("{error}\n{}", excerpt.trim_end()),
         None => error.to_string(),
     };
     match error.exit_status() {
-        2 => Said::Refused(told),
-        _ => Said::Unsolved(told),
+        2 => Said::Refused(text),
+        _ => Said::Unsolved(text),
     }
 }
