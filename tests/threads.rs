@@ -86,7 +86,7 @@ fn a_large_block_has_the_same_bits_on_one_thread_and_two() {
     let motion = || {
         let model = Model::new(large(), None, 0.5, &[]).unwrap();
         let start = Start::at_rest(&model, model.coordinates_at(&[]));
-        let (history, failure) = simulate(
+        let (discrete, failure) = simulate(
             &model,
             &start,
             0.5,
@@ -95,11 +95,11 @@ fn a_large_block_has_the_same_bits_on_one_thread_and_two() {
             |_| ControlFlow::Continue(()),
         );
         assert_eq!(failure, None);
-        let z = |k: usize| history.z[k].iter().zip(&history.z[0]).map(|(a, b)| a - b);
+        let z = |k: usize| discrete.z[k].iter().zip(&discrete.z[0]).map(|(a, b)| a - b);
         [
             z(3).collect(),
-            history.momenta[3].clone(),
-            history.scalars[2].clone(),
+            discrete.momenta[3].clone(),
+            discrete.scalars[2].clone(),
         ]
     };
     let program = || {

@@ -69,7 +69,7 @@ pub(super) fn begun(
     };
     let file = path.display();
     let read = read(path).map_err(|error| wrong(format!("{file}: {error}")))?;
-    let Continuation { history, problem } = read;
+    let Continuation { discrete, problem } = read;
     let [problem, asked]: [Value; 2] =
         [&problem, asked].map(|text| serde_json::from_str(text).unwrap_or_default());
     if let Some(other) = difference(&problem, &asked) {
@@ -78,8 +78,8 @@ pub(super) fn begun(
         )));
     }
     let (steps, h) = grid(task);
-    let done = history.times.len() - 1;
-    let reached = history.times[done];
+    let done = discrete.times.len() - 1;
+    let reached = discrete.times[done];
     if reached > task.duration * (1.0 + SAME_STEP) {
         return Err(wrong(format!(
             "{file} has {} s of motion, and simulate.duration asks for {} s",
@@ -95,19 +95,19 @@ pub(super) fn begun(
             task.duration / 1e3
         )));
     }
-    Ok(history)
+    Ok(discrete)
 }
 
 /// Adds the state from which a motion of the problem `asked` can be resumed to the files of a result; none where it cannot be.
 pub(super) fn add(
     files: &mut FileSet,
-    history: &DiscreteTrajectory,
+    discrete: &DiscreteTrajectory,
     asked: Option<&str>,
 ) -> Result<(), WriteError> {
     match asked {
         Some(asked) => {
             let path = files.folder().join(ENDED);
-            let bytes = bytes(history, asked).map_err(|cause| WriteError { path, cause })?;
+            let bytes = bytes(discrete, asked).map_err(|cause| WriteError { path, cause })?;
             files.add(ENDED, &bytes)
         }
         None => {
@@ -120,10 +120,10 @@ pub(super) fn add(
 /// Replaces the state of a motion that has not ended.
 pub(super) fn replace(
     path: &Path,
-    history: &DiscreteTrajectory,
+    discrete: &DiscreteTrajectory,
     asked: &str,
 ) -> Result<(), WriteError> {
-    let bytes = bytes(history, asked).map_err(|cause| WriteError {
+    let bytes = bytes(discrete, asked).map_err(|cause| WriteError {
         path: path.to_owned(),
         cause,
     })?;

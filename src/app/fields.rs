@@ -23,19 +23,19 @@ const FOLDER: &str = "fields";
 pub(super) fn write(
     files: &mut FileSet,
     model: &Model,
-    history: &DiscreteTrajectory,
+    discrete: &DiscreteTrajectory,
     origin: &Origin,
 ) -> Result<usize, WriteError> {
     if model.solids.is_empty() {
         return Ok(0);
     }
-    let instants = spread(history.z.len(), MOST);
+    let instants = spread(discrete.z.len(), MOST);
     let mut series = Series::new("trajectory", origin).within(FOLDER, files)?;
-    let mut states = SolidStates::new(model, history);
+    let mut states = SolidStates::new(model, discrete);
     for &k in &instants {
         let blocks: Vec<Block<'_>> = states.at(k);
         let grids: Vec<UnstructuredGrid<'_>> = blocks.iter().map(Block::grid).collect();
-        series.add(history.times[k] / 1e3, &grids, files)?;
+        series.add(discrete.times[k] / 1e3, &grids, files)?;
     }
     series.finish(files)?;
     // Those of a longer motion that stood here before.
@@ -48,10 +48,10 @@ pub(super) fn write(
 /// Largest reference field −∂φ/∂X of an element in V/m at an instant; `None` where there is none.
 pub(super) fn largest_nominal_field(
     model: &Model,
-    history: &DiscreteTrajectory,
+    discrete: &DiscreteTrajectory,
     k: usize,
 ) -> Option<f64> {
-    let mut states = SolidStates::new(model, history);
+    let mut states = SolidStates::new(model, discrete);
     let state = states.place(k);
     let each = model.solids.iter().flat_map(|block| {
         let (places, potentials) = (block.places(&state.here.x), block.potentials(state.scalars));
@@ -77,7 +77,7 @@ fn spread(count: usize, most: usize) -> Vec<usize> {
 /// The instants of a motion, one at a time.
 struct SolidStates<'m> {
     model: &'m Model,
-    history: &'m DiscreteTrajectory,
+    discrete: &'m DiscreteTrajectory,
     here: Configuration,
     there: Configuration,
     none: Vec<f64>,
@@ -91,10 +91,10 @@ struct SolidState<'s> {
 }
 
 impl<'m> SolidStates<'m> {
-    fn new(model: &'m Model, history: &'m DiscreteTrajectory) -> Self {
+    fn new(model: &'m Model, discrete: &'m DiscreteTrajectory) -> Self {
         Self {
             model,
-            history,
+            discrete,
             here: model.action.map.instant(),
             there: model.action.map.instant(),
             none: vec![0.0; model.action.intervals.scalars],
@@ -102,18 +102,20 @@ impl<'m> SolidStates<'m> {
     }
 
     fn place(&mut self, k: usize) -> SolidState<'_> {
-        let Self { model, history, .. } = *self;
-        let last = history.z.len() - 1;
+        let Self {
+            model, discrete, ..
+        } = *self;
+        let last = discrete.z.len() - 1;
         let other = match k {
             0 => 1.min(last),
             _ => k - 1,
         };
         for (instant, k) in [(&mut self.here, k), (&mut self.there, other)] {
-            instant.z.copy_from_slice(&history.z[k]);
+            instant.z.copy_from_slice(&discrete.z[k]);
             model.action.map.place(instant);
         }
-        let time = history.times[other] - history.times[k];
-        let scalars = history.scalars.get(k.saturating_sub(1));
+        let time = discrete.times[other] - discrete.times[k];
+        let scalars = discrete.scalars.get(k.saturating_sub(1));
         SolidState {
             here: &self.here,
             there: (other != k).then_some((&self.there, time)),

@@ -112,7 +112,7 @@ struct Run<'a> {
 /// A simulation that has ended.
 struct Ended {
     model: Model,
-    history: DiscreteTrajectory,
+    discrete: DiscreteTrajectory,
     failure: Option<StepError>,
     /// Status of a run that was stopped before its end.
     stopped: Option<Status>,
@@ -137,7 +137,7 @@ impl Ended {
 
     /// Length of its motion in ms.
     fn reached(&self) -> f64 {
-        self.history.times[self.history.intervals()]
+        self.discrete.times[self.discrete.intervals()]
     }
 }
 
@@ -162,23 +162,23 @@ fn integrate(
     let (simulated, accuracy) = {
         let (steps, _) = grid(task);
         let progress = Progress::of_steps(request.progress, steps);
-        let mut observe = |steps: usize, model: &Model, history: &DiscreteTrajectory| {
-            let step = history.intervals();
+        let mut observe = |steps: usize, model: &Model, discrete: &DiscreteTrajectory| {
+            let step = discrete.intervals();
             progress.step(steps, step);
-            observer(Reached::Step(step, history.times[step]));
+            observer(Reached::Step(step, discrete.times[step]));
             if step == 1 {
                 unfinished.begin();
             }
             // The steps so far are final; those of a finer grid begin anew.
             unfinished.consider(0.0, |path| match run.resumable {
-                Some(problem) => continuation::replace(path, history, problem),
-                None => solution_file::replace(path, model, &solved(model, history, None)),
+                Some(problem) => continuation::replace(path, discrete, problem),
+                None => solution_file::replace(path, model, &solved(model, discrete, None)),
             });
             unfinished.flow()
         };
         let found = match request.wanted {
-            None => integrate_on(system, task, begun, |model, history| {
-                observe(steps, model, history)
+            None => integrate_on(system, task, begun, |model, discrete| {
+                observe(steps, model, discrete)
             })
             .map(|simulated| (simulated, None)),
             Some(wanted) => integrate_to(system, task, wanted, left, &mut observe)
@@ -187,14 +187,14 @@ fn integrate(
         found.map_err(CommandError::of(&request.input))?
     };
     // A finer grid that was stopped leaves the motion on the one before as it is.
-    let reached = simulated.history.times[simulated.history.intervals()];
+    let reached = simulated.discrete.times[simulated.discrete.intervals()];
     let is_early = reached < task.duration * (1.0 - 1e-12);
     let stopped = interrupt::stop().filter(|_| is_early);
     drop(watch);
     Ok(Ended {
         folder: unfinished.made()?,
         model: simulated.model,
-        history: simulated.history,
+        discrete: simulated.discrete,
         failure: simulated.failure,
         stopped,
         error: simulated.error,
@@ -223,28 +223,30 @@ impl Observed {
         files: &mut FileSet,
         origin: &Origin,
     ) -> Result<Self, WriteError> {
-        let Ended { model, history, .. } = ended;
+        let Ended {
+            model, discrete, ..
+        } = ended;
         let order = run.task.solving.integrator.order();
         let ends = [run.task.start.voltages(), None];
         // Of many steps each takes long, and most need no other.
         let (columns, (motion, written, (outside, neglected, exchange))) = join(
-            || observed(model, history),
+            || observed(model, discrete),
             || {
-                let motion = Trajectory::from_history(model, history);
+                let motion = Trajectory::from_discrete(model, discrete);
                 let write = || {
                     let is_motion = motion.intervals() > 0;
                     if is_motion {
-                        let kept = solved_of(model, history, motion.clone(), None);
+                        let kept = solved_of(model, discrete, motion.clone(), None);
                         solution_file::add(files, model, &kept)?;
                     }
                     let resumable = run.resumable.filter(|_| is_motion);
-                    continuation::add(files, history, resumable)?;
-                    fields::write(files, model, history, origin)
+                    continuation::add(files, discrete, resumable)?;
+                    fields::write(files, model, discrete, origin)
                 };
                 let see = || {
                     (
-                        out_of_domain(model, history),
-                        local_error_of(model, (history, &motion), order),
+                        out_of_domain(model, discrete),
+                        local_error_of(model, (discrete, &motion), order),
                         EnergyExchange::new(&model.system, &motion, ends),
                     )
                 };
@@ -271,10 +273,10 @@ impl Observed {
 
 /// Adds the numbers of a simulation to its summary, and the notes on them.
 fn summarise(run: &Run<'_>, ended: &Ended, observed: &Observed, summary: &mut Summary) {
-    let (task, history) = (run.task, &ended.history);
+    let (task, discrete) = (run.task, &ended.discrete);
     summary.message = ended.failure.as_ref().map(ToString::to_string);
     summary.simulation = Some(summary::Simulation::new(
-        (history, ended.error),
+        (discrete, ended.error),
         task,
         observed.neglected,
     ));
@@ -293,10 +295,10 @@ fn summarise(run: &Run<'_>, ended: &Ended, observed: &Observed, summary: &mut Su
     remarks.note("voltages_end", afterwards(task));
     remarks.note("step_divided", steps::divided(task));
     remarks.warn("outside_domain", domain::note(&summary.domain, true));
-    let coarse = steps::warning(observed.neglected, history, task);
+    let coarse = steps::warning(observed.neglected, discrete, task);
     remarks.warn("coarse_steps", coarse);
     remarks.warn("tolerance_exceeded", steps::beyond(ended.error, task));
-    remarks.warn("energy_balance", steps::unbalanced(history));
+    remarks.warn("energy_balance", steps::unbalanced(discrete));
 }
 
 /// Writes tables, figures and page, next to the solution that the voltages come from, and adds what they show to the summary.
@@ -308,7 +310,9 @@ fn write_pictures(
     files: &mut FileSet,
     origin: &Origin,
 ) -> Result<(), WriteError> {
-    let Ended { model, history, .. } = ended;
+    let Ended {
+        model, discrete, ..
+    } = ended;
     let (request, task, system) = (run.request, run.task, &run.loaded.system);
     let path = task.voltages.solution();
     let earlier = path.and_then(|path| comparison::earlier(model, path));
@@ -317,7 +321,7 @@ fn write_pictures(
         .map(|(path, earlier)| Comparison::new(model, path, &observed.motion, earlier));
     let motion = Motion {
         model,
-        history,
+        discrete,
         trajectory: &observed.motion,
         observations: &observed.observations,
     };
@@ -325,7 +329,7 @@ fn write_pictures(
     summary.notes.note("shown", shown.notes.iter().cloned());
     summary.shown = shown.part;
     let mut content = page::content("Simulation", summary, asked);
-    content.rows = rows(summary, task, (model, history), observed.neglected);
+    content.rows = rows(summary, task, (model, discrete), observed.neglected);
     let earlier = earlier.map(|earlier| shown.beside(earlier));
     let pictures = report::Run {
         name: "simulation",
@@ -362,7 +366,7 @@ fn command_output(run: &Run<'_>, ended: &Ended, summary: &Summary) -> CommandOut
         is_solved,
         result: format!(
             "{word}: {}, {} s of motion, {:.2} s, {}",
-            counted(ended.history.intervals(), "step"),
+            counted(ended.discrete.intervals(), "step"),
             ended.reached() / 1e3,
             summary.seconds.total,
             ended.folder.display()

@@ -11,14 +11,14 @@ use crate::workflow::steps;
 pub(super) fn rows(
     summary: &Summary,
     task: &Simulation,
-    (model, history): (&Model, &DiscreteTrajectory),
+    (model, discrete): (&Model, &DiscreteTrajectory),
     neglected: Option<LocalError>,
 ) -> Vec<(String, String)> {
-    let reached = history.times[history.intervals()];
+    let reached = discrete.times[discrete.intervals()];
     let row = |name: &str, value: String| (name.to_owned(), value);
     let mut rows = vec![
         row("status", summary.status.replace('_', " ")),
-        row("steps", steps::counted(history, task)),
+        row("steps", steps::counted(discrete, task)),
         row("duration", format!("{} s", reached / 1e3)),
         row("method", method(task)),
         row("coordinates", model.coordinates.name().to_owned()),

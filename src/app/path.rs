@@ -61,7 +61,7 @@ pub(super) fn follow(
     let mut files = FileSet::of(&folder);
     let plot = path.figure();
     files.add("path.svg", plot.svg(&origin).as_bytes())?;
-    fields::write(&mut files, &model, &path.history, &origin)?;
+    fields::write(&mut files, &model, &path.discrete, &origin)?;
     let word = stopped.map_or("path_followed", Status::word);
     let mut summary = Summary::new(request, word, model.coordinates.name());
     summary.plan = Plan::of(&model, None, MEASURED);
@@ -69,7 +69,7 @@ pub(super) fn follow(
     let rows = followed.rows(path.stops[path.shown()].fraction);
     let output = command_output(&followed, found.points.len(), stopped, &folder);
     summary.path = Some(followed);
-    summary.domain = domain::records(&out_of_domain(&model, &path.history));
+    summary.domain = domain::records(&out_of_domain(&model, &path.discrete));
     let note = domain::note(&summary.domain, false);
     summary.notes.warn("outside_domain", note);
     summary.seconds = Seconds {
@@ -150,24 +150,24 @@ impl<'a> Stop<'a> {
     }
 }
 
-/// The history up to an instant.
-fn up_to(history: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
+/// The discrete trajectory up to an instant.
+fn up_to(discrete: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
     DiscreteTrajectory {
-        times: history.times[..=k].to_vec(),
-        z: history.z[..=k].to_vec(),
-        momenta: history.momenta[..=k].to_vec(),
-        scalars: history.scalars[..k].to_vec(),
+        times: discrete.times[..=k].to_vec(),
+        z: discrete.z[..=k].to_vec(),
+        momenta: discrete.momenta[..=k].to_vec(),
+        scalars: discrete.scalars[..k].to_vec(),
         ..DiscreteTrajectory::default()
     }
 }
 
 /// The state at an instant, alone.
-fn single_instant(history: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
+fn single_instant(discrete: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
     DiscreteTrajectory {
         times: vec![0.0],
-        z: vec![history.z[k].clone()],
-        momenta: vec![history.momenta[k].clone()],
-        scalars: vec![history.scalars[k - 1].clone()],
+        z: vec![discrete.z[k].clone()],
+        momenta: vec![discrete.momenta[k].clone()],
+        scalars: vec![discrete.scalars[k - 1].clone()],
         ..DiscreteTrajectory::default()
     }
 }
@@ -177,14 +177,14 @@ struct EquilibriumPath<'a> {
     model: &'a Model,
     stops: Vec<Stop<'a>>,
     /// The first equilibrium stands at both ends of an interval of its own, so that each has its potentials.
-    history: DiscreteTrajectory,
+    discrete: DiscreteTrajectory,
 }
 
 impl<'a> EquilibriumPath<'a> {
     fn new(model: &'a Model, found: &'a Continuation) -> Self {
         let stops = Stop::all(found);
         let first = std::iter::once(&stops[0]);
-        let history = DiscreteTrajectory {
+        let discrete = DiscreteTrajectory {
             times: std::iter::once(0.0)
                 .chain(stops.iter().map(|stop| stop.fraction))
                 .collect(),
@@ -199,7 +199,7 @@ impl<'a> EquilibriumPath<'a> {
         Self {
             model,
             stops,
-            history,
+            discrete,
         }
     }
 
@@ -220,19 +220,19 @@ impl<'a> EquilibriumPath<'a> {
         let Self {
             model,
             stops,
-            history,
+            discrete,
         } = self;
         let shown = self.shown();
-        let state = single_instant(history, shown + 1);
-        let motion = Trajectory::from_history(model, &state);
-        let way = Trajectory::from_history(model, &up_to(history, shown + 1));
+        let state = single_instant(discrete, shown + 1);
+        let motion = Trajectory::from_discrete(model, &state);
+        let way = Trajectory::from_discrete(model, &up_to(discrete, shown + 1));
         let steps = DiscreteTrajectory {
             times: (0..=stops.len()).map(|k| 1e3 * (k as f64 - 1.0)).collect(),
-            ..history.clone()
+            ..discrete.clone()
         };
         let fractions: Vec<f64> = stops.iter().map(|stop| stop.fraction).collect();
         let branch = Branch {
-            trajectory: &Trajectory::from_history(model, &steps),
+            trajectory: &Trajectory::from_discrete(model, &steps),
             skins: &Skins::new(model, &steps),
             fractions: &fractions,
             shown,
@@ -256,7 +256,7 @@ impl<'a> EquilibriumPath<'a> {
         let Self {
             model,
             stops,
-            history,
+            discrete,
         } = self;
         let mut columns = Vec::new();
         let mut add = |name: String, unit: &'static str, values: Vec<f64>| {
@@ -269,7 +269,7 @@ impl<'a> EquilibriumPath<'a> {
             let values = each(&|stop| stop.rest.scalars[s]);
             add(voltage.name.clone(), "V", values);
         }
-        for mut column in at_rest(observations(model, history)).columns {
+        for mut column in at_rest(observations(model, discrete)).columns {
             column.values.remove(0);
             add(column.name, column.unit, column.values);
         }
@@ -300,9 +300,9 @@ impl<'a> EquilibriumPath<'a> {
         let Self {
             model,
             stops,
-            history,
+            discrete,
         } = self;
-        let marks = Trajectory::from_history(model, history).marks;
+        let marks = Trajectory::from_discrete(model, discrete).marks;
         let reference = &reference(model);
         let distance = |m: usize, k: usize| (marks[k + 1][m] - marks[0][m]).norm();
         let mut series = Vec::new();

@@ -186,7 +186,7 @@ impl Still {
             scalars: vec![found.scalars.clone()],
             ..DiscreteTrajectory::default()
         };
-        let motion = Trajectory::from_history(model, &state);
+        let motion = Trajectory::from_discrete(model, &state);
         let observed = at_rest(observations(model, &state));
         let mut rest = describe(model, &state, &motion, &observed, found, loss);
         rest.largest_nominal_field = fields::largest_nominal_field(model, &state, 0);

@@ -49,7 +49,7 @@ pub(super) struct ShownPart {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion<'a> {
     pub(super) model: &'a Model,
-    pub(super) history: &'a DiscreteTrajectory,
+    pub(super) discrete: &'a DiscreteTrajectory,
     pub(super) trajectory: &'a Trajectory,
     pub(super) observations: &'a Observations,
 }
@@ -68,7 +68,7 @@ impl Shown {
     ) -> Result<Self, WriteError> {
         let Motion {
             model,
-            history,
+            discrete,
             trajectory,
             observations,
         } = motion;
@@ -80,19 +80,19 @@ impl Shown {
             None => (
                 trajectory.clone(),
                 observations.clone(),
-                Skins::new(model, history),
+                Skins::new(model, discrete),
             ),
             Some(sampled) => (
                 sampled.trajectory(trajectory),
                 sampled.observations(observations),
-                Skins::new(model, &sampled.history(history)),
+                Skins::new(model, &sampled.discrete_trajectory(discrete)),
             ),
         };
         let is_complete_beside = sampled.is_some() && !is_asked;
         let complete =
             || is_complete_beside.then(|| tables(&model.system, trajectory, observations));
         let ((trajectory_shown, observations_shown, skins), complete) = join(choose, complete);
-        let of = history.times.len();
+        let of = discrete.times.len();
         let mut shown = Self {
             trajectory: trajectory_shown,
             observations: observations_shown,

@@ -37,7 +37,7 @@ use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::final_values::final_values;
 use crate::workflow::grids::optimise_to;
-use crate::workflow::motion::{history, solved, trajectory};
+use crate::workflow::motion::{discrete_trajectory, solved, trajectory};
 use crate::workflow::optimum::{Optimum, SolveLimits};
 use crate::workflow::resimulate::under_constant_voltages;
 use crate::workflow::tracking::followed;
@@ -191,17 +191,17 @@ fn write_files(
     let (model, kept) = (&optimum.model, &optimum.motion);
     let mut files = FileSet::of(folder);
     solution_file::add(&mut files, model, kept)?;
-    let history = history(model, kept);
-    let mut observed = observations(model, &history);
+    let discrete = discrete_trajectory(model, kept);
+    let mut observed = observations(model, &discrete);
     let origin = request.origin(true);
-    let written = fields::write(&mut files, model, &history, &origin)?;
+    let written = fields::write(&mut files, model, &discrete, &origin)?;
     summary.blocks = BlockSizes::of(model).map(|b| b.after(model, &observed, written));
     let motion = trajectory(model, kept);
-    let exchange = add_observed(summary, control, optimum, (&history, &motion));
+    let exchange = add_observed(summary, control, optimum, (&discrete, &motion));
     observed.columns.extend(exchange.columns());
     let motion = Motion {
         model,
-        history: &history,
+        discrete: &discrete,
         trajectory: &motion,
         observations: &observed,
     };
@@ -225,12 +225,12 @@ fn add_observed(
     summary: &mut Summary,
     control: &Control,
     optimum: &Optimum,
-    (history, motion): (&DiscreteTrajectory, &Trajectory),
+    (discrete, motion): (&DiscreteTrajectory, &Trajectory),
 ) -> EnergyExchange {
     let Optimum {
         model, boundary, ..
     } = optimum;
-    summary.domain = domain::records(&out_of_domain(model, history));
+    summary.domain = domain::records(&out_of_domain(model, discrete));
     let held = boundary.rest.each_ref().map(Option::as_deref);
     let exchange = EnergyExchange::new(&model.system, motion, held);
     summary.energies = Exchanged::new(&exchange);
@@ -259,7 +259,7 @@ fn write_pictures(
     let compared = is_solved
         .then(|| under_constant_voltages(model, boundary, &optimum.motion, COMPARED))
         .flatten()
-        .map(|(history, _)| trajectory(model, &solved(model, &history, None)))
+        .map(|(discrete, _)| trajectory(model, &solved(model, &discrete, None)))
         .map(|other| shown.beside(other));
     let goal = goal(model, boundary);
     let mut content = page::content("Optimal control", summary, asked);

@@ -253,14 +253,14 @@ impl Neglected {
 impl Simulation {
     /// Of a motion.
     pub(super) fn new(
-        (history, estimated): (&DiscreteTrajectory, Option<EstimatedError>),
+        (discrete, estimated): (&DiscreteTrajectory, Option<EstimatedError>),
         task: &problem::Simulation,
         error: Option<LocalError>,
     ) -> Self {
-        let (steps, report) = (history.intervals(), history.report);
+        let (steps, report) = (discrete.intervals(), discrete.report);
         Self {
             steps,
-            duration: history.times[steps] / 1e3,
+            duration: discrete.times[steps] / 1e3,
             local_error: error.map(Neglected::new),
             integrator: task.solving.integrator.name(),
             tolerance: task.tolerance,
@@ -268,7 +268,7 @@ impl Simulation {
             is_confirmed: estimated.map(|estimated| estimated.is_confirmed),
             newton_iterations: report.iterations,
             halved_steps: report.halved,
-            linear_solver: history.solver.clone(),
+            linear_solver: discrete.solver.clone(),
             factorisations: report.factorisations,
             assembly_seconds: report.assembly,
             factorisation_seconds: report.factorisation,

@@ -19,7 +19,7 @@ const LIFT: f64 = 0.1;
 #[derive(Clone, Debug)]
 pub struct InitialGuess {
     /// Coordinates, multipliers and voltages.
-    pub history: DiscreteTrajectory,
+    pub discrete: DiscreteTrajectory,
     /// Interval length in ms.
     pub h: f64,
     /// Costates and bound multipliers.
@@ -55,7 +55,7 @@ pub fn guess(
         (Guess::Simulate(voltages), _) => {
             let voltages = |time| voltages.at(time).to_vec();
             InitialGuess {
-                history: under_voltages(model, boundary, control, h, voltages),
+                discrete: under_voltages(model, boundary, control, h, voltages),
                 h,
                 costates: None,
                 carried: Carried::default(),
@@ -84,17 +84,17 @@ fn under_voltages(
         model.scalars(&voltages)
     };
     let start = &boundary.start;
-    let (mut history, _) = simulate(model, start, h, intervals, scalars, |_| {
+    let (mut discrete, _) = simulate(model, start, h, intervals, scalars, |_| {
         ControlFlow::Continue(())
     });
     // A simulation that ends early is held where it ended.
-    while history.intervals() < intervals {
-        history.z.push(history.z[history.z.len() - 1].clone());
-        let last = history.scalars.last().cloned();
+    while discrete.intervals() < intervals {
+        discrete.z.push(discrete.z[discrete.z.len() - 1].clone());
+        let last = discrete.scalars.last().cloned();
         let still = || model.variables.scalars(&scalars(0.0, h));
-        history.scalars.push(last.unwrap_or_else(still));
+        discrete.scalars.push(last.unwrap_or_else(still));
     }
-    history
+    discrete
 }
 
 /// 3s² − 2s³ between start and goal; rest voltages of the goal lifted a little.
@@ -144,14 +144,14 @@ fn interpolate(
     let mut held: Vec<f64> = rest.map_or_else(|| vec![0.0; model.sources.len()], Clone::clone);
     held.iter_mut().for_each(|voltage| *voltage += lift);
     let scalars = model.scalars(&held);
-    let history = DiscreteTrajectory {
+    let discrete = DiscreteTrajectory {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),
         z: z.collect(),
         scalars: vec![model.variables.scalars(&scalars); intervals],
         ..DiscreteTrajectory::default()
     };
     InitialGuess {
-        history,
+        discrete,
         h,
         costates: None,
         carried: Carried::default(),
@@ -215,7 +215,7 @@ fn from_solution(
             grids.mean(&solved.voltages, k.min(intervals - 1))
         };
         return InitialGuess {
-            history: under_voltages(model, boundary, control, h, voltages),
+            discrete: under_voltages(model, boundary, control, h, voltages),
             h,
             costates: None,
             carried,
@@ -225,14 +225,14 @@ fn from_solution(
         true => resample::coordinates(solved, grids, map, model.multiplier_time),
         false => along_joints(model, solved, intervals),
     };
-    let history = DiscreteTrajectory {
+    let discrete = DiscreteTrajectory {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),
         z,
         scalars: scalars(model, solved, grids, intervals),
         ..DiscreteTrajectory::default()
     };
     InitialGuess {
-        history,
+        discrete,
         h,
         costates: has_same_coordinates
             .then(|| resample::costates(model, boundary, control, solved, grids))

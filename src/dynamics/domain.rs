@@ -47,7 +47,7 @@ pub fn largest_stretch(electric: &ElectricConstants, J: f64) -> Option<f64> {
 
 /// Returns the parts that leave the domain at the instants of a motion, in the order of muscles and blocks. The voltages of an instant are
 /// those of the interval that ends there.
-pub fn out_of_domain(model: &Model, history: &DiscreteTrajectory) -> Vec<OutOfDomain> {
+pub fn out_of_domain(model: &Model, discrete: &DiscreteTrajectory) -> Vec<OutOfDomain> {
     let muscles = model.system.muscles.iter().enumerate();
     let lumped: Vec<Watched<'_>> = muscles
         .filter(|(_, muscle)| muscle.fidelity == Fidelity::Lumped)
@@ -76,14 +76,14 @@ pub fn out_of_domain(model: &Model, history: &DiscreteTrajectory) -> Vec<OutOfDo
         return Vec::new();
     }
     let mut instant = model.action.map.instant();
-    for (k, z) in history.z.iter().enumerate() {
-        let Some(scalars) = history.scalars.get(k.saturating_sub(1)) else {
+    for (k, z) in discrete.z.iter().enumerate() {
+        let Some(scalars) = discrete.scalars.get(k.saturating_sub(1)) else {
             continue;
         };
         instant.z.copy_from_slice(z);
         model.action.map.vectors(&mut instant);
         for one in &mut watched {
-            one.look(&instant.x, scalars, history.times[k]);
+            one.look(&instant.x, scalars, discrete.times[k]);
         }
     }
     watched.into_iter().filter_map(|one| one.found).collect()

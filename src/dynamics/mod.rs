@@ -6,7 +6,7 @@
 //! - `step_state`, `resume`: the state from which a motion is resumed.
 //! - `domain`: where the first-order dielectric ends.
 //! - `resolution`, `spans`: which steps are refused; `local_error`: what those neglect that are not.
-//! - `simulate`, `history`, `observe`, `at_instant`, `interval_energies`, `kinetic`: step after step, recorded and observed.
+//! - `simulate`, `discrete_trajectory`, `observe`, `at_instant`, `interval_energies`, `kinetic`: step after step, recorded and observed.
 //! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
 //! - `statics`: the rows of rest; `ramp`, `equilibrium`, `continuation`: paths of rest under growing loads; `minimum`: minima
 //!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest`: its softest mode.

@@ -87,14 +87,14 @@ fn iterated(model: &Model, instant: &mut Configuration, momentum: &[f64]) -> Vec
 
 /// Momentum `P_Nᵀ (D₂L_d + f⁺)` of each coordinate at the end of the last interval of a motion by the midpoint rule; none of a motion without an
 /// interval, or where it is not finite.
-pub fn last_momentum(model: &Model, history: &DiscreteTrajectory) -> Option<Vec<f64>> {
-    let (scalars, k) = (history.scalars.last()?, history.intervals() - 1);
+pub fn last_momentum(model: &Model, discrete: &DiscreteTrajectory) -> Option<Vec<f64>> {
+    let (scalars, k) = (discrete.scalars.last()?, discrete.intervals() - 1);
     let action = &model.action;
-    let mut ends = [k, k + 1].map(|k| action.map.placed(&history.z[k]));
+    let mut ends = [k, k + 1].map(|k| action.map.placed(&discrete.z[k]));
     let mut scratch = action.scratch(Order::Gradient);
     let interval = Interval {
         sides: BlockMask::FORWARD,
-        ..Interval::given(scalars, history.times[k + 1] - history.times[k])
+        ..Interval::given(scalars, discrete.times[k + 1] - discrete.times[k])
     };
     let [here, next] = &mut ends;
     action.evaluate_interval(Order::Gradient, [here, next], &interval, &mut scratch);

@@ -65,9 +65,9 @@ pub(super) fn is_inverted(model: &Model, at: &Configuration, scalars: &[f64]) ->
 }
 
 /// The first interval of a motion in which the span of a lumped muscle turns by a right angle or more, and the muscle.
-pub fn reversed_muscle(model: &Model, history: &DiscreteTrajectory) -> Option<(usize, usize)> {
+pub fn reversed_muscle(model: &Model, discrete: &DiscreteTrajectory) -> Option<(usize, usize)> {
     let map = &model.action.map;
-    let mut pairs = history.z.windows(2).enumerate();
+    let mut pairs = discrete.z.windows(2).enumerate();
     pairs.find_map(|(k, ends)| {
         let muscle = reversed(model, &map.placed(&ends[0]), &map.placed(&ends[1]))?;
         Some((k, muscle))

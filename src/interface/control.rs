@@ -21,7 +21,7 @@ use crate::workflow::domain;
 use crate::workflow::final_values::final_values;
 use crate::workflow::holding;
 use crate::workflow::memory;
-use crate::workflow::motion::{history, trajectory};
+use crate::workflow::motion::{discrete_trajectory, trajectory};
 use crate::workflow::optimum::SolveLimits;
 use crate::workflow::prepare::{Counted, Prepared, prepare};
 use crate::workflow::remark::Remarks;
@@ -198,7 +198,10 @@ impl Control {
         })?;
         found.hold(&control);
         let model = &found.model;
-        let outside = domain::records(&out_of_domain(model, &history(model, &found.motion)));
+        let outside = domain::records(&out_of_domain(
+            model,
+            &discrete_trajectory(model, &found.motion),
+        ));
         let message = match found.is_solved() {
             true => None,
             false => Some(

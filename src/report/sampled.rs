@@ -71,7 +71,7 @@ impl Sampled {
     }
 
     /// Coordinates at these instants, and the voltages and potentials before them.
-    pub fn history(&self, full: &DiscreteTrajectory) -> DiscreteTrajectory {
+    pub fn discrete_trajectory(&self, full: &DiscreteTrajectory) -> DiscreteTrajectory {
         let before = |&k: &usize| full.scalars[k - 1].clone();
         DiscreteTrajectory {
             times: self.pick(&full.times),

@@ -73,7 +73,7 @@ pub fn shown(times: &[f64], places: usize) -> Vec<usize> {
 
 impl Skins {
     /// Surfaces of the blocks of a model along a motion of one instant or more.
-    pub fn new(model: &Model, history: &DiscreteTrajectory) -> Self {
+    pub fn new(model: &Model, discrete: &DiscreteTrajectory) -> Self {
         let mut muscles = model
             .system
             .muscles
@@ -86,13 +86,13 @@ impl Skins {
             parts.push(Skin::immobile(block, muscle));
         }
         let places = parts.iter().map(|(skin, _)| skin.reference.len()).sum();
-        let instants = shown(&history.times, places);
+        let instants = shown(&discrete.times, places);
         let none = vec![0.0; model.action.intervals.scalars];
         let mut instant = model.action.map.instant();
         for &k in &instants {
-            instant.z.copy_from_slice(&history.z[k]);
+            instant.z.copy_from_slice(&discrete.z[k]);
             model.action.map.vectors(&mut instant);
-            let scalars = history.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
+            let scalars = discrete.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
             for (block, (skin, nodes)) in model.solids.iter().zip(&mut parts) {
                 let vectors = nodes.iter().map(|&n| instant.x[block.vectors[n]]);
                 skin.places.push(vectors.collect());

@@ -126,11 +126,11 @@ fn of_optimum(optimum: &Optimum, names: &[String]) -> Observed {
         let k = (0.5 * (from + to) / h) as usize;
         model.scalars(&motion.voltages[k.min(n - 1)])
     };
-    let (history, failure) = simulate(model, &boundary.start, fine, FINER * n, scalars, |_| {
+    let (discrete, failure) = simulate(model, &boundary.start, fine, FINER * n, scalars, |_| {
         ControlFlow::Continue(())
     });
     if failure.is_none() {
-        let again = Observed::of(model, &Trajectory::from_history(model, &history), names);
+        let again = Observed::of(model, &Trajectory::from_discrete(model, &discrete), names);
         let apart = |k: usize| furthest(&seen.places[k], &again.places[FINER * k]);
         let distances: Vec<f64> = (0..=n).map(apart).collect();
         let greatest = distances.iter().fold(0.0_f64, |m, d| m.max(*d));
@@ -181,18 +181,20 @@ fn motion(
 }
 
 fn of_motion(simulated: &Simulated, task: &Simulation, names: &[String]) -> Observed {
-    let Simulated { model, history, .. } = simulated;
+    let Simulated {
+        model, discrete, ..
+    } = simulated;
     let conservative = matches!(task.voltages, Voltages::Constant(_));
     let mut seen = Observed {
-        iterations: history.report.iterations,
+        iterations: discrete.report.iterations,
         // Steps by a tolerance have the length that they need.
         halved: match task.tolerance {
-            None => history.report.halved,
+            None => discrete.report.halved,
             Some(_) => 0,
         },
-        ..Observed::of(model, &Trajectory::from_history(model, history), names)
+        ..Observed::of(model, &Trajectory::from_discrete(model, discrete), names)
     };
-    let observed = observations(model, history);
+    let observed = observations(model, discrete);
     if let Some(violations) = column(&observed, "constraint_violation") {
         let greatest = violations.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         seen.numbers

@@ -26,8 +26,8 @@ pub(crate) struct Held {
 
 /// Simulates the voltages of an instant, from the end of an optimum on.
 pub(crate) fn held(model: &Model, end: &Start, optimal: &Solution, voltages: &[f64]) -> Held {
-    let (history, failure) = constant(model, end, optimal, voltages, DURATIONS, go_on);
-    let motion = solved(model, &history, None);
+    let (discrete, failure) = constant(model, end, optimal, voltages, DURATIONS, go_on);
+    let motion = solved(model, &discrete, None);
     let n = optimal.intervals();
     let of = |k: usize| Distance::between(model, &motion, k, optimal, n);
     let drift = (0..motion.times.len()).map(of);

@@ -82,10 +82,10 @@ fn miss(control: &Control, optimum: &Optimum) -> Option<String> {
         let k = ((from / h).round() as usize).min(n - 1);
         model.scalars(&motion.voltages[k])
     };
-    let (history, failure) = simulate(model, &boundary.start, h, n, scalars, |_| {
+    let (discrete, failure) = simulate(model, &boundary.start, h, n, scalars, |_| {
         ControlFlow::Continue(())
     });
-    if failure.is_some() || history.intervals() < n {
+    if failure.is_some() || discrete.intervals() < n {
         return None;
     }
     let placed = |z: &[f64]| {
@@ -94,7 +94,7 @@ fn miss(control: &Control, optimum: &Optimum) -> Option<String> {
         model.action.map.place(&mut instant);
         instant
     };
-    let [end, before] = [n, n - 1].map(|k| placed(&history.z[k]));
+    let [end, before] = [n, n - 1].map(|k| placed(&discrete.z[k]));
     let parts = distances(model, boundary, &control.goal, &end);
     let (what, _) = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let speed = |v: &usize| (end.x[*v] - before.x[*v]).norm() / h;

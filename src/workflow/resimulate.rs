@@ -113,10 +113,10 @@ pub(crate) fn resimulate(
     if !out.refine(model, start, optimal, least) {
         return out;
     }
-    let last = own.history.z.len() - 1;
+    let last = own.discrete.z.len() - 1;
     out.end = Some(Start {
-        z: own.history.z[last].clone(),
-        momentum: own.history.momenta[last].clone(),
+        z: own.discrete.z[last].clone(),
+        momentum: own.discrete.momenta[last].clone(),
         rates: None,
     });
     out
@@ -142,7 +142,7 @@ impl Resimulation {
                 return false;
             }
             if steps == FINER[0] {
-                self.half = Some(repeat.history.clone());
+                self.half = Some(repeat.discrete.clone());
             }
             greatest = greatest.max(deviation);
             let apart = match &before {

@@ -77,7 +77,7 @@ pub fn followed(optimum: &Optimum, control: &Control, motion: &Trajectory) -> Ve
     let model = &optimum.model;
     let tested = optimum.resimulation.as_ref();
     let half = tested.and_then(|tested| tested.half.as_ref());
-    let half = half.map(|history| Trajectory::from_history(model, history));
+    let half = half.map(|discrete| Trajectory::from_discrete(model, discrete));
     tracked(&model.system, control, motion, half.as_ref())
 }
 

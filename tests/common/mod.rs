@@ -211,7 +211,7 @@ pub(crate) fn motion(
     steps: usize,
     scalars: &[f64],
 ) -> DiscreteTrajectory {
-    let (history, failure) = simulate(
+    let (discrete, failure) = simulate(
         model,
         start,
         h,
@@ -220,8 +220,8 @@ pub(crate) fn motion(
         |_| ControlFlow::Continue(()),
     );
     assert_eq!(failure, None);
-    assert_eq!(history.report.halved, 0);
-    history
+    assert_eq!(discrete.report.halved, 0);
+    discrete
 }
 
 /// The limit of a sequence with steps h, h/2, h/4, … whose error is even in h.

@@ -222,8 +222,8 @@ fn solved_field(problem: &Value) -> (f64, f64) {
     })
     .unwrap();
     assert!(solution.status.is_solved(), "{:?}", solution.status);
-    let history = program.decode(&solution.x);
-    let places: Vec<Vec<Vector3<f64>>> = history
+    let discrete = program.decode(&solution.x);
+    let places: Vec<Vec<Vector3<f64>>> = discrete
         .z
         .iter()
         .map(|z| {
@@ -234,7 +234,7 @@ fn solved_field(problem: &Value) -> (f64, f64) {
         })
         .collect();
     let mut largest = 0.0_f64;
-    for (k, scalars) in history.scalars.iter().enumerate() {
+    for (k, scalars) in discrete.scalars.iter().enumerate() {
         let phi = model.solids[0].potentials(scalars);
         let middle: Vec<_> = (0..phi.len())
             .map(|n| (places[k][n] + places[k + 1][n]) * 0.5)

@@ -31,7 +31,7 @@ pub(crate) fn start(
     let h = control.duration.first() / control.intervals as f64;
     let (model, boundary) = BoundaryConditions::resolve(system, control, h).unwrap();
     let initial = guess(&model, &boundary, control, h, Some(earlier));
-    let joints = solved(&model, &initial.history, None).joints;
+    let joints = solved(&model, &initial.discrete, None).joints;
     (initial, joints)
 }
 
@@ -77,7 +77,7 @@ fn a_guess_changes_nothing_that_is_asked() {
         optimum(&system, &given),
         optimum(&system, &changed(free, None, 20)),
         optimum(&system, &changed(Duration::Given(90.0), redundant, 15)),
-        solved(&simulated.model, &simulated.history, None),
+        solved(&simulated.model, &simulated.discrete, None),
     ];
     let lengths = earlier.each_ref().map(|e| e.times[e.intervals()]);
     assert!(
@@ -94,7 +94,7 @@ fn a_guess_changes_nothing_that_is_asked() {
                 for intervals in [20, 13] {
                     let asked = changed(duration, coordinates, intervals);
                     let (initial, joints) = start(&system, &asked, before);
-                    let end = initial.history.times[intervals];
+                    let end = initial.discrete.times[intervals];
                     let place = format!("{length} ms, {duration:?}, {coordinates:?}, {intervals}");
                     assert!(
                         (initial.h * intervals as f64 - expected).abs() < 1e-9,

@@ -112,7 +112,7 @@ fn beside(folder: &Path, problem: &Value, steps: usize) -> (f64, f64) {
         panic!("a simulation")
     };
     let found = integrate(&loaded.system, &task, |_, _| ControlFlow::Continue(())).unwrap();
-    let motion = solved(&found.model, &found.history, None);
+    let motion = solved(&found.model, &found.discrete, None);
     let (mut way, mut apart) = (0.0_f64, 0.0_f64);
     for (j, joint) in loaded.system.joints.iter().enumerate() {
         let optimal = rows(&solution["configuration"]["joints"][&joint.name]);

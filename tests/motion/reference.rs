@@ -36,7 +36,7 @@ fn case(name: &str, segments: usize, coordinates: Coordinates) {
     }
 
     let start = Start::at_rest(&model, zero);
-    let (history, failure) = simulate(
+    let (discrete, failure) = simulate(
         &model,
         &start,
         5.0,
@@ -50,7 +50,7 @@ fn case(name: &str, segments: usize, coordinates: Coordinates) {
         .unwrap();
     assert!(steps.len() > 3);
     let mut near = vec![0.0; segments];
-    for (k, z) in history.z.iter().enumerate() {
+    for (k, z) in discrete.z.iter().enumerate() {
         instant.z.copy_from_slice(z);
         model.action.map.place(&mut instant);
         near = model.joints(&instant, &near);

@@ -108,7 +108,7 @@ fn derivatives_far_from_charts_are_differences() {
         let mut initial = guess(&model, &boundary, &control, 10.0, None);
         let mut random = Random(7);
         // Each instant has charts of its own.
-        for z in &mut initial.history.z[1..] {
+        for z in &mut initial.discrete.z[1..] {
             *z = anywhere(&model, &mut random);
         }
         let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
@@ -117,7 +117,7 @@ fn derivatives_far_from_charts_are_differences() {
         println!("{}: {report}", system.name);
         assert!(report.is_consistent(), "{report}");
         let decoded = program.decode(&x);
-        assert_eq!(decoded.z, initial.history.z);
+        assert_eq!(decoded.z, initial.discrete.z);
     }
 }
 
@@ -230,7 +230,7 @@ fn a_satellite_turns_by_bending_its_trunk_in_both_coordinates() {
             problem.coordinates = Some(other);
             let (model, boundary) = BoundaryConditions::resolve(&system, &problem, 25.0).unwrap();
             let initial = guess(&model, &boundary, &problem, 25.0, Some(&found.motion));
-            let track = Trajectory::from_history(&model, &initial.history);
+            let track = Trajectory::from_discrete(&model, &initial.discrete);
             for (a, b) in track
                 .poses
                 .iter()

@@ -84,7 +84,7 @@ fn an_instant_comes_with_the_voltages_before_it_and_its_deviation() {
         scalars: numbers(5),
         ..DiscreteTrajectory::default()
     };
-    let shown = sampled.history(&full);
+    let shown = sampled.discrete_trajectory(&full);
     assert_eq!(shown.times, [0.0, 3.0, 4.0, 8.0]);
     assert_eq!(shown.z.concat(), [0.0, 2.0, 3.0, 5.0]);
     assert_eq!(shown.scalars.concat(), [1.0, 2.0, 4.0]);

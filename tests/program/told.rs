@@ -41,12 +41,12 @@ fn a_step_is_stopped_between_its_iterations() {
     let three = |_: &_| ControlFlow::Continue(());
     let steps = || simulate(&model, &start, 0.5, 3, voltages, three);
 
-    let (history, failure) = steps();
-    assert!(failure.is_none() && history.intervals() == 3);
+    let (discrete, failure) = steps();
+    assert!(failure.is_none() && discrete.intervals() == 3);
     let watch = interrupt::watch(Some(0.0));
-    let (history, failure) = steps();
+    let (discrete, failure) = steps();
     assert!(failure.is_none(), "{failure:?}");
-    assert_eq!((history.intervals(), history.report.iterations), (0, 0));
+    assert_eq!((discrete.intervals(), discrete.report.iterations), (0, 0));
     // Whoever watches inside for longer is stopped all the same.
     let inner = interrupt::watch(Some(1e9));
     assert_eq!(interrupt::stop(), Some(Status::TimeLimit));

@@ -46,7 +46,7 @@ pub(crate) fn moved(system: &System, task: &Simulation) -> (Model, DiscreteTraje
     };
     let scalars = model.scalars(row);
     let steps = (task.duration / task.step) as usize;
-    let (history, failure) = simulate(
+    let (discrete, failure) = simulate(
         &model,
         &start,
         task.step,
@@ -55,7 +55,7 @@ pub(crate) fn moved(system: &System, task: &Simulation) -> (Model, DiscreteTraje
         |_| ControlFlow::Continue(()),
     );
     assert_eq!(failure, None);
-    (model, history)
+    (model, discrete)
 }
 
 pub(crate) fn names(model: &Model) -> BTreeSet<String> {

@@ -128,8 +128,8 @@ fn welded_and_fixed_bodies_have_no_unknown() {
                 assert_eq!(found.z, by_hand.z);
             } else {
                 // The joint goes the other way round.
-                let tips = [(&model, &found), (&other, &by_hand)].map(|(model, history)| {
-                    let z = &history.z[20];
+                let tips = [(&model, &found), (&other, &by_hand)].map(|(model, discrete)| {
+                    let z = &discrete.z[20];
                     placed(model, z).x[model.markers[0]]
                 });
                 assert!((tips[0] - Vector3::new(0.0, 150.0, 0.0)).norm() > 0.1);

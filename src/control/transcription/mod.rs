@@ -125,7 +125,7 @@ impl<'m> Transcription<'m> {
             bounded: boundary.limits.list.len(),
             workspace,
         };
-        out.set_scales(&initial.history, initial.h);
+        out.set_scales(&initial.discrete, initial.h);
         out.set_bounds(control);
         out.set_row_bounds();
         Ok(out)

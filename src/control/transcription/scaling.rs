@@ -32,8 +32,8 @@ impl Transcription<'_> {
     }
 
     /// Scales rows and multipliers by the largest entries of the Jacobian at the guess, kind by kind.
-    pub(super) fn set_scales(&mut self, history: &DiscreteTrajectory, h: f64) {
-        let x = self.encode(history, h);
+    pub(super) fn set_scales(&mut self, discrete: &DiscreteTrajectory, h: f64) {
+        let x = self.encode(discrete, h);
         let mut values = vec![0.0; self.structure.jacobian.kept.len()];
         self.jacobian(&x, &mut values);
         let of_kinds = self.scales_of_kinds(&values);

@@ -87,7 +87,7 @@ fn given_instants(
     let map = &model.action.map;
     let unknowns = map.unknowns();
     let mut instants = vec![map.instant(); intervals + 1];
-    for (instant, z) in instants.iter_mut().zip(&initial.history.z) {
+    for (instant, z) in instants.iter_mut().zip(&initial.discrete.z) {
         instant.z[unknowns..].copy_from_slice(&z[unknowns..]);
     }
     instants[0].z.copy_from_slice(&boundary.start.z);
