@@ -1,7 +1,7 @@
 //! Start and goal: the coordinates that they give, the equations that they add, and the voltages at rest.
 
-use crate::control::conditions::{BoundaryConditions, Rests, TerminalState};
-use crate::control::ends;
+use crate::control::boundary_conditions::{BoundaryConditions, Rests, TerminalState};
+use crate::control::endpoint_checks;
 use crate::control::energy_cost::sources;
 use crate::control::error::BoundaryError;
 use crate::control::goal_rows;
@@ -94,7 +94,7 @@ impl BoundaryConditions {
         let rest = boundary.goal.rest.as_ref();
         let ends = [Some(&boundary.start.z[..]), rest.map(|rest| &rest.z[..])];
         sought::check(&model, control, ends)?;
-        ends::check(&model, &boundary, control, scalars)?;
+        endpoint_checks::check(&model, &boundary, control, scalars)?;
         Ok((model, boundary))
     }
 }

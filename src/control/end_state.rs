@@ -1,6 +1,6 @@
 //! The end of another motion, as the start of a new one.
 
-use crate::control::meshes::other_mesh;
+use crate::control::mesh_match::other_mesh;
 use crate::dynamics::{Start, StepState};
 use crate::kinematics::Pose;
 use crate::model::{Coordinates, Model};

@@ -1,11 +1,11 @@
 //! Initial guess of the solver: interpolated between start and goal, simulated, or an earlier solution.
 
-use crate::control::conditions::BoundaryConditions;
-use crate::control::evened::evened;
-use crate::control::meshes::other_mesh;
+use crate::control::boundary_conditions::BoundaryConditions;
+use crate::control::mesh_match::other_mesh;
 use crate::control::problem::{Control, Guess};
 use crate::control::resample::{self, Grids};
 use crate::control::solution::{Costates, Solution};
+use crate::control::uniform_grid::evened;
 use crate::dynamics::{DiscreteTrajectory, simulate};
 use crate::kinematics::Pose;
 use crate::model::{Coordinates, Graph, Model, Role};

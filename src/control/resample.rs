@@ -4,7 +4,7 @@
 //! momentum balances and of Gauss's laws. Sums over a step go with its length: impulses of constraints, costates
 //! of path limits and of bounds. A finer grid has more and smaller ones.
 
-use crate::control::conditions::BoundaryConditions;
+use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::numbering::{Column, Row};
 use crate::control::problem::Control;
 use crate::control::solution::{Costates, Solution};

@@ -3,7 +3,7 @@
 use crate::control::numbering::Column;
 use crate::control::transcription::Transcription;
 use crate::control::transcription::cost_rows::Summand;
-use crate::control::transcription::placed::Placed;
+use crate::control::transcription::kinematic_state::Placed;
 use crate::math::Vector;
 
 impl Transcription<'_> {

@@ -4,8 +4,8 @@
 
 use crate::control::transcription::Transcription;
 use crate::control::transcription::energy_rows::{EnergyRow, Jump};
+use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::Site;
-use crate::control::transcription::placed::Placed;
 use crate::control::transcription::units::KILOVOLT;
 use crate::math::Vector;
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::control::conditions::{BoundaryConditions, Rests};
+use crate::control::boundary_conditions::{BoundaryConditions, Rests};
 use crate::control::limits::When;
 use crate::control::numbering::{Column, Numbering, Row};
 use crate::control::problem::{Control, Duration};

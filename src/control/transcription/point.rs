@@ -4,7 +4,7 @@ use crate::control::guess::InitialGuess;
 use crate::control::numbering::{Column, Row};
 use crate::control::solution::Costates;
 use crate::control::transcription::Transcription;
-use crate::control::transcription::placed::Placed;
+use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::units::KILOVOLT;
 use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;

@@ -6,8 +6,8 @@
 
 use crate::control::transcription::cost_rows::{CostRow, fill_costs};
 use crate::control::transcription::energy_rows::{EnergyRow, fill_energies};
+use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::{LimitRow, Site, fill_limits};
-use crate::control::transcription::placed::Placed;
 use crate::coordinates::{Configuration, Interval, Reduced, Scratch};
 use crate::functional::{BlockMask, Horizon, Order, Outer, Sample};
 use crate::ipopt::interrupt::TimeLimit;

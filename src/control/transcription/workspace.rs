@@ -1,10 +1,10 @@
 //! The point of a transcription and what is evaluated there: all that changes from one evaluation to the next.
 
-use crate::control::conditions::BoundaryConditions;
+use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::guess::InitialGuess;
 use crate::control::problem::Control;
+use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::layout::Layout;
-use crate::control::transcription::placed::Placed;
 use crate::control::transcription::segment::SegmentWorkspace;
 use crate::control::transcription::units::KILOVOLT;
 use crate::coordinates::Configuration;

@@ -1,8 +1,8 @@
 //! One sweep over the horizon: forces, and second derivatives into the values.
 
 use crate::control::transcription::Transcription;
+use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::{LimitRow, Site};
-use crate::control::transcription::placed::Placed;
 use crate::control::transcription::segment::{
     Segment, SegmentWorkspace, Shared, instant_of, needed,
 };

@@ -1,11 +1,11 @@
 //! Exchange of start and goal of a program that exists.
 
 use crate::control::BoundaryError;
-use crate::control::conditions::BoundaryConditions;
+use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::limits::BoundedQuantity;
 use crate::control::transcription::Transcription;
+use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::LimitRow;
-use crate::control::transcription::placed::Placed;
 use crate::control::transcription::units::KILOVOLT;
 use crate::model::Model;
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-use crate::control::conditions::BoundaryConditions;
+use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::error::BoundaryError;
 use crate::control::goal::Place;
 use crate::control::limits::{BoundedQuantity, When};
