@@ -5,7 +5,7 @@ use crate::control::mesh_match::other_mesh;
 use crate::control::problem::{Control, Guess};
 use crate::control::resample::{self, Grids};
 use crate::control::solution::{Costates, Solution};
-use crate::control::uniform_grid::evened;
+use crate::control::uniform_grid::on_uniform_grid;
 use crate::dynamics::{DiscreteTrajectory, simulate};
 use crate::kinematics::Pose;
 use crate::model::{Coordinates, Graph, Model, Role};
@@ -197,7 +197,7 @@ fn from_solution(
     let has_same_coordinates = solved.coordinates == model.coordinates
         && other_mesh(model, &solved.meshes).is_none()
         && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
-    let solved = &*evened(solved, has_same_coordinates.then_some(map));
+    let solved = &*on_uniform_grid(solved, has_same_coordinates.then_some(map));
     let intervals = control.intervals;
     let before = solved.times[solved.intervals()];
     let duration = control.duration.nearest(before);

@@ -11,7 +11,10 @@ const ROUNDING: f64 = 1e-6;
 /// The motion as it is where its steps are equal, otherwise at as many equal ones: coordinates along lines, voltages and
 /// potentials of the step that the middle of an interval is in; costates belong to other rows and are left out. `map` is
 /// what the coordinates mean, where they are those of the model.
-pub(super) fn evened<'s>(solved: &'s Solution, map: Option<&CoordinateMap>) -> Cow<'s, Solution> {
+pub(super) fn on_uniform_grid<'s>(
+    solved: &'s Solution,
+    map: Option<&CoordinateMap>,
+) -> Cow<'s, Solution> {
     let intervals = solved.intervals();
     let end = solved.times[intervals];
     let time = |k: f64| end * k / intervals as f64;

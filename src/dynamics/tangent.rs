@@ -4,7 +4,7 @@
 
 use crate::coordinates::StepPattern;
 use crate::dynamics::step_state::TangentState;
-use crate::math::{IsOver, Stopped, counted};
+use crate::math::{IsOver, Stopped, compact_index};
 use crate::model::Model;
 use crate::sparse::{Backend, Direct, Precision, Singular, Symmetry};
 
@@ -21,7 +21,7 @@ pub(super) struct Tangent {
 }
 
 fn pair((i, j): (usize, usize)) -> (u32, u32) {
-    (counted(i), counted(j))
+    (compact_index(i), compact_index(j))
 }
 
 fn uncounted((i, j): (u32, u32)) -> (usize, usize) {

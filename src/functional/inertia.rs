@@ -1,7 +1,7 @@
 //! Kinetic energy of constant masses: the one term whose second derivative never changes.
 
 use crate::functional::{BlockMask, Couplings, Horizon, Kind, Order, Output, Sample, Term};
-use crate::math::{Vector, counted};
+use crate::math::{Vector, compact_index};
 
 /// A mass m on a material vector, ½ m |ẋ|², or between two, m ẋ·ẏ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,8 +58,8 @@ impl Inertia {
             let pairs = [(a, b), (b, a)];
             let count = if a == b { 1 } else { 2 };
             entries.extend(pairs[..count].iter().map(|&(row, column)| Entry {
-                row: counted(row),
-                column: counted(column),
+                row: compact_index(row),
+                column: compact_index(column),
                 mass: m.mass,
             }));
         }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::ipopt::interrupt::{self, Watch};
-use crate::ipopt::reached::{Before, Reached};
+use crate::ipopt::iterate::{Before, Reached};
 use crate::ipopt::record::Record;
 use crate::ipopt::session;
 use crate::ipopt::solution::Iteration;

@@ -13,11 +13,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem;
 
-use super::arrange::arrange;
+use super::bandwidth_order::arrange;
 use super::block::{Block, Item};
+use super::eliminable_groups::{self, Group};
 use super::fronts::Fronts;
 use super::graph::Graph;
-use super::groups::{self, Group};
 use super::order::Unknown;
 use super::progress::Progress;
 use crate::math::Stopped;
@@ -74,7 +74,7 @@ impl Condensation {
     ) -> Result<Option<Self>, Stopped> {
         let most = WORTH * multiplications;
         let mut all = Vec::new();
-        for choose in [groups::constraints, groups::squares] {
+        for choose in [eliminable_groups::constraints, eliminable_groups::squares] {
             progress.add(rows.len())?;
             let mut groups = choose(graph, unknowns);
             arrange(graph, &mut groups, progress)?;

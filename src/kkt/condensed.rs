@@ -18,13 +18,13 @@ use pulp::Arch;
 use super::block::{Block, Item};
 use super::block_lu::{BlockLu, Room};
 use super::condense::Condensation;
-use super::halves::{halves, middle};
 use super::inertia::Inertia;
 use super::numeric::{Factors, Outcome};
 use super::pivot::Rules;
 use super::products::Product;
 use super::progress::Progress;
 use super::reduce::{Reduce, Weights};
+use super::two_threads::{halves, middle};
 use crate::math::Stopped;
 
 /// Greatest response of a state against the greatest direct one. Beyond, what is left of R are errors of rounding;

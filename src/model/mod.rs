@@ -25,7 +25,6 @@ mod measures;
 mod model;
 mod named;
 mod parameter;
-mod places;
 pub mod plan;
 mod presolved;
 mod quantity;
@@ -36,6 +35,7 @@ mod sought;
 mod states;
 pub mod system;
 mod terms;
+mod unknown_positions;
 mod variables;
 
 pub use analysis::{Analysis, Coordinates, InitiallyMoving};

@@ -10,7 +10,7 @@ use crate::control::transcription::units::{KILOVOLT, MILLISECOND};
 use crate::coordinates::{Configuration, Reduced};
 use crate::functional::{BlockMask, Horizon, Measure, Order, Sample};
 use crate::ipopt::interrupt;
-use crate::math::{Vector, both};
+use crate::math::{Vector, join_if};
 
 /// Second derivatives of a horizon from which on its stretches are evaluated at once: with fewer, a second core saves less than it
 /// costs to wake it and to read what it wrote.
@@ -75,7 +75,7 @@ impl Pass<'_> {
             rows: rows_right,
         };
         let are_much = action.layout().values(last) >= MUCH;
-        both(are_much, || left.run(), || right.run());
+        join_if(are_much, || left.run(), || right.run());
         let instant = &mut self.instants[middle];
         let add = |sum: &mut [Vector], list: &[Vector]| {
             sum.iter_mut().zip(list).for_each(|(s, v)| *s += v);

@@ -4,7 +4,7 @@ use crate::coordinates::map::{CoordinateMap, Dependence};
 use crate::coordinates::pattern::StepPattern;
 use crate::coordinates::pull_back::destination::{Destination, Site};
 use crate::functional::Part;
-use crate::math::{Vector, counted};
+use crate::math::{Vector, compact_index};
 
 /// One entry of a vector against a scalar; compact, since a mesh with potentials has millions.
 #[derive(Clone, Copy, Debug)]
@@ -45,10 +45,10 @@ impl Mixed {
                 for (i, &row) in packed.support.iter().enumerate() {
                     for place in site.mixed(layout, map, row, s) {
                         self.list.push(Entry::Articulated {
-                            slot: counted(slot),
-                            column: counted(packed.first + i),
-                            stride: counted(packed.stride),
-                            place: counted(place),
+                            slot: compact_index(slot),
+                            column: compact_index(packed.first + i),
+                            stride: compact_index(packed.stride),
+                            place: compact_index(place),
                         });
                     }
                 }
@@ -57,10 +57,10 @@ impl Mixed {
                 for part in parts {
                     for place in site.mixed(layout, map, part.coordinate, s) {
                         self.list.push(Entry::Linear {
-                            slot: counted(slot),
+                            slot: compact_index(slot),
                             factor: part.factor,
                             component: part.axis as u8,
-                            place: counted(place),
+                            place: compact_index(place),
                         });
                     }
                 }

@@ -15,7 +15,7 @@ use crate::coordinates::configuration::Configuration;
 use crate::coordinates::map::{CoordinateMap, Dependence};
 use crate::coordinates::pattern::StepPattern;
 use crate::functional::{BlockMask, Couplings, Part};
-use crate::math::counted;
+use crate::math::compact_index;
 use articulated::{BlockDestination, Ends, Groups};
 pub use destination::Destination;
 pub(super) use destination::Site;
@@ -80,9 +80,9 @@ impl PullBack {
         match (&map.vectors[a], &map.vectors[b]) {
             (Articulated(a), Articulated(b)) => {
                 let pair = Pair {
-                    slot: counted(slot),
-                    transposed: counted(transposed),
-                    first: [counted(a.first), counted(b.first)],
+                    slot: compact_index(slot),
+                    transposed: compact_index(transposed),
+                    first: [compact_index(a.first), compact_index(b.first)],
                 };
                 self.articulated.add((kind, pair), [a, b], layout, site);
             }

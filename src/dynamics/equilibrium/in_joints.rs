@@ -3,9 +3,9 @@
 //! Both are the same states. In joint coordinates far ones are reached, as no update leaves the constraints; a state found there is one of
 //! the redundant coordinates up to Newton's method from nearby, which finds the multipliers.
 
+use crate::dynamics::equilibrium::result::Equilibrium;
+use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::error::EquilibriumError;
-use crate::dynamics::rest::equilibrium::Equilibrium;
-use crate::dynamics::rest::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::model::{Analysis, Coordinates, Model};
 
 /// The same system in joint coordinates; `None` where the coordinates are these already, where joints close loops, and where nodes are

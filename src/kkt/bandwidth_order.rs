@@ -3,8 +3,8 @@
 //! Equations that share an unknown are neighbours. They are taken in the order of Cuthill and McKee (1969) from one that lies at an end, and
 //! unknowns in the order in which they appear in them.
 
+use super::eliminable_groups::Group;
 use super::graph::Graph;
-use super::groups::Group;
 use super::progress::Progress;
 use crate::math::Stopped;
 

@@ -1,12 +1,12 @@
 //! Equilibria along the path of growing voltages, past limit points.
 
+use crate::dynamics::equilibrium::arc_length::{FIRST, LARGEST, PathPoint, SMALLEST, path};
+use crate::dynamics::equilibrium::instability::{Instability, Load};
+use crate::dynamics::equilibrium::ramp::Ramp;
+use crate::dynamics::equilibrium::result::{Equilibrium, Route};
+use crate::dynamics::equilibrium::stable::stable_equilibrium;
+use crate::dynamics::equilibrium::statics::Statics;
 use crate::dynamics::error::EquilibriumError;
-use crate::dynamics::rest::arc::{FIRST, LARGEST, PathPoint, SMALLEST, path};
-use crate::dynamics::rest::equilibrium::{Equilibrium, Route};
-use crate::dynamics::rest::instability::{Instability, Load};
-use crate::dynamics::rest::ramp::Ramp;
-use crate::dynamics::rest::stable::stable_equilibrium;
-use crate::dynamics::rest::statics::Statics;
 use crate::model::Model;
 
 /// Equilibria along a path.

@@ -3,16 +3,16 @@
 use crate::coordinates::Configuration;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equations::Equations;
+use crate::dynamics::galerkin::lobatto::lagrange;
+use crate::dynamics::galerkin::rule::Rule;
+use crate::dynamics::galerkin::state::{GalerkinEquations, StagePoint, between};
 use crate::dynamics::momenta::vector_momenta;
-use crate::dynamics::stages::lobatto::lagrange;
-use crate::dynamics::stages::rule::Rule;
-use crate::dynamics::stages::state::{StagePoint, Stages, between};
 use crate::functional::{Kind, Order};
 use crate::math::Vector;
 use crate::model::Model;
 use std::slice;
 
-impl Equations for Stages<'_> {
+impl Equations for GalerkinEquations<'_> {
     fn begin(&mut self, step: [f64; 2], drive: &dyn Drive) {
         let inputs = self.model.variables.inputs();
         for sample in &mut self.samples {

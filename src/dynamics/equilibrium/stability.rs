@@ -1,8 +1,8 @@
 //! Stiffness, stability and softest mode of a state of rest.
 
-use crate::dynamics::rest::equilibrium::{Equilibrium, Route};
-use crate::dynamics::rest::softest::{softest, stiffness};
-use crate::dynamics::rest::statics::Statics;
+use crate::dynamics::equilibrium::result::{Equilibrium, Route};
+use crate::dynamics::equilibrium::softest_mode::{softest_mode, stiffness};
+use crate::dynamics::equilibrium::statics::Statics;
 use crate::model::Model;
 
 impl Equilibrium {
@@ -25,7 +25,7 @@ impl Equilibrium {
         let state = &statics.recentred(state);
         let point = Self::on_path(statics, state, voltages, route);
         Self {
-            softest: softest(statics, state, voltages),
+            softest: softest_mode(statics, state, voltages),
             ..point
         }
     }

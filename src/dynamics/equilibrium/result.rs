@@ -1,7 +1,7 @@
 //! A state of rest: its stiffness, and the route to it.
 
-use crate::dynamics::rest::instability::{Instability, Load};
-use crate::dynamics::rest::mode::Mode;
+use crate::dynamics::equilibrium::instability::{Instability, Load};
+use crate::dynamics::equilibrium::mode::Mode;
 
 /// A state of rest.
 #[derive(Clone, Debug, PartialEq)]

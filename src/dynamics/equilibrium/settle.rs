@@ -1,7 +1,7 @@
 //! Energy of states of rest, and the way onto the constraints and to Gauss's law.
 
 use crate::coordinates::{Configuration, Interval};
-use crate::dynamics::rest::statics::{ITERATIONS, RestState, Statics};
+use crate::dynamics::equilibrium::statics::{ITERATIONS, RestState, Statics};
 use crate::functional::{Kind, Order};
 use crate::math::Vector;
 

@@ -4,8 +4,8 @@
 //! positive definite where constraints and Gauss's law hold, by the inertia of its factorisation. The energy is that of states
 //! brought onto the constraints with potentials by Gauss's law, and falls in each step.
 
-use crate::dynamics::rest::statics::{RestState, Statics};
-use crate::dynamics::spans::{reversed, shortest};
+use crate::dynamics::equilibrium::statics::{RestState, Statics};
+use crate::dynamics::singular_configurations::{reversed, shortest};
 use crate::ipopt::interrupt;
 
 /// Limit of steps, and that for models with nodes.

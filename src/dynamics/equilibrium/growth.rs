@@ -1,12 +1,12 @@
 //! Static equilibrium on the path of growing loads: the weights first, then the voltages in steps of V², cut when Newton
 //! fails.
 
+use crate::dynamics::equilibrium::arc_length::{LimitPoint, limit_point};
+use crate::dynamics::equilibrium::instability::Load;
+use crate::dynamics::equilibrium::ramp::Ramp;
+use crate::dynamics::equilibrium::result::{Equilibrium, Route, StabilityLoss};
+use crate::dynamics::equilibrium::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
 use crate::dynamics::error::EquilibriumError;
-use crate::dynamics::rest::arc::{LimitPoint, limit_point};
-use crate::dynamics::rest::equilibrium::{Equilibrium, Route, StabilityLoss};
-use crate::dynamics::rest::instability::Load;
-use crate::dynamics::rest::ramp::Ramp;
-use crate::dynamics::rest::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
 use crate::model::{Floating, Model};
 
 /// Part of a load that is tried first, in V² for voltages.

@@ -2,7 +2,7 @@
 //!
 //! The halves depend on the system alone, so that factors are the same for any number of threads.
 
-use crate::math::both;
+use crate::math::join_if;
 
 /// Multiplications below which a second core is not worth being woken: some milliseconds.
 const MUCH: usize = 1 << 23;
@@ -13,7 +13,7 @@ pub(super) fn halves<A: Send, B: Send>(
     a: impl FnOnce() -> A + Send,
     b: impl FnOnce() -> B + Send,
 ) -> (A, B) {
-    both(multiplications >= MUCH, a, b)
+    join_if(multiplications >= MUCH, a, b)
 }
 
 /// Returns the number of items of the first half, of items with these costs.

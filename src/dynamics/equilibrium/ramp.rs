@@ -1,7 +1,7 @@
 //! Loads that grow along a path of equilibria: first the weights, then the voltages.
 
-use crate::dynamics::rest::instability::Load;
-use crate::dynamics::rest::statics::Statics;
+use crate::dynamics::equilibrium::instability::Load;
+use crate::dynamics::equilibrium::statics::Statics;
 
 /// A load that grows, and the voltages when all of it acts.
 #[derive(Clone, Copy, Debug)]

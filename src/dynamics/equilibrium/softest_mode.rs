@@ -1,8 +1,8 @@
 //! The softest mode of a state of rest: the direction along which its potential energy rises least or falls, the parts that move,
 //! and the cause of its softness.
 
-use crate::dynamics::rest::mode::{Mode, Softening};
-use crate::dynamics::rest::statics::Statics;
+use crate::dynamics::equilibrium::mode::{Mode, Softening};
+use crate::dynamics::equilibrium::statics::Statics;
 use crate::math::random::Random;
 use crate::model::system::Fidelity;
 use crate::model::{Coordinates, Freedom, Model, Screw};
@@ -53,7 +53,11 @@ pub(super) fn stiffness(statics: &Statics<'_>) -> Vec<f64> {
 }
 
 /// The softest mode of the state evaluated and factorised last.
-pub(super) fn softest(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64]) -> Option<Mode> {
+pub(super) fn softest_mode(
+    statics: &mut Statics<'_>,
+    state: &[f64],
+    voltages: &[f64],
+) -> Option<Mode> {
     let direction = match eigenpairs(statics) {
         Some((_, lowest)) => lowest,
         None => inverse_iteration(statics)?,

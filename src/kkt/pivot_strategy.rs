@@ -2,14 +2,14 @@
 
 use super::pivot::Rules;
 
-/// Threshold of pivots for each [`Care`].
+/// Threshold of pivots for each [`PivotStrategy`].
 const THRESHOLDS: [f64; 5] = [0.1, 1e-8, 1e-4, 1e-2, 0.1];
 /// Largest entry of a column that counts as zero: of a matrix as it is, and of an equilibrated one.
 const ZEROS: [f64; 2] = [1e-20, 1e-14];
 
 /// Strategy of a factorisation: condensed, of the matrix as it is, or equilibrated and under stricter and stricter rules for pivots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Care {
+pub(super) enum PivotStrategy {
     Condensed,
     #[default]
     Plain,
@@ -18,7 +18,7 @@ pub(super) enum Care {
     Strict,
 }
 
-impl Care {
+impl PivotStrategy {
     /// Returns the next stricter strategy.
     pub(super) const fn stricter(self) -> Self {
         match self {

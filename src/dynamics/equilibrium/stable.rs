@@ -7,16 +7,16 @@
 //!
 //! The first stable one is the answer.
 
+use crate::dynamics::equilibrium::arc_length::{LimitPoint, crossings, limit_point};
+use crate::dynamics::equilibrium::growth::{Grown, at_limit, begin, grow, unloaded};
+use crate::dynamics::equilibrium::in_joints;
+use crate::dynamics::equilibrium::instability::Load;
+use crate::dynamics::equilibrium::minimum::minimise;
+use crate::dynamics::equilibrium::ramp::Ramp;
+use crate::dynamics::equilibrium::result::{Equilibrium, Route, StabilityLoss};
+use crate::dynamics::equilibrium::softest_mode::softest_mode;
+use crate::dynamics::equilibrium::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
 use crate::dynamics::error::EquilibriumError;
-use crate::dynamics::rest::arc::{LimitPoint, crossings, limit_point};
-use crate::dynamics::rest::equilibrium::{Equilibrium, Route, StabilityLoss};
-use crate::dynamics::rest::growth::{Grown, at_limit, begin, grow, unloaded};
-use crate::dynamics::rest::in_joints;
-use crate::dynamics::rest::instability::Load;
-use crate::dynamics::rest::minimum::minimise;
-use crate::dynamics::rest::ramp::Ramp;
-use crate::dynamics::rest::softest::softest;
-use crate::dynamics::rest::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
 use crate::ipopt::interrupt;
 use crate::model::{Coordinates, Model};
 
@@ -238,7 +238,7 @@ fn descend(
         statics.evaluate(state, voltages);
         // At a limit point the tangent is singular, and still the lowest eigenvalue has its direction.
         statics.factor().ok();
-        let Some(mode) = softest(statics, state, voltages) else {
+        let Some(mode) = softest_mode(statics, state, voltages) else {
             continue;
         };
         for side in [PUSH, -PUSH] {

@@ -15,7 +15,7 @@
 //! the points; the midpoint rule is the same with s = 1 and one sample at c = ½. The generalised-α method is that of
 //! M. Arnold and O. Brüls, Multibody System Dynamics 18, 185–202 (2007), whose constraints hold at the end of the step.
 
-use crate::dynamics::stages::lobatto::Lobatto;
+use crate::dynamics::galerkin::lobatto::Lobatto;
 use crate::math::Vector;
 use std::slice;
 

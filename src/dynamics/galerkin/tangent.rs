@@ -1,12 +1,12 @@
 //! Derivatives of the equations of a step with several points, point by point and sample by sample.
 
 use crate::coordinates::Destination;
-use crate::dynamics::stages::rule::Rule;
-use crate::dynamics::stages::state::{StagePoint, Stages};
+use crate::dynamics::galerkin::rule::Rule;
+use crate::dynamics::galerkin::state::{GalerkinEquations, StagePoint};
 use crate::functional::BlockMask;
 use crate::math::Matrix;
 
-impl Stages<'_> {
+impl GalerkinEquations<'_> {
     /// Sums the blocks of all samples between the rows of one point and the vectors of another into one of the four blocks.
     fn combine(&mut self, row: usize, point: usize, block: usize, h: f64) {
         let combined = &mut self.combined.blocks;

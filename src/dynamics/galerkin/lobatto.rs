@@ -82,7 +82,7 @@ pub(super) fn lagrange(points: &[f64], x: f64) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use crate::dynamics::stages::lobatto::{Lobatto, lagrange};
+    use crate::dynamics::galerkin::lobatto::{Lobatto, lagrange};
 
     #[test]
     fn points_and_weights_integrate_powers_exactly_and_no_further() {

@@ -4,10 +4,10 @@
 //! path is K ẏ = −ḟ b. A step follows it by Δs and comes back to the path in the plane normal to it. The path has a
 //! limit point (pull-in) where ḟ = 0; where a pivot of K changes its sign elsewhere, it meets another path (buckling).
 
-use crate::dynamics::rest::instability::Instability;
-use crate::dynamics::rest::ramp::Ramp;
-use crate::dynamics::rest::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
-use crate::dynamics::spans::shortest;
+use crate::dynamics::equilibrium::instability::Instability;
+use crate::dynamics::equilibrium::ramp::Ramp;
+use crate::dynamics::equilibrium::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
+use crate::dynamics::singular_configurations::shortest;
 use crate::ipopt::interrupt;
 
 /// Limit of corrections in one step.

@@ -21,7 +21,7 @@ thread_local! {
 }
 
 /// Runs both; those that are much at once, where there is a second core for this thread.
-pub(crate) fn both<A: Send, B: Send>(
+pub(crate) fn join_if<A: Send, B: Send>(
     are_much: bool,
     a: impl FnOnce() -> A + Send,
     b: impl FnOnce() -> B + Send,

@@ -3,13 +3,13 @@
 use crate::coordinates::{Configuration, Scratch};
 use crate::dynamics::drive::Drive;
 use crate::dynamics::error::StepError;
+use crate::dynamics::galerkin::jacobian_positions::Places;
+use crate::dynamics::galerkin::lobatto::Lobatto;
+use crate::dynamics::galerkin::rule::{Alpha, Rule, Weights};
 use crate::dynamics::kinetic::masses;
 use crate::dynamics::momenta::{rates, vector_momenta};
 use crate::dynamics::simulate::Start;
 use crate::dynamics::solving::{Integrator, Solving};
-use crate::dynamics::stages::lobatto::Lobatto;
-use crate::dynamics::stages::places::Places;
-use crate::dynamics::stages::rule::{Alpha, Rule, Weights};
 use crate::dynamics::stepper::Steps;
 use crate::functional::{BlockMask, Blocks, Horizon, Kind, Order, Output, Part, Sample};
 use crate::math::Vector;
@@ -32,7 +32,7 @@ pub(super) struct StagePoint {
 
 /// State at one instant and the storage of the equations of a step.
 #[derive(Debug)]
-pub struct Stages<'m> {
+pub struct GalerkinEquations<'m> {
     pub(super) model: &'m Model,
     pub(super) rule: Rule,
     /// The start of the step and its points.
@@ -58,7 +58,7 @@ pub struct Stages<'m> {
     pub(super) work: Option<f64>,
 }
 
-impl<'m> Steps<Stages<'m>> {
+impl<'m> Steps<GalerkinEquations<'m>> {
     /// Starts a motion by the method of `solving`, which is not the midpoint rule; `h` is the length of the first step.
     ///
     /// # Errors
@@ -109,7 +109,7 @@ impl<'m> Steps<Stages<'m>> {
         let multipliers = vec![start.z[n..map.unknowns()].to_vec(); degree];
         let algebraic = model.variables.algebraic();
         let mut terms = action.intervals.terms.iter();
-        let equations = Stages {
+        let equations = GalerkinEquations {
             model,
             trail: vec![(0.0, start.z[..n].to_vec())],
             momentum: start.momentum.clone(),
@@ -167,7 +167,7 @@ pub(super) fn between<'a>(vectors: [&'a [Vector]; 2], scalars: &'a [f64], h: f64
     }
 }
 
-impl Stages<'_> {
+impl GalerkinEquations<'_> {
     /// Places the points and evaluates the samples.
     pub(super) fn sample(&mut self, order: Order, h: f64) {
         let Self {
@@ -240,7 +240,7 @@ impl Stages<'_> {
     }
 }
 
-impl Stages<'_> {
+impl GalerkinEquations<'_> {
     /// Rates of all vectors over the last step of a method with one point.
     pub(super) fn last_rates(&self) -> Vec<Vector> {
         // The points of an accepted step have changed places.
