@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use proboscis::app::{CommandError, CommandOutput, Reached};
 use proboscis::ipopt::interrupt::{self, StopRequest};
-use proboscis::workflow::at_once;
+use proboscis::workflow::parallel_map;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
@@ -116,7 +116,7 @@ pub(crate) fn supervised(
             }
         })
     };
-    let thread = at_once::begin(work).map_err(|cause| broke_off(py, &cause.to_string()))?;
+    let thread = parallel_map::begin(work).map_err(|cause| broke_off(py, &cause.to_string()))?;
     let mut failure: Option<PyErr> = None;
     let mut interrupted: Option<Instant> = None;
     loop {

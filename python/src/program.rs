@@ -9,7 +9,7 @@ use proboscis::Nlp;
 use proboscis::app::with_program;
 use proboscis::ipopt::interrupt::{self, StopRequest};
 use proboscis::nlp::{Bounds, Entries};
-use proboscis::workflow::at_once;
+use proboscis::workflow::parallel_map;
 use pyo3::prelude::*;
 
 use crate::background::PERIOD;
@@ -118,7 +118,7 @@ impl Program {
                 failed.send(Err(mistake)).ok();
             }
         };
-        at_once::begin(work).map_err(|cause| broke_off(py, &cause.to_string()))?;
+        parallel_map::begin(work).map_err(|cause| broke_off(py, &cause.to_string()))?;
         let sizes = heard(py, told).inspect_err(|_| stop.make())?;
         let sizes = sizes.map_err(|mistake| error(py, &mistake))?;
         let ask = Mutex::new(ask);

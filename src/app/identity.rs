@@ -4,7 +4,7 @@ use std::fmt;
 use std::fs;
 use std::path::Path;
 
-use crate::app::digest::{digest, digest_of};
+use crate::app::content_hash::{digest, digest_of};
 use crate::app::request::CommandInput;
 use crate::control::problem::{Guess, Task};
 use crate::files::Loaded;

@@ -6,13 +6,13 @@ use serde::Serialize;
 
 use crate::app::blocks::BlockSizes;
 use crate::app::error::CommandError;
-use crate::app::extent;
 use crate::app::folder::make_folder;
+use crate::app::length_unit_check;
+use crate::app::messages::key;
 use crate::app::moved_markers::moved_markers;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::sparsity;
 use crate::app::task::read;
-use crate::app::words::key;
 use crate::control::problem::{Control, Task};
 use crate::model::{Model, Role, System};
 use crate::nlp::Nlp;
@@ -134,7 +134,7 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
         reasons(&plan),
         missing(&plan),
         numbers(&sizes),
-        extent::lines(system)
+        length_unit_check::lines(system)
     );
     Inspected {
         system: system.name.clone(),

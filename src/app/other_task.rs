@@ -1,8 +1,8 @@
 //! Message that names the command for the task of a problem, where another one was typed.
 
 use crate::app::error::CommandError;
+use crate::app::messages::key;
 use crate::app::request::CommandInput;
-use crate::app::words::key;
 use crate::control::problem::Task;
 use crate::report::shell;
 

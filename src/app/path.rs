@@ -4,17 +4,17 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use std::time::Instant;
 
+use crate::app::equilibrium_model::{model_at_rest, reference};
+use crate::app::equilibrium_summary::at_rest;
 use crate::app::error::CommandError;
 use crate::app::fields;
 use crate::app::folder::make_folder;
-use crate::app::followed::Followed;
+use crate::app::messages::counted;
+use crate::app::no_equilibrium::refused;
 use crate::app::page;
+use crate::app::path_summary::Followed;
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::rest_model::{model_at_rest, reference};
-use crate::app::rest_observed::at_rest;
-use crate::app::rest_refused::refused;
 use crate::app::summary::{MEASURED, Seconds, Summary};
-use crate::app::words::counted;
 use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{

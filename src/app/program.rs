@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use crate::app::error::CommandError;
+use crate::app::messages::key;
 use crate::app::task::read;
-use crate::app::words::key;
 use crate::control::problem::Task;
 use crate::nlp::Nlp;
 use crate::workflow::prepare::{Counted, Prepared, prepare};

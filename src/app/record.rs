@@ -7,7 +7,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::digest::digest_of;
+use crate::app::content_hash::digest_of;
 
 /// Statuses that may be otherwise the next time.
 const UNFINISHED: [&str; 5] = [

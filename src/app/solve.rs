@@ -5,20 +5,20 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
-use crate::app::continuation;
+use crate::app::displayed_motion::{Motion, Shown};
+use crate::app::energy_summary::Exchanged;
 use crate::app::error::CommandError;
-use crate::app::exchanged::Exchanged;
 use crate::app::fields;
 use crate::app::page;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::shown::{Motion, Shown};
+use crate::app::resume_file;
 use crate::app::solution_file;
+use crate::app::solve_messages::ends;
 use crate::app::solve_page::{convergence, goal, rows, targets};
 use crate::app::solve_summary::{Verdict, add_notes, command_output, program, seconds};
-use crate::app::solve_words::ends;
 use crate::app::summary::{MEASURED, Summary};
-use crate::app::tracking_words;
+use crate::app::tracking_messages;
 use crate::app::unfinished::{self, Unfinished};
 use crate::control::problem::Control;
 use crate::dynamics::trajectory::Trajectory;
@@ -32,13 +32,13 @@ use crate::report::origin::Origin;
 use crate::report::{Run, write_run};
 use crate::workflow::Iterate;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget, Refined};
-use crate::workflow::cure::{Cured, reproduced};
 use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::final_values::final_values;
 use crate::workflow::grids::optimise_to;
 use crate::workflow::motion::{discrete_trajectory, solved, trajectory};
 use crate::workflow::optimum::{Optimum, SolveLimits};
+use crate::workflow::refine_until_reproduced::{Cured, reproduced};
 use crate::workflow::resimulate::under_constant_voltages;
 use crate::workflow::tracking::followed;
 use crate::workflow::verified::{ACCURACY, verified};
@@ -88,7 +88,7 @@ pub(super) fn control(
     if STOPPED.contains(&verdict.word) {
         output
             .notes
-            .extend(continuation::command(request, &loaded.task));
+            .extend(resume_file::command(request, &loaded.task));
     }
     Ok(output)
 }
@@ -238,7 +238,7 @@ fn add_observed(
     summary.final_values = final_values(&model.system, control, motion);
     let notes = &mut summary.notes;
     notes.warn("outside_domain", domain::note(&summary.domain, true));
-    notes.note("tracking", tracking_words::notes(&summary.tracking));
+    notes.note("tracking", tracking_messages::notes(&summary.tracking));
     notes.note("final_value", ends(&summary.final_values));
     exchange
 }

@@ -1,8 +1,8 @@
 //! Texts of the page of a control problem: rows of its table, the convergence of the solver, the goal.
 
-use crate::app::exchanged::Exchanged;
+use crate::app::energy_summary::Exchanged;
 use crate::app::summary::{Program, Summary};
-use crate::app::tracking_words;
+use crate::app::tracking_messages;
 use crate::control::BoundaryConditions;
 use crate::control::problem::{BoundaryState, Control, CostFunction, During, Place};
 use crate::dynamics::trajectory::Trajectory;
@@ -51,7 +51,7 @@ pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
                 row(&format!("drift when held for {held} s"), of(drift));
             }
         }
-        for (key, value) in summary.tracking.iter().map(tracking_words::row) {
+        for (key, value) in summary.tracking.iter().map(tracking_messages::row) {
             row(&key, value);
         }
         for violation in &program.violations {

@@ -7,13 +7,13 @@ use serde::Serialize;
 
 use crate::app::blocks::BlockSizes;
 use crate::app::comparison::Comparison;
+use crate::app::displayed_motion::ShownPart;
+use crate::app::energy_summary::Exchanged;
+use crate::app::equilibrium_summary::Rest;
 use crate::app::error::CommandError;
-use crate::app::exchanged::Exchanged;
-use crate::app::followed::Followed;
 use crate::app::linear_systems::LinearSystems;
+use crate::app::path_summary::Followed;
 use crate::app::request::CommandInput;
-use crate::app::rest_words::Rest;
-use crate::app::shown::ShownPart;
 use crate::control::problem;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
 use crate::files::lay_out;

@@ -3,9 +3,9 @@
 use crate::control::problem::{Task, Voltages};
 use crate::math::significant;
 use crate::study::compare::Judged;
+use crate::study::cost_at_accuracy::{Price, error_text, prices, surely};
 use crate::study::limit::How;
 use crate::study::measure::{StudyMeasure, Unit};
-use crate::study::price::{Price, error_text, prices, surely};
 use crate::study::read::{Study, StudyPoint};
 use crate::study::record::of_reference;
 use crate::study::schedule::{Done, Results};

@@ -3,17 +3,17 @@
 //! - `request`: the command; `read`, `sizes`: the study file and all its problems; `measure`: measures of them.
 //! - `outcome`, `schedule`: one run, and all of them in rounds.
 //! - `limit`, `compare`: observed orders and Richardson's limits; errors of all points.
-//! - `price`, `conclusion`, `words`: costs of accuracies; the conclusion in words.
+//! - `cost_at_accuracy`, `conclusion`, `words`: costs of accuracies; the conclusion in words.
 //! - `table`, `diagram`, `record`, `page`: output.
 
 pub mod compare;
 pub mod conclusion;
+pub mod cost_at_accuracy;
 mod diagram;
 pub mod limit;
 pub mod measure;
 pub mod outcome;
 mod page;
-pub mod price;
 pub mod read;
 mod record;
 mod request;

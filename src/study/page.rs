@@ -5,9 +5,9 @@ use std::fmt::Write;
 use crate::math::significant;
 use crate::report::origin::Origin;
 use crate::study::compare::{Judged, common};
+use crate::study::cost_at_accuracy;
 use crate::study::limit::How;
 use crate::study::measure::{StudyMeasure, Unit};
-use crate::study::price;
 use crate::study::read::Study;
 use crate::study::record::{command, machine, of_reference};
 use crate::study::schedule::Results;
@@ -90,7 +90,7 @@ fn how_it_was_run(results: &Results<'_>) -> String {
 fn prices(study: &Study, results: &Results<'_>, judged: &[Judged]) -> Option<String> {
     let mut rows = String::new();
     for judged in judged.iter().filter(|judged| judged.measure.has_order()) {
-        for price in price::prices(results, judged) {
+        for price in cost_at_accuracy::prices(results, judged) {
             let Some(cheapest) = price.cheapest() else {
                 continue;
             };
@@ -108,10 +108,10 @@ fn prices(study: &Study, results: &Results<'_>, judged: &[Judged]) -> Option<Str
                     format!(
                         "{:.0e}, {}",
                         price.accuracy,
-                        price::error_text(unit, price.error)
+                        cost_at_accuracy::error_text(unit, price.error)
                     )
                 }
-                Unit::Relative => price::error_text(unit, price.error),
+                Unit::Relative => cost_at_accuracy::error_text(unit, price.error),
             };
             writeln!(
                 rows,

@@ -1,14 +1,14 @@
 //! Variants of one problem, solved in parallel, each in a folder of its own; variants that are solved already are not solved again.
 //!
 //! - `request`: the command; `read`, `values`: the sweep file and its variants.
-//! - `kept`: record of a variant; `table`, `page`: all of them together.
+//! - `variant_record`: record of a variant; `table`, `page`: all of them together.
 
-mod kept;
 mod page;
 mod read;
 mod request;
 mod table;
 mod values;
+mod variant_record;
 
 pub use request::{Shard, SweepRequest};
 
@@ -26,8 +26,8 @@ use crate::ipopt::interrupt;
 use crate::report::origin::Origin;
 use crate::report::table::cells_csv;
 use crate::report::{Figures, atomic};
-use crate::sweep::kept::Kept;
 use crate::sweep::read::{Sweep, Variant, read_sweep};
+use crate::sweep::variant_record::Kept;
 
 /// Folder of the variants within that of the results.
 const VARIANTS: &str = "variants";

@@ -4,8 +4,8 @@ use serde_json::json;
 
 use crate::report::origin::Origin;
 use crate::report::page::framed;
-use crate::sweep::kept::Kept;
 use crate::sweep::read::Sweep;
+use crate::sweep::variant_record::Kept;
 
 /// The page around everything, as that of a run.
 const FRAME: &str = include_str!("page.html");

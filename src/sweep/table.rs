@@ -3,8 +3,8 @@
 use serde_json::Value;
 
 use crate::files::si;
-use crate::sweep::kept::{END, Kept};
 use crate::sweep::read::Sweep;
+use crate::sweep::variant_record::{END, Kept};
 
 /// Headings and rows of cells; a cell without a value is empty.
 pub(super) fn table(sweep: &Sweep, ends: &[Kept]) -> Vec<Vec<String>> {

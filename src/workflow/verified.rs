@@ -9,11 +9,11 @@ use std::time::Instant;
 use crate::control::problem::Control;
 use crate::ipopt::interrupt;
 use crate::model::System;
-use crate::workflow::cure::Cured;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::iterate::Iterate;
 use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::{Optimum, SolveLimits};
+use crate::workflow::refine_until_reproduced::Cured;
 
 /// Deviation of the motion under the optimal voltages that is confirmed where no accuracy is set, as a part of the path length.
 pub const ACCURACY: f64 = 0.01;

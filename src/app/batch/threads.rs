@@ -9,7 +9,7 @@ use super::plan::Batch;
 use crate::app::error::CommandError;
 use crate::app::request::CommandInput;
 use crate::app::task;
-use crate::workflow::at_once::at_once;
+use crate::workflow::parallel_map::parallel_map;
 
 /// Runs all of a batch, at most this number in parallel.
 pub(super) fn run_all(
@@ -34,7 +34,7 @@ pub(super) fn run_all(
             seconds: began.elapsed().as_secs_f64(),
         }
     };
-    at_once(batch.runs, threads, solve, |index, answered| {
+    parallel_map(batch.runs, threads, solve, |index, answered| {
         let end = answered.clone().unwrap_or_else(|panic| RunEnd {
             said: Said::Failed(panic),
             seconds: 0.0,

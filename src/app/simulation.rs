@@ -5,20 +5,20 @@ use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
 use crate::app::comparison::{self, Comparison};
-use crate::app::continuation;
+use crate::app::displayed_motion::{Motion, Shown};
+use crate::app::energy_summary::Exchanged;
 use crate::app::error::CommandError;
-use crate::app::exchanged::Exchanged;
 use crate::app::fields;
-use crate::app::forward_page::{afterwards, held, rows};
+use crate::app::messages::counted;
 use crate::app::moved_markers::moved_markers;
 use crate::app::page;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::shown::{Motion, Shown};
+use crate::app::resume_file;
+use crate::app::simulation_page::{afterwards, held, rows};
 use crate::app::solution_file;
 use crate::app::summary::{self, MEASURED, Seconds, Summary};
 use crate::app::unfinished::{self, Unfinished};
-use crate::app::words::counted;
 use crate::control::problem::Simulation;
 use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{
@@ -52,7 +52,7 @@ pub(super) fn simulation(
     observer: &mut dyn FnMut(Reached<'_>),
 ) -> Result<CommandOutput, CommandError> {
     refuse_halving(request, task)?;
-    let problem = continuation::asked(loaded, task);
+    let problem = resume_file::asked(loaded, task);
     let run = Run {
         request,
         loaded,
@@ -149,12 +149,12 @@ fn integrate(
 ) -> Result<Ended, CommandError> {
     let (request, system, task) = (run.request, &run.loaded.system, run.task);
     let from = request.from.as_ref();
-    let begun = from.map(|from| continuation::begun(from, problem, task));
+    let begun = from.map(|from| resume_file::begun(from, problem, task));
     let begun = begun.transpose()?;
     let read = run.began.elapsed().as_secs_f64();
     let left = request.max_seconds.map(|s| s - read);
     let file = match run.resumable {
-        Some(_) => continuation::UNFINISHED,
+        Some(_) => resume_file::UNFINISHED,
         None => solution_file::UNFINISHED,
     };
     let mut unfinished = Unfinished::of(request.folder(), file);
@@ -171,7 +171,7 @@ fn integrate(
             }
             // The steps so far are final; those of a finer grid begin anew.
             unfinished.consider(0.0, |path| match run.resumable {
-                Some(problem) => continuation::replace(path, discrete, problem),
+                Some(problem) => resume_file::replace(path, discrete, problem),
                 None => solution_file::replace(path, model, &solved(model, discrete, None)),
             });
             unfinished.flow()
@@ -240,7 +240,7 @@ impl Observed {
                         solution_file::add(files, model, &kept)?;
                     }
                     let resumable = run.resumable.filter(|_| is_motion);
-                    continuation::add(files, discrete, resumable)?;
+                    resume_file::add(files, discrete, resumable)?;
                     fields::write(files, model, discrete, origin)
                 };
                 let see = || {
@@ -348,7 +348,7 @@ fn command_output(run: &Run<'_>, ended: &Ended, summary: &Summary) -> CommandOut
     notes.extend(summary.comparison.iter().flat_map(Comparison::notes));
     notes.extend(summary.notes.lines());
     if ended.stopped.is_some() && run.resumable.is_some() {
-        notes.extend(continuation::command(run.request, &run.loaded.task));
+        notes.extend(resume_file::command(run.request, &run.loaded.task));
     }
     let mut is_solved = summary.status == "simulated";
     let mut word = match is_solved {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use crate::app::digest::digest;
+use crate::app::content_hash::digest;
 use crate::app::error::CommandError;
 use crate::app::request::CommandInput;
 use crate::app::solution_file;

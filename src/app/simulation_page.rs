@@ -1,6 +1,6 @@
 //! A simulation on its page: rows of numbers, the voltages that are held, and those after the end of a solution.
 
-use crate::app::exchanged::Exchanged;
+use crate::app::energy_summary::Exchanged;
 use crate::app::summary::Summary;
 use crate::control::problem::{Afterwards, Simulation, Voltages};
 use crate::dynamics::{DiscreteTrajectory, LocalError};

@@ -22,7 +22,7 @@ pub type Answered<A> = Result<A, String>;
 ///
 /// A thread has its share of the cores for what is parallel within an answer: with as many threads as cores no half of a horizon competes
 /// with another answer, and stops where the one that calls is asked to. A panic is the end of one answer alone. `told` is called in this thread with each answer, as soon as there is one.
-pub fn at_once<T: Sync, A: Send>(
+pub fn parallel_map<T: Sync, A: Send>(
     items: &[T],
     threads: usize,
     answer: impl Fn(&T) -> A + Sync,
