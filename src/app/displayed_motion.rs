@@ -25,7 +25,7 @@ const TABLES: &str = "tables.npz";
 
 /// A motion as tables, figures and page show it.
 #[derive(Debug)]
-pub(super) struct Shown {
+pub(super) struct DisplayedMotion {
     pub(super) trajectory: Trajectory,
     pub(super) observations: Observations,
     /// Columns of the table.
@@ -54,7 +54,7 @@ pub(super) struct Motion<'a> {
     pub(super) observations: &'a Observations,
 }
 
-impl Shown {
+impl DisplayedMotion {
     /// Returns the displayed part of a motion: all that is asked for, or where nothing is asked all of it, and of a long simulation fewer instants,
     /// between which the motion is straight to the eye; its complete tables are then a file of the result.
     ///

@@ -7,14 +7,14 @@ use crate::math::significant;
 
 /// Sums over all sources from the start to the end of a motion, in J.
 #[derive(Debug, Serialize)]
-pub(super) struct Exchanged {
+pub(super) struct EnergySummary {
     /// Electrical energy from the sources.
     electrical_energy: f64,
     /// Work of the electrical forces.
     mechanical_work: f64,
 }
 
-impl Exchanged {
+impl EnergySummary {
     /// Of a motion; none without sources, or where one drives finite elements.
     pub(super) fn new(exchange: &EnergyExchange) -> Option<Self> {
         let last = |sums: Vec<f64>| sums.last().copied().unwrap_or(0.0) / 1e3;

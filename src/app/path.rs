@@ -12,7 +12,7 @@ use crate::app::folder::make_folder;
 use crate::app::messages::counted;
 use crate::app::no_equilibrium::refused;
 use crate::app::page;
-use crate::app::path_summary::Followed;
+use crate::app::path_summary::PathSummary;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::summary::{MEASURED, Seconds, Summary};
 use crate::control::problem::AtRest;
@@ -65,7 +65,7 @@ pub(super) fn follow(
     let word = stopped.map_or("path_followed", Status::word);
     let mut summary = Summary::new(request, word, model.coordinates.name());
     summary.plan = Plan::of(&model, None, MEASURED);
-    let followed = Followed::new(&found);
+    let followed = PathSummary::new(&found);
     let rows = followed.rows(path.stops[path.shown()].fraction);
     let output = command_output(&followed, found.points.len(), stopped, &folder);
     summary.path = Some(followed);
@@ -92,7 +92,7 @@ pub(super) fn follow(
 
 /// The answer of the command without its warnings.
 fn command_output(
-    path: &Followed,
+    path: &PathSummary,
     points: usize,
     stopped: Option<Status>,
     folder: &Path,

@@ -6,7 +6,7 @@ use crate::dynamics::{Continuation, Instability};
 
 /// A path in `summary.json`.
 #[derive(Debug, Serialize)]
-pub(super) struct Followed {
+pub(super) struct PathSummary {
     /// Number of equilibria.
     points: usize,
     /// Largest fraction of the voltages on the path: of these equilibria and of those where stability is lost between them.
@@ -27,7 +27,7 @@ pub(super) struct StabilityLossRecord {
     pub(super) words: &'static str,
 }
 
-impl Followed {
+impl PathSummary {
     pub(super) fn new(found: &Continuation) -> Self {
         let loss = |&(_, fraction, kind): &(usize, f64, Instability)| StabilityLossRecord {
             fraction,

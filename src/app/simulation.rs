@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
 use crate::app::comparison::{self, Comparison};
-use crate::app::displayed_motion::{Motion, Shown};
-use crate::app::energy_summary::Exchanged;
+use crate::app::displayed_motion::{DisplayedMotion, Motion};
+use crate::app::energy_summary::EnergySummary;
 use crate::app::error::CommandError;
 use crate::app::fields;
 use crate::app::messages::counted;
@@ -288,7 +288,7 @@ fn summarise(run: &Run<'_>, ended: &Ended, observed: &Observed, summary: &mut Su
         solver: ended.seconds,
         ..Seconds::default()
     };
-    summary.energies = Exchanged::new(&observed.exchange);
+    summary.energies = EnergySummary::new(&observed.exchange);
     let remarks = &mut summary.notes;
     remarks.note("start", task.start.notes().iter().cloned());
     remarks.note("moved_marker", moved_markers(&run.loaded.system));
@@ -325,7 +325,7 @@ fn write_pictures(
         trajectory: &observed.motion,
         observations: &observed.observations,
     };
-    let shown = Shown::of(motion, &run.loaded.output, true, files)?;
+    let shown = DisplayedMotion::of(motion, &run.loaded.output, true, files)?;
     summary.notes.note("shown", shown.notes.iter().cloned());
     summary.shown = shown.part;
     let mut content = page::content("Simulation", summary, asked);

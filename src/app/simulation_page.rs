@@ -1,6 +1,6 @@
 //! A simulation on its page: rows of numbers, the voltages that are held, and those after the end of a solution.
 
-use crate::app::energy_summary::Exchanged;
+use crate::app::energy_summary::EnergySummary;
 use crate::app::summary::Summary;
 use crate::control::problem::{Afterwards, Simulation, Voltages};
 use crate::dynamics::{DiscreteTrajectory, LocalError};
@@ -24,7 +24,7 @@ pub(super) fn rows(
         row("coordinates", model.coordinates.name().to_owned()),
         row("time", format!("{:.3} s", summary.seconds.total)),
     ];
-    rows.extend(summary.energies.iter().flat_map(Exchanged::rows));
+    rows.extend(summary.energies.iter().flat_map(EnergySummary::rows));
     rows.extend(summary.accuracy.iter().flat_map(|a| {
         let told = |(name, error): (&&str, &f64)| {
             (format!("estimated error, {name}"), format!("{error:.1e}"))

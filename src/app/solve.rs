@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
-use crate::app::displayed_motion::{Motion, Shown};
-use crate::app::energy_summary::Exchanged;
+use crate::app::displayed_motion::{DisplayedMotion, Motion};
+use crate::app::energy_summary::EnergySummary;
 use crate::app::error::CommandError;
 use crate::app::fields;
 use crate::app::page;
@@ -38,7 +38,7 @@ use crate::workflow::final_values::final_values;
 use crate::workflow::grids::optimise_to;
 use crate::workflow::motion::{discrete_trajectory, solved, trajectory};
 use crate::workflow::optimum::{Optimum, SolveLimits};
-use crate::workflow::refine_until_reproduced::{Cured, reproduced};
+use crate::workflow::refine_until_reproduced::{RefinedOptimum, reproduced};
 use crate::workflow::resimulate::under_constant_voltages;
 use crate::workflow::tracking::followed;
 use crate::workflow::verified::{ACCURACY, verified};
@@ -145,7 +145,7 @@ fn find(
 ) -> Result<Found, CommandError> {
     let wanted = request.wanted.filter(|_| !control.is_refined);
     let Some(wanted) = wanted else {
-        let Cured {
+        let RefinedOptimum {
             optimum,
             iterations,
             note,
@@ -205,7 +205,7 @@ fn write_files(
         trajectory: &motion,
         observations: &observed,
     };
-    let shown = Shown::of(motion, output, false, &mut files)?;
+    let shown = DisplayedMotion::of(motion, output, false, &mut files)?;
     summary.notes.note("shown", shown.notes.iter().cloned());
     summary.shown = shown.part;
     write_pictures(
@@ -233,7 +233,7 @@ fn add_observed(
     summary.domain = domain::records(&out_of_domain(model, discrete));
     let held = boundary.rest.each_ref().map(Option::as_deref);
     let exchange = EnergyExchange::new(&model.system, motion, held);
-    summary.energies = Exchanged::new(&exchange);
+    summary.energies = EnergySummary::new(&exchange);
     summary.tracking = followed(optimum, control, motion);
     summary.final_values = final_values(&model.system, control, motion);
     let notes = &mut summary.notes;
@@ -248,7 +248,7 @@ fn write_pictures(
     (request, asked): (&CommandInput, &[(String, String)]),
     (control, optimum): (&Control, &Optimum),
     summary: &Summary,
-    (motion, shown): (Motion<'_>, &Shown),
+    (motion, shown): (Motion<'_>, &DisplayedMotion),
     files: &mut FileSet,
     origin: &Origin,
 ) -> Result<(), WriteError> {

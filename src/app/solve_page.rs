@@ -1,6 +1,6 @@
 //! Texts of the page of a control problem: rows of its table, the convergence of the solver, the goal.
 
-use crate::app::energy_summary::Exchanged;
+use crate::app::energy_summary::EnergySummary;
 use crate::app::summary::{Program, Summary};
 use crate::app::tracking_messages;
 use crate::control::BoundaryConditions;
@@ -36,7 +36,7 @@ pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
         row("variables", program.variables.to_string());
         row("constraints", program.constraints.to_string());
         row("time", format!("{:.3} s", summary.seconds.total));
-        for (key, value) in summary.energies.iter().flat_map(Exchanged::rows) {
+        for (key, value) in summary.energies.iter().flat_map(EnergySummary::rows) {
             row(&key, value);
         }
         for (name, error) in summary.accuracy.iter().flat_map(|a| &a.estimate) {

@@ -8,11 +8,11 @@ use serde::Serialize;
 use crate::app::blocks::BlockSizes;
 use crate::app::comparison::Comparison;
 use crate::app::displayed_motion::ShownPart;
-use crate::app::energy_summary::Exchanged;
+use crate::app::energy_summary::EnergySummary;
 use crate::app::equilibrium_summary::Rest;
 use crate::app::error::CommandError;
 use crate::app::linear_systems::LinearSystems;
-use crate::app::path_summary::Followed;
+use crate::app::path_summary::PathSummary;
 use crate::app::request::CommandInput;
 use crate::control::problem;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
@@ -64,13 +64,13 @@ pub(super) struct Summary {
     pub(super) final_values: Vec<FinalValue>,
     /// Electrical energy and mechanical work of a motion.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) energies: Option<Exchanged>,
+    pub(super) energies: Option<EnergySummary>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) comparison: Option<Comparison>,
     #[serde(flatten)]
     pub(super) rest: Option<Rest>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) path: Option<Followed>,
+    pub(super) path: Option<PathSummary>,
     /// Muscles and blocks that leave the domain of the first-order dielectric.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) domain: Vec<Outside>,

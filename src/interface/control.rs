@@ -23,7 +23,7 @@ use crate::workflow::memory;
 use crate::workflow::motion::{discrete_trajectory, trajectory};
 use crate::workflow::optimum::SolveLimits;
 use crate::workflow::prepare::{Counted, Prepared, prepare};
-use crate::workflow::refine_until_reproduced::{Cured, reproduced};
+use crate::workflow::refine_until_reproduced::{RefinedOptimum, reproduced};
 use crate::workflow::remark::Remarks;
 use crate::workflow::resolve::resolve;
 use crate::workflow::solve_remarks::add_remarks;
@@ -189,7 +189,7 @@ impl Control {
             iterations: None,
             seconds: self.max_seconds,
         };
-        let Cured {
+        let RefinedOptimum {
             optimum: mut found,
             iterations,
             note,

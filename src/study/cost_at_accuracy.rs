@@ -10,7 +10,7 @@ pub const ACCURACIES: [f64; 3] = [1e-2, 1e-4, 1e-6];
 
 /// Cost of one accuracy.
 #[derive(Debug)]
-pub struct Price {
+pub struct CostAtAccuracy {
     /// The accuracy as a part of the scale.
     pub accuracy: f64,
     /// The same as an error, in mm or relative.
@@ -19,7 +19,7 @@ pub struct Price {
     pub costs: Vec<Option<[f64; 3]>>,
 }
 
-impl Price {
+impl CostAtAccuracy {
     /// The cheapest method that reaches it.
     pub fn cheapest(&self) -> Option<usize> {
         let reached = (0..self.costs.len()).filter(|&m| self.costs[m].is_some());
@@ -29,7 +29,7 @@ impl Price {
 }
 
 /// Returns the costs of the accuracies by each method, those that none reaches included.
-pub fn prices(results: &Results<'_>, judged: &Judged) -> Vec<Price> {
+pub fn costs_at_accuracy(results: &Results<'_>, judged: &Judged) -> Vec<CostAtAccuracy> {
     let of = |accuracy: f64| {
         let wanted = accuracy * judged.scale;
         let cost = |(m, points): (usize, &Vec<Done<'_>>)| {
@@ -37,7 +37,7 @@ pub fn prices(results: &Results<'_>, judged: &Judged) -> Vec<Price> {
             let at = |part: f64| cost(points, part, error, wanted);
             Some([at(0.25)?, at(0.5)?, at(0.75)?])
         };
-        Price {
+        CostAtAccuracy {
             accuracy,
             error: wanted,
             costs: results.methods.iter().enumerate().map(cost).collect(),

@@ -27,7 +27,7 @@ use crate::report::origin::Origin;
 use crate::report::table::cells_csv;
 use crate::report::{Figures, atomic};
 use crate::sweep::read::{Sweep, Variant, read_sweep};
-use crate::sweep::variant_record::Kept;
+use crate::sweep::variant_record::VariantRecord;
 
 /// Folder of the variants within that of the results.
 const VARIANTS: &str = "variants";
@@ -47,7 +47,7 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
     let of = |variant: &Variant| folder.join(VARIANTS).join(variant.identity.as_str());
 
     // By identity, so that equal variants are solved once.
-    let mut ends: BTreeMap<&str, Kept> = BTreeMap::new();
+    let mut ends: BTreeMap<&str, VariantRecord> = BTreeMap::new();
     let mut todo: Vec<&Variant> = Vec::new();
     let mut chosen = BTreeSet::new();
     let mut before = Before::default();
@@ -57,7 +57,7 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
             continue;
         }
         let kept = match &variant.refused {
-            Some(message) => Some(Kept::refused(variant, message)),
+            Some(message) => Some(VariantRecord::refused(variant, message)),
             None => before.of(variant, &of(variant)),
         };
         match kept {
@@ -70,12 +70,12 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
     }
     solve(request, &sweep, &todo, &of, began, &mut ends)?;
 
-    let ends: Vec<Kept> = sweep
+    let ends: Vec<VariantRecord> = sweep
         .variants
         .iter()
         .map(|variant| match ends.get(variant.identity.as_str()) {
             Some(end) => end.clone(),
-            None => Kept::of(variant, &RunEnd::NOT_STARTED, Path::new("")),
+            None => VariantRecord::of(variant, &RunEnd::NOT_STARTED, Path::new("")),
         })
         .collect();
     write(request, &sweep, &ends, &folder)?;
@@ -100,8 +100,8 @@ struct Before {
 
 impl Before {
     /// The end of a variant, where its folder holds all of it.
-    fn of(&mut self, variant: &Variant, folder: &Path) -> Option<Kept> {
-        match Kept::found(variant, folder) {
+    fn of(&mut self, variant: &Variant, folder: &Path) -> Option<VariantRecord> {
+        match VariantRecord::found(variant, folder) {
             Found::Whole(kept) => {
                 self.found += 1;
                 Some(kept)
@@ -124,7 +124,7 @@ fn solve<'a>(
     todo: &[&'a Variant],
     folder: &dyn Fn(&Variant) -> PathBuf,
     began: Instant,
-    ends: &mut BTreeMap<&'a str, Kept>,
+    ends: &mut BTreeMap<&'a str, VariantRecord>,
 ) -> Result<(), CommandError> {
     let run = |variant: &&Variant| CommandInput {
         command: String::new(),
@@ -153,7 +153,7 @@ fn solve<'a>(
     let mut counts = [0, 0];
     let mut unwritten = None;
     run_all(&batch, &mut |index, end| {
-        let mut kept = Kept::of(todo[index], &end, &folder(todo[index]));
+        let mut kept = VariantRecord::of(todo[index], &end, &folder(todo[index]));
         if !kept.is_unfinished() {
             unwritten = kept.write(&folder(todo[index])).err();
         }
@@ -173,7 +173,7 @@ fn solve<'a>(
 fn write(
     request: &SweepRequest,
     sweep: &Sweep,
-    ends: &[Kept],
+    ends: &[VariantRecord],
     folder: &Path,
 ) -> Result<(), CommandError> {
     let origin = Origin {
@@ -193,7 +193,7 @@ fn write(
 fn command_output(
     shard: Shard,
     sweep: &Sweep,
-    ends: &[Kept],
+    ends: &[VariantRecord],
     before: Before,
     folder: &Path,
     began: Instant,

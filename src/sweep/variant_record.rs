@@ -18,7 +18,7 @@ use crate::sweep::read::Variant;
 pub(super) const END: &str = "end: ";
 /// Record of a variant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Kept {
+pub(super) struct VariantRecord {
     /// Overrides.
     pub(super) set: Vec<String>,
     pub(super) identity: String,
@@ -47,7 +47,7 @@ struct Summary {
     iterations: Option<usize>,
 }
 
-impl Kept {
+impl VariantRecord {
     /// Makes the record of a variant that ended with this; the files of its solve are in `folder`.
     pub(super) fn of(variant: &Variant, end: &RunEnd, folder: &Path) -> Self {
         let (word, message) = match &end.said {

@@ -75,7 +75,7 @@ pub use optimum::{Optimum, Restarted, Shortest, SolveLimits};
 pub use phase::listen_to_phases;
 pub use prepare::Counted;
 pub use reasons::{Absent, absent};
-pub use refine_until_reproduced::Cured;
+pub use refine_until_reproduced::RefinedOptimum;
 pub use remark::{Remark, Remarks, Severity};
 pub use resimulate::{Resimulation, under_constant_voltages};
 pub use steps::{beyond, counted, divided};

@@ -18,7 +18,7 @@ const VARIABLES: usize = 2_000_000;
 
 /// An optimum and the way to it.
 #[derive(Debug)]
-pub struct Cured {
+pub struct RefinedOptimum {
     /// The one of the problem's own grid, or the first one on a finer grid that is reproduced.
     pub optimum: Optimum,
     /// Iterations on all grids.
@@ -37,7 +37,7 @@ pub(crate) fn reproduced(
     control: &Control,
     allowed: SolveLimits,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
-) -> Result<Cured, WorkflowError> {
+) -> Result<RefinedOptimum, WorkflowError> {
     let began = Instant::now();
     let left = || {
         let spent = began.elapsed().as_secs_f64();
@@ -61,7 +61,7 @@ pub(crate) fn reproduced(
     };
     let (optimum, mut iterations) = solve(control.intervals, None)?;
     let Some(cause) = optimum.cause() else {
-        return Ok(Cured {
+        return Ok(RefinedOptimum {
             optimum,
             iterations,
             note: None,
@@ -85,7 +85,7 @@ pub(crate) fn reproduced(
             iterations += more;
             if found.is_solved() {
                 found.carried = optimum.carried;
-                return Ok(Cured {
+                return Ok(RefinedOptimum {
                     optimum: found,
                     iterations,
                     note: Some(format!(
@@ -103,7 +103,7 @@ pub(crate) fn reproduced(
             "on finer grids of up to {n} intervals no optimum was reproduced by its voltages either"
         )
     });
-    Ok(Cured {
+    Ok(RefinedOptimum {
         optimum,
         iterations,
         note,
