@@ -16,7 +16,7 @@ use crate::ipopt::interrupt::{self, TimeLimit};
 use crate::mesh::Mesh;
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
-use crate::nlp::differences::{self, Along, Matrix, WrongEntry};
+use crate::nlp::differences::{self, DifferenceVariables, Matrix, WrongEntry};
 use crate::workflow::effects;
 use crate::workflow::prepare::{Counted, Prepared, prepare};
 use crate::workflow::resolve::resolve;
@@ -116,7 +116,7 @@ pub fn checked(request: &CommandInput, text: Option<&str>) -> Result<Checked, Co
     let mut moved = |(x, size): (&f64, &f64)| x + NOISE * size * noise.next();
     let x: Vec<f64> = point.x.iter().zip(&sizes).map(&mut moved).collect();
     let columns = columns(&program, &mut noise);
-    let along = Along {
+    let along = DifferenceVariables {
         columns: &columns,
         sizes: &sizes,
     };

@@ -172,7 +172,7 @@ pub(super) fn costates(
             ratio * place.map_or(0.0, |v| list[v])
         }
         Column::Parameter { s } => from.unknowns.scalar(0, s).map_or(0.0, |v| list[v]),
-        // The duration is so many times the interval length.
+        // The duration is a multiple of the interval length.
         Column::Horizon => {
             let intervals = grids.to as f64 / grids.from as f64;
             from.unknowns.horizon().map_or(0.0, |v| list[v]) * intervals

@@ -6,7 +6,9 @@ use crate::coordinates::map::CoordinateMap;
 use crate::coordinates::pattern::StepPattern;
 use crate::coordinates::pull_back::{Destination, PullBack, Site};
 use crate::coordinates::scratch::{Carried, Scratch};
-use crate::functional::{BlockMask, Blocks, Functional, Horizon, Order, Outer, Part, Sample};
+use crate::functional::{
+    BlockMask, Blocks, Functional, Horizon, Order, Outer, Sample, SumDerivatives,
+};
 use crate::math::Vector;
 
 /// Sums over intervals and instants as functions of the coordinates z of the instants and the scalars of the intervals.
@@ -180,7 +182,7 @@ impl Reduced {
     pub fn pull_back_part(
         &self,
         ends: [&Configuration; 2],
-        part: &Part,
+        part: &SumDerivatives,
         sides: BlockMask,
         target: &Destination,
         scratch: &mut Scratch,

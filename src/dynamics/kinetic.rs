@@ -12,7 +12,7 @@
 use crate::coordinates::{Configuration, Destination, Scratch};
 use crate::dynamics::momenta::{DECOMPOSED, rates_within};
 use crate::dynamics::tangent::{EntryList, Tangent};
-use crate::functional::{BlockMask, Blocks, Kind, Order, Part, Sample};
+use crate::functional::{BlockMask, Blocks, Order, Sample, SumDerivatives, TermKind};
 use crate::math::Vector;
 use crate::model::Model;
 use crate::sparse::Symmetry;
@@ -26,7 +26,7 @@ const DEPENDENT: f64 = 1e-14;
 pub(super) struct Kinetic<'m> {
     model: &'m Model,
     scratch: Scratch,
-    masses: Part,
+    masses: SumDerivatives,
     values: Vec<f64>,
     tangent: Tangent,
 }
@@ -147,7 +147,7 @@ pub(super) fn masses(model: &Model, x: &[Vector]) -> Blocks {
     let scalars = vec![0.0; action.scalars];
     let sample = Sample::of_instant(x, &scalars);
     for (term, slots) in action.terms() {
-        if term.kind() == Kind::Kinetic {
+        if term.kind() == TermKind::Kinetic {
             term.evaluate(Order::Hessian, &sample, slots, &mut out);
         }
     }

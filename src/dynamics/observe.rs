@@ -15,7 +15,7 @@ use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::interval_energies::energies;
 use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
-use crate::functional::{Kind, Order};
+use crate::functional::{Order, TermKind};
 use crate::math::{Vector, has_pool};
 use crate::model::{Coordinates, Model, Role, SolidBlock};
 use rayon::prelude::*;
@@ -66,7 +66,7 @@ pub fn observed(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
         }
     }
     let [of_intervals, of_momenta] = [observer.of_intervals(), observer.of_momenta()];
-    if observer.has(Kind::VirtualWork) {
+    if observer.has(TermKind::VirtualWork) {
         let mut dissipated = 0.0;
         for work in &mut columns[of_intervals.end].values {
             dissipated -= *work;
@@ -208,7 +208,7 @@ impl<'m> Observer<'m> {
         }
     }
 
-    fn has(&self, kind: Kind) -> bool {
+    fn has(&self, kind: TermKind) -> bool {
         let mut terms = self.model.action.intervals.terms.iter();
         terms.any(|term| term.kind() == kind)
     }
@@ -241,14 +241,14 @@ impl<'m> Observer<'m> {
         }
         add("kinetic_energy".to_owned(), "N mm");
         for term in &self.model.action.intervals.terms {
-            if term.kind() == Kind::Potential {
+            if term.kind() == TermKind::Potential {
                 for part in term.energy_parts() {
                     add(format!("{}_energy", part.replace(' ', "_")), "N mm");
                 }
             }
         }
         add("total_energy".to_owned(), "N mm");
-        if self.has(Kind::VirtualWork) {
+        if self.has(TermKind::VirtualWork) {
             add("dissipated_energy".to_owned(), "N mm");
         }
         for (name, unit) in [("linear_momentum", "N ms"), ("angular_momentum", "N mm ms")] {
@@ -308,7 +308,7 @@ impl<'m> Observer<'m> {
         row.push(energies.kinetic);
         row.extend(&energies.potential);
         row.push(energies.total());
-        if self.has(Kind::VirtualWork) {
+        if self.has(TermKind::VirtualWork) {
             row.push(energies.work);
         }
         row.extend(momenta);

@@ -9,7 +9,7 @@
 
 use crate::coordinates::{Configuration, Interval};
 use crate::dynamics::error::StepError;
-use crate::functional::Kind;
+use crate::functional::TermKind;
 use crate::math::Vector;
 use crate::model::Model;
 use std::f64::consts::PI;
@@ -45,15 +45,15 @@ impl Balance {
         let (mut kinetic, mut viscous, mut change, mut size) = (0.0, 0.0, 0.0, 0.0_f64);
         for term in &model.action.intervals.terms {
             match term.kind() {
-                Kind::Kinetic => kinetic += term.energy(&sample),
-                Kind::VirtualWork => viscous += term.energy(&sample),
-                Kind::Potential => {
+                TermKind::Kinetic => kinetic += term.energy(&sample),
+                TermKind::VirtualWork => viscous += term.energy(&sample),
+                TermKind::Potential => {
                     let energy = |at| term.energy(&interval.sample([at, at]));
                     let (before, after) = (energy(start), energy(end));
                     change += after - before;
                     size += before.abs() + after.abs();
                 }
-                Kind::Constraint => {}
+                TermKind::Constraint => {}
             }
         }
         let [a, b] = forces;

@@ -322,7 +322,7 @@ impl DiscreteTrajectory {
     }
 }
 
-/// So many steps of h ms.
+/// A number of steps of h ms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeGrid {
     /// Length in ms.

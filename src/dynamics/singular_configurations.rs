@@ -6,7 +6,7 @@
 
 use crate::coordinates::{Configuration, Interval};
 use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
-use crate::functional::Kind;
+use crate::functional::TermKind;
 use crate::model::Model;
 use crate::model::system::Fidelity;
 
@@ -61,7 +61,7 @@ pub(super) fn is_inverted(model: &Model, at: &Configuration, scalars: &[f64]) ->
     let interval = Interval::given(scalars, 1.0);
     let sample = interval.sample([at, at]);
     let mut terms = model.action.intervals.terms.iter();
-    terms.any(|e| e.kind() == Kind::Potential && !e.energy(&sample).is_finite())
+    terms.any(|e| e.kind() == TermKind::Potential && !e.energy(&sample).is_finite())
 }
 
 /// The first interval of a motion in which the span of a lumped muscle turns by a right angle or more, and the muscle.

@@ -1,4 +1,4 @@
-//! Material vectors: points, directors and spans, the only thing effects ever read of a configuration.
+//! Material vectors: points, directors and spans, all that terms read of a configuration.
 //!
 //! On director coordinates q = [φ; d₁; d₂; d₃] of a body every point φ + ρᵢ dᵢ, every director dᵢ and every difference
 //! of points of two bodies is linear: x = Σ (c φ + ρᵢ dᵢ) over a few terms. So is the place of a node of an elastic
@@ -173,7 +173,7 @@ impl MaterialVector {
     }
 }
 
-/// The list of vectors that effects read, each once.
+/// The list of vectors that terms read, each once.
 #[derive(Clone, Debug, Default)]
 pub struct Vectors {
     list: Vec<MaterialVector>,

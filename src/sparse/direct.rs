@@ -18,7 +18,7 @@ use crate::sparse::{Factorisation, Precision, Singular, Symmetry};
 
 /// Above this size, factors for an iteration are in single precision, as `benches/block.rs` measures.
 const SINGLE: usize = 5_000;
-/// So many further matrices are tried in single precision in a row; then double precision stays.
+/// Most further matrices tried in single precision in a row; then double precision stays.
 const RETRIES: usize = 2;
 /// Number added to entries near 1 to make a singular matrix regular.
 const NEARBY: f64 = 1e-10;

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::dynamics::OutOfDomain;
 
-/// So many muscles and blocks are written out.
+/// Most muscles and blocks that are written out.
 const LISTED: usize = 4;
 
 /// A muscle or block outside the domain of its first-order dielectric.

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::control::problem::Control;
 use crate::coordinates::CoordinateMap;
-use crate::functional::{Couplings, Kind, Term};
+use crate::functional::{Couplings, Term, TermKind};
 use crate::model::{Model, Time, Variable};
 use crate::workflow::reasons::{self, Absent, absent};
 use crate::workflow::stopwatch;
@@ -190,14 +190,14 @@ impl<'a> Coupled<'a> {
         unknowns.sort_unstable();
         unknowns.dedup();
         let kind = match self.effect.kind() {
-            Kind::Kinetic => "kinetic",
-            Kind::Potential => "potential",
-            Kind::VirtualWork => "virtual work",
-            Kind::Constraint => "constraint",
+            TermKind::Kinetic => "kinetic",
+            TermKind::Potential => "potential",
+            TermKind::VirtualWork => "virtual work",
+            TermKind::Constraint => "constraint",
         };
         let scalars = unknowns.iter();
         let scalars = scalars.filter_map(|&i| (i as usize).checked_sub(of.coordinates));
-        let is_of_instant = self.effect.kind() == Kind::Constraint;
+        let is_of_instant = self.effect.kind() == TermKind::Constraint;
         let equations = scalars.filter(|&s| is_of_instant || of.scalars[s].has_equation);
         let diagonal = self.pairs.iter().filter(|[i, j]| i == j).count();
         let touched = self.pairs.iter().map(|pair| self.touched(pair, of));
@@ -220,7 +220,7 @@ impl<'a> Coupled<'a> {
     fn touched(&self, &[i, j]: &[u32; 2], of: &Unknowns) -> [usize; 2] {
         let (i, j) = (i as usize, j as usize);
         let both_orders = if i == j { 1 } else { 2 };
-        let is_instantaneous = self.effect.kind() == Kind::Constraint;
+        let is_instantaneous = self.effect.kind() == TermKind::Constraint;
         if is_instantaneous {
             // A multiplier has a column in the balances of its instant, its constraint a row in the coordinates.
             let is_pair_of_coordinates = j < of.coordinates;

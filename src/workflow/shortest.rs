@@ -10,10 +10,10 @@ use crate::workflow::further::{Further, ITERATIONS, displaced, is_infeasible};
 use crate::workflow::iterate::Iterate;
 use crate::workflow::optimum::{Optimum, Shortest};
 
-/// The free duration goes up to so many times the given one, and starts from so many times.
+/// Largest free duration and the first one, as multiples of the given one.
 const LONGEST: f64 = 20.0;
 const FIRST: f64 = 2.0;
-/// Iterations of its solve: so many times those of the first one, within these limits.
+/// Iterations of its solve, as a multiple of those of the first one, within these limits.
 const TIMES: usize = 2;
 const FEWEST: usize = 60;
 const MOST: usize = 200;

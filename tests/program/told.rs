@@ -11,7 +11,7 @@ use proboscis::ipopt::interrupt::Questions;
 use proboscis::ipopt::{Options, StartingPoint, Status, interrupt, solve};
 use proboscis::model::Model;
 use proboscis::nlp::Nlp;
-use proboscis::nlp::differences::{Along, TOLERANCE, check_along};
+use proboscis::nlp::differences::{DifferenceVariables, TOLERANCE, check_along};
 use std::fs;
 use std::ops::ControlFlow;
 use std::process::{Command, Stdio};
@@ -216,7 +216,7 @@ fn two_differences_have_to_agree_before_an_entry_is_wrong() {
         program
     };
     let check = |a: f64, wrong: f64, size: f64| {
-        let along = Along {
+        let along = DifferenceVariables {
             columns: &[0],
             sizes: &[size],
         };
@@ -238,7 +238,7 @@ fn two_differences_have_to_agree_before_an_entry_is_wrong() {
     let stopped = check_along(
         &mut wave(1.0, 0.0),
         &[0.3008],
-        Along {
+        DifferenceVariables {
             columns: &[0],
             sizes: &[1.0],
         },

@@ -5,7 +5,7 @@ use crate::common::{at_reference, trunk};
 use proboscis::control::problem::Control;
 use proboscis::control::{BoundaryConditions, InitialGuess, Transcription, guess};
 use proboscis::dynamics::{DiscreteTrajectory, Start, StepError, simulate};
-use proboscis::functional::{Couplings, Kind, Order, Output, Sample, Term};
+use proboscis::functional::{Couplings, Order, Output, Sample, Term, TermKind};
 use proboscis::ipopt::{
     self, Iteration, LinearSolver, Options, Reached, SolverResult, StartingPoint, Status,
 };
@@ -298,7 +298,7 @@ impl Term for Failing {
         self.effect.couple(couplings, slots);
     }
 
-    fn kind(&self) -> Kind {
+    fn kind(&self) -> TermKind {
         self.effect.kind()
     }
 

@@ -3,7 +3,7 @@
 use crate::common::cases::joints;
 use crate::common::systems::{GRAVITY, branched};
 use crate::common::{bare, body, joint, placed, trunk};
-use crate::condensed::{BOTH, moved, names, under};
+use crate::presolved::{BOTH, moved, names, under};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::model::system::{Body, JointKind};
 use proboscis::model::{Analysis, BodyLocation, Coordinates, Model, Role};

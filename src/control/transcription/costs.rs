@@ -112,10 +112,10 @@ impl Transcription<'_> {
         let workspace = &mut self.workspace;
         if let Some(middle) = self.layout.middle() {
             let here = &workspace.instants[middle];
-            workspace.halo.z.copy_from_slice(&here.z);
+            workspace.boundary_instant.z.copy_from_slice(&here.z);
         }
         let instants = workspace.instants.iter_mut();
-        for instant in instants.chain([&mut workspace.halo]) {
+        for instant in instants.chain([&mut workspace.boundary_instant]) {
             if workspace.placed < Placed::Vectors {
                 map.vectors(instant);
             }

@@ -20,7 +20,7 @@ const MUCH: usize = 8_000;
 struct Pass<'a> {
     shared: Shared<'a>,
     instants: &'a mut [Configuration],
-    halo: &'a mut Configuration,
+    boundary_instant: &'a mut Configuration,
     stretches: &'a mut [SegmentWorkspace; 2],
     values: &'a mut [f64],
     rows: &'a mut [f64],
@@ -49,8 +49,12 @@ impl Pass<'_> {
     fn run_in_two(&mut self, middle: usize) {
         let Shared { action, stride, .. } = self.shared;
         let last = self.instants.len() - 1;
-        self.halo.z.copy_from_slice(&self.instants[middle].z);
-        self.halo.l.copy_from_slice(&self.instants[middle].l);
+        self.boundary_instant
+            .z
+            .copy_from_slice(&self.instants[middle].z);
+        self.boundary_instant
+            .l
+            .copy_from_slice(&self.instants[middle].l);
         let [first, second] = &mut *self.stretches;
         let (left, right) = self.instants.split_at_mut(middle);
         let (end, right) = right.split_last_mut().expect("a stretch has an end");
@@ -60,7 +64,7 @@ impl Pass<'_> {
             shared: self.shared,
             first: 0,
             instants: left,
-            end: self.halo,
+            end: self.boundary_instant,
             workspace: first,
             values: values_left,
             rows: rows_left,
@@ -80,8 +84,8 @@ impl Pass<'_> {
         let add = |sum: &mut [Vector], list: &[Vector]| {
             sum.iter_mut().zip(list).for_each(|(s, v)| *s += v);
         };
-        add(&mut instant.forces, &self.halo.forces);
-        add(&mut instant.contracted, &self.halo.contracted);
+        add(&mut instant.forces, &self.boundary_instant.forces);
+        add(&mut instant.contracted, &self.boundary_instant.contracted);
         self.complete(middle, 0);
     }
 
@@ -145,7 +149,7 @@ impl<'m> Transcription<'m> {
                 limit: limit.as_ref(),
             },
             instants: &mut workspace.instants,
-            halo: &mut workspace.halo,
+            boundary_instant: &mut workspace.boundary_instant,
             stretches: &mut workspace.stretches,
             values: &mut workspace.values,
             rows,

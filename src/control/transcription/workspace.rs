@@ -8,7 +8,7 @@ use crate::control::transcription::layout::Layout;
 use crate::control::transcription::segment::SegmentWorkspace;
 use crate::control::transcription::units::KILOVOLT;
 use crate::coordinates::Configuration;
-use crate::functional::Part;
+use crate::functional::SumDerivatives;
 use crate::model::{Model, Role, Time};
 
 /// Storage of the evaluations.
@@ -29,8 +29,8 @@ pub(super) struct Workspace {
     /// Storage of each stretch of a horizon.
     pub(super) stretches: [SegmentWorkspace; 2],
     /// Copy of the instant at which a long horizon is cut in two.
-    pub(super) halo: Configuration,
-    pub(super) measured: Part,
+    pub(super) boundary_instant: Configuration,
+    pub(super) measured: SumDerivatives,
     /// Factor of the objective in the Hessian.
     pub(super) sigma: f64,
     /// Step by step the rows of an instant and those of the scalars of an interval, then costates of the limits.
@@ -68,8 +68,8 @@ impl Workspace {
             kilovolts,
             h: initial.h,
             stretches: [SegmentWorkspace::new(action), SegmentWorkspace::new(action)],
-            halo: map.instant(),
-            measured: Part::new(map.vectors.len(), scalar_count, None),
+            boundary_instant: map.instant(),
+            measured: SumDerivatives::new(map.vectors.len(), scalar_count, None),
             sigma: 0.0,
             rows: vec![0.0; (intervals + 1) * stride + layout.limit_rows.len()],
             values: vec![0.0; action.layout().values(intervals) + limit_entries],

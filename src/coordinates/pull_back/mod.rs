@@ -14,7 +14,7 @@ mod product;
 use crate::coordinates::configuration::Configuration;
 use crate::coordinates::map::{CoordinateMap, Dependence};
 use crate::coordinates::pattern::StepPattern;
-use crate::functional::{BlockMask, Couplings, Part};
+use crate::functional::{BlockMask, Couplings, SumDerivatives};
 use crate::math::compact_index;
 use articulated::{BlockDestination, Ends, Groups};
 pub use destination::Destination;
@@ -109,7 +109,7 @@ impl PullBack {
     pub(super) fn hessian(
         &self,
         ends: [&Configuration; 2],
-        part: &Part,
+        part: &SumDerivatives,
         sides: BlockMask,
         target: &Destination,
         local: &mut [f64],
@@ -139,7 +139,7 @@ impl PullBack {
     pub(super) fn third(
         &self,
         ends: [&Configuration; 2],
-        [plain, contracted]: [&Part; 2],
+        [plain, contracted]: [&SumDerivatives; 2],
         sides: BlockMask,
         target: &Destination,
         local: &mut [f64],

@@ -2,7 +2,7 @@
 
 use crate::coordinates::{Configuration, Interval};
 use crate::dynamics::equilibrium::statics::{ITERATIONS, RestState, Statics};
-use crate::functional::{Kind, Order};
+use crate::functional::{Order, TermKind};
 use crate::math::Vector;
 
 /// Size of the last correction, relative to angles of one radian and the length of the system.
@@ -21,7 +21,7 @@ impl Statics<'_> {
         let interval = Interval::given(&self.scalars, 1.0);
         let sample = interval.sample([&self.a, &self.a]);
         let terms = action.intervals.terms.iter();
-        let potential = terms.filter(|term| term.kind() == Kind::Potential);
+        let potential = terms.filter(|term| term.kind() == TermKind::Potential);
         potential.map(|term| term.energy(&sample)).sum()
     }
 

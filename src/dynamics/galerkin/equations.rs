@@ -7,7 +7,7 @@ use crate::dynamics::galerkin::lobatto::lagrange;
 use crate::dynamics::galerkin::rule::Rule;
 use crate::dynamics::galerkin::state::{GalerkinEquations, StagePoint, between};
 use crate::dynamics::momenta::vector_momenta;
-use crate::functional::{Kind, Order};
+use crate::functional::{Order, TermKind};
 use crate::math::Vector;
 use crate::model::Model;
 use std::slice;
@@ -185,7 +185,9 @@ impl Equations for GalerkinEquations<'_> {
         }
         if self.dissipates {
             let terms = model.action.intervals.terms.iter();
-            let forces: Vec<_> = terms.filter(|e| e.kind() == Kind::VirtualWork).collect();
+            let forces: Vec<_> = terms
+                .filter(|e| e.kind() == TermKind::VirtualWork)
+                .collect();
             let work = |point: &StagePoint| {
                 let [a, b] = &point.x;
                 let sample = between([a, b], &point.scalars, h);

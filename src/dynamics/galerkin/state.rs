@@ -11,7 +11,9 @@ use crate::dynamics::momenta::{rates, vector_momenta};
 use crate::dynamics::simulate::Start;
 use crate::dynamics::solving::{Integrator, Solving};
 use crate::dynamics::stepper::Steps;
-use crate::functional::{BlockMask, Blocks, Horizon, Kind, Order, Output, Part, Sample};
+use crate::functional::{
+    BlockMask, Blocks, Horizon, Order, Output, Sample, SumDerivatives, TermKind,
+};
 use crate::math::Vector;
 use crate::model::Model;
 use crate::sparse::Symmetry;
@@ -46,7 +48,7 @@ pub struct GalerkinEquations<'m> {
     pub(super) places: Places,
     pub(super) values: Vec<f64>,
     /// Blocks between two points.
-    pub(super) combined: Part,
+    pub(super) combined: SumDerivatives,
     /// Second derivatives of the kinetic energy at h = 1.
     pub(super) masses: Blocks,
     pub(super) accelerations: Vec<Vector>,
@@ -123,7 +125,7 @@ impl<'m> Steps<GalerkinEquations<'m>> {
                 vec![vec![0.0; algebraic.len()]; samples.len()],
             ),
             multipliers,
-            dissipates: terms.any(|e| e.kind() == Kind::VirtualWork),
+            dissipates: terms.any(|e| e.kind() == TermKind::VirtualWork),
             work: None,
             rule,
             points,

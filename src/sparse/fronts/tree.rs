@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::math::compact_index;
-use crate::sparse::dissection::{Dissection, Part};
+use crate::sparse::dissection::{Dissection, DissectionPart};
 use crate::sparse::pattern::Pattern;
 
 /// Columns of a front whose products with their pivots are in memory at once.
@@ -139,7 +139,7 @@ impl Tree {
     }
 
     /// The front of a part whose sides have theirs; its space is not known yet.
-    fn front(&mut self, part: &Part, slots: &[[u32; 3]]) -> Front {
+    fn front(&mut self, part: &DissectionPart, slots: &[[u32; 3]]) -> Front {
         let Range { start, end } = part.own;
         let is_later = |place: &u32| *place as usize >= end;
         let mut boundary: Vec<u32> = slots.iter().map(|&[.., later]| later).collect();

@@ -11,7 +11,7 @@ use proboscis::Signal;
 use proboscis::control::problem::{AtRest, BoundaryState, Simulation, Voltages};
 use proboscis::control::{BoundaryConditions, resolve_start};
 use proboscis::dynamics::{DiscreteTrajectory, Solving, Start, equilibrium, simulate};
-use proboscis::functional::{Kind, Term};
+use proboscis::functional::{Term, TermKind};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::plan::TERMS;
 use proboscis::model::system::{Potential, System};
@@ -146,11 +146,11 @@ fn at_rest_there_is_neither_inertia_nor_friction() {
             };
             let still = Model::for_analysis(system.clone(), task.analysis(&system)).unwrap();
             let moving = Model::for_analysis(system.clone(), of_motion).unwrap();
-            let kinds = |model: &Model| -> Vec<Kind> {
+            let kinds = |model: &Model| -> Vec<TermKind> {
                 let effects = model.action.intervals.terms.iter();
                 effects.map(|e| e.kind()).collect()
             };
-            for kind in [Kind::Kinetic, Kind::VirtualWork] {
+            for kind in [TermKind::Kinetic, TermKind::VirtualWork] {
                 assert!(kinds(&moving).contains(&kind) && !kinds(&still).contains(&kind));
             }
             // Weight needs masses, not inertia.
