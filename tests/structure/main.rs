@@ -16,3 +16,4 @@ mod roles;
 mod sources;
 mod trace;
 mod welded;
+mod words;
