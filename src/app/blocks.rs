@@ -44,13 +44,13 @@ pub struct BlockSizes {
 
 impl BlockSizes {
     /// Those of a model; `None` where nothing is elastic.
-    pub fn of(model: &Model) -> Option<Self> {
+    pub fn from_model(model: &Model) -> Option<Self> {
         if model.solids.is_empty() {
             return None;
         }
         let named = model.solids.iter();
         let blocks: BTreeMap<_, _> = named
-            .map(|c| (c.solid.name.clone(), BlockSize::of(model, c)))
+            .map(|c| (c.solid.name.clone(), BlockSize::from_block(model, c)))
             .collect();
         let sum = |part: fn(&BlockSize) -> usize| blocks.values().map(part).sum();
         Some(Self {
@@ -85,7 +85,7 @@ impl BlockSizes {
 }
 
 impl BlockSize {
-    fn of(model: &Model, block: &SolidBlock) -> Self {
+    fn from_block(model: &Model, block: &SolidBlock) -> Self {
         let coordinates = |&vector: &usize| {
             let is_node = |carrier| matches!(carrier, Carrier::Node(_));
             let terms = &model.vectors[vector].terms;

@@ -106,11 +106,11 @@ pub fn checked(request: &CommandInput, text: Option<&str>) -> Result<Checked, Co
     let loaded = read(&request.input, text, &request.set)?;
     let control = as_control(loaded.task, &loaded.system);
     let (model, boundary) =
-        resolve(&loaded.system, &control).map_err(CommandError::of(&request.input))?;
+        resolve(&loaded.system, &control).map_err(CommandError::in_file(&request.input))?;
     let Prepared {
         mut program, point, ..
     } = prepare(&model, &boundary, &control, None, Counted::No)
-        .map_err(CommandError::of(&request.input))?;
+        .map_err(CommandError::in_file(&request.input))?;
     let sizes = sizes(&program, &model);
     let mut noise = Noise(SEED);
     let mut moved = |(x, size): (&f64, &f64)| x + NOISE * size * noise.next();

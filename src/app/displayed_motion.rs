@@ -60,7 +60,7 @@ impl DisplayedMotion {
     ///
     /// # Errors
     /// That file cannot be written.
-    pub(super) fn of(
+    pub(super) fn from_motion(
         motion: Motion<'_>,
         output: &Output,
         is_simulated: bool,
@@ -74,7 +74,7 @@ impl DisplayedMotion {
         } = motion;
         let is_asked = output.every.is_some();
         let sampled = (is_asked || is_simulated)
-            .then(|| Sampled::of(observations, output.every))
+            .then(|| Sampled::from_observations(observations, output.every))
             .flatten();
         let choose = || match &sampled {
             None => (
@@ -141,7 +141,7 @@ impl DisplayedMotion {
         let (trajectory, observations) = (&self.trajectory, &self.observations);
         Run {
             tabulated: &self.tabulated,
-            ..Run::of(system, trajectory, &self.skins, observations, origin)
+            ..Run::from_trajectory(system, trajectory, &self.skins, observations, origin)
         }
     }
 

@@ -51,7 +51,7 @@ pub fn equilibrium_of_file(
     refuse_foreign(request)?;
     if let Some(voltages) = voltages {
         let system = read_system(&request.input, &request.set)?;
-        memory::of_elements(&system).map_err(CommandError::of(&request.input))?;
+        memory::of_elements(&system).map_err(CommandError::in_file(&request.input))?;
         let voltages = driven_voltages(voltages, &system)?;
         let task = AtRest {
             voltages,
@@ -61,7 +61,7 @@ pub fn equilibrium_of_file(
         return at((request, &[]), &system, &task, began);
     }
     let loaded = read_problem(&request.input, &request.set)?;
-    memory::of_elements(&loaded.system).map_err(CommandError::of(&request.input))?;
+    memory::of_elements(&loaded.system).map_err(CommandError::in_file(&request.input))?;
     match &loaded.task {
         Task::Equilibrium(task) => at(
             (request, &page::asked(&loaded)),
@@ -100,14 +100,15 @@ pub(super) fn at(
     make_folder(&folder)?;
     let writing = Instant::now();
     let origin = request.origin(false);
-    let mut files = FileSet::of(&folder);
+    let mut files = FileSet::in_folder(&folder);
     let written = fields::write(&mut files, &model, &still.state, &origin)?;
     let status = loss.map_or("at_rest", status);
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = loss.map(|loss| lost(&still.rest, loss, &folder));
     summary.domain = domain::records(&out_of_domain(&model, &still.state));
-    summary.plan = Plan::of(&model, None, MEASURED);
-    summary.blocks = BlockSizes::of(&model).map(|b| b.after(&model, &still.observed, written));
+    summary.plan = Plan::from_model(&model, None, MEASURED);
+    summary.blocks =
+        BlockSizes::from_model(&model).map(|b| b.after(&model, &still.observed, written));
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),
         setup,
@@ -131,7 +132,7 @@ pub(super) fn at(
         held: Some(&still.motion.voltages[0]),
         figures: request.figures,
         page: request.page.of(&page),
-        ..Run::of(
+        ..Run::from_trajectory(
             &model.system,
             &still.motion,
             &skins,

@@ -18,7 +18,7 @@ pub(super) fn model_at_rest(
     let model = Model::for_analysis(system.clone(), task.analysis(system));
     model.map_err(|error| {
         let error = WorkflowError::boundary("equilibrium", &error.into());
-        CommandError::of(&request.input)(error)
+        CommandError::in_file(&request.input)(error)
     })
 }
 

@@ -58,7 +58,7 @@ pub(super) fn write(request: &CommandInput, reason: &str) -> Result<(), CommandE
     make_folder(&folder)?;
     let mut summary = Summary::new(request, STATUS, None);
     summary.message = Some(reason.to_owned());
-    let mut files = FileSet::of(&folder);
+    let mut files = FileSet::in_folder(&folder);
     EARLIER.iter().for_each(|name| files.remove(name));
     Ok(summary.write(files)?)
 }

@@ -79,7 +79,7 @@ fn status(folder: &Path) -> Option<String> {
 
 fn write(folder: &Path, identity: &Identity, output: &CommandOutput) -> Result<(), WriteError> {
     let path = folder.join(OF_RUN);
-    let files = FileRecords::of(folder).map_err(|cause| WriteError {
+    let files = FileRecords::from_folder(folder).map_err(|cause| WriteError {
         path: path.clone(),
         cause,
     })?;

@@ -58,13 +58,13 @@ pub(super) fn follow(
     let origin = request.origin(false);
     let path = EquilibriumPath::new(&model, &found);
     let writing = Instant::now();
-    let mut files = FileSet::of(&folder);
+    let mut files = FileSet::in_folder(&folder);
     let plot = path.figure();
     files.add("path.svg", plot.svg(&origin).as_bytes())?;
     fields::write(&mut files, &model, &path.discrete, &origin)?;
     let word = stopped.map_or("path_followed", Status::word);
     let mut summary = Summary::new(request, word, model.coordinates.name());
-    summary.plan = Plan::of(&model, None, MEASURED);
+    summary.plan = Plan::from_model(&model, None, MEASURED);
     let followed = PathSummary::new(&found);
     let rows = followed.rows(path.stops[path.shown()].fraction);
     let output = command_output(&followed, found.points.len(), stopped, &folder);
@@ -245,7 +245,7 @@ impl<'a> EquilibriumPath<'a> {
             branch: Some(branch),
             figures: request.figures,
             page: request.page.of(page),
-            ..Run::of(&model.system, &motion, &skins, &observed, origin)
+            ..Run::from_trajectory(&model.system, &motion, &skins, &observed, origin)
         };
         write_still(files, "path.csv", &run)
     }

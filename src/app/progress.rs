@@ -86,7 +86,7 @@ impl Progress {
         bar.set_style(style(template));
         let ticker = match bar.is_hidden() {
             true => None,
-            false => Ticker::of(&bar),
+            false => Ticker::for_bar(&bar),
         };
         show_phases();
         let before = LINE.replace(Some(bar.clone()));

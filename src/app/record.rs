@@ -56,7 +56,7 @@ impl FileRecords {
     ///
     /// # Errors
     /// A file cannot be read.
-    pub(crate) fn of(folder: &Path) -> io::Result<Self> {
+    pub(crate) fn from_folder(folder: &Path) -> io::Result<Self> {
         let mut files = Self::default();
         if folder.is_dir() {
             files.read(folder, "")?;

@@ -64,8 +64,8 @@ pub(super) fn simulation(
     let mut ended = integrate(&run, &problem, observer)?;
     phase("writing");
     let writing = Instant::now();
-    let plan = Plan::of(&ended.model, None, MEASURED);
-    let mut files = FileSet::of(&ended.folder);
+    let plan = Plan::from_model(&ended.model, None, MEASURED);
+    let mut files = FileSet::in_folder(&ended.folder);
     let origin = request.origin(false);
     let observed = Observed::new(&run, &ended, &mut files, &origin)?;
     let mut summary = Summary::new(request, ended.word(), ended.model.coordinates.name());
@@ -157,7 +157,7 @@ fn integrate(
         Some(_) => resume_file::UNFINISHED,
         None => solution_file::UNFINISHED,
     };
-    let mut unfinished = Unfinished::of(request.folder(), file);
+    let mut unfinished = Unfinished::in_folder(request.folder(), file);
     let watch = interrupt::watch(left);
     let (simulated, accuracy) = {
         let (steps, _) = grid(task);
@@ -184,7 +184,7 @@ fn integrate(
             Some(wanted) => integrate_to(system, task, wanted, left, &mut observe)
                 .map(|found| (found.run, Some(found.accuracy))),
         };
-        found.map_err(CommandError::of(&request.input))?
+        found.map_err(CommandError::in_file(&request.input))?
     };
     // A finer grid that was stopped leaves the motion on the one before as it is.
     let reached = simulated.discrete.times[simulated.discrete.intervals()];
@@ -257,7 +257,7 @@ impl Observed {
         let written = written?;
         let mut observations = motion.observe(&model.system);
         observations.columns.extend(columns);
-        let blocks = BlockSizes::of(model);
+        let blocks = BlockSizes::from_model(model);
         let blocks = blocks.map(|b| b.after(model, &observations, written));
         observations.columns.extend(exchange.columns());
         Ok(Self {
@@ -325,7 +325,7 @@ fn write_pictures(
         trajectory: &observed.motion,
         observations: &observed.observations,
     };
-    let shown = DisplayedMotion::of(motion, &run.loaded.output, true, files)?;
+    let shown = DisplayedMotion::from_motion(motion, &run.loaded.output, true, files)?;
     summary.notes.note("shown", shown.notes.iter().cloned());
     summary.shown = shown.part;
     let mut content = page::content("Simulation", summary, asked);

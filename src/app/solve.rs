@@ -66,7 +66,7 @@ pub(super) fn control(
         note,
     } = found;
     optimum.hold(control);
-    let verdict = Verdict::of(control, &optimum);
+    let verdict = Verdict::from_optimum(control, &optimum);
     let mut summary = Summary::new(request, verdict.word, optimum.model.coordinates.name());
     summary.message.clone_from(&verdict.message);
     let program = program(system, control, &optimum, iterations, verdict.is_solved);
@@ -74,7 +74,7 @@ pub(super) fn control(
     add_notes(&mut summary, system, control, &optimum, note, &verdict);
     summary.accuracy = accuracy;
     let model = optimum.sought.as_ref().unwrap_or(&optimum.model);
-    summary.plan = Plan::of(model, Some(control), MEASURED);
+    summary.plan = Plan::from_model(model, Some(control), MEASURED);
     summary.seconds = seconds(&optimum, read, began);
     write_files(
         (request, asked),
@@ -101,7 +101,7 @@ fn solve(
     read: f64,
     observer: &mut dyn FnMut(Reached<'_>),
 ) -> Result<(Found, PathBuf), CommandError> {
-    let mut unfinished = Unfinished::of(request.folder(), solution_file::UNFINISHED);
+    let mut unfinished = Unfinished::in_folder(request.folder(), solution_file::UNFINISHED);
     let allowed = SolveLimits {
         iterations: request.max_iterations,
         seconds: request.max_seconds.map(|s| (s - read).max(0.0)),
@@ -156,7 +156,7 @@ fn find(
             (true, _) => verified(system, control, ACCURACY, allowed, observer),
             (false, _) => reproduced(system, control, allowed, observer),
         }
-        .map_err(CommandError::of(&request.input))?;
+        .map_err(CommandError::in_file(&request.input))?;
         return Ok(Found {
             optimum,
             iterations,
@@ -170,7 +170,7 @@ fn find(
         accuracy,
         ..
     } = optimise_to(system, control, wanted, allowed, observer)
-        .map_err(CommandError::of(&request.input))?;
+        .map_err(CommandError::in_file(&request.input))?;
     Ok(Found {
         optimum,
         iterations,
@@ -189,13 +189,13 @@ fn write_files(
 ) -> Result<(), WriteError> {
     let writing = Instant::now();
     let (model, kept) = (&optimum.model, &optimum.motion);
-    let mut files = FileSet::of(folder);
+    let mut files = FileSet::in_folder(folder);
     solution_file::add(&mut files, model, kept)?;
     let discrete = discrete_trajectory(model, kept);
     let mut observed = observations(model, &discrete);
     let origin = request.origin(true);
     let written = fields::write(&mut files, model, &discrete, &origin)?;
-    summary.blocks = BlockSizes::of(model).map(|b| b.after(model, &observed, written));
+    summary.blocks = BlockSizes::from_model(model).map(|b| b.after(model, &observed, written));
     let motion = trajectory(model, kept);
     let exchange = add_observed(summary, control, optimum, (&discrete, &motion));
     observed.columns.extend(exchange.columns());
@@ -205,7 +205,7 @@ fn write_files(
         trajectory: &motion,
         observations: &observed,
     };
-    let shown = DisplayedMotion::of(motion, output, false, &mut files)?;
+    let shown = DisplayedMotion::from_motion(motion, output, false, &mut files)?;
     summary.notes.note("shown", shown.notes.iter().cloned());
     summary.shown = shown.part;
     write_pictures(

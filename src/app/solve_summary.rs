@@ -32,7 +32,7 @@ pub(super) struct Verdict {
 
 impl Verdict {
     /// The verdict by verification, by the end where it has to be held, and by the solver.
-    pub(super) fn of(control: &Control, optimum: &Optimum) -> Self {
+    pub(super) fn from_optimum(control: &Control, optimum: &Optimum) -> Self {
         let Optimum {
             model, boundary, ..
         } = optimum;

@@ -93,7 +93,7 @@ pub(super) fn read(
         Some(text) => read_problem_text(input, text, set),
         None => read_problem(input, set),
     }?;
-    memory::of_elements(&loaded.system).map_err(CommandError::of(input))?;
+    memory::of_elements(&loaded.system).map_err(CommandError::in_file(input))?;
     Ok(loaded)
 }
 

@@ -31,7 +31,7 @@ pub(super) struct Unfinished {
 
 impl Unfinished {
     /// Nothing is written yet; the first time comes after two seconds.
-    pub(super) fn of(folder: PathBuf, file: &str) -> Self {
+    pub(super) fn in_folder(folder: PathBuf, file: &str) -> Self {
         Self {
             path: folder.join(file),
             folder,

@@ -154,7 +154,7 @@ impl<'a> End<'a> {
             }
             _ => {}
         }
-        let measure = Site::of(&bounded.quantity).measure(self.model, measure?);
+        let measure = Site::from_quantity(&bounded.quantity).measure(self.model, measure?);
         let map = &self.model.action.map;
         let mut reads = measure.vectors().into_iter().flat_map(|v| map.support(v));
         let is_known = reads.all(|i| self.known[i])

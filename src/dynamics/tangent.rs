@@ -84,7 +84,7 @@ impl EntryList {
             *entry = pair((row - first, col - first));
         }
         let entries = self.entries.iter().copied().map(uncounted);
-        let solver = Direct::of(size, entries, symmetry, backend);
+        let solver = Direct::with_entries(size, entries, symmetry, backend);
         self.tangent_by(solver, false)
     }
 
@@ -190,7 +190,8 @@ impl Tangent {
             return false;
         }
         let entries = self.entries.iter().copied().map(uncounted);
-        self.solver = Direct::of(self.solver.size(), entries, Symmetry::Unsymmetric, None);
+        self.solver =
+            Direct::with_entries(self.solver.size(), entries, Symmetry::Unsymmetric, None);
         true
     }
 

@@ -135,7 +135,7 @@ impl Simulation {
             coordinates: None,
             solving: Solving {
                 integrator: self.integrator,
-                newton: Newton::of(system),
+                newton: Newton::for_system(system),
                 backend: None,
             },
         })

@@ -31,7 +31,7 @@ pub struct Before<'a> {
 
 impl<'a> Before<'a> {
     /// The latest iterate of a record, where its multipliers are known.
-    pub(super) fn of(
+    pub(super) fn from_record(
         record: &'a Record,
         x: &'a [f64],
         (bounds, squares): (&'a Bounds, &'a Squares),

@@ -63,7 +63,7 @@ impl<N: Nlp> Solver<N> {
             places.all(|(row, col)| row >= col),
             "lower triangle of the Hessian"
         );
-        let squares = Squares::of(&program);
+        let squares = Squares::from_program(&program);
         Self {
             program: InSquares::new(program, squares.clone(), jacobian, hessian),
             squares,

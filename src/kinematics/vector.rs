@@ -48,7 +48,7 @@ pub enum Carrier {
 
 impl Carrier {
     /// A body, or the ground.
-    pub fn of(body: Option<usize>) -> Self {
+    pub fn from_body(body: Option<usize>) -> Self {
         body.map_or(Self::Ground, Self::Body)
     }
 }
@@ -85,7 +85,7 @@ impl MaterialVector {
         let pose = body.map_or(Pose::GROUND, |b| reference[b]);
         Self {
             terms: vec![VectorTerm {
-                carrier: Carrier::of(body),
+                carrier: Carrier::from_body(body),
                 centre: 1.0,
                 directors: pose.local(place),
             }],
@@ -97,7 +97,7 @@ impl MaterialVector {
         let pose = body.map_or(Pose::GROUND, |b| reference[b]);
         Self {
             terms: vec![VectorTerm {
-                carrier: Carrier::of(body),
+                carrier: Carrier::from_body(body),
                 centre: 0.0,
                 directors: pose.directors.tr_mul(direction),
             }],

@@ -243,7 +243,7 @@ mod tests {
         for &(i, j, value) in entries {
             block.add(i, j, value);
         }
-        let mut room = Room::of(std::slice::from_ref(&block));
+        let mut room = Room::for_blocks(std::slice::from_ref(&block));
         let is_regular = block.factor(&mut room);
         (block, is_regular)
     }

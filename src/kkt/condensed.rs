@@ -84,8 +84,8 @@ impl Condensed {
         let entries = plans.map(|plan| plan.pattern().0.len()).max().unwrap_or(0);
         Self {
             middle: middle(parts.blocks.iter().map(Block::multiplications)),
-            rooms: [0, 1].map(|_| Room::of(&blocks)),
-            weights: [0, 1].map(|_| Weights::of(&parts.blocks)),
+            rooms: [0, 1].map(|_| Room::for_blocks(&blocks)),
+            weights: [0, 1].map(|_| Weights::from_blocks(&parts.blocks)),
             blocks,
             responses: vec![0.0; starts[starts.len() - 1]],
             starts,

@@ -60,7 +60,7 @@ impl Fronts {
     ) -> Result<(Graph, Self), Stopped> {
         let graph = Graph::new(order, rows, cols, progress)?;
         progress.add(rows.len())?;
-        let elimination = order::of(&graph, unknowns);
+        let elimination = order::elimination(&graph, unknowns);
         let nodes = tree::nodes(&graph, &elimination, progress)?;
         let mut fronts = Self {
             order,

@@ -314,7 +314,7 @@ impl Construction<'_> {
             internals: &self.internals.list,
         };
         (0..map.coordinates).for_each(|i| _ = variables.add(named.coordinate(i)));
-        let multiplier = |name| Variable::of(Role::Multiplier, name, Size::Unknown);
+        let multiplier = |name| Variable::with_role(Role::Multiplier, name, Size::Unknown);
         multipliers
             .into_iter()
             .for_each(|name| _ = variables.add(multiplier(name)));

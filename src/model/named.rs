@@ -30,7 +30,7 @@ impl Named<'_> {
     pub(super) fn coordinate(&self, i: usize) -> Variable {
         let internal = i.checked_sub(self.map.internal().start);
         if let Some(Internal { name, size, .. }) = internal.map(|index| &self.internals[index]) {
-            return Variable::of(Role::Coordinate, name.clone(), *size);
+            return Variable::with_role(Role::Coordinate, name.clone(), *size);
         }
         let (name, size) = match i.checked_sub(self.map.of_bodies) {
             Some(place) => {
@@ -42,7 +42,7 @@ impl Named<'_> {
             }
             None => self.of_body(i),
         };
-        Variable::of(Role::Coordinate, name, size)
+        Variable::with_role(Role::Coordinate, name, size)
     }
 
     fn of_body(&self, i: usize) -> (String, Size) {

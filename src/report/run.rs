@@ -106,7 +106,7 @@ impl<'a> Run<'a> {
     }
 
     /// A motion with all that is observed of it in its table, alone and without a page.
-    pub fn of(
+    pub fn from_trajectory(
         system: &'a System,
         trajectory: &'a Trajectory,
         skins: &'a Skins,

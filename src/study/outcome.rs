@@ -83,7 +83,7 @@ fn control(
         Ok(optimum) => optimum,
         Err(error) => {
             return (
-                refused(&CommandError::of(&point.problem)(error), seconds),
+                refused(&CommandError::in_file(&point.problem)(error), seconds),
                 None,
             );
         }
@@ -116,7 +116,7 @@ fn of_optimum(optimum: &Optimum, names: &[String]) -> Observed {
     let h = motion.times[n] / n as f64;
     let mut seen = Observed {
         iterations: solution.iterations.len().saturating_sub(1),
-        ..Observed::of(model, &trajectory(model, motion), names)
+        ..Observed::from_motion(model, &trajectory(model, motion), names)
     };
     let mut number = |measure, value| seen.numbers.insert(measure, value);
     number(StudyMeasure::Objective, solution.objective);
@@ -130,7 +130,8 @@ fn of_optimum(optimum: &Optimum, names: &[String]) -> Observed {
         ControlFlow::Continue(())
     });
     if failure.is_none() {
-        let again = Observed::of(model, &Trajectory::from_discrete(model, &discrete), names);
+        let again =
+            Observed::from_motion(model, &Trajectory::from_discrete(model, &discrete), names);
         let apart = |k: usize| furthest(&seen.places[k], &again.places[FINER * k]);
         let distances: Vec<f64> = (0..=n).map(apart).collect();
         let greatest = distances.iter().fold(0.0_f64, |m, d| m.max(*d));
@@ -160,7 +161,7 @@ fn motion(
         Ok(simulated) => simulated,
         Err(error) => {
             return (
-                refused(&CommandError::of(&point.problem)(error), seconds),
+                refused(&CommandError::in_file(&point.problem)(error), seconds),
                 None,
             );
         }
@@ -192,7 +193,7 @@ fn of_motion(simulated: &Simulated, task: &Simulation, names: &[String]) -> Obse
             None => discrete.report.halved,
             Some(_) => 0,
         },
-        ..Observed::of(model, &Trajectory::from_discrete(model, discrete), names)
+        ..Observed::from_motion(model, &Trajectory::from_discrete(model, discrete), names)
     };
     let observed = observations(model, discrete);
     if let Some(violations) = column(&observed, "constraint_violation") {
@@ -291,7 +292,7 @@ fn refused(error: &CommandError, seconds: f64) -> RunOutcome {
 
 impl Observed {
     /// Instants and places of a motion.
-    fn of(model: &Model, motion: &Trajectory, names: &[String]) -> Self {
+    fn from_motion(model: &Model, motion: &Trajectory, names: &[String]) -> Self {
         let duration = motion.times[motion.intervals()];
         let zero = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
         let list = markers(model, names);

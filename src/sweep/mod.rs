@@ -75,7 +75,7 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
         .iter()
         .map(|variant| match ends.get(variant.identity.as_str()) {
             Some(end) => end.clone(),
-            None => VariantRecord::of(variant, &RunEnd::NOT_STARTED, Path::new("")),
+            None => VariantRecord::from_end(variant, &RunEnd::NOT_STARTED, Path::new("")),
         })
         .collect();
     write(request, &sweep, &ends, &folder)?;
@@ -153,7 +153,7 @@ fn solve<'a>(
     let mut counts = [0, 0];
     let mut unwritten = None;
     run_all(&batch, &mut |index, end| {
-        let mut kept = VariantRecord::of(todo[index], &end, &folder(todo[index]));
+        let mut kept = VariantRecord::from_end(todo[index], &end, &folder(todo[index]));
         if !kept.is_unfinished() {
             unwritten = kept.write(&folder(todo[index])).err();
         }

@@ -49,7 +49,7 @@ struct Summary {
 
 impl VariantRecord {
     /// Makes the record of a variant that ended with this; the files of its solve are in `folder`.
-    pub(super) fn of(variant: &Variant, end: &RunEnd, folder: &Path) -> Self {
+    pub(super) fn from_end(variant: &Variant, end: &RunEnd, folder: &Path) -> Self {
         let (word, message) = match &end.said {
             Said::NotStarted => ("not_started", None),
             Said::Solved => ("solved", None),
@@ -77,7 +77,7 @@ impl VariantRecord {
     pub(super) fn refused(variant: &Variant, message: &str) -> Self {
         let said = Said::Refused(message.to_owned());
         let end = RunEnd { said, seconds: 0.0 };
-        Self::of(variant, &end, Path::new(""))
+        Self::from_end(variant, &end, Path::new(""))
     }
 
     /// Returns the record in the folder of a variant, if nothing is left to do for it.
@@ -106,7 +106,7 @@ impl VariantRecord {
     pub(super) fn write(&mut self, folder: &Path) -> Result<(), CommandError> {
         make_folder(folder)?;
         let path = folder.join(OF_VARIANT);
-        self.files = FileRecords::of(folder).map_err(|cause| WriteError {
+        self.files = FileRecords::from_folder(folder).map_err(|cause| WriteError {
             path: path.clone(),
             cause,
         })?;

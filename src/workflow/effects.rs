@@ -47,7 +47,7 @@ pub struct Plan {
 
 impl Plan {
     /// The plan of a model, each effect measured for `spent` seconds or one evaluation.
-    pub fn of(model: &Model, control: Option<&Control>, spent: f64) -> Self {
+    pub fn from_model(model: &Model, control: Option<&Control>, spent: f64) -> Self {
         Self {
             effects: effect_counts(model, control, spent),
             absent: absent(model, control),

@@ -81,7 +81,7 @@ pub fn integrate_on(
         return Err(WorkflowError::Stopped(status));
     }
     phase("finding the start");
-    let of = StepState::of(&model, task.solving);
+    let of = StepState::equations_hash(&model, task.solving);
     let mut begun = match begun {
         Some(begun) => begun,
         None => {

@@ -28,7 +28,12 @@ pub(crate) struct Repeat {
 }
 
 impl Repeat {
-    pub(crate) fn of(model: &Model, start: &Start, optimal: &Solution, steps: usize) -> Self {
+    pub(crate) fn from_solution(
+        model: &Model,
+        start: &Start,
+        optimal: &Solution,
+        steps: usize,
+    ) -> Self {
         let n = optimal.intervals();
         let h = optimal.times[n] / n as f64;
         let scalars = |from: f64, to: f64| {

@@ -89,7 +89,7 @@ pub(crate) fn resimulate(
     tolerance: f64,
 ) -> Resimulation {
     let path_length = Distance::path_length(model, optimal);
-    let own = Repeat::of(model, start, optimal, 1);
+    let own = Repeat::from_solution(model, start, optimal, 1);
     let mut out = Resimulation {
         deviation: own.greatest(),
         path_length,
@@ -125,7 +125,7 @@ pub(crate) fn resimulate(
 impl Resimulation {
     /// Estimates the error with finer and finer steps until their distances fall; returns true if no simulation ended early.
     fn refine(&mut self, model: &Model, start: &Start, optimal: &Solution, least: f64) -> bool {
-        let with = |steps: usize| Repeat::of(model, start, optimal, steps);
+        let with = |steps: usize| Repeat::from_solution(model, start, optimal, steps);
         let mut before: Option<(Repeat, f64)> = None;
         let mut greatest = Distance::default();
         let (mut error, mut is_confirmed) = (0.0, false);

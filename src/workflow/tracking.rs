@@ -123,13 +123,13 @@ pub fn tracked(
                 .iter()
                 .filter_map(|c| path(system, c, motion))
                 .collect();
-            TrackingError::of(&motion.times, &deviations(&paths), scale)
+            TrackingError::from_deviations(&motion.times, &deviations(&paths), scale)
         });
         Some(Tracked {
             kind,
             name: name.clone(),
             unit,
-            error: TrackingError::of(&motion.times, &deviation, scale),
+            error: TrackingError::from_deviations(&motion.times, &deviation, scale),
             simulated: again,
             paths,
             deviation,
@@ -194,7 +194,7 @@ fn deviations(paths: &[TrackedPath]) -> Vec<f64> {
 
 impl TrackingError {
     /// Of deviations at times in ms, by the trapezoidal rule.
-    fn of(times: &[f64], deviations: &[f64], scale: f64) -> Self {
+    fn from_deviations(times: &[f64], deviations: &[f64], scale: f64) -> Self {
         let mut integral = 0.0;
         for (t, e) in times.windows(2).zip(deviations.windows(2)) {
             integral += 0.5 * (t[1] - t[0]) * (e[0] * e[0] + e[1] * e[1]);

@@ -56,7 +56,7 @@ fn run<'a>(system: &'a System, trajectory: &'a Trajectory) -> Run<'a> {
     let (skins, observations, origin, content) = &*PARTS;
     Run {
         page: Some(content),
-        ..Run::of(system, trajectory, skins, observations, origin)
+        ..Run::from_trajectory(system, trajectory, skins, observations, origin)
     }
 }
 

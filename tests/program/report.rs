@@ -296,12 +296,12 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
             rows: vec![("status".to_owned(), "a < b".to_owned())],
             ..PageContent::default()
         }),
-        ..Run::of(&system, &trajectory, &skins, &observations, &origin)
+        ..Run::from_trajectory(&system, &trajectory, &skins, &observations, &origin)
     };
     let folder = tempfile::tempdir().unwrap();
     let inner = folder.path().join("results").join("swing");
     fs::create_dir_all(&inner).unwrap();
-    let mut set = FileSet::of(&inner);
+    let mut set = FileSet::in_folder(&inner);
     write_run(&mut set, &run).unwrap();
     // None has its name before all are finished.
     assert!(!inner.join("trajectory.csv").exists());

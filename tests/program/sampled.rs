@@ -49,7 +49,7 @@ proptest! {
             nearest.extend((0..=last).min_by(|a, b| far(a).total_cmp(&far(b))));
         }
         let expected = (nearest.len() <= last).then(|| nearest.into_iter().collect::<Vec<_>>());
-        let found = Sampled::of(&observed(&times), Some(1.0));
+        let found = Sampled::from_observations(&observed(&times), Some(1.0));
         prop_assert_eq!(found.map(|sampled| sampled.instants), expected);
     }
 

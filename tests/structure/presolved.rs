@@ -307,7 +307,7 @@ fn each_effect_is_in_the_plan_once_with_its_reason() {
             let mut control = case.control.clone();
             control.coordinates = Some(coordinates);
             let (model, _) = BoundaryConditions::resolve(&case.system, &control, 10.0).unwrap();
-            let plan = Plan::of(&model, Some(&control), 0.0);
+            let plan = Plan::from_model(&model, Some(&control), 0.0);
             for effect in &plan.effects {
                 assert!(TERMS.contains(&effect.name.as_str()), "{}", effect.name);
                 assert!(effect.why.len() > 5 && effect.elements > 0, "{effect:?}");
@@ -339,7 +339,7 @@ fn entries_of_the_program_are_those_of_its_effects() {
     let mut task = control(&system, 4);
     let plan = |task: &proboscis::control::problem::Control| {
         let (model, _) = BoundaryConditions::resolve(&system, task, 10.0).unwrap();
-        let plan = Plan::of(&model, Some(task), 0.0);
+        let plan = Plan::from_model(&model, Some(task), 0.0);
         let named = |name: &str| {
             let effect = plan.effects.iter().find(|e| e.name == name).unwrap();
             (effect.unknowns, effect.jacobian, effect.hessian.unwrap())

@@ -47,7 +47,7 @@ pub(super) fn limit_rows(
     let mut first = 0;
     let row = |(bounded, measure): (&BoundedQuantity, &Option<usize>)| {
         let measure = (*measure)?;
-        let site = Site::of(&bounded.quantity);
+        let site = Site::from_quantity(&bounded.quantity);
         let reads = site.measure(model, measure);
         let mut support: Vec<usize> = reads
             .vectors()
@@ -105,7 +105,7 @@ pub(super) fn limit_rows(
 
 impl Site {
     /// Returns the site at which a quantity is measured.
-    pub(in crate::control) fn of(quantity: &Quantity) -> Self {
+    pub(in crate::control) fn from_quantity(quantity: &Quantity) -> Self {
         match quantity.is_of_intervals() {
             true => Self::Intervals,
             false => Self::Instants,
