@@ -55,7 +55,7 @@ const TABLE: &[NotOffered] = &[
             "external_force",
             "wrench",
         ],
-        said: "there are no motors, and no forces but gravity and those of muscles, springs and tendons: voltages are the only control",
+        said: "there are no motors, and no forces but gravity and those of muscles, springs, tendons and springs of joints: voltages are the only control",
     },
     NotOffered {
         words: &[
