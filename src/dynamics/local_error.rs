@@ -2,7 +2,7 @@
 //!
 //! A method of order p neglects in a step of h the term c hᵖ⁺¹ x⁽ᵖ⁺¹⁾ of the motion x of a point; for p = 2s the constant is
 //! that of the diagonal Padé approximation of the exponential, c = (s!)²/((2s)! (2s + 1)!), 1/12 for the midpoint rule, and 1/2
-//! for implicit Euler. The derivative is a divided difference of p + 2 recorded instants: those around the step, beside
+//! for implicit Euler. The derivative is a divided difference of p + 2 recorded instants: those around the step, next to
 //! switches of the voltages where there is room.
 //!
 //! The sum over all steps is an estimate of how far the motion ends from the exact one where errors neither grow nor decay.

@@ -148,7 +148,7 @@ pub(super) fn momentum_maps(
             let (place, total) = match term.carrier {
                 Carrier::Body(body) => (term.at(&places.poses[body]), momentum + impulse),
                 Carrier::Ground => (term.at(&Pose::GROUND), *momentum),
-                // A vector that terms read holds no more than one node, and nothing else beside it.
+                // A vector that terms read holds no more than one node, and nothing else.
                 Carrier::Node(_) => (*x, momentum + impulse),
                 Carrier::Coordinate(coordinate) => {
                     let Some([force, torque]) = places.pulls.get(coordinate) else {

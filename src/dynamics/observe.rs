@@ -102,7 +102,7 @@ fn to_instants(times: &[f64], columns: &mut [Column], last: &Last) {
     }
 }
 
-/// Turns momenta as the interval before each row sees them into means of both intervals beside it, each weighted by the length of
+/// Turns momenta as the interval before each row sees them into means of both intervals next to it, each weighted by the length of
 /// the other, so that a constant reaction cancels; `before` holds what the interval that ends at a row sees at the row before.
 fn means(times: &[f64], columns: &mut [Column], before: &[Momenta], last: &Last) {
     let end = times.len() - 1;

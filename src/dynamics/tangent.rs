@@ -170,7 +170,7 @@ impl Tangent {
         let mut rest = vec![0.0; update.len()];
         for (&(row, col), value) in self.entries.iter().zip(&self.matrix) {
             if row != col {
-                // The matrix holds halves beside the diagonal.
+                // The matrix holds halves next to the diagonal.
                 rest[row as usize] += value * update[col as usize];
                 rest[col as usize] -= value * update[row as usize];
             }

@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn shuffled_equations_of_a_bar_come_near_the_diagonal() {
-        // Equations 0..200 and unknowns 200..400 of a bar, five beside each other, known by numbers that tell nothing.
+        // Equations 0..200 and unknowns 200..400 of a bar, five next to each other, known by numbers that tell nothing.
         const COUNT: u32 = 200;
         let shuffled = |i: u32| (i * 77 + 13) % COUNT;
         let near = |i: u32| i.saturating_sub(9)..COUNT.min(i + 10);

@@ -54,7 +54,7 @@ pub(crate) fn constant(
     simulate(model, start, h, durations * n, constant, |_| go_on())
 }
 
-/// Returns true if a drift beside a path is so small that the end counts as held.
+/// Returns true if a drift compared with a path is so small that the end counts as held.
 pub(crate) fn is_small(drift: Distance, path_length: Distance, model: &Model) -> bool {
     drift.over(path_length, model) <= DRIFTS
 }
